@@ -1,0 +1,1 @@
+"""Drivers to be judged, and the base class of everybody's own."""

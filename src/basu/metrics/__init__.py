@@ -1,0 +1,1 @@
+"""Scores and infractions as functions of a recorded history."""

@@ -1,0 +1,1 @@
+"""Shared by two folders or more: packaged files."""

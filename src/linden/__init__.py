@@ -1,0 +1,5 @@
+"""A CARLA 0.9.16 server in Python: no Unreal, no GPU, the same answer every time."""
+
+__version__ = "0.1.0"
+CARLA_VERSION = "0.9.16"
+"""The release whose wire protocol is spoken; the official client compares it with its own."""

@@ -1,0 +1,1 @@
+"""Making maps: street facts in GeoJSON to OpenDRIVE."""

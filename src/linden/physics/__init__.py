@@ -1,0 +1,1 @@
+"""How bodies move: stages of a step, one idea a file, over structure-of-arrays."""

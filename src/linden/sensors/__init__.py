@@ -1,0 +1,1 @@
+"""What sensors measure: pure functions of the state, one file a sensor."""

@@ -1,0 +1,1 @@
+"""Sockets, ports and the clock: the only place that knows there is a network."""

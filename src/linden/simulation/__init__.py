@@ -1,0 +1,1 @@
+"""One step of the world; the only place where physics, sensors and traffic meet."""

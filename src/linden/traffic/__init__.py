@@ -1,0 +1,1 @@
+"""Traffic lights and signs, made from the map's signals."""

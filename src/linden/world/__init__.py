@@ -1,0 +1,1 @@
+"""What there is: actors, blueprints, maps and the look-ups over them."""
