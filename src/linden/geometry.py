@@ -14,7 +14,7 @@ Matrix = NDArray[np.float64]
 
 
 def rotation_matrix(rotation: Rotation) -> Matrix:
-    """Return the (3, 3) matrix whose columns are the turned x, y, z axes. Source: ``carla/geom/Transform.h``, GetMatrix."""
+    """Return the (3, 3) matrix whose columns are the turned x, y, z axes. Source: GetMatrix of ``carla/geom``."""
     pitch, yaw, roll = (math.radians(angle) for angle in rotation)
     sp, cp, sy, cy, sr, cr = (
         math.sin(pitch),
@@ -34,7 +34,7 @@ def rotation_matrix(rotation: Rotation) -> Matrix:
 
 
 def rotation_of(matrix: Matrix) -> Rotation:
-    """Return the rotation of a (3, 3) matrix made by :func:`rotation_matrix`; yaw 0 where the nose points straight up."""
+    """Return the rotation of a (3, 3) matrix of :func:`rotation_matrix`; yaw 0 where the nose points straight up."""
     pitch = math.asin(max(-1.0, min(1.0, float(matrix[2, 0]))))
     if abs(matrix[2, 0]) > 1.0 - 1e-12:
         return Rotation(math.degrees(pitch), 0.0, math.degrees(math.atan2(-matrix[0, 1], matrix[1, 1])))

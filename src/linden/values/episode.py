@@ -1,4 +1,4 @@
-"""What holds for a whole episode: settings, weather, map. Source: ``carla/rpc`` (EpisodeSettings.h, WeatherParameters.h)."""
+"""What holds for a whole episode: settings, weather, map. Source: ``carla/rpc``, 0.9.16."""
 
 from typing import NamedTuple
 

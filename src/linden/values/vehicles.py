@@ -47,7 +47,7 @@ class Gear(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """One wheel. Radius and position are in **cm**, the position in the world frame; torques in N·m; angle in degrees."""
+    """One wheel. Radius and position are in **cm**, the position in the world frame; N·m; degrees."""
 
     tire_friction: float = 2.0
     damping_rate: float = 0.25
