@@ -1,0 +1,110 @@
+"""The base class of every driver that BASU judges: what an agent is given, and the four methods it answers with.
+
+A first agent of your own is a file with one class::
+
+    import carla
+    from basu.agents.autonomous_agent import AutonomousAgent
+
+    class Careful(AutonomousAgent):
+        def setup(self):
+            self.gnss_id = "GPS"
+
+        def run_step(self, sensor_data):
+            frame, fix = sensor_data[self.gnss_id]
+            return carla.VehicleControl(throttle=0.3)
+
+        def config(self):
+            return {"routes": "routes/linden_short.xml", "sensors": "config/sensors.json"}
+
+and is driven by ``basu run my_agent.py``. Nothing here has to be called by an agent: ``__init__`` needs no arguments
+and need not be overridden.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import carla
+
+    from basu.routing import Route
+
+
+class AutonomousAgent(ABC):
+    """A driver. The life of one: ``config``, then ``bind`` (by BASU), ``setup``, ``run_step`` each tick, ``destroy``.
+
+    From ``setup`` on, these are there:
+
+    Attributes:
+        client: the ``carla.Client`` BASU itself is connected with.
+        world: the ``carla.World`` of this run. It is in synchronous mode and BASU ticks it: an agent never does.
+        map: the ``carla.Map`` of the world.
+        vehicle: the ``carla.Vehicle`` to be driven. BASU applies what ``run_step`` returns.
+        route: the route to follow, joined along the lanes; None where the run has none.
+        config_values: what ``config`` returned, completed by BASU with what the command line overrode.
+        time_step_s: simulated seconds between two calls of ``run_step``.
+    """
+
+    client: carla.Client
+    world: carla.World
+    map: carla.Map
+    vehicle: carla.Vehicle
+    route: Route | None
+    config_values: Mapping[str, Any]
+    time_step_s: float
+
+    def bind(
+        self,
+        *,
+        client: carla.Client,
+        world: carla.World,
+        map: carla.Map,  # noqa: A002 - the word the thesis and CARLA's users have for it
+        vehicle: carla.Vehicle,
+        route: Route | None,
+        config_values: Mapping[str, Any],
+        time_step_s: float,
+    ) -> None:
+        """Hand the agent its run. BASU calls this once, before ``setup``; an agent does not override it."""
+        self.client = client
+        self.world = world
+        self.map = map
+        self.vehicle = vehicle
+        self.route = route
+        self.config_values = config_values
+        self.time_step_s = time_step_s
+
+    @abstractmethod
+    def setup(self) -> None:
+        """Get ready to drive: the world, the vehicle and the route are there; the first tick is still to come."""
+
+    @abstractmethod
+    def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
+        """Answer one tick with what the driver's hands and feet do until the next.
+
+        Args:
+            sensor_data: for each sensor id of the sensor file the frame it was measured in and the measurement,
+                a ``carla.SensorData``. A sensor with nothing new since the last tick still has its last one.
+
+        Returns:
+            A ``carla.VehicleControl`` with finite numbers. Anything else, an exception, or taking longer than the
+            time limit of a step ends the run, with all that was measured until then.
+        """
+
+    @abstractmethod
+    def config(self) -> Mapping[str, Any]:
+        """Say what the agent wants to be driven in; asked once, before there is a world.
+
+        Keys, all optional: ``routes`` (route XML), ``sensors`` (sensor JSON), ``vehicle`` (blueprint id), ``weather``
+        (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO network). File names are looked for from the
+        working folder, then from the agent's own file, then among the files BASU brings.
+        """
+
+    def get_initial_route_locations(self) -> Sequence[carla.Location] | None:
+        """Give a route of one's own as locations to be joined along the lanes; None, as here, takes the route file."""
+        return None
+
+    def destroy(self) -> None:  # noqa: B027 - most agents have nothing to put away
+        """Put away what ``setup`` took (files, windows, processes); called once after the last step in every case."""
