@@ -1,0 +1,39 @@
+"""The errors of a benchmark run, drawn as a tree: whose fault is it?
+
+::
+
+    BasuError
+    ├── UserError       the set-up's: something that was typed or given cannot be used
+    ├── AgentError      the agent's: it raised, hung, or returned what is not a control
+    └── SimulatorError  the simulator's: it went away, or did not answer in time
+
+Anything else that is raised is a bug of ours. It is shown with its traceback and never scored as the agent's failure.
+"""
+
+
+class BasuError(Exception):
+    """Base of all errors that carry a sentence for a reader."""
+
+
+class UserError(BasuError):
+    """What was typed or given cannot be used: says which, why, and what to do next."""
+
+
+class AgentError(BasuError):
+    """The agent under test failed; what was measured until then is kept and scored."""
+
+
+class AgentCrashedError(AgentError):
+    """The agent raised; the text names the exception and the line of the agent's file."""
+
+
+class AgentTimedOutError(AgentError):
+    """The agent took longer than its limit over one call."""
+
+
+class AgentInvalidControlError(AgentError):
+    """The agent returned something that is not a usable ``carla.VehicleControl``."""
+
+
+class SimulatorError(BasuError):
+    """The simulator does not answer, went away, or could not be started."""

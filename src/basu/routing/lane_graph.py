@@ -1,0 +1,98 @@
+"""The lanes of a map as a directed graph, made from what the official client knows of it.
+
+A node is a lane of one lane section; an edge leads to a lane that a vehicle reaches by driving straight on, its weight
+is the length of the lane that is left behind. Lane changes are not part of it: a shuttle's way keeps to its lane.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import networkx as nx
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from basu.routing.roads import Road
+
+STEP_OVER_M = 0.1  # from just before a lane's end to just behind it
+SAMPLE_SPACING_M = 2.0  # of the points at which lanes are looked up by position
+
+
+class LaneKey(NamedTuple):
+    """A lane of one section of one road; ``lane`` is negative where it runs with the road's reference line."""
+
+    road: int
+    section: int
+    lane: int
+
+
+@dataclass(frozen=True, slots=True)
+class LaneGraph:
+    """All driving lanes of a map, with points on them to find them by (M samples)."""
+
+    graph: nx.DiGraph[LaneKey]
+    keys: tuple[LaneKey, ...]  # (K,) the lanes that have samples
+    key_of_sample: NDArray[np.int64]  # (M,) index into ``keys``
+    s_m: NDArray[np.float64]  # (M,) along the road's reference line
+    points_m: NDArray[np.float64]  # (M, 3) CARLA frame
+    yaw_rad: NDArray[np.float64]  # (M,) of the lane, CARLA frame
+
+
+def key_of(waypoint: Any) -> LaneKey:
+    """The lane that a ``carla.Waypoint`` lies on."""
+    return LaneKey(waypoint.road_id, waypoint.section_id, waypoint.lane_id)
+
+
+def build(carla_map: Any, roads: dict[int, Road]) -> LaneGraph:
+    """Make the graph of a ``carla.Map`` whose ``roads`` were read; some tenths of a second for a city quarter."""
+    keys: dict[LaneKey, int] = {}
+    key_of_sample, s_m, poses = [], [], []
+    for waypoint in carla_map.generate_waypoints(SAMPLE_SPACING_M):
+        key_of_sample.append(keys.setdefault(key_of(waypoint), len(keys)))
+        s_m.append(waypoint.s)
+        transform = waypoint.transform
+        at = transform.location
+        poses.append((at.x, at.y, at.z, transform.rotation.yaw))
+    pose = np.array(poses, dtype=np.float64).reshape(-1, 4)
+    return LaneGraph(
+        graph=_connections(carla_map, roads),
+        keys=tuple(keys),
+        key_of_sample=np.array(key_of_sample, dtype=np.int64),
+        s_m=np.array(s_m, dtype=np.float64),
+        points_m=pose[:, :3],
+        yaw_rad=np.radians(pose[:, 3]),
+    )
+
+
+def _connections(carla_map: Any, roads: dict[int, Road]) -> nx.DiGraph[LaneKey]:
+    """Edges from the client's topology, and from the lane ends that the topology passes over."""
+    graph: nx.DiGraph[LaneKey] = nx.DiGraph()
+    known: dict[LaneKey, None] = {}
+
+    def connect(tail: LaneKey, head: LaneKey) -> None:
+        known.update({tail: None, head: None})
+        begin_m, end_m = roads[tail.road].section_extent_m(tail.section)
+        graph.add_edge(tail, head, weight=end_m - begin_m)
+
+    for entry, following in carla_map.get_topology():
+        connect(key_of(entry), key_of(following))
+    # the topology begins at roads only: inner lane sections appear in it as followers, and are continued here
+    unexplored = [key for key in known if graph.out_degree(key) == 0]
+    while unexplored:
+        key = unexplored.pop()
+        for following in _followers(carla_map, roads[key.road], key):
+            if following not in known:
+                unexplored.append(following)
+            connect(key, following)
+    return graph
+
+
+def _followers(carla_map: Any, road: Road, key: LaneKey) -> list[LaneKey]:
+    """The lanes that come after the end of a lane; empty at a dead end."""
+    begin_m, end_m = road.section_extent_m(key.section)
+    last_s_m = end_m - STEP_OVER_M / 2.0 if key.lane < 0 else begin_m + STEP_OVER_M / 2.0
+    last = carla_map.get_waypoint_xodr(key.road, key.lane, last_s_m)
+    found = [] if last is None else [key_of(waypoint) for waypoint in last.next(STEP_OVER_M)]
+    return [following for following in found if following != key]

@@ -1,0 +1,153 @@
+"""Lays a route description on a map: lane-centre points a metre apart, limits, stops and controls."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from basu.errors import UserError
+from basu.routing import lane_graph
+from basu.routing.controls import controls_on
+from basu.routing.join import Piece, join
+from basu.routing.model import Route, Stop
+from basu.routing.roads import read_roads
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from basu.routing.roads import Road
+    from basu.routing.route_file import RouteDescription
+
+SPACING_M = 1.0  # between the points of a planned route
+MERGE_M = 0.3  # points nearer than this to their predecessor are the seam of two lanes
+SEAM_M = 1e-3  # how far inside its lane a lane's first and last point is taken
+STOP_OFF_ROUTE_M = 8.0  # a service stop farther than this from the route is a mistake in the file
+
+
+def plan(carla_map: Any, description: RouteDescription) -> Route:
+    """Lay ``description`` on ``carla_map``.
+
+    Raises:
+        UserError: a point lies off the road, points cannot be joined, or a stop lies off the route.
+    """
+    roads = read_roads(carla_map.to_opendrive())
+    pieces = join(lane_graph.build(carla_map, roads), description)
+    waypoints = _thin([waypoint for piece in pieces for waypoint in _sample(carla_map, roads, piece)])
+    points_m, yaw_rad = _poses(waypoints)
+    s_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_m[:, :2], axis=0).T))])
+    if s_m[-1] < SPACING_M:
+        raise UserError(f"route '{description.id}' in {description.source} has no length: its points fall together")
+    road_id = np.array([w.road_id for w in waypoints], dtype=np.int64)
+    lane_id = np.array([w.lane_id for w in waypoints], dtype=np.int64)
+    road_s_m = np.array([w.s for w in waypoints], dtype=np.float64)
+    limit_mps = np.array([roads[int(road)].limit_at(float(s)) for road, s in zip(road_id, road_s_m, strict=True)])
+    return Route(
+        id=description.id,
+        town=description.town,
+        points_m=points_m,
+        s_m=s_m,
+        yaw_rad=yaw_rad,
+        lane_width_m=np.array([w.lane_width for w in waypoints], dtype=np.float64),
+        speed_limit_mps=_carried_on(limit_mps),
+        is_junction=np.array([w.is_junction for w in waypoints], dtype=np.bool_),
+        road_id=road_id,
+        lane_id=lane_id,
+        stops=_stops(description, points_m, s_m, yaw_rad),
+        controls=controls_on(
+            carla_map.get_all_landmarks(),
+            road_id=road_id,
+            lane_id=lane_id,
+            road_s_m=road_s_m,
+            s_m=s_m,
+            points_m=points_m,
+            yaw_rad=yaw_rad,
+        ),
+        waypoints=tuple(waypoints),
+    )
+
+
+def _sample(carla_map: Any, roads: dict[int, Road], piece: Piece) -> list[Any]:
+    """Way points of one piece, about ``SPACING_M`` apart, both ends included."""
+    low_m, high_m = roads[piece.key.road].section_extent_m(piece.key.section)
+    low_m, high_m = low_m + SEAM_M, high_m - SEAM_M
+    begin_m, end_m = (low_m, high_m) if piece.key.lane < 0 else (high_m, low_m)
+    first_s_m = begin_m if piece.from_s_m is None else piece.from_s_m
+    last_s_m = end_m if piece.to_s_m is None else piece.to_s_m
+    count = max(2, 1 + math.ceil(abs(last_s_m - first_s_m) / SPACING_M))
+    places_m = np.clip(np.linspace(first_s_m, last_s_m, count), low_m, high_m)
+    found = [carla_map.get_waypoint_xodr(piece.key.road, piece.key.lane, float(s_m)) for s_m in places_m]
+    return [waypoint for waypoint in found if waypoint is not None]
+
+
+def _thin(waypoints: list[Any]) -> list[Any]:
+    """Drop the doubles where one lane ends and the next begins."""
+    kept: list[Any] = []
+    for waypoint in waypoints:
+        if not kept or waypoint.transform.location.distance(kept[-1].transform.location) > MERGE_M:
+            kept.append(waypoint)
+    return kept
+
+
+def _poses(waypoints: list[Any]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Positions (N, 3) in m and yaw (N,) in rad within (-pi, pi], CARLA frame."""
+    rows = []
+    for waypoint in waypoints:
+        transform = waypoint.transform
+        at = transform.location
+        rows.append((at.x, at.y, at.z, math.radians(transform.rotation.yaw)))
+    pose = np.array(rows, dtype=np.float64)
+    return pose[:, :3].copy(), np.arctan2(np.sin(pose[:, 3]), np.cos(pose[:, 3]))
+
+
+def _carried_on(limit_mps: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Let a limit hold on through a junction, whose roads post none of their own."""
+    known = ~np.isnan(limit_mps)
+    if not known.any():
+        return limit_mps
+    latest = np.maximum.accumulate(np.where(known, np.arange(len(limit_mps)), -1))
+    first = int(np.argmax(known))
+    return limit_mps[np.where(latest < 0, first, latest)]
+
+
+def _stops(
+    description: RouteDescription,
+    points_m: NDArray[np.float64],
+    s_m: NDArray[np.float64],
+    yaw_rad: NDArray[np.float64],
+) -> tuple[Stop, ...]:
+    """The service stops on the route, each searched for beyond the one before it, in the file's order."""
+    found: list[Stop] = []
+    after_m = 0.0
+    for mark in description.stops:
+        away_m = np.hypot(points_m[:, 0] - mark.point.x_m, points_m[:, 1] - mark.point.y_m)
+        ahead = s_m >= after_m
+        near = ahead & (away_m <= min(STOP_OFF_ROUTE_M, float(away_m[ahead].min(initial=math.inf)) + 1.0))
+        if not near.any():
+            raise UserError(
+                f"route '{description.id}' in {description.source}: stop '{mark.name}' "
+                f"({mark.point.x_m:.1f}, {mark.point.y_m:.1f}) lies {away_m[ahead].min(initial=math.inf):.1f} m from "
+                f"the route where it is due; move it to within {STOP_OFF_ROUTE_M:.0f} m or reorder the stops"
+            )
+        index = _first_minimum(away_m, near)
+        found.append(
+            Stop(
+                id=mark.id,
+                name=mark.name,
+                s_m=float(s_m[index]),
+                x_m=mark.point.x_m,
+                y_m=mark.point.y_m,
+                z_m=mark.point.z_m,
+                yaw_rad=float(yaw_rad[index]) if mark.point.yaw_rad is None else mark.point.yaw_rad,
+            )
+        )
+        after_m = float(s_m[index])
+    return tuple(found)
+
+
+def _first_minimum(away_m: NDArray[np.float64], near: NDArray[np.bool_]) -> int:
+    """The nearest point of the first run of near ones: a route may pass the same place again later."""
+    first = int(np.argmax(near))
+    end = first + int(np.argmin(near[first:])) if not near[first:].all() else len(near)
+    return first + int(np.argmin(away_m[first:end]))

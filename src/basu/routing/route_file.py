@@ -1,0 +1,123 @@
+"""Reads route XML: ScenarioRunner's and the leaderboard's, with this project's ``<stops>`` beside the way points.
+
+Three spellings of a point are in use and all are read: ``<waypoint x y z yaw>`` directly below ``<route>``
+(ScenarioRunner, leaderboard 1.0), ``<waypoints><position x y z>`` (leaderboard 2.x), and ``<waypoints><waypoint …>``.
+Coordinates are CARLA's: metres, y south, yaw in degrees clockwise.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from lxml import etree
+
+from basu.errors import UserError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@dataclass(frozen=True, slots=True)
+class RoutePoint:
+    """A point of the way in CARLA's frame; ``yaw_rad`` is None where the file gives none."""
+
+    x_m: float
+    y_m: float
+    z_m: float
+    yaw_rad: float | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StopMark:
+    """A service stop as the file has it."""
+
+    id: str
+    name: str
+    point: RoutePoint
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RouteDescription:
+    """One ``<route>`` of a file, not yet laid on a map."""
+
+    id: str
+    town: str
+    points: tuple[RoutePoint, ...]
+    stops: tuple[StopMark, ...]
+    source: str  # file name, for sentences
+
+
+def read_routes(path: Path) -> tuple[RouteDescription, ...]:
+    """Read every route of a file.
+
+    Raises:
+        UserError: the file is missing, empty, not route XML, or holds a point that is not one.
+    """
+    try:
+        text = path.read_bytes()
+    except OSError as error:
+        raise UserError(
+            f"route file {path} cannot be read ({error.strerror}); `basu list` shows the routes that come with BASU"
+        ) from error
+    if not text.strip():
+        raise UserError(f"route file {path} is empty; it needs <routes><route id town>… with way points inside")
+    try:
+        root = etree.fromstring(text, etree.XMLParser(resolve_entities=False, no_network=True))
+    except etree.XMLSyntaxError as error:
+        raise UserError(f"route file {path} is not XML: {error}") from error
+    elements = [root] if root.tag == "route" else list(root.iter("route"))
+    if not elements:
+        raise UserError(f"route file {path} holds no <route> (its outermost element is <{root.tag}>)")
+    return tuple(_description(element, path) for element in elements)
+
+
+def _description(element: etree._Element, path: Path) -> RouteDescription:
+    """One <route>."""
+    identity, town = element.get("id"), element.get("town")
+    if identity is None or town is None:
+        missing = "id" if identity is None else "town"
+        raise UserError(f"route file {path}, line {element.sourceline}: <route> lacks its attribute '{missing}'")
+    listed = element.find("waypoints")
+    holder = element if listed is None else listed
+    points = tuple(_point(e, path) for e in holder if e.tag in {"waypoint", "position"})
+    if len(points) < 2:
+        raise UserError(
+            f"route file {path}, line {element.sourceline}: route '{identity}' has {len(points)} way points "
+            "and needs at least 2"
+        )
+    stops = tuple(
+        StopMark(id=e.get("id") or str(number), name=e.get("name") or f"stop {number}", point=_point(e, path))
+        for number, e in enumerate(element.iterfind("stops/stop"), start=1)
+    )
+    return RouteDescription(id=identity, town=town, points=points, stops=stops, source=str(path))
+
+
+def _point(element: etree._Element, path: Path) -> RoutePoint:
+    """The coordinates of a point; z may be absent, it is found from the road."""
+    yaw_deg = _number(element, "yaw", path)
+    x_m, y_m = _number(element, "x", path), _number(element, "y", path)
+    if x_m is None or y_m is None:
+        missing = "x" if x_m is None else "y"
+        raise UserError(
+            f"route file {path}, line {element.sourceline}: <{element.tag}> lacks its attribute '{missing}'"
+        )
+    z_m = _number(element, "z", path)
+    return RoutePoint(x_m, y_m, 0.0 if z_m is None else z_m, None if yaw_deg is None else math.radians(yaw_deg))
+
+
+def _number(element: etree._Element, name: str, path: Path) -> float | None:
+    """An attribute as a finite number, None where it is absent."""
+    text = element.get(name)
+    if text is None:
+        return None
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise UserError(
+            f"route file {path}, line {element.sourceline}: <{element.tag}> has {name}='{text}', which is no number"
+        )
+    return value
