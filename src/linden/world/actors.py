@@ -1,0 +1,181 @@
+"""The actors of an episode: who they are, whom they follow, and the packed rows in which the snapshot carries them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.errors import Refusal
+from linden.values.actors import ActorDescription
+from linden.values.enums import ActorState
+from linden.values.snapshot import ROW
+from linden.values.space import BoundingBox, Rotation, Transform, Vector3D
+from linden.world.blueprints import Kind
+
+NO_BODY = -1
+"""Slot of an actor that occupies no space."""
+
+
+class ActorRefusal(Refusal):
+    """A call names an actor that cannot take it; the reason is worded as CARLA's server words it."""
+
+    def __init__(self, reason: str, actor_id: int) -> None:
+        super().__init__(f"{reason}.  Actor Id: {actor_id}")  # two spaces: so CarlaServer.cpp, and scripts match on it
+
+
+@dataclass(slots=True)
+class ActorRecord:
+    """What is known of one actor beside its motion."""
+
+    id: int
+    description: ActorDescription
+    kind: Kind
+    box: BoundingBox
+    semantic_tags: bytes
+    parent_id: int = 0
+    slot: int = NO_BODY
+    stream_id: int = 0
+    sign_id: str = ""
+    light_state: int = 0
+    dead: bool = False
+
+
+class ActorTable:
+    """Actors in the order in which they came.
+
+    Attributes:
+        pose: (capacity, 6) x, y, z in m and pitch, yaw, roll in degrees, in the world.
+        relative: (capacity, 6) likewise in the parent's frame; read where ``parent_row`` is not -1.
+        parent_row: (capacity,) row of the parent, which always stands further up, or -1.
+        slot: (capacity,) row in the bodies, or ``NO_BODY``.
+        rows: (capacity,) the packed rows of the snapshot; the first ``len(table)`` are meant.
+    """
+
+    def __init__(self) -> None:
+        self._records: dict[int, ActorRecord] = {}
+        self._row_of: dict[int, int] = {}
+        self._by_slot: dict[int, ActorRecord] = {}
+        self._next_id = 1
+        self._leaving: list[int] = []
+        self.version = 0
+        """Grows whenever an actor comes or goes, so that what is derived from the set can be kept until then."""
+        self._allocate(256)
+
+    def _allocate(self, capacity: int) -> None:
+        self.rows: NDArray[np.void] = np.zeros(capacity, ROW)
+        self.pose = np.zeros((capacity, 6))
+        self.relative = np.zeros((capacity, 6))
+        self.parent_row = np.full(capacity, -1, np.int32)
+        self.slot = np.full(capacity, NO_BODY, np.int32)
+
+    def _columns(self) -> tuple[NDArray[np.generic], ...]:
+        return (self.rows, self.pose, self.relative, self.parent_row, self.slot)
+
+    def __len__(self) -> int:
+        return len(self._row_of)
+
+    def __iter__(self) -> Iterator[ActorRecord]:
+        return iter(self._records.values())
+
+    def __contains__(self, actor_id: int) -> bool:
+        return actor_id in self._records
+
+    def find(self, actor_id: int) -> ActorRecord | None:
+        """Return the actor, None where there is none."""
+        return self._records.get(actor_id)
+
+    def get(self, actor_id: int) -> ActorRecord:
+        """Return the actor.
+
+        Raises:
+            ActorRefusal: there is none of that id.
+        """
+        record = self._records.get(actor_id)
+        if record is None:
+            raise ActorRefusal("Actor could not be found in the registry", actor_id)
+        return record
+
+    def of_slot(self, slot: int) -> ActorRecord:
+        """Return the actor whose body lies in a slot."""
+        return self._by_slot[slot]
+
+    def row(self, actor_id: int) -> int:
+        """Return the row of a living actor."""
+        return self._row_of[actor_id]
+
+    def next_id(self) -> int:
+        """Return an id never used before in this episode."""
+        self._next_id += 1
+        return self._next_id - 1
+
+    def add(self, record: ActorRecord, pose: Transform, relative: Transform | None = None) -> None:
+        """Put an actor into the table; ``relative`` is its pose in its parent's frame, where it has one."""
+        if len(self) == len(self.rows):
+            old, count = self._columns(), len(self)
+            self._allocate(2 * count)
+            for new, column in zip(self._columns(), old, strict=True):
+                new[:count] = column
+        row = len(self)
+        self._records[record.id] = record
+        self._row_of[record.id] = row
+        self.rows[row] = np.zeros((), ROW)
+        self.rows["id"][row] = record.id
+        self.rows["actor_state"][row] = ActorState.ACTIVE
+        self.pose[row] = (*pose.location, *pose.rotation)
+        self.slot[row] = record.slot
+        self.parent_row[row] = -1
+        if record.slot != NO_BODY:
+            self._by_slot[record.slot] = record
+        if relative is not None:
+            self.relative[row] = (*relative.location, *relative.rotation)
+            self.parent_row[row] = self._row_of[record.parent_id]
+        self.version += 1
+
+    def children(self, actor_id: int) -> list[ActorRecord]:
+        """Return the actors attached to this one, oldest first."""
+        return [record for record in self if record.parent_id == actor_id]
+
+    def remove(self, actor_id: int, *, announce: bool) -> ActorRecord:
+        """Take an actor out; ``announce`` leaves its row, marked as killed, in the next snapshot.
+
+        The client that destroyed an actor knows it; whoever else holds a handle learns it from such a row only.
+        """
+        record = self._records.pop(actor_id)
+        if record.slot != NO_BODY:
+            del self._by_slot[record.slot]
+        row = self._row_of[actor_id]
+        self.rows["actor_state"][row] = ActorState.PENDING_KILL
+        self.slot[row] = NO_BODY
+        self.parent_row[row] = -1
+        if announce:
+            self._leaving.append(actor_id)
+        else:
+            self._drop([actor_id])
+        self.version += 1
+        return record
+
+    def drop_announced(self) -> None:
+        """Forget the rows of actors whose end a snapshot has told."""
+        if self._leaving:
+            self._drop(self._leaving)
+            self._leaving = []
+            self.version += 1
+
+    def _drop(self, actor_ids: list[int]) -> None:
+        count = len(self)
+        kept = np.ones(count, bool)
+        kept[[self._row_of[actor_id] for actor_id in actor_ids]] = False
+        new_row = np.cumsum(kept, dtype=np.int32) - 1
+        remaining = int(kept.sum())
+        for column in self._columns():
+            column[:remaining] = column[:count][kept]
+        attached = self.parent_row[:remaining] >= 0
+        self.parent_row[:remaining][attached] = new_row[self.parent_row[:remaining][attached]]
+        gone = set(actor_ids)
+        self._row_of = {i: int(new_row[row]) for i, row in self._row_of.items() if i not in gone}
+
+    def transform(self, actor_id: int) -> Transform:
+        """Return where an actor is in the world, as of the last step or of the last call that moved it."""
+        x, y, z, pitch, yaw, roll = map(float, self.pose[self._row_of[actor_id]])
+        return Transform(Vector3D(x, y, z), Rotation(pitch, yaw, roll))
