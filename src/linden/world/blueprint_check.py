@@ -1,0 +1,113 @@
+"""What a client asks to spawn, checked against its blueprint and completed with its defaults."""
+
+import math
+from typing import NoReturn
+
+from linden.errors import Refusal
+from linden.values.actors import ActorAttribute, ActorDefinition, ActorDescription, AttributeValue
+from linden.values.enums import AttributeType
+
+REFUSED = "Spawn failed because of invalid actor description"
+"""CARLA's own words (ActorSpawnResult.cpp); scripts match on them."""
+
+AT_LEAST = {
+    "sensor_tick": 0.0,
+    "image_size_x": 1.0,
+    "image_size_y": 1.0,
+    "channels": 1.0,
+    "points_per_second": 1.0,
+    "range": 0.0,
+    "distance": 0.0,
+    "hit_radius": 0.0,
+    "scale": 0.0,
+    "mass": 0.0,
+    "extent_x": 0.0,
+    "extent_y": 0.0,
+    "extent_z": 0.0,
+    "friction": 0.0,
+}
+"""Least value that means anything, for attributes whose type allows less."""
+
+
+def complete(definition: ActorDefinition, description: ActorDescription) -> ActorDescription:
+    """Return the description with every attribute of its blueprint, in the blueprint's order.
+
+    What it leaves out takes the default. The number of the blueprint is taken from the id.
+
+    Raises:
+        Refusal: an attribute unknown, a text that is no value of the attribute's type, a value out of its range, not
+            among the allowed ones, or other than that of an attribute which can only be read.
+    """
+    given = {attribute.id: attribute.value for attribute in description.attributes}
+    known = {attribute.id for attribute in definition.attributes}
+    for name in given:
+        if name not in known:
+            _refuse(definition.id, f"it has no attribute '{name}', only {', '.join(sorted(known))}")
+    chosen = []
+    for attribute in definition.attributes:
+        value = given.get(attribute.id, attribute.value)
+        if value != attribute.value:
+            _check(definition.id, attribute, value)
+        if attribute.type == AttributeType.BOOL:
+            value = value.strip().lower()  # Python's str(True) reaches the server as "True"
+        chosen.append(AttributeValue(attribute.id, attribute.type, value))
+    return ActorDescription(definition.uid, definition.id, tuple(chosen))
+
+
+def refuse_unknown(unknown: str, definitions: tuple[ActorDefinition, ...]) -> NoReturn:
+    """Refuse an id that no blueprint has, and say what there is.
+
+    Raises:
+        Refusal: always.
+    """
+    family = unknown.split(".", maxsplit=1)[0]
+    count = sum(1 for definition in definitions if definition.id.startswith(f"{family}."))
+    families = sorted({definition.id.split(".", maxsplit=1)[0] for definition in definitions})
+    there_is = f"{count} begin with '{family}.'" if count else f"ids begin with one of {', '.join(families)}"
+    raise Refusal(f"{REFUSED}: there is no blueprint '{unknown}'; {there_is}, see World.get_blueprint_library()")
+
+
+def _refuse(blueprint_id: str, reason: str) -> NoReturn:
+    raise Refusal(f"{REFUSED}: '{blueprint_id}': {reason}")
+
+
+def _check(blueprint_id: str, attribute: ActorAttribute, value: str) -> None:
+    quoted = f"'{value}' as {attribute.id}"
+    if not attribute.is_modifiable:
+        _refuse(blueprint_id, f"{quoted}: it is '{attribute.value}' and can only be read")
+    if attribute.restrict_to_recommended and value not in attribute.recommended_values:
+        _refuse(blueprint_id, f"{quoted}: allowed are {', '.join(attribute.recommended_values)}")
+    wanted = _wanted(AttributeType(attribute.type), value)
+    if wanted is not None:
+        _refuse(blueprint_id, f"{quoted}: expected {wanted}, such as '{attribute.value}'")
+    least = 0.0 if attribute.id.endswith("_stddev") or "_stddev_" in attribute.id else AT_LEAST.get(attribute.id)
+    if least is not None and float(value) < least:
+        _refuse(blueprint_id, f"{quoted}: expected at least {least:g}")
+
+
+def _wanted(kind: AttributeType, value: str) -> str | None:
+    """Return in words what the type asks for, None where the value is that."""
+    if kind is AttributeType.BOOL:
+        return None if value.strip().lower() in {"true", "false"} else "true or false"
+    if kind is AttributeType.INT:
+        return None if _is_integer(value) else "a whole number"
+    if kind is AttributeType.FLOAT:
+        return None if _is_finite(value) else "a finite number"
+    if kind is AttributeType.RGB_COLOR:
+        parts = value.split(",")
+        fits = len(parts) == 3 and all(_is_integer(part) and 0 <= int(part) <= 255 for part in parts)
+        return None if fits else "red,green,blue of 0 to 255 each"
+    return None
+
+
+def _is_integer(value: str) -> bool:
+    stripped = value.strip()
+    digits = stripped[1:] if stripped[:1] in {"-", "+"} else stripped
+    return digits.isascii() and digits.isdigit() and len(digits) <= 10
+
+
+def _is_finite(value: str) -> bool:
+    try:
+        return "_" not in value and math.isfinite(float(value))
+    except ValueError:
+        return False
