@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from basu.routing.model import Control, ControlKind
 
 if TYPE_CHECKING:
+    import carla
     from numpy.typing import NDArray
 
 # OpenDRIVE signal types as LibCarla's landmarks carry them (client reference, section "Signals")
@@ -22,7 +23,7 @@ PASS_SLACK_M = 3.0  # a line this near beyond the end of a stretch on its road s
 
 
 def controls_on(
-    landmarks: list[Any],
+    landmarks: list[carla.Landmark],
     *,
     road_id: NDArray[np.int64],
     lane_id: NDArray[np.int64],
@@ -36,7 +37,7 @@ def controls_on(
     All arrays describe the route's N points; ``road_s_m`` is the place along each point's road, ``landmarks`` are
     ``carla.Landmark`` of the whole map.
     """
-    by_road: dict[int, list[Any]] = defaultdict(list)
+    by_road: dict[int, list[carla.Landmark]] = defaultdict(list)
     for landmark in landmarks:
         if landmark.type in KIND_OF_TYPE:
             by_road[landmark.road_id].append(landmark)

@@ -8,14 +8,16 @@ algorithm), so that a file's points may be metres off without the route jumping 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import networkx as nx
 import numpy as np
 
 from basu.errors import UserError
-from basu.routing.lane_graph import LaneGraph, LaneKey
-from basu.routing.route_file import RouteDescription, RoutePoint
+
+if TYPE_CHECKING:
+    from basu.routing.lane_graph import LaneGraph, LaneKey
+    from basu.routing.route_file import RouteDescription, RoutePoint
 
 OFF_ROAD_M = 5.0  # a point farther than this from every driving lane is a mistake in the file
 AMBIGUOUS_M = 2.5  # lanes this much farther away than the nearest one are candidates too
@@ -119,6 +121,7 @@ def _advance(
     before, point = route.points[number - 1], route.points[number]
     straight_m = math.hypot(point.x_m - before.x_m, point.y_m - before.y_m)
     limit_m = DETOUR_FACTOR * straight_m + DETOUR_M
+    no_lanes: tuple[LaneKey, ...] = ()
     best: list[_Step] = [_Step(math.inf, -1, ())] * len(ends)
     for index, start in enumerate(starts):
         if math.isinf(reached[index].total_m):
@@ -127,7 +130,7 @@ def _advance(
         for place, end in enumerate(ends):
             ahead_m = _travelled_m(start.key, start.s_m, end.s_m) if start.key == end.key else -1.0
             if ahead_m >= 0.0:
-                way_m, entered = ahead_m, ()
+                way_m, entered = ahead_m, no_lanes
             elif end.key in lengths:
                 way_m, entered = lengths[end.key], tuple(paths[end.key])
             else:
@@ -153,8 +156,8 @@ def _reachable(
     following = set(lanes.graph.successors(start))
     if not following:
         return {}, {}
-    lengths, paths = nx.multi_source_dijkstra(lanes.graph, following, cutoff=limit_m)
-    return lengths, paths
+    found: Any = nx.multi_source_dijkstra(lanes.graph, following, cutoff=limit_m)  # its stubs join two overloads
+    return found[0], found[1]
 
 
 def _travelled_m(key: LaneKey, from_s_m: float, to_s_m: float) -> float:

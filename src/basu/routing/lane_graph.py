@@ -7,13 +7,15 @@ is the length of the lane that is left behind. Lane changes are not part of it: 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import networkx as nx
 import numpy as np
-from numpy.typing import NDArray
 
 if TYPE_CHECKING:
+    import carla
+    from numpy.typing import NDArray
+
     from basu.routing.roads import Road
 
 STEP_OVER_M = 0.1  # from just before a lane's end to just behind it
@@ -40,12 +42,12 @@ class LaneGraph:
     yaw_rad: NDArray[np.float64]  # (M,) of the lane, CARLA frame
 
 
-def key_of(waypoint: Any) -> LaneKey:
+def key_of(waypoint: carla.Waypoint) -> LaneKey:
     """The lane that a ``carla.Waypoint`` lies on."""
     return LaneKey(waypoint.road_id, waypoint.section_id, waypoint.lane_id)
 
 
-def build(carla_map: Any, roads: dict[int, Road]) -> LaneGraph:
+def build(carla_map: carla.Map, roads: dict[int, Road]) -> LaneGraph:
     """Make the graph of a ``carla.Map`` whose ``roads`` were read; some tenths of a second for a city quarter."""
     keys: dict[LaneKey, int] = {}
     key_of_sample, s_m, poses = [], [], []
@@ -66,7 +68,7 @@ def build(carla_map: Any, roads: dict[int, Road]) -> LaneGraph:
     )
 
 
-def _connections(carla_map: Any, roads: dict[int, Road]) -> nx.DiGraph[LaneKey]:
+def _connections(carla_map: carla.Map, roads: dict[int, Road]) -> nx.DiGraph[LaneKey]:
     """Edges from the client's topology, and from the lane ends that the topology passes over."""
     graph: nx.DiGraph[LaneKey] = nx.DiGraph()
     known: dict[LaneKey, None] = {}
@@ -89,7 +91,7 @@ def _connections(carla_map: Any, roads: dict[int, Road]) -> nx.DiGraph[LaneKey]:
     return graph
 
 
-def _followers(carla_map: Any, road: Road, key: LaneKey) -> list[LaneKey]:
+def _followers(carla_map: carla.Map, road: Road, key: LaneKey) -> list[LaneKey]:
     """The lanes that come after the end of a lane; empty at a dead end."""
     begin_m, end_m = road.section_extent_m(key.section)
     last_s_m = end_m - STEP_OVER_M / 2.0 if key.lane < 0 else begin_m + STEP_OVER_M / 2.0

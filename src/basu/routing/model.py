@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    import carla
     import numpy as np
     from numpy.typing import NDArray
 
@@ -61,7 +62,7 @@ class Route:
     lane_id: NDArray[np.int64]  # (N,)
     stops: tuple[Stop, ...] = ()  # in the order in which the route passes them
     controls: tuple[Control, ...] = ()  # likewise
-    waypoints: tuple[Any, ...] = field(default=(), repr=False)  # (N,) carla.Waypoint, one a point
+    waypoints: tuple[carla.Waypoint, ...] = field(default=(), repr=False)  # (N,)
 
     @property
     def length_m(self) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from basu.routing.model import Route, Stop
 from basu.routing.roads import read_roads
 
 if TYPE_CHECKING:
+    import carla
     from numpy.typing import NDArray
 
     from basu.routing.roads import Road
@@ -26,7 +27,7 @@ SEAM_M = 1e-3  # how far inside its lane a lane's first and last point is taken
 STOP_OFF_ROUTE_M = 8.0  # a service stop farther than this from the route is a mistake in the file
 
 
-def plan(carla_map: Any, description: RouteDescription) -> Route:
+def plan(carla_map: carla.Map, description: RouteDescription) -> Route:
     """Lay ``description`` on ``carla_map``.
 
     Raises:
@@ -68,7 +69,7 @@ def plan(carla_map: Any, description: RouteDescription) -> Route:
     )
 
 
-def _sample(carla_map: Any, roads: dict[int, Road], piece: Piece) -> list[Any]:
+def _sample(carla_map: carla.Map, roads: dict[int, Road], piece: Piece) -> list[carla.Waypoint]:
     """Way points of one piece, about ``SPACING_M`` apart, both ends included."""
     low_m, high_m = roads[piece.key.road].section_extent_m(piece.key.section)
     low_m, high_m = low_m + SEAM_M, high_m - SEAM_M
@@ -81,16 +82,16 @@ def _sample(carla_map: Any, roads: dict[int, Road], piece: Piece) -> list[Any]:
     return [waypoint for waypoint in found if waypoint is not None]
 
 
-def _thin(waypoints: list[Any]) -> list[Any]:
+def _thin(waypoints: list[carla.Waypoint]) -> list[carla.Waypoint]:
     """Drop the doubles where one lane ends and the next begins."""
-    kept: list[Any] = []
+    kept: list[carla.Waypoint] = []
     for waypoint in waypoints:
         if not kept or waypoint.transform.location.distance(kept[-1].transform.location) > MERGE_M:
             kept.append(waypoint)
     return kept
 
 
-def _poses(waypoints: list[Any]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _poses(waypoints: list[carla.Waypoint]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Positions (N, 3) in m and yaw (N,) in rad within (-pi, pi], CARLA frame."""
     rows = []
     for waypoint in waypoints:
@@ -108,7 +109,8 @@ def _carried_on(limit_mps: NDArray[np.float64]) -> NDArray[np.float64]:
         return limit_mps
     latest = np.maximum.accumulate(np.where(known, np.arange(len(limit_mps)), -1))
     first = int(np.argmax(known))
-    return limit_mps[np.where(latest < 0, first, latest)]
+    held: NDArray[np.float64] = limit_mps[np.where(latest < 0, first, latest)]
+    return held
 
 
 def _stops(
