@@ -2,9 +2,10 @@
 
 import math
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
+
+from linden.compiled import kernel
 
 F64 = NDArray[np.float64]
 F32 = NDArray[np.float32]
@@ -14,7 +15,7 @@ MOTION_OFFSET = 5
 """Byte at which location, rotation, velocity, angular velocity and acceleration begin in a row; see values.snapshot."""
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _axes(pitch_deg: float, yaw_deg: float, roll_deg: float) -> F64:  # pragma: no cover - compiled
     """Return the (3, 3) matrix of ``linden.geometry.rotation_matrix``."""
     sp, cp = math.sin(math.radians(pitch_deg)), math.cos(math.radians(pitch_deg))
@@ -27,7 +28,7 @@ def _axes(pitch_deg: float, yaw_deg: float, roll_deg: float) -> F64:  # pragma: 
     return axes
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def _follow(parent: F64, relative: F64, pose: F64) -> None:  # pragma: no cover - compiled
     """Write into ``pose`` (6,) where a child with ``relative`` (6,) to its ``parent`` (6,) is; m and degrees."""
     outer = _axes(parent[3], parent[4], parent[5])
@@ -51,7 +52,7 @@ def _follow(parent: F64, relative: F64, pose: F64) -> None:  # pragma: no cover 
         pose[5] = math.degrees(math.atan2(-turn[2, 1], turn[2, 2]))
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel
 def gather_motion(
     count: int,
     pose: F64,

@@ -1,0 +1,123 @@
+"""The maps a server offers: found by name, made ready once, and kept for the next load."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.errors import Refusal, UserError
+from linden.ground import Ground
+from linden.opendrive.mesh import road_mesh
+from linden.opendrive.model import OpenDrive
+from linden.opendrive.parse import parse
+from linden.opendrive.signals import PlacedSignal, place
+from linden.opendrive.spawn import spawn_points
+from linden.values.space import Transform
+
+HOME_MAP = "Linden"
+GENERATED_MAP = "OpenDriveMap"
+"""The name under which CARLA loads what ``generate_opendrive_world`` sent."""
+
+_PACKAGED = Path(__file__).parent.parent / "data"
+_FOLDERS = ("/Game/Carla/Maps/", "Carla/Maps/")
+"""How CARLA writes a map's name: the first when it lists them, the second in the map's info."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class LoadedMap:
+    """A map made ready to be driven on.
+
+    Attributes:
+        name: without a folder.
+        lane_of_triangle: (T,) which lane each triangle of the ground belongs to.
+        lanes: (L,) the lanes as ``opendrive.mesh`` tabulates them.
+    """
+
+    name: str
+    text: str
+    opendrive: OpenDrive
+    ground: Ground
+    lane_of_triangle: NDArray[np.int32]
+    lanes: NDArray[np.void]
+    spawn_points: tuple[Transform, ...]
+    signals: tuple[PlacedSignal, ...]
+
+    @property
+    def full_name(self) -> str:
+        """The name as the client knows it."""
+        return _FOLDERS[1] + self.name
+
+    @classmethod
+    def from_text(cls, name: str, text: str) -> "LoadedMap":
+        """Make a map ready.
+
+        Raises:
+            MapError: the text is no OpenDRIVE that can be used.
+        """
+        opendrive = parse(text)
+        mesh = road_mesh(opendrive)
+        return cls(
+            name=name,
+            text=text,
+            opendrive=opendrive,
+            ground=Ground.from_triangles(mesh.vertices, mesh.triangles),
+            lane_of_triangle=mesh.lane_of_triangle,
+            lanes=mesh.lanes,
+            spawn_points=spawn_points(opendrive),
+            signals=place(opendrive),
+        )
+
+
+class MapLibrary:
+    """The packaged maps, those of the folders a user named, and what clients sent."""
+
+    def __init__(self, folders: Iterable[Path] = ()) -> None:
+        """Look for maps; the files are read when they are loaded.
+
+        Raises:
+            UserError: a folder does not exist or holds no map.
+        """
+        self._files = {file.stem: file for file in _PACKAGED.glob("*.xodr")}
+        for folder in folders:
+            found = sorted(folder.glob("*.xodr"))
+            if not found:
+                problem = "holds no .xodr file" if folder.is_dir() else "is not a folder"
+                raise UserError(f"--maps {folder} {problem}; name a folder of OpenDRIVE maps")
+            self._files.update({file.stem: file for file in found})
+        self._loaded: dict[str, LoadedMap] = {}
+
+    def names(self) -> list[str]:
+        """Return the names of all maps as ``get_available_maps`` lists them."""
+        return [_FOLDERS[0] + name for name in sorted(self._files)]
+
+    def load(self, name: str) -> LoadedMap:
+        """Return a map by any of its names, ready.
+
+        Raises:
+            Refusal: there is none of that name, or its file cannot be used.
+        """
+        bare = name.removeprefix(_FOLDERS[0]).removeprefix(_FOLDERS[1]).removesuffix(".xodr")
+        if bare not in self._loaded:
+            if bare not in self._files:
+                known = ", ".join(sorted(self._files))
+                raise Refusal(f"Map '{name}' not found; this server has: {known}")
+            try:
+                text = self._files[bare].read_text("utf-8")
+                self._loaded[bare] = LoadedMap.from_text(bare, text)
+            except (OSError, UnicodeDecodeError, UserError) as error:
+                raise Refusal(f"Map '{name}' cannot be read: {error}") from error
+        return self._loaded[bare]
+
+    def from_opendrive(self, text: str) -> LoadedMap:
+        """Make a map of a text that a client sent and keep it for the load that follows.
+
+        Raises:
+            Refusal: the text is no OpenDRIVE that can be used.
+        """
+        try:
+            self._loaded[GENERATED_MAP] = LoadedMap.from_text(GENERATED_MAP, text)
+        except UserError as error:
+            raise Refusal(f"the OpenDRIVE text cannot be used: {error}") from error
+        return self._loaded[GENERATED_MAP]
