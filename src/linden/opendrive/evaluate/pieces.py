@@ -1,0 +1,66 @@
+"""Piecewise cubics of many owners (roads, lanes) in one set of arrays."""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.opendrive.model import Cubic
+
+F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
+
+
+class Pieces(NamedTuple):
+    """Records sorted by owner, then by start. ``key`` is the owner's base plus the start, so one search finds a record."""
+
+    base_m: F64  # (owners,), far enough apart that no key of one owner reaches into the next
+    first: I64  # (owners,), index of the owner's first record
+    key_m: F64  # (records,)
+    start_m: F64  # (records,)
+    coefficients: F64  # (records, 4): a, b, c, d
+
+    def find(self, owner: I64, s_m: F64) -> I64:
+        """Return the index of the record that holds for each owner at each s (the first one before its start)."""
+        return np.maximum(np.searchsorted(self.key_m, self.base_m[owner] + s_m, side="right") - 1, self.first[owner])
+
+    def value(self, owner: I64, s_m: F64, probe_m: F64 | None = None) -> F64:
+        """Return the cubics at s. ``probe_m`` chooses the record instead of s, for values just before a jump."""
+        record = self.find(owner, s_m if probe_m is None else probe_m)
+        a, b, c, d = self.coefficients[record].T
+        along = s_m - self.start_m[record]
+        return a + along * (b + along * (c + along * d))
+
+    def slope(self, owner: I64, s_m: F64) -> F64:
+        """Return the derivative of the cubics at s."""
+        record = self.find(owner, s_m)
+        _, b, c, d = self.coefficients[record].T
+        along = s_m - self.start_m[record]
+        return b + along * (2.0 * c + along * 3.0 * d)
+
+
+def bases_of(lengths_m: Sequence[float]) -> F64:
+    """Return a base for each owner so that [base, base + length] ranges lie apart, by 1 m at least."""
+    return np.concatenate([[0.0], np.cumsum(np.asarray(lengths_m, dtype=np.float64) + 1.0)[:-1]])
+
+
+def pieces_of(owners: Iterable[tuple[float, Sequence[Cubic]]], lengths_m: Sequence[float]) -> Pieces:
+    """Flatten (start of the owner's own records, records) pairs; an owner without records gets a zero.
+
+    The start is added to every record's: lane records count from their section.
+    """
+    rows: list[tuple[float, float, float, float, float]] = []
+    first: list[int] = []
+    for origin_m, records in owners:
+        first.append(len(rows))
+        ordered = records if len(records) < 2 else sorted(records, key=lambda record: record.start_m)
+        rows.extend((origin_m + start_m, a, b, c, d) for start_m, a, b, c, d in ordered or (_ZERO,))
+    table = np.asarray(rows, dtype=np.float64).reshape(-1, 5)
+    base_m = bases_of(lengths_m) if first else np.empty(0)
+    first_index = np.asarray(first, dtype=np.int64)
+    counts = np.diff(np.append(first_index, len(rows)))
+    return Pieces(base_m, first_index, np.repeat(base_m, counts) + table[:, 0], table[:, 0], table[:, 1:])
+
+
+_ZERO = Cubic(0.0, 0.0)

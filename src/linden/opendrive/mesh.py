@@ -1,0 +1,129 @@
+"""The road's surface as triangles, lane by lane, and a table that says what each lane is.
+
+Lanes do not share vertices, so a pavement stands above its road by its <height>; the upright face between is left out,
+for nothing rolls on it. Frame: CARLA's (x east, y south, z up).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.opendrive.evaluate.pieces import F64, I64
+from linden.opendrive.evaluate.sampling import Samples, sample, sections_of
+from linden.opendrive.evaluate.tables import Tables, tables_of
+from linden.opendrive.model import OpenDrive
+from linden.values.enums import LaneType, SemanticTag
+
+LANES = np.dtype(
+    [
+        ("road_id", "i4"),
+        ("section", "i4"),
+        ("lane_id", "i4"),
+        ("junction", "i4"),  # -1 outside of junctions
+        ("type_bits", "u4"),  # values.enums.LaneType
+        ("speed_limit_mps", "f8"),  # nan where the map says nothing
+        ("tag", "u1"),  # values.enums.SemanticTag
+    ]
+)
+_TAGS = {
+    LaneType.SIDEWALK: SemanticTag.SIDEWALKS,
+    LaneType.BORDER: SemanticTag.SIDEWALKS,  # the kerb belongs to the pavement, as in CARLA's towns
+    LaneType.NONE: SemanticTag.TERRAIN,
+    LaneType.RESTRICTED: SemanticTag.TERRAIN,
+    LaneType.MEDIAN: SemanticTag.TERRAIN,
+    LaneType.TRAM: SemanticTag.RAIL_TRACK,
+    LaneType.RAIL: SemanticTag.RAIL_TRACK,
+}
+_SMALLEST_AREA_M2 = 1e-6
+
+
+class RoadMesh(NamedTuple):
+    """The surface. All triangles face up: (b - a) x (c - a) has a positive z."""
+
+    vertices: F64  # (V, 3), m
+    triangles: NDArray[np.int32]  # (T, 3)
+    lane_of_triangle: NDArray[np.int32]  # (T,), row of ``lanes``
+    lanes: NDArray[np.void]  # of LANES; a lane whose speed limit changes on the way has a row for each
+
+
+class _Strips(NamedTuple):
+    """Every lane at every sample of its section, lane after lane."""
+
+    lane: I64  # (P,), row of Tables.lanes
+    sample: I64  # (P,)
+    continues: NDArray[np.bool_]  # (P,), whether the next one lies further along the same lane
+
+
+def road_mesh(opendrive: OpenDrive) -> RoadMesh:
+    """Return the surface of all lanes of a map, those inside junctions too."""
+    tables = tables_of(opendrive)
+    if not len(tables.lanes):
+        return RoadMesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.int32), np.empty(0, LANES))
+    samples = sample(tables, sections_of(tables))
+    strips = _strips(tables, samples)
+    vertices = _vertices(tables, samples, strips)
+    quads = np.flatnonzero(strips.continues)
+    speed_mps = tables.speeds.value(strips.lane[quads], samples.probe_m[strips.sample[quads]])
+    row_of_quad, lanes = _lane_table(tables, strips.lane[quads], speed_mps)
+    triangles = _triangles(quads, len(strips.lane), tables.lanes["lane_id"][strips.lane[quads]] > 0)
+    lane_of_triangle = np.repeat(row_of_quad, 2)
+    a, b, c = (vertices[triangles[:, corner], :2] for corner in range(3))
+    twice_area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    kept = np.abs(twice_area) > 2.0 * _SMALLEST_AREA_M2
+    # inside a bend tighter than the lane is wide a strip folds over; its triangles are turned to face up again
+    triangles[twice_area < 0.0] = triangles[twice_area < 0.0][:, [0, 2, 1]]
+    return RoadMesh(vertices, triangles[kept].astype(np.int32), lane_of_triangle[kept].astype(np.int32), lanes)
+
+
+def _strips(tables: Tables, samples: Samples) -> _Strips:
+    sections_before = np.concatenate([[0], np.cumsum([len(road.sections) for road in tables.roads])])
+    section_of_lane = sections_before[tables.lanes["road"]] + tables.lanes["section"]
+    count_of_section = np.bincount(samples.section, minlength=int(sections_before[-1]))
+    first_of_section = np.cumsum(count_of_section) - count_of_section
+    counts = count_of_section[section_of_lane]
+    lane = np.repeat(np.arange(len(tables.lanes)), counts)
+    nth = np.arange(len(lane)) - np.repeat(np.cumsum(counts) - counts, counts)
+    return _Strips(lane, first_of_section[section_of_lane[lane]] + nth, nth < counts[lane] - 1)
+
+
+def _vertices(tables: Tables, samples: Samples, strips: _Strips) -> F64:
+    """Return the inner edges of all places, then the outer edges: (2P, 3) in CARLA's frame."""
+    s_m, probe_m = samples.s_m[strips.sample], samples.probe_m[strips.sample]
+    pose = tables.curves.pose(samples.road, samples.s_m, samples.probe_m)
+    z_m = tables.elevation.value(samples.road, samples.s_m, samples.probe_m)[strips.sample]
+    east, north = -np.sin(pose.heading_rad)[strips.sample], np.cos(pose.heading_rad)[strips.sample]
+    x_m, y_m = pose.x_m[strips.sample], pose.y_m[strips.sample]
+    inner_m, outer_m = tables.lane_sides(strips.lane, s_m, probe_m)
+    lift = (
+        tables.heights_inner.value(strips.lane, s_m, probe_m),
+        tables.heights_outer.value(strips.lane, s_m, probe_m),
+    )
+    edges = [
+        np.stack([x_m + east * t_m, -(y_m + north * t_m), z_m + lift_m], axis=1)
+        for t_m, lift_m in zip((inner_m, outer_m), lift, strict=True)
+    ]
+    return np.concatenate(edges)
+
+
+def _triangles(quads: I64, places: int, is_left: NDArray[np.bool_]) -> I64:
+    """Return two triangles for each quad; on the left of the road the outer edge lies on the other hand."""
+    inner, inner_next, outer, outer_next = quads, quads + 1, quads + places, quads + places + 1
+    right = np.stack([inner, inner_next, outer_next, inner, outer_next, outer], axis=1)
+    left = np.stack([inner, outer_next, inner_next, inner, outer, outer_next], axis=1)
+    return np.where(is_left[:, None], left, right).reshape(-1, 3)
+
+
+def _lane_table(tables: Tables, lane: I64, speed_mps: F64) -> tuple[I64, NDArray[np.void]]:
+    """Return the row of each quad and the rows: a new one where the lane or its speed limit changes."""
+    same_speed = (speed_mps[1:] == speed_mps[:-1]) | (np.isnan(speed_mps[1:]) & np.isnan(speed_mps[:-1]))
+    begins = np.concatenate([[True], (lane[1:] != lane[:-1]) | ~same_speed])
+    source = tables.lanes[lane[begins]]
+    rows = np.zeros(len(source), dtype=LANES)
+    rows["road_id"] = np.asarray([road.id for road in tables.roads])[source["road"]]
+    rows["junction"] = np.asarray([road.junction_id for road in tables.roads])[source["road"]]
+    for name in ("section", "lane_id", "type_bits"):
+        rows[name] = source[name]
+    rows["speed_limit_mps"] = speed_mps[begins]
+    rows["tag"] = [_TAGS.get(LaneType(int(bits)), SemanticTag.ROADS) for bits in source["type_bits"]]
+    return np.cumsum(begins) - 1, rows

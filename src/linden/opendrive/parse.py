@@ -1,0 +1,75 @@
+"""OpenDRIVE text to a map. Hostile text is refused: no DTD, no entities, no network, numbers finite."""
+
+import re
+
+from lxml import etree
+
+from linden.opendrive.errors import MapError
+from linden.opendrive.model import OpenDrive
+from linden.opendrive.reading.furniture import read_controllers
+from linden.opendrive.reading.junctions import read_junction
+from linden.opendrive.reading.roads import read_road
+
+_CDATA = re.compile(r"^\s*<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
+
+
+def parse(text: str | bytes) -> OpenDrive:
+    """Return the map an OpenDRIVE text describes.
+
+    Raises:
+        MapError: the text is no XML, no OpenDRIVE, or says something that cannot be; with the line.
+    """
+    root = _root(text)
+    roads = tuple(read_road(node) for node in root.iterchildren("road"))
+    junctions = tuple(read_junction(node) for node in root.iterchildren("junction"))
+    _refuse_repeated("road", [(road.id, road.source_line) for road in roads])
+    _refuse_repeated("junction", [(junction.id, junction.source_line) for junction in junctions])
+    header = root.find("header")
+    return OpenDrive(
+        name="" if header is None else header.get("name", ""),
+        geo_reference=_geo_reference(root),
+        roads=roads,
+        junctions=junctions,
+        controllers=read_controllers(root),
+    )
+
+
+def _root(text: str | bytes) -> etree._Element:
+    data = text.encode() if isinstance(text, str) else text
+    if isinstance(text, str):  # lxml must not be told twice which encoding it is
+        data = re.sub(rb"^(\s*<\?xml[^>]*?)\s+encoding\s*=\s*(\"[^\"]*\"|'[^']*')", rb"\1", data, count=1)
+    parser = etree.XMLParser(
+        resolve_entities=False,
+        no_network=True,
+        huge_tree=False,
+        load_dtd=False,
+        strip_cdata=False,
+        remove_comments=True,
+    )
+    try:
+        root = etree.fromstring(data.lstrip(), parser)
+    except etree.XMLSyntaxError as error:
+        raise MapError(f"this is no well-formed XML: {error.msg}", error.lineno) from None
+    if root.getroottree().docinfo.doctype:
+        raise MapError("the text has a DOCTYPE; an OpenDRIVE map needs none, and it is not read for safety", 1)
+    if root.tag != "OpenDRIVE":
+        raise MapError(f"the outermost element is <{root.tag}>, not <OpenDRIVE>", root.sourceline)
+    return root
+
+
+def _geo_reference(root: etree._Element) -> str:
+    """Return the text as LibCarla's XML reader sees it: blanks before a CDATA block are dropped, others are kept."""
+    node = root.find("header/geoReference")
+    if node is None:
+        return ""
+    inner = etree.tostring(node, encoding="unicode", with_tail=False).partition(">")[2]
+    block = _CDATA.match(inner)
+    return block.group(1) if block else (node.text or "")
+
+
+def _refuse_repeated(kind: str, ids: list[tuple[int, int]]) -> None:
+    seen: dict[int, int] = {}
+    for element_id, line in ids:
+        if element_id in seen:
+            raise MapError(f"{kind} {element_id} stands twice, first in line {seen[element_id]}", line)
+        seen[element_id] = line

@@ -1,0 +1,137 @@
+"""Reads what stands along a road: <signals>, <objects>, and <controller>."""
+
+from lxml.etree import _Element as Element
+
+from linden.opendrive.errors import MapError
+from linden.opendrive.furniture import (
+    Controller,
+    Corner,
+    InertialPose,
+    RoadObject,
+    Signal,
+    SignalReference,
+    Validity,
+)
+from linden.opendrive.reading.attributes import number, number_or, user_data, whole
+
+
+def read_signals(road: Element) -> tuple[Signal, ...]:
+    """Return the signals that stand at a road."""
+    return tuple(_signal(node) for node in road.iterfind("signals/signal"))
+
+
+def read_signal_references(road: Element) -> tuple[SignalReference, ...]:
+    """Return the references of a road to signals that stand elsewhere."""
+    return tuple(
+        SignalReference(
+            signal_id=node.get("id", ""),
+            s_m=number(node, "s"),
+            t_m=number_or(node, "t", 0.0),
+            orientation=node.get("orientation", "none"),
+            validities=_validities(node),
+        )
+        for node in road.iterfind("signals/signalReference")
+    )
+
+
+def read_objects(road: Element) -> tuple[RoadObject, ...]:
+    """Return the objects of a road, whatever their type."""
+    return tuple(_object(node) for node in road.iterfind("objects/object"))
+
+
+def read_controllers(root: Element) -> tuple[Controller, ...]:
+    """Return the map's controllers in the order of the file."""
+    return tuple(
+        Controller(
+            id=node.get("id", ""),
+            name=node.get("name", ""),
+            sequence=int(number_or(node, "sequence", 0.0)),
+            signals=tuple(control.get("signalId", "") for control in node.iterchildren("control")),
+        )
+        for node in root.iterchildren("controller")
+    )
+
+
+def _signal(node: Element) -> Signal:
+    get = node.get
+    if not get("id"):
+        raise MapError("a <signal> has no id; lights and signs are known by it", node.sourceline)
+    inertial = node.find("positionInertial")
+    value = get("value")
+    return Signal(
+        id=get("id", ""),
+        name=get("name", ""),
+        s_m=number(node, "s"),
+        t_m=number(node, "t"),
+        z_offset_m=number_or(node, "zOffset", 0.0),
+        heading_offset_rad=number_or(node, "hOffset", 0.0),
+        pitch_rad=number_or(node, "pitch", 0.0),
+        roll_rad=number_or(node, "roll", 0.0),
+        orientation=get("orientation", "none"),
+        is_dynamic=get("dynamic", "no").lower() == "yes",
+        country=get("country", ""),
+        type=get("type", ""),
+        subtype=get("subtype", ""),
+        value=number(node, "value") if value and value != "none" else None,
+        unit=get("unit", ""),
+        height_m=number_or(node, "height", 0.0),
+        width_m=number_or(node, "width", 0.0),
+        text=get("text", ""),
+        validities=_validities(node),
+        inertial=None if inertial is None else _inertial(inertial),
+        source_line=node.sourceline or 0,
+    )
+
+
+def _inertial(node: Element) -> InertialPose:
+    return InertialPose(
+        number(node, "x"),
+        number(node, "y"),
+        number_or(node, "z", 0.0),
+        number_or(node, "hdg", 0.0),
+        number_or(node, "pitch", 0.0),
+        number_or(node, "roll", 0.0),
+    )
+
+
+def _validities(node: Element) -> tuple[Validity, ...]:
+    return tuple(Validity(whole(child, "fromLane"), whole(child, "toLane")) for child in node.iterchildren("validity"))
+
+
+def _object(node: Element) -> RoadObject:
+    get = node.get
+    return RoadObject(
+        id=get("id", ""),
+        type=get("type", ""),
+        name=get("name", ""),
+        s_m=number(node, "s"),
+        t_m=number_or(node, "t", 0.0),
+        z_offset_m=number_or(node, "zOffset", 0.0),
+        heading_rad=number_or(node, "hdg", 0.0),
+        length_m=number_or(node, "length", 0.0),
+        width_m=number_or(node, "width", 0.0),
+        height_m=number_or(node, "height", 0.0),
+        radius_m=number_or(node, "radius", 0.0),
+        orientation=get("orientation", "none"),
+        outline=_outline(node),
+        user_data=user_data(node),
+        source_line=node.sourceline or 0,
+    )
+
+
+def _outline(node: Element) -> tuple[Corner, ...]:
+    """Return the corners of an object's first outline (1.4 has <outline>, 1.5 and later <outlines><outline>)."""
+    outline = next(node.iter("outline"), None)
+    if outline is None:
+        return ()
+    return tuple(_corner(child) for child in outline if child.tag in {"cornerLocal", "cornerRoad"})
+
+
+def _corner(node: Element) -> Corner:
+    if node.tag == "cornerLocal":
+        return Corner(
+            number(node, "u"), number(node, "v"), number_or(node, "z", 0.0), number_or(node, "height", 0.0), False
+        )
+    return Corner(
+        number(node, "s"), number(node, "t"), number_or(node, "dz", 0.0), number_or(node, "height", 0.0), True
+    )

@@ -1,0 +1,133 @@
+"""Reads <road>: its links, types, reference line and elevation; lanes and furniture have files of their own."""
+
+from lxml.etree import _Element as Element
+
+from linden.opendrive.errors import MapError
+from linden.opendrive.model import (
+    NO_JUNCTION,
+    Arc,
+    Cubic,
+    Geometry,
+    Line,
+    ParamPoly3,
+    Road,
+    RoadLink,
+    RoadType,
+    Spiral,
+)
+from linden.opendrive.reading.attributes import (
+    cubic_coefficients,
+    number,
+    number_or,
+    positive,
+    reject,
+    speed_mps,
+    user_data,
+    whole,
+)
+from linden.opendrive.reading.furniture import read_objects, read_signal_references, read_signals
+from linden.opendrive.reading.lanes import read_lane_offsets, read_sections
+
+# An arc of less curvature than this is a line; LibCarla asserts more (Geometry.cpp, GeometryArc).
+_STRAIGHT_PER_M = 1e-15
+
+
+def read_road(node: Element) -> Road:
+    """Return one road with everything along it."""
+    length_m = positive(node, "length")
+    lanes = node.find("lanes")
+    if lanes is None:
+        raise MapError(f"road {node.get('id')} has no <lanes>", node.sourceline)
+    link = node.find("link")
+    return Road(
+        id=_road_id(node),
+        name=node.get("name", ""),
+        length_m=length_m,
+        junction_id=whole(node, "junction") if node.get("junction") else NO_JUNCTION,
+        is_right_hand=node.get("rule") != "LHT",
+        predecessor=None if link is None else _link(link.find("predecessor")),
+        successor=None if link is None else _link(link.find("successor")),
+        types=tuple(_road_type(child) for child in node.iterchildren("type")),
+        geometries=_reference_line(node),
+        elevations=tuple(
+            Cubic(number(child, "s"), *cubic_coefficients(child))
+            for child in node.iterfind("elevationProfile/elevation")
+        ),
+        lane_offsets=read_lane_offsets(lanes),
+        sections=read_sections(lanes, length_m),
+        signals=read_signals(node),
+        signal_references=read_signal_references(node),
+        objects=read_objects(node),
+        user_data=user_data(node),
+        source_line=node.sourceline or 0,
+    )
+
+
+def _road_id(node: Element) -> int:
+    road_id = whole(node, "id")
+    if road_id < 0:
+        reject(node, "id", "0 or more")
+    return road_id
+
+
+def _link(node: Element | None) -> RoadLink | None:
+    if node is None:
+        return None
+    return RoadLink(node.get("elementType") == "junction", whole(node, "elementId"), node.get("contactPoint"))
+
+
+def _road_type(node: Element) -> RoadType:
+    speed = node.find("speed")
+    return RoadType(
+        number_or(node, "s", 0.0), node.get("type", ""), None if speed is None else speed_mps(speed), speed is not None
+    )
+
+
+def _reference_line(road: Element) -> tuple[Geometry, ...]:
+    nodes = list(road.iterfind("planView/geometry"))
+    if not nodes:
+        raise MapError(f"road {road.get('id')} has no <planView> with a <geometry>", road.sourceline)
+    return tuple(
+        Geometry(
+            s_m=number(node, "s"),
+            x_m=number(node, "x"),
+            y_m=number(node, "y"),
+            heading_rad=number(node, "hdg"),
+            length_m=positive(node, "length"),
+            shape=_shape(node),
+        )
+        for node in nodes
+    )
+
+
+def _shape(geometry: Element) -> Line | Arc | Spiral | ParamPoly3:
+    node = next((child for child in geometry if isinstance(child.tag, str)), None)
+    match None if node is None else node.tag:
+        case "line":
+            return Line()
+        case "arc":
+            assert node is not None
+            curvature = number(node, "curvature")
+            return Arc(curvature) if abs(curvature) > _STRAIGHT_PER_M else Line()
+        case "spiral":
+            assert node is not None
+            return Spiral(number(node, "curvStart"), number(node, "curvEnd"))
+        case "poly3":
+            assert node is not None
+            return ParamPoly3((0.0, 1.0, 0.0, 0.0), cubic_coefficients(node), number(geometry, "length"))
+        case "paramPoly3":
+            assert node is not None
+            return _param_poly3(node, number(geometry, "length"))
+        case other:
+            raise MapError(
+                f"a <geometry> holds {other or 'nothing'}; known are line, arc, spiral, poly3, paramPoly3",
+                geometry.sourceline,
+            )
+
+
+def _param_poly3(node: Element, length_m: float) -> ParamPoly3:
+    u = tuple(number_or(node, f"{letter}U", 0.0) for letter in "abcd")
+    v = tuple(number_or(node, f"{letter}V", 0.0) for letter in "abcd")
+    # LibCarla takes anything but "arcLength", a missing pRange too, for "normalized" (MapBuilder.cpp).
+    p_end = length_m if node.get("pRange") == "arcLength" else 1.0
+    return ParamPoly3((u[0], u[1], u[2], u[3]), (v[0], v[1], v[2], v[3]), p_end)
