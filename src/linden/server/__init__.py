@@ -1,1 +1,1 @@
-"""Sockets, ports and the clock: the only place that knows there is a network."""
+"""Sockets, ports and the clock: one thread that waits for whatever comes next."""

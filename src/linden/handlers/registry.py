@@ -1,0 +1,147 @@
+"""The functions a client can call: registered by name, their arguments checked by their annotations, their errors told.
+
+::
+
+    @method("set_actor_location")
+    def set_actor_location(context: Context, actor_id: U32, location: Vector3D) -> None: ...
+
+A result annotated None is CARLA's void; anything else travels as its annotation says (:mod:`linden.wire.decode`).
+"""
+
+import importlib
+import inspect
+import logging
+import pkgutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, get_type_hints
+
+import linden.handlers
+from linden import CARLA_VERSION, __version__
+from linden.errors import Refusal
+from linden.handlers.context import Context
+from linden.wire import rpc
+from linden.wire.decode import Decoder, WireTypeError, decoder
+from linden.wire.encode import Encoder, encoder
+from linden.wire.rpc import Call, Reply
+from linden.wire.vocabulary import CARLA_FUNCTIONS
+
+log = logging.getLogger("linden")
+
+Handler = Callable[..., Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Method:
+    """One function: what it is called with, and how its result travels."""
+
+    name: str
+    handler: Handler
+    parameters: tuple[tuple[str, Decoder], ...]
+    encode: Encoder | None
+    reply: Reply
+    advances: bool
+    """Whether it may make frames, and so has to wait for subscribers who lag behind."""
+
+    def arguments(self, raw: list[Any]) -> list[Any]:
+        """Return the typed arguments.
+
+        Raises:
+            WireTypeError: their number or the type of one is wrong; says which, and what was expected.
+        """
+        if len(raw) != len(self.parameters):
+            names = ", ".join(name for name, _ in self.parameters) or "none"
+            raise WireTypeError(f"{self.name} takes {len(self.parameters)} arguments ({names}), got {len(raw)}")
+        decoded = []
+        try:
+            for value, (_, decode) in zip(raw, self.parameters, strict=True):
+                decoded.append(decode(value))
+        except WireTypeError as error:
+            position = len(decoded)
+            raise error.inside(f"{self.name}: argument {position + 1} ({self.parameters[position][0]})") from None
+        return decoded
+
+
+METHODS: dict[str, Method] = {}
+"""Every registered function by its name on the wire."""
+
+
+def method(name: str, *, bare: bool = False, advances: bool = False) -> Callable[[Handler], Handler]:
+    """Register the decorated function under its name on the wire.
+
+    Args:
+        name: as the official client calls it.
+        bare: the result carries its own wrapping, as that of ``apply_batch`` does.
+        advances: the function may make frames.
+
+    Raises:
+        ValueError: CARLA 0.9.16 has no such function, or it is registered already: a mistake of ours, found at start.
+    """
+
+    def register(handler: Handler) -> Handler:
+        if name not in CARLA_FUNCTIONS or name in METHODS:
+            raise ValueError(f"{name!r} cannot be registered: it is no function of CARLA's, or registered twice")
+        hints = get_type_hints(handler, include_extras=True)
+        parameters = list(inspect.signature(handler).parameters)[1:]
+        result = hints["return"]
+        METHODS[name] = Method(
+            name=name,
+            handler=handler,
+            parameters=tuple((parameter.lstrip("_"), decoder(hints[parameter])) for parameter in parameters),
+            encode=None if bare else encoder(result),
+            reply=Reply.BARE if bare else Reply.VOID if result is type(None) else Reply.VALUE,
+            advances=advances,
+        )
+        return handler
+
+    return register
+
+
+def load_handlers() -> None:
+    """Import every module of this package, so that what they register is there."""
+    for module in sorted(found.name for found in pkgutil.iter_modules(linden.handlers.__path__)):
+        importlib.import_module(f"{linden.handlers.__name__}.{module}")
+
+
+def advances(call: Call) -> bool:
+    """Whether a call may make frames."""
+    found = METHODS.get(call.method)
+    return found is not None and found.advances
+
+
+def dispatch(context: Context, call: Call) -> bytes:
+    """Carry out one call and return the bytes of its answer; nothing a client sends makes it raise."""
+    found = METHODS.get(call.method)
+    if found is None:
+        return _missing(context, call)
+    try:
+        result = found.handler(context, *found.arguments(call.args))
+        if found.reply is Reply.VALUE:
+            return rpc.value(call, found.encode(result) if found.encode else result)
+        return rpc.void(call) if found.reply is Reply.VOID else rpc.bare(call, result)
+    except Refusal as refusal:
+        return _refuse(context, call, str(refusal), found.reply)
+    except Exception as error:
+        log.exception("internal error in %s; the call is refused and the server goes on", call.method)
+        sentence = (
+            f"internal error of linden {__version__} in {call.method}: {type(error).__name__}: {error}; the server "
+            f"goes on, its log has the traceback"
+        )
+        return _refuse(context, call, sentence, found.reply)
+
+
+def _missing(context: Context, call: Call) -> bytes:
+    reply = CARLA_FUNCTIONS.get(call.method)
+    if reply is None:
+        sentence = f"linden has no method '{call.method}', nor has CARLA {CARLA_VERSION}"
+        context.warn_once(sentence)
+        return rpc.unknown(call, sentence)
+    sentence = f"linden has no method '{call.method}': CARLA {CARLA_VERSION} has it, linden {__version__} not yet"
+    return _refuse(context, call, sentence, reply)
+
+
+def _refuse(context: Context, call: Call, sentence: str, reply: Reply) -> bytes:
+    """Refuse a call; the log gets the sentence where the client does not read it or cannot be told."""
+    if call.is_async or reply is Reply.BARE:
+        context.warn_once(f"{sentence} (told here, because the client of this call cannot be)")
+    return rpc.refusal(call, sentence, reply)

@@ -1,0 +1,185 @@
+"""What belongs to a whole session: version, maps, episodes, settings, ticks, streams, files, Traffic Managers.
+
+Source of names and meanings: LibCarla 0.9.16 and ``CarlaServer.cpp``.
+"""
+
+import logging
+from typing import NamedTuple
+
+from linden import CARLA_VERSION
+from linden.errors import Refusal
+from linden.handlers.context import Context
+from linden.handlers.registry import method
+from linden.values.episode import EpisodeSettings, MapInfo, OpendriveGenerationParameters
+from linden.wire.decode import U16, U32
+from linden.wire.stream import WORLD_OBSERVER_ID, Token
+
+log = logging.getLogger("linden")
+
+ALL_LAYERS = 0xFFFF
+"""carla.MapLayer.All."""
+MAX_FIXED_DELTA_S = 10.0
+"""Longest fixed step accepted; CARLA sets none, but a step of minutes can only be a unit mixed up."""
+
+
+class EpisodeInfo(NamedTuple):
+    """The running episode and where its snapshots come from."""
+
+    id: int
+    token: Token
+
+
+@method("version")
+def version(_context: Context) -> str:
+    """Return the CARLA release whose protocol is spoken; the client compares it with its own."""
+    return CARLA_VERSION
+
+
+@method("get_available_maps")
+def get_available_maps(context: Context) -> list[str]:
+    """Return the names of the maps that can be loaded."""
+    return list(context.maps.names())
+
+
+@method("load_new_episode")
+def load_new_episode(context: Context, name: str, reset_settings: bool, layers: U16) -> None:  # noqa: FBT001 - the wire's order
+    """Begin a new episode on a map; an empty name is the map that is loaded now."""
+    if layers != ALL_LAYERS:
+        log.info("map layers %#06x asked for; the maps of this version have no layers, so all of it is loaded", layers)
+    simulation = context.simulation
+    simulation.load(context.maps.load(name or simulation.map_name), reset_settings=reset_settings)
+
+
+@method("copy_opendrive_to_file")
+def copy_opendrive_to_file(context: Context, opendrive: str, parameters: OpendriveGenerationParameters) -> None:
+    """Make a map of an OpenDRIVE text; the client then loads it as ``OpenDriveMap``.
+
+    The road's surface follows from the text alone; of the parameters only walls would show, and none are made.
+    """
+    if parameters.wall_height > 0.0:
+        log.info(
+            "generate_opendrive_world: no walls are built beside the road (wall_height %g)", parameters.wall_height
+        )
+    context.maps.from_opendrive(opendrive)
+
+
+@method("get_map_info")
+def get_map_info(context: Context) -> MapInfo:
+    """Return the map's name as CARLA writes it, and the recommended spawn points."""
+    name: str = context.simulation.map_name
+    return MapInfo(name if "/" in name else f"Carla/Maps/{name}", tuple(context.simulation.spawn_points))
+
+
+@method("get_map_data")
+def get_map_data(context: Context) -> str:
+    """Return the OpenDRIVE text."""
+    text: str = context.simulation.opendrive_text
+    return text
+
+
+@method("get_required_files")
+def get_required_files(_context: Context, _folder: str) -> list[str]:
+    """Return the files a client should fetch: none, for it builds what it needs from the OpenDRIVE text."""
+    return []
+
+
+@method("request_file")
+def request_file(_context: Context, name: str) -> bytes:
+    """Refuse: no file is offered."""
+    raise Refusal(f"file '{name}' not found; this server offers no files (get_required_files is empty)")
+
+
+@method("get_episode_info")
+def get_episode_info(context: Context) -> EpisodeInfo:
+    """Return the episode's id and the token of the world snapshots."""
+    return EpisodeInfo(context.simulation.episode_id, context.streams.token(WORLD_OBSERVER_ID))
+
+
+@method("get_sensor_token")
+def get_sensor_token(context: Context, stream_id: U32) -> Token:
+    """Return where to subscribe to a stream."""
+    return context.streams.token(stream_id)
+
+
+@method("get_episode_settings")
+def get_episode_settings(context: Context) -> EpisodeSettings:
+    """Return how time passes."""
+    settings: EpisodeSettings = context.simulation.settings
+    return settings
+
+
+@method("set_episode_settings")
+def set_episode_settings(context: Context, settings: EpisodeSettings) -> int:
+    """Change how time passes, from the next frame on; returns the present frame, for which no client has to wait."""
+    _check(settings)
+    context.simulation.settings = settings
+    frame: int = context.simulation.frame
+    return frame
+
+
+@method("tick_cue", advances=True)
+def tick_cue(context: Context) -> int:
+    """Make one frame, in asynchronous mode too, and return its number."""
+    return context.advance()
+
+
+@method("is_traffic_manager_running")
+def is_traffic_manager_running(context: Context, port: U16) -> bool:
+    """Whether a client has registered a Traffic Manager under a port."""
+    return port in context.traffic_managers
+
+
+@method("get_traffic_manager_running")
+def get_traffic_manager_running(context: Context, port: U16) -> tuple[str, int]:
+    """Return address and port of a registered Traffic Manager; empty and 0 where there is none."""
+    if port not in context.traffic_managers:
+        return "", 0
+    return context.traffic_managers[port][0], port
+
+
+@method("add_traffic_manager_running")
+def add_traffic_manager_running(context: Context, endpoint: tuple[str, U16]) -> bool:
+    """Register a client's Traffic Manager; False where the port is taken."""
+    address, port = endpoint
+    if port in context.traffic_managers:
+        return False
+    context.traffic_managers[port] = (address, context.caller)
+    return True
+
+
+@method("destroy_traffic_manager")
+def destroy_traffic_manager(context: Context, port: U16) -> bool:
+    """Forget a Traffic Manager; False where none was registered."""
+    return context.traffic_managers.pop(port, None) is not None
+
+
+def client_left(context: Context, connection: int) -> None:
+    """Forget what only a client that has gone could have served: its Traffic Managers."""
+    gone = [port for port, (_, owner) in context.traffic_managers.items() if owner == connection]
+    for port in gone:
+        del context.traffic_managers[port]
+
+
+def _check(settings: EpisodeSettings) -> None:
+    """Refuse settings by which time could not pass."""
+    fixed_s = settings.fixed_delta_seconds
+    if fixed_s is not None and not 0.0 < fixed_s <= MAX_FIXED_DELTA_S:
+        raise Refusal(
+            f"fixed_delta_seconds must be above 0 and at most {MAX_FIXED_DELTA_S:g} s, not {fixed_s:g}; "
+            f"use None for a variable step"
+        )
+    if not settings.substepping:
+        return
+    if settings.max_substep_delta_time <= 0.0 or settings.max_substeps < 1:
+        raise Refusal(
+            f"substepping needs max_substep_delta_time above 0 and max_substeps of at least 1, not "
+            f"{settings.max_substep_delta_time:g} and {settings.max_substeps}; or set substepping to False"
+        )
+    reach_s = settings.max_substep_delta_time * settings.max_substeps
+    if fixed_s is not None and fixed_s > reach_s * (1.0 + 1e-6):
+        log.warning(
+            "fixed_delta_seconds %g is longer than max_substeps x max_substep_delta_time = %g s; the substeps are "
+            "longer than asked for, and the physics coarser",
+            fixed_s,
+            reach_s,
+        )

@@ -1,0 +1,37 @@
+"""When the next frame of asynchronous mode is due, and how long a variable step is. Knows no clock: it is told the time.
+
+With a fixed step the frames keep real time, one step each (the original runs as fast as it can; nobody who drives by
+hand wants that). With a variable step there are :data:`VARIABLE_HZ` frames a second, and a step is as long as the time
+since the last one, at most :data:`LONGEST_STEP_S`. A server that cannot keep up makes frames one after the other and
+lets simulated time fall behind; it never makes up for them in a burst.
+"""
+
+VARIABLE_HZ = 30.0
+"""Frames per second with a variable step: as smooth as manual driving needs, and little work for an idle server."""
+LONGEST_STEP_S = 0.1
+"""What CARLA's default substeps cover (10 of 0.01 s); after a pause the world goes on instead of jumping."""
+SHORTEST_STEP_S = 1e-4
+"""So that two ticks in a row have a step above zero between them."""
+
+
+class Pace:
+    """The rhythm of one server. All times in s of one steady clock."""
+
+    def __init__(self, now_s: float) -> None:
+        self._last_frame_s = now_s
+        self._due_s = now_s
+
+    def wait_s(self, now_s: float) -> float:
+        """Return how long it is until the next frame is due; 0 where it is."""
+        return max(0.0, self._due_s - now_s)
+
+    def variable_step_s(self, now_s: float) -> float:
+        """Return the length of a variable step that is made now."""
+        return min(max(now_s - self._last_frame_s, SHORTEST_STEP_S), LONGEST_STEP_S)
+
+    def frame_made(self, now_s: float, fixed_delta_s: float | None) -> None:
+        """Note that a frame begins now, and when the next one is due."""
+        period_s = 1.0 / VARIABLE_HZ if fixed_delta_s is None else fixed_delta_s
+        on_time_s = self._due_s + period_s
+        self._due_s = on_time_s if now_s < on_time_s <= now_s + period_s else now_s + period_s
+        self._last_frame_s = now_s

@@ -1,0 +1,77 @@
+"""The two kinds of connection: one whose client calls, one whose client listens. Each owns its socket."""
+
+import socket
+from collections import deque
+
+from linden.server.outgoing import Outgoing
+from linden.wire.rpc import Call, RpcConnection
+from linden.wire.stream import Subscription, size_prefix
+
+RECEIVED_AT_ONCE = 256 * 1024
+"""Bytes read from a connection before the others have their turn."""
+
+
+class Peer:
+    """A connection: its socket, what waits to be sent, and a name for the log."""
+
+    def __init__(self, sock: socket.socket, number: int) -> None:
+        sock.setblocking(False)
+        sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)  # finds out about machines that vanished
+        self.socket = sock
+        self.number = number
+        self.outgoing = Outgoing(sock)
+        self.interest = 0
+        """Which events the selector watches for; 0 where it does not know the socket."""
+        host, port, *_ = sock.getpeername()
+        self.address = f"{host}:{port}"
+
+    def read(self) -> bytes | None:
+        """Return what has come, ``b""`` at the end of the connection, None where there is nothing.
+
+        Raises:
+            OSError: the peer is gone.
+        """
+        try:
+            return self.socket.recv(RECEIVED_AT_ONCE)
+        except (BlockingIOError, InterruptedError):
+            return None
+
+
+class RpcPeer(Peer):
+    """A client that calls."""
+
+    def __init__(self, sock: socket.socket, number: int) -> None:
+        super().__init__(sock, number)
+        self.connection = RpcConnection()
+        self.calls: deque[Call] = deque()
+        """Received and not yet carried out, in their order."""
+        self.at_end = False
+        """Whether the client sends nothing more."""
+
+    def __str__(self) -> str:
+        return f"client {self.address}"
+
+
+class StreamPeer(Peer):
+    """A client that listens to one stream."""
+
+    def __init__(self, sock: socket.socket, number: int) -> None:
+        super().__init__(sock, number)
+        self.subscription = Subscription()
+        self.dropped = 0
+        """Messages it did not get, because it had not read those before."""
+        self.congested_since_s: float | None = None
+        """When it fell behind by more than is queued for it, in synchronous mode."""
+
+    def __str__(self) -> str:
+        stream = self.subscription.stream_id
+        return f"subscriber {self.address}" + ("" if stream is None else f" of stream {stream}")
+
+    def publish(self, payload: bytes) -> None:
+        """Send a message, or queue what the system does not take.
+
+        Raises:
+            OSError: the peer is gone.
+        """
+        self.outgoing.send(size_prefix(len(payload)), payload)

@@ -1,0 +1,78 @@
+"""The two listening sockets, and the sentence where a port cannot be had."""
+
+import errno
+import socket
+from typing import NamedTuple
+
+from linden.errors import UserError
+
+BACKLOG = 128
+"""Connections waiting to be accepted; a client opens one per stream, all at once after a reload."""
+
+
+class Ports(NamedTuple):
+    """Where clients come in: RPC, and sensor streams."""
+
+    rpc: socket.socket
+    streaming: socket.socket
+
+    def close(self) -> None:
+        """Stop listening."""
+        self.rpc.close()
+        self.streaming.close()
+
+
+def open_ports(host: str, port: int, streaming_port: int | None = None) -> Ports:
+    """Listen on both ports.
+
+    Args:
+        host: address to bind to.
+        port: of the RPC connections; 0 lets the system choose.
+        streaming_port: None takes the one after ``port``, as CARLA does, or any where that is 0.
+
+    Raises:
+        UserError: a port is taken, not permitted or no port, or there is no such address.
+    """
+    if streaming_port is None:
+        streaming_port = port + 1 if port else 0
+    rpc = _listen(host, port)
+    try:
+        return Ports(rpc, _listen(host, streaming_port))
+    except UserError:
+        rpc.close()
+        raise
+
+
+def port_of(listener: socket.socket) -> int:
+    """Return the port a socket listens on."""
+    port: int = listener.getsockname()[1]
+    return port
+
+
+def _listen(host: str, port: int) -> socket.socket:
+    try:
+        family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
+    except (socket.gaierror, UnicodeError, OverflowError) as error:
+        raise UserError(f"cannot listen on {host!r}, port {port}: {error}; name an address of this machine") from error
+    listener = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind(address)
+        listener.listen(BACKLOG)
+    except (OSError, OverflowError) as error:
+        listener.close()
+        raise UserError(_why(host, port, error)) from error
+    listener.setblocking(False)
+    return listener
+
+
+def _why(host: str, port: int, error: Exception) -> str:
+    number = error.errno if isinstance(error, OSError) else None
+    if number == errno.EADDRINUSE:
+        return (
+            f"port {port} on {host} is in use, perhaps by another server; end that one, or choose with --port "
+            f"(0 lets the system choose)"
+        )
+    if number == errno.EACCES:
+        return f"port {port} may not be used by this user; choose one above 1023 with --port"
+    return f"cannot listen on {host}, port {port}: {error}; choose another with --host and --port"

@@ -1,0 +1,139 @@
+"""msgpack-RPC as CARLA 0.9.16 speaks it: bytes in, calls out; answers in, bytes out. No socket, no thread.
+
+A request is ``[0, id, method, [[is_async], *arguments]]``, an answer ``[1, id, error, result]``; neither has a length
+before it. The result of a function with a value is ``[[1, value]]`` or ``[[0, [message]]]``, that of one without
+``[[false]]`` or ``[[true, [message]]]`` (LibCarla, ``carla/rpc/Response.h``).
+"""
+
+from enum import Enum
+from typing import Any, NamedTuple
+
+import msgpack
+
+from linden.errors import ProtocolError
+from linden.wire.decode import got
+
+MAX_MESSAGE_BYTES = 64 * 1024 * 1024
+"""Largest request; an OpenDRIVE text of a big town is 10 MB, a 4k texture as floats 40 MB."""
+MAX_ARRAY_ITEMS = 4 * 1024 * 1024
+"""Most items of one array: its list is laid out before the items come, so that 5 bytes must not ask for gigabytes."""
+REQUEST, RESPONSE = 0, 1
+
+_FIRST_REPLY_BYTES = 4096  # size the packer's buffer starts with; it grows
+_UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
+_pack = msgpack.Packer(unicode_errors="surrogateescape", buf_size=_FIRST_REPLY_BYTES).pack
+
+
+class Call(NamedTuple):
+    """One remote call. Where ``is_async``, the client does not read the answer, yet keeps an entry until one comes."""
+
+    id: int
+    method: str
+    args: list[Any]
+    is_async: bool
+
+
+class Reply(Enum):
+    """How a function wraps its result."""
+
+    VALUE = "value"
+    VOID = "void"
+    BARE = "bare"  # apply_batch: no wrapping, each member carries its own
+
+
+class RpcConnection:
+    """The server's half of one connection: turns what arrives into calls."""
+
+    def __init__(self) -> None:
+        self._unpacker = msgpack.Unpacker(
+            raw=False,
+            unicode_errors="surrogateescape",  # a text that is not UTF-8 comes back as it came
+            max_buffer_size=MAX_MESSAGE_BYTES,
+            max_array_len=MAX_ARRAY_ITEMS,
+            max_map_len=0,  # CARLA sends none
+        )
+        self._unfinished_bytes = 0
+        self._failure: ProtocolError | None = None
+
+    def receive(self, data: bytes) -> list[Call]:
+        """Return the calls that ``data`` completes; a half-received one waits for its rest.
+
+        Calls that are whole before the broken place are returned first; the next call of this method then raises.
+
+        Raises:
+            ProtocolError: the bytes are not msgpack, not a call, or more than :data:`MAX_MESSAGE_BYTES` for one call.
+        """
+        calls: list[Call] = []
+        try:
+            self._take(data, calls)
+        except ProtocolError as error:
+            self._failure = error
+        if self._failure is not None and not calls:
+            raise self._failure
+        return calls
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether nothing more can be understood of this peer."""
+        return self._failure is not None
+
+    def _take(self, data: bytes, calls: list[Call]) -> None:
+        if self._failure is not None:
+            return
+        self._unfinished_bytes += len(data)
+        try:
+            self._unpacker.feed(data)
+            for message in self._unpacker:
+                calls.append(_call(message))
+                self._unfinished_bytes = 0
+        except _UNPACKING_FAILED as error:
+            raise ProtocolError(f"what arrived is not msgpack of a call: {error or type(error).__name__}") from error
+        if self._unfinished_bytes > MAX_MESSAGE_BYTES:
+            raise ProtocolError(f"a message is longer than {MAX_MESSAGE_BYTES} bytes")
+
+
+def _call(message: object) -> Call:
+    if not isinstance(message, list) or len(message) != 4 or type(message[0]) is not int or message[0] != REQUEST:
+        raise ProtocolError(f"expected a request [0, id, method, parameters], got {got(message)}")
+    _, call_id, method, params = message
+    if type(call_id) is not int or type(method) is not str or type(params) is not list:
+        raise ProtocolError(f"expected a request [0, id, method, parameters], got id {got(call_id)}, {got(method)}")
+    if not params or type(params[0]) is not list or len(params[0]) != 1 or type(params[0][0]) is not bool:
+        raise ProtocolError(f"{method!r}: expected [is_async] before the arguments, got {got(params[0:1])}")
+    return Call(call_id, method, params[1:], params[0][0])
+
+
+def value(call: Call, result: object) -> bytes:
+    """Encode the result of a function that has one."""
+    packed: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
+    return packed
+
+
+def void(call: Call) -> bytes:
+    """Encode that a function without a result has done its work."""
+    packed: bytes = _pack((RESPONSE, call.id, None, ((False,),)))
+    return packed
+
+
+def bare(call: Call, result: object) -> bytes:
+    """Encode a result that carries its own wrapping: the answers to a batch."""
+    packed: bytes = _pack((RESPONSE, call.id, None, result))
+    return packed
+
+
+def refusal(call: Call, message: str, reply: Reply) -> bytes:
+    """Encode an error; the client raises RuntimeError with ``message`` word for word.
+
+    A batch has no place for an error of its own, so the rpc library's is used, which names the function only.
+    """
+    if reply is Reply.BARE:
+        return unknown(call, message)
+    failed: bool | int = True if reply is Reply.VOID else 0
+    packed: bytes = _pack((RESPONSE, call.id, None, ((failed, (message,)),)))
+    return packed
+
+
+def unknown(call: Call, message: str) -> bytes:
+    """Encode that there is no such function; the client raises ``rpc::rpc_error during call in function <name>``."""
+    packed: bytes = _pack((RESPONSE, call.id, message, None))
+    return packed
