@@ -56,6 +56,11 @@ class Blueprint(NamedTuple):
     mass_kg: float = 0.0
     vehicle: VehicleModel | None = None
 
+    @property
+    def has_stream(self) -> bool:
+        """Whether its actors send measurements; lane invasion is found by the client itself."""
+        return self.kind is Kind.SENSOR and self.definition.id != "sensor.other.lane_invasion"
+
 
 class BlueprintLibrary:
     """All blueprints, found by id."""

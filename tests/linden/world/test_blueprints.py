@@ -174,6 +174,11 @@ def test_every_walker_stands_walks_and_runs() -> None:
             assert 0.0 == standing < walking < running
 
 
+def test_every_sensor_streams_but_the_one_that_the_client_computes() -> None:
+    silent = {blueprint.definition.id for blueprint in LIBRARY if not blueprint.has_stream}
+    assert {name for name in silent if name.startswith("sensor.")} == {"sensor.other.lane_invasion"}
+
+
 def test_a_description_is_completed_in_the_blueprints_order() -> None:
     complete = LIBRARY.validate(described("sensor.other.gnss", noise_seed="7"))
     assert [a.id for a in complete.attributes][:4] == ["role_name", "ros_name", "sensor_tick", "noise_seed"]
