@@ -1,4 +1,4 @@
-"""When the next frame of asynchronous mode is due, and how long a variable step is. Knows no clock: it is told the time.
+"""When asynchronous mode's next frame is due, and how long a variable step is. Knows no clock: it is told the time.
 
 With a fixed step the frames keep real time, one step each (the original runs as fast as it can; nobody who drives by
 hand wants that). With a variable step there are :data:`VARIABLE_HZ` frames a second, and a step is as long as the time
@@ -19,19 +19,23 @@ class Pace:
 
     def __init__(self, now_s: float) -> None:
         self._last_frame_s = now_s
-        self._due_s = now_s
+        self._beat_s = now_s  # the last frame's time by the rhythm, from which the next one counts
 
-    def wait_s(self, now_s: float) -> float:
+    def wait_s(self, now_s: float, fixed_delta_s: float | None) -> float:
         """Return how long it is until the next frame is due; 0 where it is."""
-        return max(0.0, self._due_s - now_s)
+        return max(0.0, self._beat_s + _period_s(fixed_delta_s) - now_s)
 
     def variable_step_s(self, now_s: float) -> float:
         """Return the length of a variable step that is made now."""
         return min(max(now_s - self._last_frame_s, SHORTEST_STEP_S), LONGEST_STEP_S)
 
     def frame_made(self, now_s: float, fixed_delta_s: float | None) -> None:
-        """Note that a frame begins now, and when the next one is due."""
-        period_s = 1.0 / VARIABLE_HZ if fixed_delta_s is None else fixed_delta_s
-        on_time_s = self._due_s + period_s
-        self._due_s = on_time_s if now_s < on_time_s <= now_s + period_s else now_s + period_s
+        """Note that a frame begins now; one that is late by less than a period keeps the rhythm."""
+        period_s = _period_s(fixed_delta_s)
+        on_time_s = self._beat_s + period_s
+        self._beat_s = on_time_s if 0.0 <= now_s - on_time_s < period_s else now_s
         self._last_frame_s = now_s
+
+
+def _period_s(fixed_delta_s: float | None) -> float:
+    return 1.0 / VARIABLE_HZ if fixed_delta_s is None else fixed_delta_s

@@ -15,7 +15,7 @@ class Peer:
     """A connection: its socket, what waits to be sent, and a name for the log."""
 
     def __init__(self, sock: socket.socket, number: int) -> None:
-        sock.setblocking(False)
+        sock.settimeout(0.0)
         sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)  # finds out about machines that vanished
         self.socket = sock

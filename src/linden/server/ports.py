@@ -62,7 +62,7 @@ def _listen(host: str, port: int) -> socket.socket:
     except (OSError, OverflowError) as error:
         listener.close()
         raise UserError(_why(host, port, error)) from error
-    listener.setblocking(False)
+    listener.settimeout(0.0)
     return listener
 
 

@@ -1,0 +1,33 @@
+"""The command ``linden``: ``serve`` runs the server, ``map`` makes, checks and draws maps."""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+
+from linden import CARLA_VERSION, __version__
+from linden.errors import UserError
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the whole command line; each command says under ``command`` what carries it out."""
+    # here, not above: a program that only asks for something of this module does not need them
+    from linden.cli import map as maps  # noqa: PLC0415 - see above
+    from linden.cli import serve  # noqa: PLC0415 - see above
+
+    whole = argparse.ArgumentParser(prog="linden", description=f"A CARLA {CARLA_VERSION} server without Unreal or GPU.")
+    whole.add_argument("--version", action="version", version=f"linden {__version__}, speaking CARLA {CARLA_VERSION}")
+    commands = whole.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    serve.add_parser(commands)
+    maps.add_parser(commands)
+    return whole
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run a command; a mistake of the user's is one sentence and exit code 2."""
+    arguments = parser().parse_args(argv)
+    command: Callable[[argparse.Namespace], int] = arguments.command
+    try:
+        return command(arguments)
+    except UserError as error:
+        print(f"linden: {error}", file=sys.stderr)  # noqa: T201 - what a command says to its user
+        return 2

@@ -1,0 +1,125 @@
+"""``linden serve``: open the ports, load the map, make the kernels ready, serve until told to stop."""
+
+import argparse
+import logging
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from linden.server.loop import Server
+
+DEFAULT_PORT = 2000
+LOG_LEVELS = ("debug", "info", "warning", "error")
+
+
+def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Add the command ``serve``."""
+    serve = commands.add_parser("serve", help="run the server until Ctrl-C", description=__doc__)
+    serve.add_argument("--host", "--bind", default="127.0.0.1", help="address to listen on (default: %(default)s)")
+    serve.add_argument(
+        "--port", type=int, default=DEFAULT_PORT, help="RPC port, 0 lets the system choose (default: %(default)s)"
+    )
+    serve.add_argument("--streaming-port", type=int, help="port of the sensor streams (default: the one after --port)")
+    serve.add_argument("--map", default="Linden", help="map to begin with (default: %(default)s)")
+    serve.add_argument(
+        "--maps", type=Path, action="append", default=[], metavar="DIR", help="offer every .xodr of a folder as a map"
+    )
+    serve.add_argument("--seed", type=int, default=0, help="of all that is random (default: %(default)s)")
+    serve.add_argument("--log-level", choices=LOG_LEVELS, default="warning", help="(default: %(default)s)")
+    serve.set_defaults(command=run)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Serve until SIGINT or SIGTERM.
+
+    Raises:
+        UserError: a port or a map cannot be had.
+    """
+    logging.basicConfig(
+        level=arguments.log_level.upper(), stream=sys.stderr, format="linden: %(levelname)s: %(message)s"
+    )
+    with _ending_cleanly():
+        server = _make_server(arguments)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda _number, _frame: server.stop())
+        server.run()
+    return 0
+
+
+def _make_server(arguments: argparse.Namespace) -> "Server":
+    # here, not above: these bring in the compiler, which other commands of this program do not need
+    from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
+    from linden.handlers import frames, registry  # noqa: PLC0415 - see above
+    from linden.server.loop import Server  # noqa: PLC0415 - see above
+    from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
+    from linden.simulation.simulation import Simulation  # noqa: PLC0415 - see above
+    from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
+
+    registry.load_handlers()
+    ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
+    maps = MapLibrary(arguments.maps)
+    try:
+        world_map = maps.load(arguments.map)
+    except Refusal as refusal:
+        raise UserError(f"--map: {refusal}") from refusal
+    with _told_of_compiling():
+        _warm_up(Simulation(world_map))
+    server = Server(Simulation(world_map, seed=arguments.seed), maps, frames, ports)
+    _say(f"linden: ready, rpc port {port_of(ports.rpc)}, streaming port {port_of(ports.streaming)}")
+    return server
+
+
+def _warm_up(simulation: Any) -> None:  # noqa: ANN401 - a throw-away simulation
+    """Run every kernel once, so that the first tick of a client takes no longer than the others."""
+    simulation.step(0.05)
+
+
+@contextmanager
+def _told_of_compiling() -> Iterator[None]:
+    """Say so once, where the kernels are not in the cache and the compiler has to run."""
+    from numba.core import event  # noqa: PLC0415 - as in _make_server
+
+    class Teller(event.Listener):  # type: ignore[misc]
+        """Speaks at the first kernel that is compiled."""
+
+        told = False
+
+        def on_start(self, _event: object) -> None:
+            if not self.told:
+                self.told = True
+                _say("linden: compiling the physics kernels, about half a minute, once")
+
+        def on_end(self, _event: object) -> None:
+            """Nothing to say."""
+
+    teller = Teller()
+    event.register("numba:compile", teller)
+    try:
+        yield
+    finally:
+        event.unregister("numba:compile", teller)
+
+
+@contextmanager
+def _ending_cleanly() -> Iterator[None]:
+    """Let SIGINT and SIGTERM end the program with 0, also while it starts; put the old handlers back afterwards."""
+
+    def leave(_number: int, _frame: FrameType | None) -> None:
+        raise SystemExit(0)
+
+    before = {number: signal.signal(number, leave) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _say(line: str) -> None:
+    """Print a line that programs read, at once."""
+    print(line, flush=True)  # noqa: T201 - what a command says to its user

@@ -1,0 +1,67 @@
+"""The least world a server can serve: it counts frames. For tests of what is around the simulation."""
+
+from dataclasses import dataclass, field
+
+from linden.errors import Refusal
+from linden.values.episode import EpisodeSettings
+from linden.values.space import Transform
+from linden.wire.headers import SensorType, episode_header, sensor_header
+
+EMPTY_MAP = '<?xml version="1.0"?><OpenDRIVE/>'
+
+
+@dataclass
+class FakeSimulation:
+    settings: EpisodeSettings = EpisodeSettings()
+    frame: int = 0
+    elapsed_s: float = 0.0
+    delta_s: float = 0.0
+    episode_id: int = 1
+    map_name: str = "Carla/Maps/Plain"
+    opendrive_text: str = EMPTY_MAP
+    spawn_points: tuple[Transform, ...] = (Transform(),)
+    steps_s: list[float] = field(default_factory=list)
+
+    def step(self, dt_s: float) -> None:
+        self.frame += 1
+        self.elapsed_s += dt_s
+        self.delta_s = dt_s
+        self.steps_s.append(dt_s)
+
+    def load(self, world_map: str, *, reset_settings: bool) -> None:
+        self.episode_id += 1
+        self.map_name = world_map
+        if reset_settings:
+            self.settings = EpisodeSettings()
+
+
+class FakeMaps:
+    def __init__(self) -> None:
+        self.sent: list[str] = []
+
+    def names(self) -> list[str]:
+        return ["/Game/Carla/Maps/Plain"]
+
+    def load(self, name: str) -> str:
+        if name.rsplit("/", 1)[-1] not in ("Plain", *("OpenDriveMap" for _ in self.sent)):
+            raise Refusal(f"Map '{name}' not found")
+        return name
+
+    def from_opendrive(self, text: str) -> str:
+        self.sent.append(text)
+        return "OpenDriveMap"
+
+
+class FakeFrames:
+    """The smallest snapshot, with ``padding`` bytes of one row's length behind it, and one sensor on stream 2."""
+
+    def __init__(self, padding_rows: int = 0, sensor_bytes: int = 0) -> None:
+        self.padding = bytes(119 * padding_rows)
+        self.sensor_bytes = sensor_bytes
+
+    def world_payload(self, simulation: FakeSimulation) -> bytes:
+        header = sensor_header(SensorType.WORLD_OBSERVER, simulation.frame, simulation.elapsed_s, Transform())
+        return header + episode_header(simulation.episode_id, 0.0, simulation.delta_s) + self.padding
+
+    def sensor_payloads(self, simulation: FakeSimulation, listened: set[int]) -> list[tuple[int, bytes]]:
+        return [(2, bytes(self.sensor_bytes))] if self.sensor_bytes and 2 in listened else []
