@@ -1,8 +1,8 @@
 """Where on Earth a map's origin lies, as LibCarla 0.9.16 reads it out of <geoReference>.
 
-Found by feeding ``carla.Map`` two dozen texts: the text is split at single spaces, each word at "=", and only the words
-``+lat_0`` and ``+lon_0`` with exactly one "=" count; the value is read as C's ``strtod`` does, up to the first character
-that does not belong to a number. Where either is missing or not a number, latitude 42 and longitude 2 are taken.
+Found by feeding ``carla.Map`` two dozen texts: the text is split at spaces, each word at "=", and only the words
+``+lat_0`` and ``+lon_0`` with exactly one "=" count; the value is read as C's ``strtod`` does, up to the first
+character that does not belong to a number. Where either is missing or not a number, latitude 42 and longitude 2 hold.
 """
 
 import math

@@ -1,6 +1,6 @@
-"""An OpenDRIVE map as frozen values, in OpenDRIVE's own frame: x east, y north, z up, headings counter-clockwise in rad.
+"""An OpenDRIVE map as frozen values, in its own frame: x east, y north, z up, headings counter-clockwise in rad.
 
-``s_m`` runs along a road's reference line, ``t_m`` to its left. Lane ids are positive to the left, negative to the right.
+``s_m`` runs along a road's reference line, ``t_m`` to its left. Lane ids are positive on the left.
 Source of names and meaning: ASAM OpenDRIVE 1.4 to 1.7. Superelevation and crossfall are left out, as LibCarla does.
 """
 
@@ -45,9 +45,9 @@ class Spiral(NamedTuple):
 
 
 class ParamPoly3(NamedTuple):
-    """Cubics u(p), v(p) in the frame of the geometry's start, p from 0 to ``p_end``. Walked by arc length, as LibCarla does.
+    """Cubics u(p), v(p) in the frame of the geometry's start, p from 0 to ``p_end``; walked by arc length.
 
-    OpenDRIVE's ``poly3`` is the same with u(p) = p.
+    LibCarla does so too, whatever the pRange. OpenDRIVE's ``poly3`` is the same with u(p) = p.
     """
 
     u: tuple[float, float, float, float]
@@ -109,7 +109,7 @@ class Lane:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LaneSection:
-    """A stretch of road with one set of lanes, from ``s_m`` to ``end_m``; lanes from left to right, lane 0 among them."""
+    """A stretch of road with one set of lanes, from ``s_m`` to ``end_m``; from left to right, lane 0 among them."""
 
     s_m: float
     end_m: float

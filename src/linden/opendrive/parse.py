@@ -1,11 +1,13 @@
 """OpenDRIVE text to a map. Hostile text is refused: no DTD, no entities, no network, numbers finite."""
 
 import re
+from typing import Any, cast
 
 from lxml import etree
 
 from linden.opendrive.errors import MapError
 from linden.opendrive.model import OpenDrive
+from linden.opendrive.reading.attributes import line_of
 from linden.opendrive.reading.furniture import read_controllers
 from linden.opendrive.reading.junctions import read_junction
 from linden.opendrive.reading.roads import read_road
@@ -50,10 +52,10 @@ def _root(text: str | bytes) -> etree._Element:
         root = etree.fromstring(data.lstrip(), parser)
     except etree.XMLSyntaxError as error:
         raise MapError(f"this is no well-formed XML: {error.msg}", error.lineno) from None
-    if root.getroottree().docinfo.doctype:
+    if cast("Any", root.getroottree()).docinfo.doctype:  # the stubs do not know the attribute
         raise MapError("the text has a DOCTYPE; an OpenDRIVE map needs none, and it is not read for safety", 1)
     if root.tag != "OpenDRIVE":
-        raise MapError(f"the outermost element is <{root.tag}>, not <OpenDRIVE>", root.sourceline)
+        raise MapError(f"the outermost element is <{root.tag}>, not <OpenDRIVE>", line_of(root))
     return root
 
 

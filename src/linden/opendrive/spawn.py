@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from linden.geometry import from_opendrive
-from linden.opendrive.evaluate.pieces import I64
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.model import OpenDrive, Road
 from linden.values.enums import LaneType
@@ -23,7 +22,7 @@ def spawn_points(opendrive: OpenDrive) -> tuple[Transform, ...]:
     places = sorted(place for index, road in enumerate(opendrive.roads) for place in _on_road(tables, index, road))
     if not places:
         return ()
-    lane: I64 = np.asarray([place[3] for place in places], dtype=np.int64)
+    lane = np.asarray([place[3] for place in places], dtype=np.int64)
     s_m = np.asarray([place[1] for place in places])
     centres = tables.lane_centres(lane, s_m)
     points = []

@@ -1,6 +1,7 @@
 """Reference lines in plan: lines, arcs, spirals and parametric cubics, many at once."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -72,7 +73,7 @@ class Curves(NamedTuple):
 
     def sharpest_per_m(self) -> F64:
         """Return the greatest curvature of each geometry in 1/m (of a parametric one, as sampled)."""
-        sharpest = np.abs(self.u[:, :2]).max(axis=1)
+        sharpest: F64 = np.abs(self.u[:, :2]).max(axis=1)
         sharpest[self.kind == _LINE] = 0.0
         parametric = np.flatnonzero(self.kind == _PARAMETRIC)
         if len(parametric):
@@ -181,8 +182,7 @@ def _arc_lengths(kind: NDArray[np.int8], u: F64, v: F64, p_end: F64) -> F64:
     chosen = np.flatnonzero(kind == _PARAMETRIC)
     edges = np.linspace(0.0, 1.0, _PARAMETER_STEPS + 1)
     steps = [
-        _arc_length(u[chosen], v[chosen], p_end[chosen] * low, p_end[chosen] * high)
-        for low, high in zip(edges[:-1], edges[1:], strict=True)
+        _arc_length(u[chosen], v[chosen], p_end[chosen] * low, p_end[chosen] * high) for low, high in pairwise(edges)
     ]
     table[chosen, 1:] = np.cumsum(np.stack(steps, axis=1), axis=1) if len(chosen) else 0.0
     return table

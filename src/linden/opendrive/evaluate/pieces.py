@@ -13,7 +13,7 @@ I64 = NDArray[np.int64]
 
 
 class Pieces(NamedTuple):
-    """Records sorted by owner, then by start. ``key`` is the owner's base plus the start, so one search finds a record."""
+    """Records sorted by owner, then by start. The key is the owner's base plus the start: one search finds a record."""
 
     base_m: F64  # (owners,), far enough apart that no key of one owner reaches into the next
     first: I64  # (owners,), index of the owner's first record
@@ -30,14 +30,16 @@ class Pieces(NamedTuple):
         record = self.find(owner, s_m if probe_m is None else probe_m)
         a, b, c, d = self.coefficients[record].T
         along = s_m - self.start_m[record]
-        return a + along * (b + along * (c + along * d))
+        value: F64 = a + along * (b + along * (c + along * d))
+        return value
 
     def slope(self, owner: I64, s_m: F64) -> F64:
         """Return the derivative of the cubics at s."""
         record = self.find(owner, s_m)
         _, b, c, d = self.coefficients[record].T
         along = s_m - self.start_m[record]
-        return b + along * (2.0 * c + along * 3.0 * d)
+        slope: F64 = b + along * (2.0 * c + along * 3.0 * d)
+        return slope
 
 
 def bases_of(lengths_m: Sequence[float]) -> F64:

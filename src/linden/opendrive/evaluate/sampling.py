@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from linden.opendrive.evaluate.curves import Curves
 from linden.opendrive.evaluate.pieces import F64, I64, Pieces
 from linden.opendrive.evaluate.tables import Tables
 
@@ -83,23 +83,20 @@ def _owners(pieces: Pieces) -> I64:
 
 def _step_m(tables: Tables, road: I64, section: I64, middle_m: F64) -> F64:
     """Return the longest step that each piece allows."""
-    curves: Curves = tables.curves
-    sharpest = curves.sharpest_per_m()[curves.find(road, middle_m)]
+    sharpest = tables.curves.sharpest_per_m()[tables.curves.find(road, middle_m)]
     bent = _bends(tables.elevation, road, middle_m) | _bends(tables.lane_offset, road, middle_m)
     bent |= _sections_with_bent_widths(tables, int(section.max(initial=0)) + 1)[section]
     on_curve = np.minimum(np.sqrt(8.0 * CHORD_ERROR_M / np.maximum(sharpest, 1e-12)), CURVED_STEP_M)
     return np.where(sharpest > 0.0, on_curve, np.where(bent, CURVED_STEP_M, STRAIGHT_STEP_M))
 
 
-def _bends(pieces: Pieces, owner: I64, s_m: F64) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _bends(pieces: Pieces, owner: I64, s_m: F64) -> NDArray[np.bool_]:
     """Return whether the record that holds is more than linear."""
-    bends: np.ndarray[tuple[int], np.dtype[np.bool_]] = np.any(
-        pieces.coefficients[pieces.find(owner, s_m)][:, 2:] != 0.0, axis=1
-    )
+    bends: NDArray[np.bool_] = np.any(pieces.coefficients[pieces.find(owner, s_m)][:, 2:] != 0.0, axis=1)
     return bends
 
 
-def _sections_with_bent_widths(tables: Tables, sections: int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _sections_with_bent_widths(tables: Tables, sections: int) -> NDArray[np.bool_]:
     bent = np.zeros(sections, dtype=np.bool_)
     lanes = tables.lanes
     first_of_road = np.concatenate([[0], np.cumsum([len(road.sections) for road in tables.roads])])

@@ -27,7 +27,7 @@ LANE = np.dtype(
 
 
 class LanePlaces(NamedTuple):
-    """Places on lanes, OpenDRIVE's frame: m and rad; all (N,). ``heading_rad`` and ``slope`` are along the reference line."""
+    """Places on lanes, OpenDRIVE's frame: m and rad; all (N,). Heading and slope look along the reference line."""
 
     x_m: F64
     y_m: F64

@@ -1,7 +1,7 @@
 """Typed reading of XML attributes: a number that is a number, or a sentence with the line."""
 
 import math
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from lxml.etree import _Element as Element
 
@@ -10,11 +10,16 @@ from linden.opendrive.errors import MapError
 _MPS_PER_UNIT = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
 
+def line_of(node: Any) -> int:  # noqa: ANN401 - lxml's stubs have no type for sourceline
+    """Return the line of the file on which an element begins, 0 where that is not known."""
+    return int(node.sourceline or 0)
+
+
 def reject(node: Element, attribute: str, expected: str) -> NoReturn:
     """Raise a MapError that names the element, the attribute and what should stand there."""
     found = node.get(attribute)
     shown = "is missing" if found is None else f"is {found[:40]!r}"
-    raise MapError(f"attribute {attribute!r} of <{node.tag}> {shown}; it should be {expected}", node.sourceline)
+    raise MapError(f"attribute {attribute!r} of <{node.tag}> {shown}; it should be {expected}", line_of(node))
 
 
 def number(node: Element, attribute: str) -> float:

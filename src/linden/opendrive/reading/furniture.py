@@ -1,9 +1,12 @@
 """Reads what stands along a road: <signals>, <objects>, and <controller>."""
 
+import re
+
 from lxml.etree import _Element as Element
 
 from linden.opendrive.errors import MapError
 from linden.opendrive.furniture import (
+    SPEED_LIMIT_TYPE,
     Controller,
     Corner,
     InertialPose,
@@ -12,7 +15,10 @@ from linden.opendrive.furniture import (
     SignalReference,
     Validity,
 )
-from linden.opendrive.reading.attributes import number, number_or, user_data, whole
+from linden.opendrive.reading.attributes import line_of, number, number_or, user_data, whole
+
+# ObjectParser.cpp; the number begins at the seventh character, or the fourteenth in "Speed_STATIC_30"
+_SPEED_STENCIL = re.compile(r"[Ss]peed_(?:STATIC_)?(\d+(?:\.\d+)?)")
 
 
 def read_signals(road: Element) -> tuple[Signal, ...]:
@@ -39,6 +45,15 @@ def read_objects(road: Element) -> tuple[RoadObject, ...]:
     return tuple(_object(node) for node in road.iterfind("objects/object"))
 
 
+def read_speed_stencils(road: Element) -> tuple[Signal, ...]:
+    """Return the speed limits that RoadRunner writes as objects named ``Speed_30``; LibCarla takes them for signs."""
+    return tuple(
+        _speed_sign(node)
+        for node in road.iterfind("objects/object")
+        if _SPEED_STENCIL.fullmatch(node.get("name", "")) and node.get("id")
+    )
+
+
 def read_controllers(root: Element) -> tuple[Controller, ...]:
     """Return the map's controllers in the order of the file."""
     return tuple(
@@ -55,7 +70,7 @@ def read_controllers(root: Element) -> tuple[Controller, ...]:
 def _signal(node: Element) -> Signal:
     get = node.get
     if not get("id"):
-        raise MapError("a <signal> has no id; lights and signs are known by it", node.sourceline)
+        raise MapError("a <signal> has no id; lights and signs are known by it", line_of(node))
     inertial = node.find("positionInertial")
     value = get("value")
     return Signal(
@@ -79,7 +94,35 @@ def _signal(node: Element) -> Signal:
         text=get("text", ""),
         validities=_validities(node),
         inertial=None if inertial is None else _inertial(inertial),
-        source_line=node.sourceline or 0,
+        source_line=line_of(node),
+    )
+
+
+def _speed_sign(node: Element) -> Signal:
+    match = _SPEED_STENCIL.fullmatch(node.get("name", ""))
+    assert match is not None
+    return Signal(
+        id=node.get("id", ""),
+        name=node.get("name", ""),
+        s_m=number(node, "s"),
+        t_m=number_or(node, "t", 0.0),
+        z_offset_m=number_or(node, "zOffset", 0.0),
+        heading_offset_rad=number_or(node, "hdg", 0.0),
+        pitch_rad=number_or(node, "pitch", 0.0),
+        roll_rad=number_or(node, "roll", 0.0),
+        orientation=node.get("orientation", "none"),
+        is_dynamic=False,
+        country="OpenDRIVE",
+        type=SPEED_LIMIT_TYPE,
+        subtype=match.group(1),
+        value=float(match.group(1)),
+        unit="mph",
+        height_m=number_or(node, "height", 0.0),
+        width_m=number_or(node, "width", 0.0),
+        text=match.group(1),
+        validities=(),
+        inertial=None,
+        source_line=line_of(node),
     )
 
 
@@ -115,7 +158,7 @@ def _object(node: Element) -> RoadObject:
         orientation=get("orientation", "none"),
         outline=_outline(node),
         user_data=user_data(node),
-        source_line=node.sourceline or 0,
+        source_line=line_of(node),
     )
 
 
@@ -128,10 +171,12 @@ def _outline(node: Element) -> tuple[Corner, ...]:
 
 
 def _corner(node: Element) -> Corner:
-    if node.tag == "cornerLocal":
-        return Corner(
-            number(node, "u"), number(node, "v"), number_or(node, "z", 0.0), number_or(node, "height", 0.0), False
-        )
+    along_road = node.tag == "cornerRoad"
+    first, second, lift = ("s", "t", "dz") if along_road else ("u", "v", "z")
     return Corner(
-        number(node, "s"), number(node, "t"), number_or(node, "dz", 0.0), number_or(node, "height", 0.0), True
+        first_m=number(node, first),
+        second_m=number(node, second),
+        z_m=number_or(node, lift, 0.0),
+        height_m=number_or(node, "height", 0.0),
+        is_along_road=along_road,
     )

@@ -3,7 +3,7 @@
 from lxml.etree import _Element as Element
 
 from linden.opendrive.model import Connection, Junction
-from linden.opendrive.reading.attributes import reject, user_data, whole
+from linden.opendrive.reading.attributes import line_of, reject, user_data, whole
 
 
 def read_junction(node: Element) -> Junction:
@@ -20,7 +20,7 @@ def read_junction(node: Element) -> Junction:
         controllers=tuple(child.get("id", "") for child in node.iterchildren("controller")),
         priorities=tuple((whole(child, "high"), whole(child, "low")) for child in node.iterchildren("priority")),
         user_data=user_data(node),
-        source_line=node.sourceline or 0,
+        source_line=line_of(node),
     )
 
 

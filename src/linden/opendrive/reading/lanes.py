@@ -4,7 +4,15 @@ from lxml.etree import _Element as Element
 
 from linden.opendrive.errors import MapError
 from linden.opendrive.model import Cubic, Height, Lane, LaneSection, RoadMark, Speed
-from linden.opendrive.reading.attributes import cubic_coefficients, number, number_or, speed_mps, whole, whole_or_none
+from linden.opendrive.reading.attributes import (
+    cubic_coefficients,
+    line_of,
+    number,
+    number_or,
+    speed_mps,
+    whole,
+    whole_or_none,
+)
 from linden.values.enums import LaneType
 
 # LibCarla reads lane types in any case and takes anything else for NONE (RoadParser.cpp, StringToLaneType).
@@ -27,7 +35,7 @@ def read_sections(lanes: Element, road_length_m: float) -> tuple[LaneSection, ..
     """
     nodes = list(lanes.iterchildren("laneSection"))
     if not nodes:
-        raise MapError("<lanes> has no <laneSection>; a road needs at least one", lanes.sourceline)
+        raise MapError("<lanes> has no <laneSection>; a road needs at least one", line_of(lanes))
     starts = [number(node, "s") for node in nodes]
     ends = [*starts[1:], road_length_m]
     sections = []
@@ -35,7 +43,7 @@ def read_sections(lanes: Element, road_length_m: float) -> tuple[LaneSection, ..
         if not 0.0 <= start_m < end_m:
             raise MapError(
                 f"<laneSection> from s={start_m:g} to {end_m:g} m is empty or outside its road of {road_length_m:g} m",
-                node.sourceline,
+                line_of(node),
             )
         sections.append(LaneSection(s_m=start_m, end_m=end_m, lanes=_lanes_of(node)))
     return tuple(sections)
@@ -50,7 +58,7 @@ def _lanes_of(section: Element) -> tuple[Lane, ...]:
         for node in side.iterchildren("lane"):
             lane = _lane(node)
             if lane.id in lanes:
-                raise MapError(f"lane {lane.id} stands twice in one <laneSection>", node.sourceline)
+                raise MapError(f"lane {lane.id} stands twice in one <laneSection>", line_of(node))
             lanes[lane.id] = lane
     lanes.setdefault(0, _EMPTY_CENTRE)
     return tuple(lanes[lane_id] for lane_id in sorted(lanes, reverse=True))

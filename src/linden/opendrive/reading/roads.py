@@ -17,6 +17,7 @@ from linden.opendrive.model import (
 )
 from linden.opendrive.reading.attributes import (
     cubic_coefficients,
+    line_of,
     number,
     number_or,
     positive,
@@ -25,7 +26,7 @@ from linden.opendrive.reading.attributes import (
     user_data,
     whole,
 )
-from linden.opendrive.reading.furniture import read_objects, read_signal_references, read_signals
+from linden.opendrive.reading.furniture import read_objects, read_signal_references, read_signals, read_speed_stencils
 from linden.opendrive.reading.lanes import read_lane_offsets, read_sections
 
 # An arc of less curvature than this is a line; LibCarla asserts more (Geometry.cpp, GeometryArc).
@@ -37,7 +38,7 @@ def read_road(node: Element) -> Road:
     length_m = positive(node, "length")
     lanes = node.find("lanes")
     if lanes is None:
-        raise MapError(f"road {node.get('id')} has no <lanes>", node.sourceline)
+        raise MapError(f"road {node.get('id')} has no <lanes>", line_of(node))
     link = node.find("link")
     return Road(
         id=_road_id(node),
@@ -55,11 +56,11 @@ def read_road(node: Element) -> Road:
         ),
         lane_offsets=read_lane_offsets(lanes),
         sections=read_sections(lanes, length_m),
-        signals=read_signals(node),
+        signals=(*read_signals(node), *read_speed_stencils(node)),
         signal_references=read_signal_references(node),
         objects=read_objects(node),
         user_data=user_data(node),
-        source_line=node.sourceline or 0,
+        source_line=line_of(node),
     )
 
 
@@ -86,7 +87,7 @@ def _road_type(node: Element) -> RoadType:
 def _reference_line(road: Element) -> tuple[Geometry, ...]:
     nodes = list(road.iterfind("planView/geometry"))
     if not nodes:
-        raise MapError(f"road {road.get('id')} has no <planView> with a <geometry>", road.sourceline)
+        raise MapError(f"road {road.get('id')} has no <planView> with a <geometry>", line_of(road))
     return tuple(
         Geometry(
             s_m=number(node, "s"),
@@ -121,7 +122,7 @@ def _shape(geometry: Element) -> Line | Arc | Spiral | ParamPoly3:
         case other:
             raise MapError(
                 f"a <geometry> holds {other or 'nothing'}; known are line, arc, spiral, poly3, paramPoly3",
-                geometry.sourceline,
+                line_of(geometry),
             )
 
 

@@ -1,0 +1,71 @@
+"""The place on a lane's middle that is nearest to a point, among lanes of chosen types."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from linden.opendrive.evaluate.pieces import F64, I64
+from linden.opendrive.evaluate.sampling import sample, sections_of
+from linden.opendrive.evaluate.tables import Tables
+from linden.values.enums import LaneType
+
+REACH_M = 30.0  # lanes further away than this are not looked at
+
+
+class Nearest(NamedTuple):
+    """A lane (row of Tables.lanes), the s along its road, and how far away that is."""
+
+    lane: int
+    s_m: float
+    distance_m: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MiddleLines:
+    """The middles of lanes as chords in OpenDRIVE's frame."""
+
+    lane: I64  # (N,)
+    start: F64  # (N, 3), m
+    step: F64  # (N, 3), m
+    start_s_m: F64
+    step_s_m: F64
+
+    def nearest(self, x_m: float, y_m: float, z_m: float) -> Nearest | None:
+        """Return the nearest place in space, None where no lane lies within ``REACH_M``."""
+        dx, dy = self.start[:, 0] - x_m, self.start[:, 1] - y_m
+        near = np.flatnonzero((np.abs(dx) < REACH_M) & (np.abs(dy) < REACH_M))
+        if not len(near):
+            return None
+        away = np.array([x_m, y_m, z_m]) - self.start[near]
+        step = self.step[near]
+        share = np.clip((away * step).sum(axis=1) / np.maximum((step * step).sum(axis=1), 1e-12), 0.0, 1.0)
+        distance = np.linalg.norm(away - share[:, None] * step, axis=1)
+        best = int(np.argmin(distance))
+        row = near[best]
+        s_m = float(self.start_s_m[row] + share[best] * self.step_s_m[row])
+        return Nearest(int(self.lane[row]), s_m, float(distance[best]))
+
+
+def middle_lines(tables: Tables, types: LaneType) -> MiddleLines:
+    """Return the middles of all lanes whose type is among ``types``."""
+    samples = sample(tables, sections_of(tables))
+    sections_before = np.concatenate([[0], np.cumsum([len(road.sections) for road in tables.roads])])
+    rows = np.flatnonzero(tables.lanes["type_bits"] & int(types))
+    section_of_row = sections_before[tables.lanes["road"][rows]] + tables.lanes["section"][rows]
+    counts = np.bincount(samples.section, minlength=int(sections_before[-1]))
+    before = np.cumsum(counts) - counts
+    lane = np.repeat(rows, counts[section_of_row])
+    nth = np.concatenate([np.arange(count) for count in counts[section_of_row]] or [np.empty(0, np.int64)])
+    place = np.repeat(before[section_of_row], counts[section_of_row]) + nth
+    s_m = samples.s_m[place]
+    centres = tables.lane_centres(lane, s_m)
+    points = np.stack([centres.x_m, centres.y_m, centres.z_m], axis=1)
+    goes_on = np.flatnonzero((lane[1:] == lane[:-1]) & (s_m[1:] > s_m[:-1])) if len(lane) else np.empty(0, np.int64)
+    return MiddleLines(
+        lane=lane[goes_on],
+        start=points[goes_on],
+        step=points[goes_on + 1] - points[goes_on],
+        start_s_m=s_m[goes_on],
+        step_s_m=s_m[goes_on + 1] - s_m[goes_on],
+    )

@@ -1,0 +1,111 @@
+"""Where LibCarla 0.9.16 puts a signal: beside its road as the file says, then out of any lane it would stand in.
+
+Source: MapBuilder.cpp, ComputeSignalTransform, SolveSignalReferencesAndTransforms, CheckSignalsOnRoads.
+"""
+
+import math
+
+import numpy as np
+
+from linden.geometry import from_opendrive
+from linden.opendrive.evaluate.nearest import MiddleLines, middle_lines
+from linden.opendrive.evaluate.tables import Tables, tables_of
+from linden.opendrive.furniture import Signal
+from linden.opendrive.model import OpenDrive, Road
+from linden.values.enums import LaneType
+from linden.values.space import Rotation, Transform, Vector3D
+
+_LIGHT_ADVANCE_M = 0.25  # lights are moved forward by this
+_CLEAR_WIDTHS = 0.7  # of the lane's width: nearer to its middle than this, a signal stands in the way
+_PUSH_WIDTHS = 0.2
+_PUSHES = 10
+_KEPT_NAMES = ("Stencil_STOP", "STATIC")  # signals of these names stay where they are
+
+
+def landmark_transforms(opendrive: OpenDrive) -> tuple[Transform, ...]:
+    """Return the pose of every signal in the order of the file, as ``carla.Landmark.transform`` gives it."""
+    signals = [(index, signal) for index, road in enumerate(opendrive.roads) for signal in road.signals]
+    if not signals:
+        return ()
+    tables = tables_of(opendrive)
+    lines = middle_lines(tables, LaneType.DRIVING | LaneType.SHOULDER)
+    return tuple(_transform(tables, lines, road_index, signal) for road_index, signal in signals)
+
+
+def _transform(tables: Tables, lines: MiddleLines, road_index: int, signal: Signal) -> Transform:
+    if signal.inertial is not None:
+        x_m, y_m, z_m, heading_rad, pitch_rad, roll_rad = signal.inertial
+        pose = from_opendrive(x_m, y_m, z_m, heading_rad)
+        return _tilted(pose, pitch_rad, roll_rad)
+    pose = _tilted(_beside_road(tables, road_index, signal), signal.pitch_rad, signal.roll_rad)
+    if any(name in signal.name for name in _KEPT_NAMES):
+        return pose
+    return _pushed_out(tables, lines, pose)
+
+
+def _beside_road(tables: Tables, road_index: int, signal: Signal) -> Transform:
+    s_m = np.array([min(max(signal.s_m, 0.0), tables.roads[road_index].length_m)])
+    road = np.array([road_index])
+    x_m, y_m, heading_rad = (float(value[0]) for value in tables.curves.pose(road, s_m))
+    z_m = float(tables.elevation.value(road, s_m)[0]) + signal.z_offset_m
+    facing_rad = heading_rad + signal.heading_offset_rad
+    x_m -= math.sin(heading_rad) * signal.t_m
+    y_m += math.cos(heading_rad) * signal.t_m
+    if signal.is_light:
+        x_m += math.cos(facing_rad) * _LIGHT_ADVANCE_M
+        y_m += math.sin(facing_rad) * _LIGHT_ADVANCE_M
+    return from_opendrive(x_m, y_m, z_m, facing_rad)
+
+
+def _tilted(pose: Transform, pitch_rad: float, roll_rad: float) -> Transform:
+    return pose._replace(rotation=Rotation(math.degrees(pitch_rad), pose.rotation.yaw, math.degrees(roll_rad)))
+
+
+def _pushed_out(tables: Tables, lines: MiddleLines, pose: Transform) -> Transform:
+    """Push a signal sideways, a fifth of the lane's width at a time, until it stands clear of all lanes."""
+    x, y, z = pose.location
+    found = lines.nearest(x, -y, z)
+    if found is None:
+        return pose
+    lane_pose, width_m = _lane_pose(tables, found.lane, found.s_m)
+    yaw_rad = math.radians(lane_pose.rotation.yaw)
+    pushes = 0
+    while found.distance_m < _CLEAR_WIDTHS * width_m and pushes < _PUSHES:
+        direction = _way_out(tables, found.lane)
+        x -= math.sin(yaw_rad) * width_m * _PUSH_WIDTHS * direction
+        y += math.cos(yaw_rad) * width_m * _PUSH_WIDTHS * direction
+        found = lines.nearest(x, -y, z) or found
+        _, width_m = _lane_pose(tables, found.lane, found.s_m)
+        pushes += 1
+        if direction == 0:
+            break
+    if pushes in {0, _PUSHES}:
+        return pose
+    return Transform(Vector3D(x, y, z), lane_pose.rotation)
+
+
+def _lane_pose(tables: Tables, lane: int, s_m: float) -> tuple[Transform, float]:
+    """Return the lane's middle, turned the way its traffic goes, and its width."""
+    places = tables.lane_centres(np.array([lane]), np.array([s_m]))
+    x_m, y_m, z_m, heading_rad, slope, width_m = (float(value[0]) for value in places)
+    row = tables.lanes[lane]
+    road: Road = tables.roads[row["road"]]
+    backwards = (row["lane_id"] > 0) == road.is_right_hand
+    pose = from_opendrive(x_m, y_m, z_m, heading_rad)
+    yaw, pitch = pose.rotation.yaw + (180.0 if backwards else 0.0), math.degrees(slope)
+    return pose._replace(rotation=Rotation(360.0 - pitch if backwards else pitch, yaw, 0.0)), width_m
+
+
+def _way_out(tables: Tables, lane: int) -> int:
+    """Return 1 for the right, -1 for the left of the lane's traffic, 0 where driving lanes lie on both sides."""
+    row = tables.lanes[lane]
+    road_index, section, lane_id = (int(row[name]) for name in ("road", "section", "lane_id"))
+    outward = lane_id + (1 if lane_id > 0 else -1)
+    inward = -lane_id if abs(lane_id) == 1 else lane_id - (1 if lane_id > 0 else -1)
+    right_drives, left_drives = (
+        neighbour is not None and tables.lanes["type_bits"][neighbour] == LaneType.DRIVING
+        for neighbour in (tables.lane_row.get((road_index, section, other)) for other in (outward, inward))
+    )
+    if tables.roads[road_index].is_right_hand:
+        return 1 if not right_drives else -1 if not left_drives else 0
+    return -1 if not left_drives else 1 if not right_drives else 0

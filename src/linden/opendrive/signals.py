@@ -1,0 +1,149 @@
+"""Signals as the actors of a simulation need them: where they stand, whom they concern, where they take effect."""
+
+from collections import defaultdict
+from typing import NamedTuple
+
+from linden.opendrive.evaluate.tables import Tables, tables_of
+from linden.opendrive.furniture import Signal, SignalReference, Validity
+from linden.opendrive.landmarks import landmark_transforms
+from linden.opendrive.links import LaneLinks, lane_links
+from linden.opendrive.model import NO_JUNCTION, OpenDrive, Road
+from linden.opendrive.triggers import LanePlace, trigger_boxes
+from linden.values.enums import LaneType
+from linden.values.space import BoundingBox, Rotation, Transform
+
+_MODEL_YAW_DEG = 90.0  # CARLA's light and sign models are turned by this against their signal
+
+
+class AffectedLane(NamedTuple):
+    """A driving lane that a signal speaks to, and the s at which it does."""
+
+    road_id: int
+    lane_id: int
+    s_m: float
+
+
+class PlacedSignal(NamedTuple):
+    """A signal in CARLA's frame.
+
+    ``landmark`` is the pose the client computes; the actor stands at ``transform``: the same place, upright, turned by
+    90 degrees as CARLA's models are. ``trigger_volumes`` are local to ``transform``, one for each approach, x across
+    the lanes, empty where the signal concerns no driving lane. ``junction_id`` is the junction guarded, else -1.
+    """
+
+    signal_id: str
+    type: str
+    subtype: str
+    value: float | None
+    unit: str
+    name: str
+    is_dynamic: bool
+    is_light: bool
+    road_id: int
+    s_m: float
+    landmark: Transform
+    transform: Transform
+    controllers: tuple[str, ...]
+    junction_id: int
+    lanes: tuple[AffectedLane, ...]
+    trigger_volumes: tuple[BoundingBox, ...]
+
+
+def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
+    """Return every signal of the map, in the order of the file."""
+    tables, links = tables_of(opendrive), lane_links(opendrive)
+    references = _references(opendrive)
+    controllers = defaultdict(list)
+    for controller in opendrive.controllers:
+        for signal_id in dict.fromkeys(controller.signals):
+            controllers[signal_id].append(controller.id)
+    junction_of_controller = {name: junction.id for junction in opendrive.junctions for name in junction.controllers}
+    placed = []
+    for (road, signal), landmark in zip(opendrive.signals(), landmark_transforms(opendrive), strict=True):
+        places = [lane for reference in references[signal.id] for lane in _driving_lanes(tables, reference)]
+        guards = [junction_of_controller[name] for name in controllers[signal.id] if name in junction_of_controller]
+        transform = Transform(landmark.location, Rotation(0.0, landmark.rotation.yaw + _MODEL_YAW_DEG, 0.0))
+        placed.append(
+            PlacedSignal(
+                signal_id=signal.id,
+                type=signal.type,
+                subtype=signal.subtype,
+                value=signal.value,
+                unit=signal.unit,
+                name=signal.name,
+                is_dynamic=signal.is_dynamic,
+                is_light=signal.is_light,
+                road_id=road.id,
+                s_m=signal.s_m,
+                landmark=landmark,
+                transform=transform,
+                controllers=tuple(controllers[signal.id]),
+                junction_id=guards[0] if guards else _junction_ahead(tables, links, road, places),
+                lanes=tuple(_affected(tables, lane) for lane in places),
+                trigger_volumes=trigger_boxes(tables, links, transform, places),
+            )
+        )
+    return tuple(placed)
+
+
+_Reference = tuple[int, float, tuple[Validity, ...]]
+
+
+def _references(opendrive: OpenDrive) -> dict[str, list[_Reference]]:
+    """Map a signal's id to the places it speaks at: (index of the road, s, lanes)."""
+    references: dict[str, list[_Reference]] = defaultdict(list)
+    for index, road in enumerate(opendrive.roads):
+        for signal in road.signals:
+            references[signal.id].append((index, signal.s_m, validities_of(road, signal)))
+        for reference in road.signal_references:
+            references[reference.signal_id].append((index, reference.s_m, validities_of(road, reference)))
+    return references
+
+
+def validities_of(road: Road, signal: Signal | SignalReference) -> tuple[Validity, ...]:
+    """Return the lanes a signal speaks to; unless it says, LibCarla takes "+" for the left lanes, "-" for the right.
+
+    Source: MapBuilder.cpp, GenerateDefaultValiditiesForSignalReferences; the usual reading of "+" is the opposite.
+    """
+    if signal.validities:
+        return signal.validities
+    lanes = [lane.id for lane in road.section_at(signal.s_m).lanes]
+    left, right = Validity(1, max(lanes)), Validity(min(lanes), -1)
+    sides = {"+": (left,), "-": (right,)}.get(signal.orientation, (left, right))
+    return tuple(side for side in sides if side.from_lane <= side.to_lane)
+
+
+def _driving_lanes(tables: Tables, reference: _Reference) -> list[LanePlace]:
+    """Return the driving lanes that a reference names, from the left to the right."""
+    road_index, s_m, validities = reference
+    road = tables.roads[road_index]
+    at_m = min(max(s_m, 0.0), road.length_m)
+    section = road.section_at(at_m)
+    section_index = road.sections.index(section)
+    return [
+        LanePlace(tables.lane_row[road_index, section_index, lane.id], at_m)
+        for lane in section.lanes
+        if lane.type is LaneType.DRIVING
+        and lane.id != 0
+        and any(min(validity) <= lane.id <= max(validity) for validity in validities)
+    ]
+
+
+def _affected(tables: Tables, place: LanePlace) -> AffectedLane:
+    row = tables.lanes[place.lane]
+    return AffectedLane(tables.roads[row["road"]].id, int(row["lane_id"]), place.s_m)
+
+
+def _junction_ahead(tables: Tables, links: LaneLinks, road: Road, places: list[LanePlace]) -> int:
+    """Return the junction the signal's road belongs to or its lanes lead into next, -1 where there is none."""
+    if road.is_in_junction:
+        return road.junction_id
+    for place in places:
+        here = int(tables.lanes["road"][place.lane])
+        rows = links.successors[place.lane]
+        while rows and int(tables.lanes["road"][rows[0]]) == here:  # the next section of the same road
+            rows = links.successors[rows[0]]
+        ahead = tables.roads[tables.lanes["road"][rows[0]]] if rows else road
+        if ahead.is_in_junction:
+            return ahead.junction_id
+    return NO_JUNCTION
