@@ -1,0 +1,36 @@
+# The commands of the house. `make run` and `make test` set up everything they need.
+BIN := .venv/bin
+AGENT ?= basic
+
+.PHONY: run test check format bench docs clean
+
+run:  ## drive the shuttle route and score the drive
+	@scripts/setup run
+	@$(BIN)/basu run $(AGENT)
+
+test: check  ## all that CI runs
+	@scripts/run-tests
+
+check:  ## format, lint, types, import rules
+	@scripts/setup dev
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+format:  ## mend what can be mended by itself
+	@scripts/setup dev
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix .
+
+bench:  ## the figures of benchmarks/README.md, anew
+	@scripts/setup dev
+	$(BIN)/python benchmarks/ticks.py
+
+docs:  ## the generated pages
+	@scripts/setup dev
+	$(BIN)/python scripts/make_supported.py
+
+clean:
+	rm -rf .venv build src/*.egg-info .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	find . -name __pycache__ -not -path './.git/*' -exec rm -rf {} +
