@@ -1,0 +1,105 @@
+"""Traffic lights and signs as actors of the world: made from the map's signals, never spawned."""
+
+from collections import defaultdict
+from typing import NamedTuple
+
+import numpy as np
+
+from linden.geometry import compose
+from linden.opendrive.furniture import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE
+from linden.opendrive.model import OpenDrive
+from linden.opendrive.signals import PlacedSignal, place
+from linden.traffic.cycle import RED_OF_A_SINGLE_LIGHT_S, TIMES_S, LightPlan, plan
+from linden.values.enums import SemanticTag, TrafficLightState
+from linden.values.space import BoundingBox, Transform
+from linden.world.blueprints import DOT
+
+NO_LIGHT = -1
+
+PAINTED = "Stencil_STOP"
+"""Name of a stop only painted on the road; CARLA makes no actor of it (TrafficLightManager.cpp, SpawnSignals)."""
+
+
+class TrafficActor(NamedTuple):
+    """A light or a sign.
+
+    ``volumes`` are local, x across the lanes, one for each approach; ``box``, the first of them, is what the client calls
+    the trigger volume. Where the signal concerns no lane it is a dot. ``light`` counts the lights, ``NO_LIGHT`` for a sign.
+    """
+
+    type_id: str
+    sign_id: str
+    transform: Transform
+    box: BoundingBox
+    volumes: tuple[BoundingBox, ...]
+    semantic_tags: bytes
+    light: int = NO_LIGHT
+
+
+def traffic_actors(opendrive: OpenDrive) -> tuple[tuple[TrafficActor, ...], LightPlan]:
+    """Return the map's lights and signs in the order of the file, and which lights change together."""
+    standing = [signal for signal in place(opendrive) if signal.is_light or signal.name != PAINTED]
+    lights = [signal for signal in standing if signal.is_light]
+    number = {signal.signal_id: light for light, signal in enumerate(lights)}
+    actors = tuple(_actor(signal, number.get(signal.signal_id, NO_LIGHT)) for signal in standing)
+    return actors, _plan(opendrive, lights)
+
+
+def world_volumes(actors: tuple[TrafficActor, ...]) -> list[tuple[int, BoundingBox]]:
+    """Return the volumes of all lights as boxes in the world, each with the number of its light."""
+    return [
+        (actor.light, _in_world(actor.transform, volume))
+        for actor in actors
+        if actor.light != NO_LIGHT
+        for volume in actor.volumes
+    ]
+
+
+def _in_world(transform: Transform, volume: BoundingBox) -> BoundingBox:
+    pose = compose(transform, Transform(volume.location, volume.rotation))
+    return BoundingBox(pose.location, volume.extent, pose.rotation)
+
+
+def _actor(signal: PlacedSignal, light: int) -> TrafficActor:
+    tag = SemanticTag.TRAFFIC_SIGNS if light == NO_LIGHT else SemanticTag.TRAFFIC_LIGHT
+    return TrafficActor(
+        type_id=_type_id(signal),
+        sign_id=signal.signal_id,
+        transform=signal.transform,
+        box=signal.trigger_volumes[0] if signal.trigger_volumes else DOT,
+        volumes=signal.trigger_volumes,
+        semantic_tags=bytes([tag]),
+        light=light,
+    )
+
+
+def _type_id(signal: PlacedSignal) -> str:
+    """Return CARLA's name; that of a speed limit ends in the number on the sign, whatever its unit."""
+    if signal.is_light:
+        return "traffic.traffic_light"
+    if signal.type == SPEED_LIMIT_TYPE and (signal.value is not None or signal.subtype.isdigit()):
+        return f"traffic.speed_limit.{signal.value if signal.value is not None else int(signal.subtype):g}"
+    return {STOP_SIGN_TYPE: "traffic.stop", YIELD_SIGN_TYPE: "traffic.yield"}.get(signal.type, "traffic.unknown")
+
+
+def _plan(opendrive: OpenDrive, lights: list[PlacedSignal]) -> LightPlan:
+    """Group the lights as CARLA's TrafficLightManager does: by their first controller, and controllers by junction.
+
+    Controllers take turns in their ``sequence``, then as they stand in the file. A light without controller is alone.
+    """
+    rank = {item.id: (item.sequence, order) for order, item in enumerate(opendrive.controllers)}
+    members: dict[str, list[int]] = defaultdict(list)
+    junction: dict[str, str] = {}
+    for light, signal in enumerate(lights):
+        controller = signal.controllers[0] if signal.controllers else f"light {signal.signal_id}"
+        members[controller].append(light)
+        in_junction = signal.controllers and signal.junction_id >= 0
+        junction[controller] = f"junction {signal.junction_id}" if in_junction else controller
+    groups: dict[str, list[str]] = defaultdict(list)
+    for controller in members:
+        groups[junction[controller]].append(controller)
+    turns = [sorted(group, key=lambda name: rank.get(name, (0, 0))) for group in groups.values()]
+    times_s = np.array([TIMES_S] * len(members)).reshape(len(members), 3)
+    alone = [name not in rank for group in turns for name in group]
+    times_s[alone, TrafficLightState.RED] = RED_OF_A_SINGLE_LIGHT_S
+    return plan([[members[name] for name in group] for group in turns], times_s)

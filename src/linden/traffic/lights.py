@@ -1,0 +1,105 @@
+"""The traffic of an episode: its lights and signs, how the lights stand, and who is under one."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.errors import Refusal
+from linden.opendrive.model import OpenDrive
+from linden.traffic import cycle
+from linden.traffic.actors import NO_LIGHT, TrafficActor, traffic_actors, world_volumes
+from linden.traffic.triggers import F64, I32, owners_over, trigger_grid
+from linden.values.enums import TrafficLightState
+
+TIMED = (TrafficLightState.RED, TrafficLightState.YELLOW, TrafficLightState.GREEN)
+
+
+class Traffic:
+    """Lights and signs of one map. Lights are named by their number: their place among the lights.
+
+    Attributes:
+        actors: every light and sign, in the order of the map.
+        lights: index in ``actors`` of each light.
+        state: how the lights stand; replaced whole.
+    """
+
+    def __init__(self, opendrive: OpenDrive) -> None:
+        """Make the actors of a map's signals and begin their cycles."""
+        self.actors: tuple[TrafficActor, ...]
+        self.actors, self._plan = traffic_actors(opendrive)
+        self.lights = tuple(index for index, actor in enumerate(self.actors) if actor.light != NO_LIGHT)
+        self.state = cycle.initial(self._plan)
+        self._grid = trigger_grid(world_volumes(self.actors))
+
+    def step(self, dt_s: float) -> None:
+        """Let ``dt_s`` pass."""
+        if self.lights:
+            self.state = cycle.step(self._plan, self.state, dt_s)
+
+    def over(self, position_m: F64, rotation_rad: F64, box_centre_m: F64, half_extent_m: F64, slots: I32) -> I32:
+        """Return for each of ``slots`` (V,) the light whose trigger volume the body touches, or -1.
+
+        The columns are those of the bodies, (N, 3); ``triggers.owners_over`` says more.
+        """
+        return owners_over(self._grid, position_m, rotation_rad, box_centre_m, half_extent_m, slots)
+
+    def group(self, light: int) -> tuple[int, ...]:
+        """Return the lights that take turns with this one, itself among them."""
+        group_of_light = self._plan.group_of_controller[self._plan.controller_of_light]
+        return tuple(map(int, np.flatnonzero(group_of_light == group_of_light[light])))
+
+    def pole_index(self, light: int) -> int:
+        """Return the place of a light within its group."""
+        return self.group(light).index(light)
+
+    def set_colour(self, light: int, colour: TrafficLightState) -> None:
+        """Give one light a colour; it keeps it until its turn changes, or as long as its group is frozen."""
+        self.state = cycle.with_colour(self.state, light, colour)
+
+    def set_time(self, light: int, colour: TrafficLightState, time_s: float) -> None:
+        """Set for how long red, yellow or green lasts for this light and those of the same controller.
+
+        Raises:
+            Refusal: not a time that can pass.
+        """
+        if colour not in TIMED:
+            raise Refusal(f"only red, yellow and green last for a time, not {TrafficLightState(colour).name.lower()}")
+        if not (math.isfinite(time_s) and time_s >= 0.0):
+            raise Refusal(f"a light cannot be {colour.name.lower()} for {time_s} s: expected a finite time from 0 on")
+        self.state = cycle.with_time(self._plan, self.state, light, colour, time_s)
+
+    def freeze(self, light: int, *, frozen: bool) -> None:
+        """Stop or restart time for the group of a light."""
+        self.state = cycle.with_frozen(self.state, self._group_of(light), frozen=frozen)
+
+    def freeze_all(self, *, frozen: bool) -> None:
+        """Stop or restart time for every light."""
+        self.state = cycle.with_frozen(self.state, self._groups(), frozen=frozen)
+
+    def reset_group(self, light: int) -> None:
+        """Begin the cycle of a light's group anew; times that were set stay."""
+        self.state = cycle.reset(self._plan, self.state, self._group_of(light))
+
+    def reset_all(self) -> None:
+        """Begin every cycle anew."""
+        self.state = cycle.reset(self._plan, self.state, self._groups())
+
+    def write(self, rows: NDArray[np.void]) -> None:
+        """Write how the lights stand into their rows of the snapshot: (L,) of TRAFFIC_LIGHT_ROW, in the lights' order.
+
+        Sign ids and pole indices never change and are left to whoever makes the rows.
+        """
+        state, controller = self.state, self._plan.controller_of_light
+        rows["green_time"] = state.times_s[controller, TrafficLightState.GREEN]
+        rows["yellow_time"] = state.times_s[controller, TrafficLightState.YELLOW]
+        rows["red_time"] = state.times_s[controller, TrafficLightState.RED]
+        rows["elapsed_time"] = state.elapsed_s[controller]
+        rows["frozen"] = state.frozen[self._plan.group_of_controller[controller]]
+        rows["state"] = state.colour
+
+    def _group_of(self, light: int) -> I32:
+        return self._plan.group_of_controller[self._plan.controller_of_light[light : light + 1]]
+
+    def _groups(self) -> I32:
+        return np.arange(len(self._plan.first_controller) - 1, dtype=np.int32)
