@@ -1,0 +1,157 @@
+"""``linden map``: build OpenDRIVE from streets, check it, draw it, count it."""
+
+import argparse
+import json
+from collections.abc import Callable
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linden.errors import UserError
+
+if TYPE_CHECKING:
+    from linden.opendrive.model import OpenDrive
+
+_HOME_STREETS = "linden.geojson"
+
+
+def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Add the command ``map`` with its own commands."""
+    maps = commands.add_parser("map", help="build, check, show and count maps", description=__doc__)
+    actions = maps.add_subparsers(title="commands", required=True, metavar="COMMAND")
+
+    build_parser = _add(actions, "build", build, "turn streets (GeoJSON) into OpenDRIVE")
+    build_parser.add_argument("streets", nargs="?", type=Path, help="GeoJSON file (default: the streets of Linden)")
+    build_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .xodr file")
+
+    check_parser = _add(actions, "check", check, "report what a careful reader finds wrong; exit 1 if anything is")
+    _add_file(check_parser)
+    check_parser.add_argument("--notes", action="store_true", help="tell also what is odd but allowed")
+
+    show_parser = _add(actions, "show", show, "draw a map")
+    _add_file(show_parser)
+    show_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .svg file")
+
+    info_parser = _add(actions, "info", info, "count roads, junctions, signals, lanes")
+    _add_file(info_parser)
+
+
+def build(arguments: argparse.Namespace) -> int:
+    """Write the OpenDRIVE map of a file of streets."""
+    try:
+        from linden.mapping.build import build as opendrive_of  # noqa: PLC0415 - an optional part, and slow to load
+    except ModuleNotFoundError as error:
+        if (error.name or "").startswith("linden"):
+            raise
+        raise UserError(
+            f"building maps needs the package {error.name}; install it with: pip install 'linden[maps]'"
+        ) from None
+    text = opendrive_of(_streets(arguments.streets))
+    _write(arguments.output, text)
+    _say(f"{arguments.output}: {len(text):,} bytes")
+    return 0
+
+
+def check(arguments: argparse.Namespace) -> int:
+    """Print the findings, one a line, and a summary; return 1 if there are any."""
+    # here, not above: the server's start does not pay for it
+    from linden.opendrive.check import Severity  # noqa: PLC0415 - see above
+    from linden.opendrive.check import check as findings_of  # noqa: PLC0415 - see above
+
+    findings = findings_of(_read(arguments.file))
+    wrong = [finding for finding in findings if finding.severity is not Severity.NOTE]
+    for finding in findings if arguments.notes else wrong:
+        _say(str(finding))
+    notes = len(findings) - len(wrong)
+    told = "" if arguments.notes or not notes else "; --notes tells them"
+    _say(f"{arguments.file}: {_number(len(wrong), 'finding')}, {_number(notes, 'note')}{told}")
+    return 1 if wrong else 0
+
+
+def show(arguments: argparse.Namespace) -> int:
+    """Write a drawing of the map."""
+    from linden.opendrive.draw import svg  # noqa: PLC0415 - the server's start does not pay for it
+
+    _write(arguments.output, svg(_read(arguments.file)).encode())
+    _say(f"{arguments.output}: drawn")
+    return 0
+
+
+def info(arguments: argparse.Namespace) -> int:
+    """Print what the map has, one count a line."""
+    from linden.opendrive.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
+
+    for name, value in count(_read(arguments.file))._asdict().items():
+        _say(f"{name.replace('_', ' '):24} {f'{value:.2f}' if isinstance(value, float) else value}")
+    return 0
+
+
+def _add(
+    actions: "argparse._SubParsersAction[argparse.ArgumentParser]",
+    name: str,
+    command: Callable[[argparse.Namespace], int],
+    text: str,
+) -> argparse.ArgumentParser:
+    parser = actions.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+    parser.set_defaults(command=command)
+    return parser
+
+
+def _add_file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", help="an OpenDRIVE file, or the name of a built-in map such as Linden")
+
+
+def _read(name: str) -> "OpenDrive":
+    """Read a file, or else the built-in map of that name.
+
+    Raises:
+        UserError: there is neither, or it cannot be read.
+    """
+    from linden.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
+
+    path = Path(name)
+    built_in = resources.files("linden") / "data" / f"{name.removesuffix('.xodr')}.xodr"
+    if not path.is_file() and path.name == name and built_in.is_file():
+        return parse(built_in.read_bytes())
+    return parse(_bytes_of(path))
+
+
+def _streets(path: Path | None) -> dict[str, Any]:
+    data = (resources.files("linden") / "data" / _HOME_STREETS).read_bytes() if path is None else _bytes_of(path)
+    try:
+        streets = json.loads(data)
+    except ValueError as error:
+        raise UserError(f"{path} is no GeoJSON: {error}") from None
+    if not isinstance(streets, dict):
+        raise UserError(f"{path} is no GeoJSON: it should be an object of type FeatureCollection")
+    return streets
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        built_in = sorted(
+            entry.name.removesuffix(".xodr")
+            for entry in (resources.files("linden") / "data").iterdir()
+            if entry.name.endswith(".xodr")
+        )
+        raise UserError(
+            f"cannot read {path}: {error.strerror}; name an existing file"
+            + (f" or a built-in map: {', '.join(built_in)}" if built_in else "")
+        ) from None
+
+
+def _write(path: Path, data: bytes) -> None:
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise UserError(f"cannot write {path}: {error.strerror}; name a file in a folder that exists") from None
+
+
+def _number(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _say(line: str) -> None:
+    print(line)  # noqa: T201 - what a command says to its user
