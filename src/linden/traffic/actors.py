@@ -23,8 +23,9 @@ PAINTED = "Stencil_STOP"
 class TrafficActor(NamedTuple):
     """A light or a sign.
 
-    ``volumes`` are local, x across the lanes, one for each approach; ``box``, the first of them, is what the client calls
-    the trigger volume. Where the signal concerns no lane it is a dot. ``light`` counts the lights, ``NO_LIGHT`` for a sign.
+    ``volumes`` are local, x across the lanes, one for each approach; ``box``, the first of them, is what the client
+    calls the trigger volume. Where the signal concerns no lane it is a dot. ``light`` counts the lights; it is
+    ``NO_LIGHT`` for a sign.
     """
 
     type_id: str

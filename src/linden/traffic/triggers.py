@@ -47,7 +47,7 @@ class TriggerGrid(NamedTuple):
 
 
 def trigger_grid(volumes: Sequence[tuple[int, BoundingBox]]) -> TriggerGrid:
-    """Return the grid of volumes in the world, each with the index of its owner. They stand upright: yaw alone counts."""
+    """Return the grid of volumes in the world, each with the index of its owner. Only their yaw counts."""
     count = len(volumes)
     centre_m = np.array([box.location for _, box in volumes], np.float64).reshape(count, 3)
     half_m = np.array([box.extent for _, box in volumes], np.float64).reshape(count, 3)
