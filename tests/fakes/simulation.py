@@ -12,7 +12,7 @@ EMPTY_MAP = '<?xml version="1.0"?><OpenDRIVE/>'
 
 @dataclass
 class FakeSimulation:
-    settings: EpisodeSettings = EpisodeSettings()
+    settings: EpisodeSettings = field(default_factory=EpisodeSettings)
     frame: int = 0
     elapsed_s: float = 0.0
     delta_s: float = 0.0

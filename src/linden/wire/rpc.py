@@ -19,9 +19,9 @@ MAX_ARRAY_ITEMS = 4 * 1024 * 1024
 """Most items of one array: its list is laid out before the items come, so that 5 bytes must not ask for gigabytes."""
 REQUEST, RESPONSE = 0, 1
 
-_FIRST_REPLY_BYTES = 4096  # size the packer's buffer starts with; it grows
+_FIRST_BUFFER_BYTES = 4096  # what a buffer starts with; it grows
 _UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
-_pack = msgpack.Packer(unicode_errors="surrogateescape", buf_size=_FIRST_REPLY_BYTES).pack
+_pack = msgpack.Packer(unicode_errors="surrogateescape", buf_size=_FIRST_BUFFER_BYTES).pack
 
 
 class Call(NamedTuple):
@@ -49,6 +49,7 @@ class RpcConnection:
             raw=False,
             unicode_errors="surrogateescape",  # a text that is not UTF-8 comes back as it came
             max_buffer_size=MAX_MESSAGE_BYTES,
+            read_size=_FIRST_BUFFER_BYTES,
             max_array_len=MAX_ARRAY_ITEMS,
             max_map_len=0,  # CARLA sends none
         )

@@ -1,0 +1,38 @@
+"""A live server for each module, and the official client, which none of us wrote, as the judge."""
+
+from collections.abc import Iterator
+
+import carla
+import pytest
+
+from servers import RunningServer, running_server
+
+TIMEOUT_S = 20.0
+
+
+@pytest.fixture(scope="module")
+def server() -> Iterator[RunningServer]:
+    """A server that the tests of a module share; each of them begins an episode of its own."""
+    with running_server("--log-level", "info") as running:
+        yield running
+        assert running.process.poll() is None, f"the server ended by itself: {running.log()}"
+
+
+@pytest.fixture
+def client(server: RunningServer) -> carla.Client:
+    """A client of a fresh episode: asynchronous mode, default settings, nobody spawned."""
+    client = carla.Client("127.0.0.1", server.port)
+    client.set_timeout(TIMEOUT_S)
+    client.reload_world()
+    return client
+
+
+@pytest.fixture
+def world(client: carla.Client) -> carla.World:
+    """The world of ``client``, in synchronous mode with steps of 0.05 s."""
+    world = client.get_world()
+    settings = world.get_settings()
+    settings.synchronous_mode = True
+    settings.fixed_delta_seconds = 0.05
+    world.apply_settings(settings)
+    return world

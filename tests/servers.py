@@ -1,0 +1,73 @@
+"""A live ``linden serve`` in a process of its own, for tests that talk to it as any client does."""
+
+import re
+import selectors
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+READY = re.compile(r"linden: ready, rpc port (\d+), streaming port (\d+)")
+START_LIMIT_S = 120.0
+"""The first start on a machine compiles the kernels."""
+
+
+@dataclass(frozen=True)
+class RunningServer:
+    process: subprocess.Popen[str]
+    port: int
+    streaming_port: int
+    start_s: float
+    log_file: Path
+
+    def log(self) -> str:
+        """What the server has written to stderr until now."""
+        return self.log_file.read_text("utf-8")
+
+
+@contextmanager
+def running_server(*options: str) -> Iterator[RunningServer]:
+    """Start ``linden serve --port 0`` with these options; end it at the end of the block."""
+    with tempfile.TemporaryDirectory() as folder:
+        log_file = Path(folder) / "stderr.txt"
+        began_s = time.monotonic()
+        with log_file.open("w", encoding="utf-8") as log:
+            process = subprocess.Popen(
+                [sys.executable, "-m", "linden.cli", "serve", "--port", "0", *options],
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+            )
+        try:
+            port, streaming_port = _ports(process, log_file)
+            yield RunningServer(process, port, streaming_port, time.monotonic() - began_s, log_file)
+        finally:
+            process.terminate()
+            try:
+                process.wait(10)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            assert process.stdout is not None
+            process.stdout.close()
+
+
+def _ports(process: subprocess.Popen[str], log_file: Path) -> tuple[int, int]:
+    """Wait for the line that says the server is ready."""
+    assert process.stdout is not None
+    deadline_s = time.monotonic() + START_LIMIT_S
+    said = ""
+    with selectors.DefaultSelector() as selector:
+        selector.register(process.stdout, selectors.EVENT_READ)
+        while (left_s := deadline_s - time.monotonic()) > 0 and selector.select(left_s):
+            line = process.stdout.readline()
+            said += line
+            if found := READY.search(line):
+                return int(found[1]), int(found[2])
+            if not line:
+                break
+    raise AssertionError(f"the server did not become ready: {said}{log_file.read_text('utf-8')}")
