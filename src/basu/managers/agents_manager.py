@@ -1,0 +1,129 @@
+"""The agent under test: made, bound to its run, asked for a control every tick within its time limit."""
+
+from __future__ import annotations
+
+import math
+import traceback
+from dataclasses import asdict, replace
+from typing import TYPE_CHECKING, TypeVar
+
+import carla
+
+from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError
+from basu.managers.agent_config import AgentConfig, parse_config
+from basu.managers.base_manager import BaseManager
+from basu.managers.time_limit import OverrunError, call_within
+from basu.routing.route_file import RoutePoint
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from basu.managers.agent_loader import LoadedAgent
+    from basu.managers.base_manager import Frame, Run
+    from basu.managers.sensors_manager import SensorsManager
+
+T = TypeVar("T")
+SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first tick, not during it
+
+
+class AgentsManager(BaseManager):
+    """Holds the agent. After ``tick``, ``control`` is what it answered; before its first answer, the brake is on."""
+
+    def __init__(
+        self, loaded: LoadedAgent, sensors: SensorsManager, *, step_limit_s: float, routes: str | None
+    ) -> None:
+        """Make the agent and ask for its wishes; ``routes`` is the command line's, which goes before the agent's."""
+        self._sensors = sensors
+        self._step_limit_s = step_limit_s
+        self._setup_limit_s = max(SETUP_LIMIT_S, step_limit_s)
+        self._name = loaded.agent_class.__name__
+        self._bound = False
+        self._agent = self._ask("__init__", self._setup_limit_s, loaded.agent_class)
+        config = parse_config(self._ask("config", self._setup_limit_s, self._agent.config), self._name)
+        self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
+        self.control = carla.VehicleControl(brake=1.0)
+
+    def own_route(self) -> tuple[RoutePoint, ...] | None:
+        """The points of the agent's own plan (``get_initial_route_locations``), None where it has none."""
+        given = self._ask("get_initial_route_locations", self._setup_limit_s, self._agent.get_initial_route_locations)
+        if given is None:
+            return None
+        try:
+            return tuple(_point(place) for place in given)
+        except (AttributeError, TypeError, ValueError) as error:
+            raise AgentCrashedError(
+                f"get_initial_route_locations() of {self._name} returned something that is no list of locations: {error}"
+            ) from error
+
+    def setup(self, run: Run) -> None:
+        """Bind the agent to its run and let it get ready."""
+        self._agent.bind(
+            client=run.client,
+            world=run.world,
+            map=run.carla_map,
+            vehicle=run.vehicle,
+            route=run.route,
+            config_values=asdict(self.config),
+            time_step_s=run.step_s,
+        )
+        self._bound = True
+        self._ask("setup", self._setup_limit_s, self._agent.setup)
+
+    def tick(self, frame: Frame) -> None:
+        """Ask for a control."""
+        del frame
+        data = self._sensors.data
+        answer = self._ask("run_step", self._step_limit_s, lambda: self._agent.run_step(data))
+        self.control = checked(answer, self._name)
+
+    def close(self) -> None:
+        """Let the agent put its things away, where it was bound."""
+        if self._bound:
+            self._bound = False
+            self._ask("destroy", self._setup_limit_s, self._agent.destroy)
+
+    def _ask(self, method: str, limit_s: float, call: Callable[[], T]) -> T:
+        """One call of the agent's code; what goes wrong in it is the agent's."""
+        try:
+            return call_within(limit_s, call)
+        except OverrunError:
+            raise AgentTimedOutError(
+                f"{method}() of {self._name} took longer than its limit of {limit_s:g} s"
+            ) from None
+        except (Exception, SystemExit) as error:
+            where = traceback.extract_tb(error.__traceback__)[-1]
+            raise AgentCrashedError(
+                f"{method}() of {self._name} raised {type(error).__name__}: {error} (line {where.lineno} of {where.filename})"
+            ) from error
+
+
+def checked(answer: object, name: str) -> carla.VehicleControl:
+    """The answer of ``run_step`` with its values brought into range, as CARLA does.
+
+    Raises:
+        AgentInvalidControlError: it is no ``carla.VehicleControl``, or a value is not a finite number.
+    """
+    if not isinstance(answer, carla.VehicleControl):
+        what = "None" if answer is None else f"a {type(answer).__name__}"
+        raise AgentInvalidControlError(f"run_step() of {name} returned {what}; it must return a carla.VehicleControl")
+    for value_name, low in (("throttle", 0.0), ("steer", -1.0), ("brake", 0.0)):
+        value = getattr(answer, value_name)
+        if not math.isfinite(value):
+            raise AgentInvalidControlError(f"run_step() of {name} returned a control whose {value_name} is {value}")
+        if not low <= value <= 1.0:
+            setattr(answer, value_name, min(1.0, max(low, value)))
+    return answer
+
+
+def _point(place: object) -> RoutePoint:
+    """A location, transform, way point, or x, y, z as a point of a route."""
+    yaw_rad = None
+    if isinstance(place, carla.Waypoint):
+        place = place.transform
+    if isinstance(place, carla.Transform):
+        yaw_rad = math.radians(place.rotation.yaw)
+        place = place.location
+    if isinstance(place, carla.Location):
+        return RoutePoint(place.x, place.y, place.z, yaw_rad)
+    x_m, y_m, z_m = (float(value) for value in place)  # type: ignore[attr-defined]  # a TypeError is the caller's
+    return RoutePoint(x_m, y_m, z_m)

@@ -1,0 +1,104 @@
+"""The base of all managers: each holds one concern of a run through its three moments."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    import carla
+
+    from basu.managers.agent_config import AgentConfig
+    from basu.routing import Route
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Run:
+    """What a run has once its vehicle stands at the beginning of its route."""
+
+    client: carla.Client
+    world: carla.World
+    carla_map: carla.Map
+    vehicle: carla.Vehicle
+    route: Route
+    config: AgentConfig
+    step_s: float  # simulated time from tick to tick
+    seed: int
+    timeout_s: float  # of wall time to wait for the simulator
+
+
+class Ego(NamedTuple):
+    """The vehicle under test in one frame: world, CARLA's axes, m, rad, s."""
+
+    x_m: float
+    y_m: float
+    z_m: float
+    roll_rad: float
+    pitch_rad: float
+    yaw_rad: float
+    velocity_x_mps: float
+    velocity_y_mps: float
+    velocity_z_mps: float
+    acceleration_x_mps2: float
+    acceleration_y_mps2: float
+    acceleration_z_mps2: float
+    angular_velocity_x_radps: float
+    angular_velocity_y_radps: float
+    angular_velocity_z_radps: float
+
+    @property
+    def speed_mps(self) -> float:
+        """Speed over ground."""
+        return math.hypot(self.velocity_x_mps, self.velocity_y_mps, self.velocity_z_mps)
+
+
+class Frame(NamedTuple):
+    """One tick as all managers see it."""
+
+    tick: int  # from 0 at the agent's first step
+    server_frame: int
+    snapshot: carla.WorldSnapshot
+    ego: Ego
+
+
+def ego_in(snapshot: carla.ActorSnapshot) -> Ego:
+    """Read the vehicle's state out of its part of a world snapshot."""
+    transform = snapshot.get_transform()
+    at, turned = transform.location, transform.rotation
+    velocity, acceleration, spin = snapshot.get_velocity(), snapshot.get_acceleration(), snapshot.get_angular_velocity()
+    radians = math.radians
+    return Ego(
+        at.x,
+        at.y,
+        at.z,
+        radians(turned.roll),
+        radians(turned.pitch),
+        radians(turned.yaw),
+        velocity.x,
+        velocity.y,
+        velocity.z,
+        acceleration.x,
+        acceleration.y,
+        acceleration.z,
+        radians(spin.x),
+        radians(spin.y),
+        radians(spin.z),
+    )
+
+
+class BaseManager(ABC):
+    """One concern of a run. The runner calls ``setup`` once, ``tick`` each frame, ``close`` once in every case."""
+
+    @abstractmethod
+    def setup(self, run: Run) -> None:
+        """Get ready: the vehicle stands at the beginning of the route, nothing has moved yet."""
+
+    @abstractmethod
+    def tick(self, frame: Frame) -> None:
+        """Do this concern's part of a frame."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Give back what ``setup`` took; called after a failed ``setup`` too, and never raises for what was lost."""

@@ -1,0 +1,148 @@
+"""What is measured: every frame and event of the run goes into its record, and the scores come out of that."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING, Any
+
+import carla
+
+from basu.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
+from basu.managers.base_manager import BaseManager
+from basu.managers.neighbours import Neighbours
+from basu.metrics.score import Scores, Scoring, score
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from basu.history import History
+    from basu.managers.agents_manager import AgentsManager
+    from basu.managers.base_manager import Frame, Run
+    from basu.managers.routes_manager import RoutesManager
+
+NO_LIGHT = -1
+MPS_PER_KMH = 1.0 / 3.6
+
+
+class MetricsManager(BaseManager):
+    """Records the run with a collision and a lane-invasion sensor of its own."""
+
+    def __init__(self, agents: AgentsManager, routes: RoutesManager, scoring: Scoring) -> None:
+        self._agents, self._routes, self._scoring = agents, routes, scoring
+        self._recorder = Recorder()
+        self._sensors: list[Any] = []
+        self._events: list[tuple[int, Callable[[int], None]]] = []  # server frame, and what records it by tick
+        self._events_lock = threading.Lock()
+        self._first_frame: int | None = None
+
+    @property
+    def ticks(self) -> int:
+        """How many frames are recorded."""
+        return self._recorder.ticks
+
+    @property
+    def first_frame(self) -> int | None:
+        """The server's number of the first recorded frame."""
+        return self._first_frame
+
+    def setup(self, run: Run) -> None:
+        """Attach the benchmark's own sensors."""
+        self._run = run
+        self._neighbours = Neighbours(run.world, run.vehicle.id)
+        box = run.vehicle.bounding_box
+        self._vehicle = Vehicle(
+            type_id=run.vehicle.type_id,
+            front_m=box.location.x + box.extent.x,
+            rear_m=box.extent.x - box.location.x,
+            width_m=2.0 * box.extent.y,
+        )
+        library = run.world.get_blueprint_library()
+        for name, hear in (
+            ("sensor.other.collision", self._hear_collision),
+            ("sensor.other.lane_invasion", self._hear_lane_invasion),
+        ):
+            sensor = run.world.spawn_actor(library.find(name), carla.Transform(), attach_to=run.vehicle)
+            self._sensors.append(sensor)
+            sensor.listen(hear)
+
+    def tick(self, frame: Frame) -> None:
+        """Record a frame."""
+        if self._first_frame is None:
+            self._first_frame = frame.server_frame
+        vehicle, control, progress = self._run.vehicle, self._agents.control, self._routes.progress
+        light = int(vehicle.get_traffic_light_state()) if vehicle.is_at_traffic_light() else NO_LIGHT
+        self._recorder.frame(
+            (
+                frame.tick,
+                frame.tick * self._run.step_s,
+                *frame.ego,
+                control.throttle,
+                control.steer,
+                control.brake,
+                control.hand_brake,
+                control.reverse,
+                vehicle.get_speed_limit() * MPS_PER_KMH,
+                light,
+                progress.s_m,
+                progress.lateral_m,
+            )
+        )
+        self._recorder.others(self._neighbours.near(frame))
+
+    def close(self) -> None:
+        """Take the sensors away."""
+        while self._sensors:
+            sensor = self._sensors.pop()
+            try:
+                sensor.stop()
+                sensor.destroy()
+            except RuntimeError:
+                continue  # the simulator is gone, and the sensors with it
+
+    def history(self) -> History:
+        """The record until now."""
+        self._take_events()
+        facts = Facts(
+            step_s=self._run.step_s,
+            vehicle=self._vehicle,
+            route=self._run.route,
+            actor_types=dict(self._neighbours.met),
+        )
+        return self._recorder.history(facts)
+
+    def scores(self) -> Scores:
+        """The scores until now."""
+        return score(self.history(), self._scoring)
+
+    def _take_events(self) -> None:
+        """Move what the client's threads have brought into the record, by tick."""
+        with self._events_lock:
+            events, self._events = self._events, []
+        for server_frame, event in events:
+            event(server_frame - (self._first_frame or 0))
+
+    def _later(self, server_frame: int, record: Callable[[int], None]) -> None:
+        """Keep an event until the recorder is free; called on threads of the client."""
+        with self._events_lock:
+            self._events.append((server_frame, record))
+
+    def _hear_collision(self, event: carla.CollisionEvent) -> None:
+        """A frame of contact."""
+        other_id, other_type = event.other_actor.id, event.other_actor.type_id
+        impulse_ns = (event.normal_impulse.x, event.normal_impulse.y, event.normal_impulse.z)
+
+        def record(tick: int) -> None:
+            self._recorder.collision(
+                Collision(tick=tick, other_id=other_id, other_type=other_type, impulse_ns=impulse_ns)
+            )
+
+        self._later(event.frame, record)
+
+    def _hear_lane_invasion(self, event: carla.LaneInvasionEvent) -> None:
+        """A marking crossed."""
+        markings = tuple(sorted(f"{marking.type}/{marking.color}" for marking in event.crossed_lane_markings))
+
+        def record(tick: int) -> None:
+            self._recorder.lane_invasion(LaneInvasion(tick=tick, markings=markings))
+
+        self._later(event.frame, record)

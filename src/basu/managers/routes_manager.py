@@ -1,0 +1,74 @@
+"""The route: parsed, laid on the map, followed, and the word when the run is over."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from basu.managers.base_manager import BaseManager
+from basu.outcome import Outcome, Status
+from basu.routing.progress import Progress, advance
+
+if TYPE_CHECKING:
+    from basu.managers.base_manager import Frame, Run
+    from basu.routing import Route
+
+AT_END_M = 1.0  # nearer to the end of the route than this, the run is over
+PARKED_M, PARKED_MPS = 5.0, 0.1  # at rest this near to the end, too
+DEVIATION_M = 30.0  # from the route; the CARLA leaderboard's InRouteTest has the same
+BLOCKED_S, BLOCKED_MPS = 180.0, 0.1  # at rest for so long; the leaderboard's ActorBlockedTest has the same
+ALLOWANCE_S, SLOWEST_MPS, STOP_S = 120.0, 1.5, 60.0  # time for a route: a start, a walking pace, its service stops
+
+
+def time_limit_s(route: Route) -> float:
+    """Simulated time that a route may take."""
+    return ALLOWANCE_S + route.length_m / SLOWEST_MPS + STOP_S * len(route.stops)
+
+
+class RoutesManager(BaseManager):
+    """Follows the vehicle along the route and says when the run is over."""
+
+    def __init__(self) -> None:
+        self.progress = Progress.at_start()
+        self.outcome: Outcome | None = None  # None while the run goes on
+        self._moved_tick = 0
+
+    def setup(self, run: Run) -> None:
+        """Begin at the beginning."""
+        self._route = run.route
+        self._step_s = run.step_s
+        self._limit_s = time_limit_s(run.route)
+
+    def tick(self, frame: Frame) -> None:
+        """Advance along the route and judge."""
+        ego = frame.ego
+        self.progress = advance(self._route, self.progress, ego.x_m, ego.y_m)
+        speed_mps = ego.speed_mps
+        if speed_mps >= BLOCKED_MPS:
+            self._moved_tick = frame.tick
+        self.outcome = self._judge(frame.tick, speed_mps)
+
+    def close(self) -> None:
+        """Nothing was taken."""
+
+    def _judge(self, tick: int, speed_mps: float) -> Outcome | None:
+        """The end of the run, if this is it."""
+        remaining_m = self._route.length_m - self.progress.s_m
+        if remaining_m <= AT_END_M or (remaining_m <= PARKED_M and speed_mps < PARKED_MPS):
+            return Outcome(Status.COMPLETED, f"arrived after {tick * self._step_s:.1f} s")
+        if self.progress.distance_m > DEVIATION_M:
+            return Outcome(
+                Status.ROUTE_DEVIATION,
+                f"{self.progress.distance_m:.0f} m off the route at {self.progress.s_m:.0f} m of its "
+                f"{self._route.length_m:.0f} m",
+            )
+        still_s = (tick - self._moved_tick) * self._step_s
+        if still_s > BLOCKED_S:
+            return Outcome(
+                Status.ROUTE_BLOCKED, f"stood still for {still_s:.0f} s at {self.progress.s_m:.0f} m of the route"
+            )
+        if tick * self._step_s > self._limit_s:
+            return Outcome(
+                Status.ROUTE_TIMEOUT,
+                f"{self.progress.s_m:.0f} m of {self._route.length_m:.0f} m after {self._limit_s:.0f} s",
+            )
+        return None

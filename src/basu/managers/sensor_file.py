@@ -1,0 +1,118 @@
+"""Reads a sensor set: JSON with the leaderboard's fields, checked against the simulator's blueprints.
+
+``{"sensors": [{"type": "sensor.other.gnss", "id": "GPS", "x": 0.7, "y": 0.0, "z": 1.6, …}]}`` or the bare list; beside
+``type``, ``id`` and the six of the pose (m and degrees in the vehicle's frame) every field is an attribute of the
+sensor's blueprint.
+"""
+
+from __future__ import annotations
+
+import difflib
+import json
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from basu.errors import UserError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    import carla
+
+POSE_FIELDS = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorSpec:
+    """One sensor of a set."""
+
+    type_id: str
+    id: str
+    x_m: float
+    y_m: float
+    z_m: float
+    roll_deg: float
+    pitch_deg: float
+    yaw_deg: float
+    attributes: tuple[tuple[str, str], ...]  # name and value as blueprints have them
+
+
+def read_sensors(path: Path) -> tuple[SensorSpec, ...]:
+    """Read a sensor set.
+
+    Raises:
+        UserError: the file cannot be read, is no JSON, or an entry is incomplete, double or no sensor.
+    """
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UserError(f"sensor file {path} cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise UserError(f"sensor file {path} is no JSON: {error}") from error
+    entries = document.get("sensors") if isinstance(document, dict) else document
+    if not isinstance(entries, list):
+        raise UserError(f"sensor file {path} holds no list of sensors")
+    specs = tuple(_spec(entry, number, path) for number, entry in enumerate(entries, start=1))
+    seen: set[str] = set()
+    for spec in specs:
+        if spec.id in seen:
+            raise UserError(f"sensor file {path}: the id '{spec.id}' is given twice; each sensor needs its own")
+        seen.add(spec.id)
+    return specs
+
+
+def check_sensors(specs: tuple[SensorSpec, ...], library: carla.BlueprintLibrary, path: Path) -> None:
+    """Hold the set against what the simulator has.
+
+    Raises:
+        UserError: a type or an attribute that it does not have.
+    """
+    known = {blueprint.id: blueprint for blueprint in library.filter("sensor.*")}
+    for spec in specs:
+        if spec.type_id not in known:
+            raise UserError(
+                f"sensor file {path}: sensor '{spec.id}' has the type '{spec.type_id}', which the simulator does not "
+                f"have; {_nearest(spec.type_id, list(known))}"
+            )
+        names = [attribute.id for attribute in known[spec.type_id]]
+        for name, _ in spec.attributes:
+            if name not in names:
+                raise UserError(
+                    f"sensor file {path}: sensor '{spec.id}' ({spec.type_id}) has no attribute '{name}'; "
+                    f"{_nearest(name, names)}"
+                )
+
+
+def _nearest(wanted: str, known: list[str]) -> str:
+    close = difflib.get_close_matches(wanted, known, 1)
+    return f"did you mean '{close[0]}'?" if close else f"it has {', '.join(sorted(known))}"
+
+
+def _spec(entry: Any, number: int, path: Path) -> SensorSpec:  # noqa: ANN401 - whatever stands in the file
+    """One entry."""
+    if not isinstance(entry, dict) or not isinstance(entry.get("type"), str) or not isinstance(entry.get("id"), str):
+        raise UserError(f"sensor file {path}: sensor {number} needs a 'type' and an 'id', both texts")
+    pose = {}
+    for name in POSE_FIELDS:
+        value = entry.get(name, 0.0)
+        if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+            raise UserError(f"sensor file {path}: sensor '{entry['id']}' has {name} = {value!r}; it must be a number")
+        pose[name] = float(value)
+    attributes = {name: value for name, value in entry.items() if name not in {"type", "id", *POSE_FIELDS}}
+    return SensorSpec(
+        type_id=entry["type"],
+        id=entry["id"],
+        x_m=pose["x"],
+        y_m=pose["y"],
+        z_m=pose["z"],
+        roll_deg=pose["roll"],
+        pitch_deg=pose["pitch"],
+        yaw_deg=pose["yaw"],
+        attributes=tuple((name, _as_text(value)) for name, value in attributes.items()),
+    )
+
+
+def _as_text(value: object) -> str:
+    """A JSON value as blueprints spell it."""
+    return str(value).lower() if isinstance(value, bool) else str(value)

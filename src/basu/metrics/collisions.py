@@ -1,0 +1,52 @@
+"""Collisions: the sensor's messages, one for each frame of contact, brought together into contacts."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from basu.metrics.infraction import Evidence, Infraction, evidence
+
+if TYPE_CHECKING:
+    from basu.history import Collision, History
+
+# A contact with one party lasts until it has not been reported for so long: a vehicle that rebounds from a wall and
+# leans on it again has hit it once. The CARLA leaderboard, too, counts a second touch of one actor only after a while.
+SEPARATE_AFTER_S = 2.0
+
+
+def collisions(history: History) -> tuple[Evidence, ...]:
+    """One infraction for each contact, at its first frame, with the speed of the frame before it."""
+    latest: dict[tuple[int, str], int] = {}
+    found = []
+    for event in history.collisions:
+        party = (event.other_id, event.other_type)
+        before = latest.get(party)
+        latest[party] = event.tick
+        if before is None or (event.tick - before) * history.facts.step_s > SEPARATE_AFTER_S:
+            found.append(_contact(history, event))
+    return tuple(found)
+
+
+def kind_of(other_type: str) -> Infraction:
+    """What was hit, from its blueprint id; everything that is neither walker nor vehicle is static."""
+    if other_type.startswith("walker."):
+        return Infraction.COLLISION_PEDESTRIAN
+    if other_type.startswith("vehicle."):
+        return Infraction.COLLISION_VEHICLE
+    return Infraction.COLLISION_STATIC
+
+
+def _contact(history: History, event: Collision) -> Evidence:
+    """The evidence of a contact that begins with ``event``."""
+    speed_mps = float(history.speed_mps()[max(0, event.tick - 1)])
+    impulse_ns = math.hypot(*event.impulse_ns)
+    other = event.other_type if event.other_id == 0 else f"{event.other_type} (actor {event.other_id})"
+    return evidence(
+        history,
+        kind_of(event.other_type),
+        event.tick,
+        speed_mps=speed_mps,
+        other=other,
+        detail=f"hit {other} at {speed_mps:.2f} m/s with an impulse of {impulse_ns:.0f} N s",
+    )

@@ -1,0 +1,76 @@
+"""What can be held against a driver, what each costs, and the evidence that every one of them carries."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from basu.history import History
+
+
+class Infraction(enum.Enum):
+    """The kinds of section 5.2.1 of the thesis."""
+
+    COLLISION_PEDESTRIAN = "collision_pedestrian"
+    COLLISION_VEHICLE = "collision_vehicle"
+    COLLISION_STATIC = "collision_static"
+    STOP_SIGN = "stop_sign"
+    SPEEDING = "speeding"
+
+
+# Factor on the infraction score for each occurrence: section 5.2.1 of the thesis, the collisions and the stop sign
+# as in the CARLA leaderboard.
+DEFAULT_PENALTIES: Mapping[Infraction, float] = {
+    Infraction.COLLISION_PEDESTRIAN: 0.50,
+    Infraction.COLLISION_VEHICLE: 0.60,
+    Infraction.COLLISION_STATIC: 0.65,
+    Infraction.STOP_SIGN: 0.80,
+    Infraction.SPEEDING: 0.80,
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Evidence:
+    """One infraction: when, where, how fast, and with whom."""
+
+    kind: Infraction
+    tick: int
+    t_s: float
+    x_m: float  # of the vehicle under test, CARLA frame
+    y_m: float
+    z_m: float
+    speed_mps: float
+    route_s_m: float
+    other: str | None  # the other party: blueprint id and actor id, or the sign
+    detail: str  # a sentence with the figures
+
+
+def evidence(
+    history: History, kind: Infraction, tick: int, *, speed_mps: float, other: str | None, detail: str
+) -> Evidence:
+    """The evidence for what happened in ``tick``, its place and time from the record."""
+    frame = history.frames[tick]
+    return Evidence(
+        kind=kind,
+        tick=tick,
+        t_s=float(frame["t_s"]),
+        x_m=float(frame["x_m"]),
+        y_m=float(frame["y_m"]),
+        z_m=float(frame["z_m"]),
+        speed_mps=speed_mps,
+        route_s_m=float(frame["route_s_m"]),
+        other=other,
+        detail=detail,
+    )
+
+
+def counts(found: tuple[Evidence, ...]) -> dict[Infraction, int]:
+    """How often each kind occurred; kinds that did not are left out."""
+    kinds, numbers = np.unique([e.kind.value for e in found], return_counts=True)
+    return {Infraction(str(kind)): int(number) for kind, number in zip(kinds, numbers, strict=True)}

@@ -1,0 +1,67 @@
+"""Speeding: stretches of driving above the posted limit, each one infraction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from basu.metrics.infraction import Evidence, Infraction, evidence
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from basu.history import History
+
+TOLERANCE_MPS = 1.0  # above the limit; 2.2 mph, about what a speedometer may be off at 25 mph
+LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of driving
+
+
+def speeding(history: History) -> tuple[Evidence, ...]:
+    """One infraction for each episode: it begins ``TOLERANCE_MPS`` over and ends back at the limit.
+
+    The limit is the one the simulator posts to the vehicle; where it posts none, the planned route's where the vehicle
+    is; where that has none either, there is none.
+    """
+    speed_mps, limit_mps = history.speed_mps(), limits_mps(history)
+    found = []
+    for first, end in _episodes(speed_mps, limit_mps):
+        if (end - first) * history.facts.step_s < LEAST_S:
+            continue
+        fastest = first + int(np.argmax(speed_mps[first:end] - limit_mps[first:end]))
+        top_mps, posted_mps = float(speed_mps[fastest]), float(limit_mps[fastest])
+        found.append(
+            evidence(
+                history,
+                Infraction.SPEEDING,
+                first,
+                speed_mps=top_mps,
+                other=None,
+                detail=(
+                    f"up to {top_mps:.2f} m/s where {posted_mps:.2f} m/s are posted, "
+                    f"for {(end - first) * history.facts.step_s:.1f} s"
+                ),
+            )
+        )
+    return tuple(found)
+
+
+def limits_mps(history: History) -> NDArray[np.float64]:
+    """(T,) the limit that holds in each frame, inf where there is none."""
+    route = history.facts.route
+    posted = history.frames["speed_limit_mps"].astype(np.float64)
+    index = np.clip(np.searchsorted(route.s_m, history.frames["route_s_m"], side="right") - 1, 0, None)
+    planned = np.nan_to_num(route.speed_limit_mps[index], nan=np.inf)
+    return np.where(posted > 0.0, posted, planned)
+
+
+def _episodes(speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64]) -> list[tuple[int, int]]:
+    """(first, end) of each stretch that exceeds the tolerance somewhere and the limit throughout."""
+    over = np.concatenate([[False], speed_mps > limit_mps, [False]])
+    edges = np.flatnonzero(np.diff(over.astype(np.int8)))
+    beyond = speed_mps > limit_mps + TOLERANCE_MPS
+    found = []
+    for first, end in edges.reshape(-1, 2).tolist():
+        if beyond[first:end].any():
+            found.append((first + int(np.argmax(beyond[first:end])), end))
+    return found

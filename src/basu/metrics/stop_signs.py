@@ -1,0 +1,96 @@
+"""Stop signs: did the vehicle come to rest before the line, and how slow did it get?
+
+A driver has stopped when its speed fell below 0.1 m/s (the CARLA leaderboard's threshold) while the front bumper was in
+the approach zone: from 6 m before the line, a car's length and a half, to 1 m beyond it, an overhang that the
+leaderboard's trigger volumes forgive as well. The sign is passed, and judged, when the vehicle's middle crosses the
+line. Signs that the run did not get to are not judged; nor are those passed more than 4 m beside the route, where the
+sign is not the vehicle's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from basu.metrics.infraction import Evidence, Infraction, evidence
+from basu.routing import ControlKind
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from basu.history import History
+    from basu.routing import Control
+
+AT_REST_MPS = 0.1
+ZONE_BEFORE_M, ZONE_BEYOND_M = 6.0, 1.0
+BESIDE_M = 4.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SignPassed:
+    """What the vehicle did at one stop sign."""
+
+    sign: Control
+    lowest_speed_mps: float  # in the approach zone
+    front_to_line_m: float  # at the lowest speed, from the front bumper to the line, negative beyond it
+    tick: int  # of the crossing
+    speed_mps: float  # at the crossing
+    stopped: bool
+
+
+def signs_passed(history: History) -> tuple[SignPassed, ...]:
+    """Every stop sign on the route that the vehicle passed, in order."""
+    vehicle, frames = history.facts.vehicle, history.frames
+    centre_s_m = frames["route_s_m"] + (vehicle.front_m - vehicle.rear_m) / 2.0
+    front_s_m = frames["route_s_m"] + vehicle.front_m
+    speed_mps = history.speed_mps()
+    found = []
+    for sign in history.facts.route.controls:
+        if sign.kind is not ControlKind.STOP_SIGN:
+            continue
+        crossing = _crossing(centre_s_m, sign.s_m)
+        if crossing is None or abs(float(frames["lateral_m"][crossing])) > BESIDE_M:
+            continue
+        ahead_m = sign.s_m - front_s_m[: crossing + 1]
+        zone = np.flatnonzero((ahead_m <= ZONE_BEFORE_M) & (ahead_m >= -ZONE_BEYOND_M))
+        slowest = int(zone[np.argmin(speed_mps[zone])]) if len(zone) else crossing
+        found.append(
+            SignPassed(
+                sign=sign,
+                lowest_speed_mps=float(speed_mps[slowest]),
+                front_to_line_m=float(ahead_m[slowest]),
+                tick=crossing,
+                speed_mps=float(speed_mps[crossing]),
+                stopped=bool(speed_mps[slowest] < AT_REST_MPS),
+            )
+        )
+    return tuple(found)
+
+
+def stop_signs(history: History) -> tuple[Evidence, ...]:
+    """One infraction for each stop sign that was run."""
+    return tuple(
+        evidence(
+            history,
+            Infraction.STOP_SIGN,
+            passed.tick,
+            speed_mps=passed.speed_mps,
+            other=f"stop sign {passed.sign.landmark_id}",
+            detail=(
+                f"crossed the line of stop sign {passed.sign.landmark_id} at {passed.speed_mps:.2f} m/s; "
+                f"the lowest speed before it was {passed.lowest_speed_mps:.2f} m/s"
+            ),
+        )
+        for passed in signs_passed(history)
+        if not passed.stopped
+    )
+
+
+def _crossing(centre_s_m: NDArray[np.float64], line_s_m: float) -> int | None:
+    """The first frame in which the vehicle's middle is beyond the line, having been before it."""
+    beyond = np.flatnonzero(centre_s_m > line_s_m)
+    if len(beyond) == 0 or beyond[0] == 0:
+        return None
+    return int(beyond[0])

@@ -1,0 +1,60 @@
+"""How a run ended and whose doing it was: the statuses of ``result.json`` and the exit codes of ``basu run``."""
+
+from __future__ import annotations
+
+import enum
+from typing import NamedTuple
+
+
+class Fault(enum.Enum):
+    """Who answers for the end of a run; the value is the exit code."""
+
+    NOBODY = 0
+    AGENT = 1
+    SETUP = 2
+    SIMULATOR = 3
+    BENCHMARK = 70  # a bug of ours: EX_SOFTWARE of sysexits.h
+    USER = 130  # Ctrl-C: 128 + SIGINT, as shells have it
+
+
+class Status(enum.Enum):
+    """The ``status`` of a result."""
+
+    COMPLETED = "Completed"
+    AGENT_CRASHED = "AgentCrashed"  # it raised
+    AGENT_TIMED_OUT = "AgentTimedOut"  # one of its calls took longer than the limit
+    AGENT_INVALID_CONTROL = "AgentInvalidControl"  # run_step returned no usable control
+    ROUTE_TIMEOUT = "RouteTimeout"  # the simulated time for the route was used up
+    ROUTE_BLOCKED = "RouteBlocked"  # the vehicle stood still for too long
+    ROUTE_DEVIATION = "RouteDeviation"  # the vehicle went too far from the route
+    SETUP_FAILED = "SetupFailed"
+    SIMULATOR_FAILED = "SimulatorFailed"
+    BENCHMARK_FAILED = "BenchmarkFailed"
+    INTERRUPTED = "Interrupted"
+
+    @property
+    def fault(self) -> Fault:
+        """Who answers for it."""
+        return FAULT_OF[self]
+
+
+FAULT_OF = {
+    Status.COMPLETED: Fault.NOBODY,
+    Status.AGENT_CRASHED: Fault.AGENT,
+    Status.AGENT_TIMED_OUT: Fault.AGENT,
+    Status.AGENT_INVALID_CONTROL: Fault.AGENT,
+    Status.ROUTE_TIMEOUT: Fault.AGENT,
+    Status.ROUTE_BLOCKED: Fault.AGENT,
+    Status.ROUTE_DEVIATION: Fault.AGENT,
+    Status.SETUP_FAILED: Fault.SETUP,
+    Status.SIMULATOR_FAILED: Fault.SIMULATOR,
+    Status.BENCHMARK_FAILED: Fault.BENCHMARK,
+    Status.INTERRUPTED: Fault.USER,
+}
+
+
+class Outcome(NamedTuple):
+    """The end of a run with a sentence about it."""
+
+    status: Status
+    message: str
