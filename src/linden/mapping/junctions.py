@@ -1,0 +1,175 @@
+"""What happens inside a junction: the paths of all allowed turns, the kerbs round its corners, who goes first."""
+
+import math
+from typing import NamedTuple
+
+from shapely import LineString
+
+from linden.mapping.curves import Path, Pose, joined, length, moved, sampled, turned_back, wrapped
+from linden.mapping.document import Connection, Cubic, LaneRecord, Link, Mark, RoadRecord, eased
+from linden.mapping.network import Leg
+from linden.mapping.roads import blended, contact, strips
+
+STRAIGHT_RAD = math.radians(35)
+"""Up to this change of heading a way through a junction counts as straight on."""
+
+
+class Turn(NamedTuple):
+    """One lane's way through a junction. The path runs along the lane's left edge; ``widths`` go with it."""
+
+    come: Leg
+    lane_in: int
+    go: Leg
+    lane_out: int
+    path: Path
+    widths: tuple[Cubic, ...]
+
+
+def turns(legs: tuple[Leg, ...]) -> tuple[Turn, ...]:
+    """Return a path for each way a lane may go: no turning back, and no lane left without a way on or a way in."""
+    return tuple(_direct(legs[come], lane_in, legs[go], lane_out) for come, lane_in, go, lane_out in lane_pairs(legs))
+
+
+def lane_pairs(legs: tuple[Leg, ...]) -> list[tuple[int, int, int, int]]:
+    """Return (leg, lane) to (leg, lane) for all ways through a junction, in the order of the legs."""
+    pairs: list[tuple[int, int, int, int]] = []
+    for come, leg in enumerate(legs):
+        ins = leg.view.driving(right=True)
+        for go in _others(come, len(legs)):
+            outs = legs[go].view.driving(right=False)
+            pairs += [(come, a, go, b) for a, b in _lanes_of_turn(_turn_rad(leg, legs[go]), ins, outs)]
+    pairs += _without_way_on(legs, pairs)
+    pairs += _without_way_in(legs, pairs)
+    return sorted(pairs, key=lambda pair: (pair[0], (pair[2] - pair[0]) % len(legs), abs(pair[1]), abs(pair[3])))
+
+
+def pose_in(leg: Leg, lane: int) -> Pose:
+    """Return where the left edge of an incoming lane meets the junction, looking into it."""
+    return moved(leg.pose, left_m=leg.view.inner_edge_m(lane))
+
+
+def pose_out(leg: Leg, lane: int) -> Pose:
+    """Return where the left edge of an outgoing lane leaves the junction, looking out."""
+    return turned_back(moved(leg.pose, left_m=leg.view.inner_edge_m(lane)))
+
+
+def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int], height_m: float) -> RoadRecord:
+    """Return the connecting road of a turn: one driving lane on the right of its path, level."""
+    lane = LaneRecord(
+        id=-1, kind="driving", widths=turn.widths, mark=Mark(), predecessor=turn.lane_in, successor=turn.lane_out
+    )
+    return RoadRecord(
+        id=number,
+        name=turn.go.street.name,
+        junction=junction,
+        path=turn.path,
+        predecessor=Link("road", road_ids[0], contact(turn.come.end)),
+        successor=Link("road", road_ids[1], contact(turn.go.end)),
+        speed_mph=min(turn.come.street.speed_limit_mph, turn.go.street.speed_limit_mph),
+        elevation=(Cubic(0.0, height_m),),
+        axis=(),
+        left=(),
+        right=(lane,),
+        centre=Mark(),
+    )
+
+
+def corner_road(
+    number: int, junction: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], height_m: float
+) -> RoadRecord:
+    """Return kerb, verge and sidewalk from the right side of one leg to the next leg counter-clockwise."""
+    come, go = legs
+    begin = moved(come.pose, left_m=come.view.kerb_m(right=True))
+    end = turned_back(moved(go.pose, left_m=go.view.kerb_m(right=False)))
+    path = joined(begin, end)
+    found = blended(come.view.raised(right=True), go.view.raised(right=False))
+    return RoadRecord(
+        id=number,
+        name=f"{come.street.name}, corner",
+        junction=junction,
+        path=path,
+        predecessor=Link("road", road_ids[0], contact(come.end)),
+        successor=Link("road", road_ids[1], contact(go.end)),
+        speed_mph=min(come.street.speed_limit_mph, go.street.speed_limit_mph),
+        elevation=(Cubic(0.0, height_m),),
+        axis=(),
+        left=(),
+        right=strips(found, -1, length(path)),
+        centre=Mark("curb"),
+    )
+
+
+def connection(record: RoadRecord) -> Connection:
+    """Return the junction's entry for a connecting road."""
+    assert record.predecessor is not None
+    lanes = tuple((lane.predecessor, lane.id) for lane in record.right if lane.predecessor is not None)
+    return Connection(record.predecessor.id, record.id, lanes)
+
+
+def conflicting(one: Turn, other: Turn) -> bool:
+    """Return whether two turns of different legs cross or end in the same lane."""
+    if one.come.end == other.come.end:
+        return False
+    if (one.go.end, one.lane_out) == (other.go.end, other.lane_out):
+        return True
+    return bool(_middle_line(one).intersects(_middle_line(other)))
+
+
+def _middle_line(turn: Turn) -> LineString:
+    half_m = turn.come.view.lane(turn.lane_in).width_m / 2
+    return LineString([(pose.x_m, pose.y_m) for pose in sampled(turn.path, 2.0, left_m=-half_m)])
+
+
+def _direct(come: Leg, lane_in: int, go: Leg, lane_out: int) -> Turn:
+    """Return the shortest smooth way between two lanes, its width changing evenly."""
+    path = joined(pose_in(come, lane_in), pose_out(go, lane_out))
+    widths_m = come.view.lane(lane_in).width_m, go.view.lane(lane_out).width_m
+    return Turn(come, lane_in, go, lane_out, path, (eased(0.0, length(path), widths_m),))
+
+
+def _turn_rad(come: Leg, go: Leg) -> float:
+    return wrapped(go.pose.heading_rad + math.pi - come.pose.heading_rad)
+
+
+def _others(leg: int, count: int) -> list[int]:
+    return [(leg + step) % count for step in range(1, count)]
+
+
+def _lanes_of_turn(turn_rad: float, ins: tuple[int, ...], outs: tuple[int, ...]) -> list[tuple[int, int]]:
+    """Return which lanes a turn joins: left from and into the innermost, right the outermost, straight one to one."""
+    if not ins or not outs:
+        return []
+    if turn_rad > STRAIGHT_RAD:
+        return [(ins[0], outs[0])]
+    if turn_rad < -STRAIGHT_RAD:
+        return [(ins[-1], outs[-1])]
+    count = min(len(ins), len(outs))
+    return list(zip(ins[-count:], outs[-count:], strict=True))
+
+
+def _without_way_on(legs: tuple[Leg, ...], pairs: list[tuple[int, int, int, int]]) -> list[tuple[int, int, int, int]]:
+    """Return a way for each incoming lane that has none: as straight on as can be."""
+    served = {pair[:2] for pair in pairs}
+    found = []
+    for come, leg in enumerate(legs):
+        goals = [go for go in _others(come, len(legs)) if legs[go].view.driving(right=False)]
+        for place, lane in enumerate(leg.view.driving(right=True)):
+            if (come, lane) not in served and goals:
+                go = min(goals, key=lambda other: (abs(_turn_rad(leg, legs[other])), other))
+                outs = legs[go].view.driving(right=False)
+                found.append((come, lane, go, outs[min(place, len(outs) - 1)]))
+    return found
+
+
+def _without_way_in(legs: tuple[Leg, ...], pairs: list[tuple[int, int, int, int]]) -> list[tuple[int, int, int, int]]:
+    """Return a way into each outgoing lane that has none: from as straight ahead as can be."""
+    served = {pair[2:] for pair in pairs}
+    found = []
+    for go, leg in enumerate(legs):
+        sources = [come for come in _others(go, len(legs)) if legs[come].view.driving(right=True)]
+        for place, lane in enumerate(leg.view.driving(right=False)):
+            if (go, lane) not in served and sources:
+                come = min(sources, key=lambda other: (abs(_turn_rad(legs[other], leg)), other))
+                ins = legs[come].view.driving(right=True)
+                found.append((come, ins[min(place, len(ins) - 1)], go, lane))
+    return found

@@ -1,0 +1,85 @@
+"""Mini-roundabouts: ways round a central island, counter-clockwise, from each entry to each exit.
+
+Every way is one connecting road (right-hand bend in, arc round the island, right-hand bend out), so the circulating lane
+is where these roads lie on each other; ``docs/decisions/0104-roundabouts.md`` says why it is not a ring of roads.
+"""
+
+import math
+from typing import NamedTuple
+
+from linden.mapping.curves import Path, Piece, Point, Pose, along, joined, length, moved, seen_from
+from linden.mapping.document import Cubic, eased
+from linden.mapping.junctions import Turn, lane_pairs, pose_in, pose_out
+from linden.mapping.network import Leg
+
+ISLAND_RADIUS_M = 4.3
+LANE_M = 4.6
+"""Island and lane give an inscribed circle of 17.8 m; FHWA-SA-10-007 has 13.5 to 27 m for mini-roundabouts."""
+
+BEND_RADIUS_M = 9.0
+"""Of the left edge of the bends in and out; FHWA-SA-10-007 asks for entries that slow down to 25 km/h."""
+
+
+class _Approach(NamedTuple):
+    """A straight and a right-hand bend that ends on the island's edge, seen by somebody who comes in (or left, mirrored)."""
+
+    straight_m: float
+    turn_rad: float
+
+
+def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
+    """Return the ways through a roundabout about ``centre``; where a right turn leaves no room for the ring, a direct one."""
+    found = []
+    for come, lane_in, go, lane_out in lane_pairs(legs):
+        begin, end = pose_in(legs[come], lane_in), pose_out(legs[go], lane_out)
+        widths_m = legs[come].view.lane(lane_in).width_m, legs[go].view.lane(lane_out).width_m
+        path, widths = _way(begin, end, centre, widths_m)
+        found.append(Turn(legs[come], lane_in, legs[go], lane_out, path, widths))
+    return tuple(found)
+
+
+def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -> tuple[Path, tuple[Cubic, ...]]:
+    """Return the path along the lane's left edge, and the lane's width along it."""
+    entry = _approach(seen_from(begin, centre))
+    ahead_m, left_m = seen_from(end, centre)
+    leave = _approach((-ahead_m, left_m))
+    on_ring_rad = (end.heading_rad - begin.heading_rad + entry.turn_rad + leave.turn_rad) % math.tau
+    if on_ring_rad > math.tau - math.radians(60):
+        path = joined(begin, end)
+        return path, (eased(0.0, length(path), widths_m),)
+    pieces = [Piece(begin, entry.straight_m, 0.0)]
+    at = moved(begin, forward_m=entry.straight_m)
+    for turn_rad, radius_m in (
+        (-entry.turn_rad, BEND_RADIUS_M),
+        (on_ring_rad, ISLAND_RADIUS_M),
+        (-leave.turn_rad, BEND_RADIUS_M),
+    ):
+        piece = Piece(at, abs(turn_rad) * radius_m, math.copysign(1 / radius_m, turn_rad))
+        pieces.append(piece)
+        at = along(piece, piece.length_m)
+    pieces.append(Piece(at, leave.straight_m, 0.0))
+    lengths_m = [piece.length_m for piece in pieces]
+    bounds_m = lengths_m[0] + lengths_m[1], lengths_m[0] + lengths_m[1] + lengths_m[2]
+    widths = (
+        eased(0.0, bounds_m[0], (widths_m[0], LANE_M)),
+        Cubic(bounds_m[0], LANE_M),
+        eased(bounds_m[1], lengths_m[3] + lengths_m[4], (LANE_M, widths_m[1])),
+    )
+    return tuple(piece for piece in pieces if piece.length_m > 1e-4), widths
+
+
+def _approach(centre: Point) -> _Approach:
+    """Return the way in for a centre that lies so far ahead and to the left: the bend touches the island from outside.
+
+    The bend's centre is ``BEND_RADIUS_M`` to the right; its distance to the island's centre is the sum of the radii.
+    """
+    ahead_m, left_m = centre
+    apart_m = BEND_RADIUS_M + ISLAND_RADIUS_M
+    beside_m = left_m + BEND_RADIUS_M
+    before_m = math.sqrt(apart_m**2 - beside_m**2)
+    assert ahead_m > before_m, "the legs of a roundabout are cut back far enough for its bends"
+    return _Approach(ahead_m - before_m, math.atan2(before_m, beside_m))
+
+
+
+
