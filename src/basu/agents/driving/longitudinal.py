@@ -1,0 +1,79 @@
+"""The feet on the pedals: turn a wanted acceleration into throttle and brake, and learn what the model left out.
+
+What throttle and brake do is taken from the vehicle's physics control; the rest (drag, slope, gear, load) is one
+disturbance, estimated from how the vehicle really accelerated (a disturbance observer, Chen et al. 2016, "Disturbance-
+observer-based control and related methods", section II).
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from typing import NamedTuple
+
+FOLLOW_1PS = 1.5  # how fast a lag behind the reference speed is made up
+LEARN = 0.15  # share of a step's surprise that the estimate of the disturbance takes up
+MAX_DISTURBANCE_MPS2 = 4.0
+HOLD_BRAKE = 0.6  # when standing
+HOLD_STEP = 0.04  # it is pressed down this much a step, so that the stop is not felt
+STUCK_MPS = 0.1  # below this the vehicle may be held by friction, from which nothing is learnt
+
+
+class DriveModel(NamedTuple):
+    """What full pedals do to the vehicle's speed, in m/s²."""
+
+    speeds_mps: tuple[float, ...]  # ascending, from 0
+    full_throttle_mps2: tuple[float, ...]  # beside them
+    full_brake_mps2: float
+
+    def throttle_mps2(self, speed_mps: float) -> float:
+        """What full throttle does at a speed, interpolated."""
+        speeds, gains = self.speeds_mps, self.full_throttle_mps2
+        i = min(max(bisect_right(speeds, speed_mps), 1), len(speeds) - 1)
+        share = min(max((speed_mps - speeds[i - 1]) / (speeds[i] - speeds[i - 1]), 0.0), 1.0)
+        return gains[i - 1] + share * (gains[i] - gains[i - 1])
+
+
+class Pedals(NamedTuple):
+    """Both in [0, 1], never both above 0."""
+
+    throttle: float
+    brake: float
+
+
+class PedalControl:
+    """Follows a reference speed and acceleration."""
+
+    def __init__(self, model: DriveModel, dt_s: float) -> None:
+        self.model = model
+        self.dt_s = dt_s
+        self.disturbance_mps2 = 0.0
+        self.last = Pedals(0.0, HOLD_BRAKE)
+        self.last_speed_mps = 0.0
+
+    def step(self, speed_mps: float, reference_mps: float, reference_mps2: float, *, holding: bool) -> Pedals:
+        """Pedals until the next step, from the speed measured now and the reference for the end of this step."""
+        self._learn(speed_mps)
+        if holding:
+            pressed = self.last.brake if self.last.throttle == 0.0 else 0.0
+            self.last = Pedals(0.0, min(HOLD_BRAKE, pressed + HOLD_STEP))
+            return self.last
+        lag_mps = reference_mps - reference_mps2 * self.dt_s - speed_mps
+        demand_mps2 = reference_mps2 + FOLLOW_1PS * lag_mps - self.disturbance_mps2
+        gain_mps2 = max(self.model.throttle_mps2(speed_mps), 0.1)
+        if demand_mps2 >= 0.0:
+            self.last = Pedals(min(demand_mps2 / gain_mps2, 1.0), 0.0)
+        else:
+            self.last = Pedals(0.0, min(-demand_mps2 / self.model.full_brake_mps2, 1.0))
+        return self.last
+
+    def _learn(self, speed_mps: float) -> None:
+        """Take up part of the difference between what the last pedals should have done and what they did."""
+        before_mps, self.last_speed_mps = self.last_speed_mps, speed_mps
+        if min(speed_mps, before_mps) < STUCK_MPS:
+            return
+        done_mps2 = (speed_mps - before_mps) / self.dt_s
+        expected_mps2 = (
+            self.last.throttle * self.model.throttle_mps2(before_mps) - self.last.brake * self.model.full_brake_mps2
+        )
+        estimate = self.disturbance_mps2 + LEARN * (done_mps2 - expected_mps2 - self.disturbance_mps2)
+        self.disturbance_mps2 = min(max(estimate, -MAX_DISTURBANCE_MPS2), MAX_DISTURBANCE_MPS2)

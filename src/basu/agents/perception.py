@@ -1,0 +1,106 @@
+"""The basic agent's eyes: who is around, from the one snapshot of a tick that the client has received anyway."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+from basu.agents.rules.traffic_lights import Light
+from basu.agents.scene import Ego, Kind, Other
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    import carla
+
+RADIUS_M = 80.0  # who is farther away does not matter: 11 m/s through the longest gap that is waited for
+SMALLEST_M = 0.15  # half size of a body whose box the server leaves empty
+KIND_OF_PREFIX = {"vehicle.": Kind.VEHICLE, "walker.pedestrian.": Kind.WALKER, "static.prop.": Kind.PROP}
+
+
+class _Shape(NamedTuple):
+    """What stays the same about another actor."""
+
+    kind: Kind
+    half_length_m: float
+    half_width_m: float
+    offset_m: float  # of the box's centre, along the actor's axis
+
+
+class Perception:
+    """Remembers what each actor is, so that a tick asks the server only about those it has never seen."""
+
+    def __init__(self, world: carla.World, own_id: int) -> None:
+        self._world = world
+        self._shapes: dict[int, _Shape | None] = {own_id: None}  # None: nothing that one could drive into
+
+    def others(self, snapshot: carla.WorldSnapshot, ego: Ego) -> list[Other]:
+        """All bodies within ``RADIUS_M``, in the snapshot's order."""
+        shapes = self._shapes
+        bodies = [actor for actor in snapshot if shapes.get(actor.id, actor) is not None]
+        unknown = [actor.id for actor in bodies if actor.id not in shapes]
+        if unknown:
+            self._learn(unknown)
+        found = []
+        for actor in bodies:
+            shape = shapes[actor.id]
+            if shape is None:
+                continue
+            pose = actor.get_transform()
+            at = pose.location
+            if abs(at.x - ego.x_m) < RADIUS_M and abs(at.y - ego.y_m) < RADIUS_M:
+                found.append(_other(actor, pose, shape))
+        return found
+
+    def _learn(self, ids: Iterable[int]) -> None:
+        """Ask what new actors are."""
+        ids = list(ids)
+        self._shapes.update(dict.fromkeys(ids))
+        for actor in self._world.get_actors(ids):
+            kind = next((k for prefix, k in KIND_OF_PREFIX.items() if actor.type_id.startswith(prefix)), None)
+            if kind is not None:
+                box = actor.bounding_box
+                self._shapes[actor.id] = _Shape(
+                    kind, max(box.extent.x, SMALLEST_M), max(box.extent.y, SMALLEST_M), box.location.x
+                )
+
+
+def _other(actor: carla.ActorSnapshot, pose: carla.Transform, shape: _Shape) -> Other:
+    """One actor of a snapshot."""
+    velocity, yaw_rad = actor.get_velocity(), math.radians(pose.rotation.yaw)
+    return Other(
+        actor.id,
+        shape.kind,
+        pose.location.x + shape.offset_m * math.cos(yaw_rad),
+        pose.location.y + shape.offset_m * math.sin(yaw_rad),
+        yaw_rad,
+        velocity.x,
+        velocity.y,
+        math.radians(actor.get_angular_velocity().z),
+        shape.half_length_m,
+        shape.half_width_m,
+    )
+
+
+def see_ego(snapshot: carla.WorldSnapshot, own: carla.ActorSnapshot) -> Ego:
+    """The driven vehicle of a snapshot."""
+    pose, velocity = own.get_transform(), own.get_velocity()
+    yaw_rad = math.radians(pose.rotation.yaw)
+    speed_mps = velocity.x * math.cos(yaw_rad) + velocity.y * math.sin(yaw_rad)
+    return Ego(snapshot.timestamp.elapsed_seconds, pose.location.x, pose.location.y, yaw_rad, speed_mps)
+
+
+class Lights:
+    """The traffic lights on the way, by the id of their OpenDRIVE signal."""
+
+    def __init__(self, world: carla.World, landmark_ids: Iterable[str]) -> None:
+        found = {landmark_id: world.get_traffic_light_from_opendrive_id(landmark_id) for landmark_id in landmark_ids}
+        self._actors = {landmark_id: actor for landmark_id, actor in found.items() if actor is not None}
+
+    def shows(self, landmark_id: str) -> Light:
+        """What a light shows; one that the server does not have is dark."""
+        actor = self._actors.get(landmark_id)
+        return Light.DARK if actor is None else _LIGHT_OF_NAME.get(str(actor.get_state()), Light.DARK)
+
+
+_LIGHT_OF_NAME = {"Green": Light.GREEN, "Yellow": Light.YELLOW, "Red": Light.RED}

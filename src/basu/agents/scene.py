@@ -1,0 +1,76 @@
+"""What the basic agent knows at one instant: itself, the others, and what the rules of the road ask of it.
+
+World frame throughout: CARLA's (metres, x east, y south, angles in rad clockwise from above).
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from typing import NamedTuple
+
+
+class Body(NamedTuple):
+    """What does not change about the driven vehicle; lengths in its own frame, from the actor's origin."""
+
+    wheelbase_m: float
+    rear_axle_m: float  # how far the rear axle lies behind the origin
+    front_m: float  # from the origin to the front bumper
+    rear_m: float  # from the origin to the rear bumper
+    half_width_m: float
+
+
+class Ego(NamedTuple):
+    """The driven vehicle now."""
+
+    time_s: float
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    speed_mps: float  # along its own axis, negative when rolling backwards
+
+
+class Kind(enum.Enum):
+    """What another actor is; a prop may be anything that lies or stands about."""
+
+    VEHICLE = "vehicle"
+    WALKER = "walker"
+    PROP = "prop"
+
+
+class Other(NamedTuple):
+    """Another actor now; ``x_m, y_m`` is the centre of its box."""
+
+    id: int
+    kind: Kind
+    x_m: float
+    y_m: float
+    yaw_rad: float
+    velocity_x_mps: float
+    velocity_y_mps: float
+    yaw_rate_radps: float
+    half_length_m: float
+    half_width_m: float
+
+    @property
+    def speed_mps(self) -> float:
+        """How fast it moves, whichever way."""
+        return math.hypot(self.velocity_x_mps, self.velocity_y_mps)
+
+
+class Urgency(enum.IntEnum):
+    """How hard a restriction may be met when it cannot be met in comfort."""
+
+    GENTLE = 0  # a speed to slow down to, a service stop: late is better than rough
+    FIRM = 1  # a stop line: firm braking, no more
+    VITAL = 2  # somebody's body: all that the tyres give
+
+
+class Restriction(NamedTuple):
+    """Be no faster than ``speed_mps`` once ``distance_m`` more is driven (negative: it should have been already)."""
+
+    distance_m: float
+    speed_mps: float
+    urgency: Urgency
+    reason: str
+    last_resort_m: float = 0.0  # a vital one: how much farther there still is before contact
