@@ -29,18 +29,29 @@ def landmark_transforms(opendrive: OpenDrive) -> tuple[Transform, ...]:
         return ()
     tables = tables_of(opendrive)
     lines = middle_lines(tables, LaneType.DRIVING | LaneType.SHOULDER)
-    return tuple(_transform(tables, lines, road_index, signal) for road_index, signal in signals)
+    return tuple(
+        pose if _stays(signal) else _pushed_out(tables, lines, pose)
+        for (_, signal), pose in zip(signals, unmoved_transforms(opendrive), strict=True)
+    )
 
 
-def _transform(tables: Tables, lines: MiddleLines, road_index: int, signal: Signal) -> Transform:
+def unmoved_transforms(opendrive: OpenDrive) -> tuple[Transform, ...]:
+    """Return the pose of every signal as the file says it, before LibCarla moves those that stand in a lane."""
+    tables = tables_of(opendrive)
+    return tuple(
+        _as_written(tables, index, signal) for index, road in enumerate(tables.roads) for signal in road.signals
+    )
+
+
+def _stays(signal: Signal) -> bool:
+    return signal.inertial is not None or any(name in signal.name for name in _KEPT_NAMES)
+
+
+def _as_written(tables: Tables, road_index: int, signal: Signal) -> Transform:
     if signal.inertial is not None:
         x_m, y_m, z_m, heading_rad, pitch_rad, roll_rad = signal.inertial
-        pose = from_opendrive(x_m, y_m, z_m, heading_rad)
-        return _tilted(pose, pitch_rad, roll_rad)
-    pose = _tilted(_beside_road(tables, road_index, signal), signal.pitch_rad, signal.roll_rad)
-    if any(name in signal.name for name in _KEPT_NAMES):
-        return pose
-    return _pushed_out(tables, lines, pose)
+        return _tilted(from_opendrive(x_m, y_m, z_m, heading_rad), pitch_rad, roll_rad)
+    return _tilted(_beside_road(tables, road_index, signal), signal.pitch_rad, signal.roll_rad)
 
 
 def _beside_road(tables: Tables, road_index: int, signal: Signal) -> Transform:
