@@ -9,6 +9,8 @@ from linden.errors import UserError
 BACKLOG = 128
 """Connections waiting to be accepted; a client opens one per stream, all at once after a reload."""
 
+LAST_PORT = 65535
+
 
 class Ports(NamedTuple):
     """Where clients come in: RPC, and sensor streams."""
@@ -50,29 +52,30 @@ def port_of(listener: socket.socket) -> int:
 
 
 def _listen(host: str, port: int) -> socket.socket:
+    if not 0 <= port <= LAST_PORT:
+        raise UserError(f"cannot listen on port {port}: ports go from 0 to {LAST_PORT}; choose another with --port")
     try:
         family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
-    except (socket.gaierror, UnicodeError, OverflowError) as error:
+    except (socket.gaierror, UnicodeError) as error:
         raise UserError(f"cannot listen on {host!r}, port {port}: {error}; name an address of this machine") from error
     listener = socket.socket(family, socket.SOCK_STREAM)
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         listener.bind(address)
         listener.listen(BACKLOG)
-    except (OSError, OverflowError) as error:
+    except OSError as error:
         listener.close()
         raise UserError(_why(host, port, error)) from error
     listener.settimeout(0.0)
     return listener
 
 
-def _why(host: str, port: int, error: Exception) -> str:
-    number = error.errno if isinstance(error, OSError) else None
-    if number == errno.EADDRINUSE:
+def _why(host: str, port: int, error: OSError) -> str:
+    if error.errno == errno.EADDRINUSE:
         return (
             f"port {port} on {host} is in use, perhaps by another server; end that one, or choose with --port "
             f"(0 lets the system choose)"
         )
-    if number == errno.EACCES:
+    if error.errno == errno.EACCES:
         return f"port {port} may not be used by this user; choose one above 1023 with --port"
     return f"cannot listen on {host}, port {port}: {error}; choose another with --host and --port"

@@ -1,0 +1,311 @@
+"""Claims about the live server, around a world that only counts frames; clients speak bytes, on ports of the system."""
+
+import logging
+import socket
+import struct
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import pairwise
+
+import pytest
+
+from fakes.raw_client import RawClient, RawSubscriber
+from fakes.simulation import FakeFrames, FakeMaps, FakeSimulation
+from linden.server import subscribers
+from linden.server.loop import CALLS_PER_TURN, Server
+from linden.server.ports import open_ports, port_of
+from linden.values.episode import EpisodeSettings
+
+SYNCHRONOUS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
+RESET_ALL_LAYERS = (True, 0xFFFF)
+ON_THE_WIRE = [True, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
+
+
+class Live:
+    """A server in a thread of the test."""
+
+    def __init__(self, settings: EpisodeSettings, frames: FakeFrames) -> None:
+        self.ports = open_ports("127.0.0.1", 0)
+        self.rpc, self.streaming = port_of(self.ports.rpc), port_of(self.ports.streaming)
+        self.simulation = FakeSimulation(settings)
+        self.server = Server(self.simulation, FakeMaps(), frames, self.ports)
+        self.thread = threading.Thread(target=self.server.run)
+
+    def client(self) -> RawClient:
+        return RawClient(self.rpc)
+
+    def subscriber(self, stream_id: int = 1) -> RawSubscriber:
+        return RawSubscriber(self.streaming, stream_id)
+
+
+@contextmanager
+def live(settings: EpisodeSettings = SYNCHRONOUS, frames: FakeFrames | None = None) -> Iterator[Live]:
+    running = Live(settings, frames or FakeFrames())
+    running.thread.start()
+    try:
+        yield running
+    finally:
+        running.server.stop()
+        running.thread.join(10)
+        assert not running.thread.is_alive()
+
+
+@pytest.fixture
+def running() -> Iterator[Live]:
+    with live() as server:
+        yield server
+
+
+def test_calls_of_a_connection_are_answered_in_their_order(running: Live) -> None:
+    with running.client() as client:
+        client.socket.sendall(b"".join(client.request("tick_cue") for _ in range(3 * CALLS_PER_TURN)))
+        answers = [client.answer() for _ in range(3 * CALLS_PER_TURN)]
+    assert answers == [[1, i, None, [[1, i]]] for i in range(1, 3 * CALLS_PER_TURN + 1)]
+
+
+def test_a_call_cut_between_packets_waits_for_its_rest(running: Live) -> None:
+    with running.client() as client, running.client() as other:
+        message = client.request("tick_cue")
+        client.socket.sendall(message[:5])
+        assert other.call("version") == "0.9.16"  # the server has seen the first part, and serves others
+        client.socket.sendall(message[5:])
+        assert client.answer() == [1, 1, None, [[1, 1]]]
+
+
+def test_an_asynchronous_call_is_answered_too_for_its_client_keeps_an_entry_until_then(running: Live) -> None:
+    with running.client() as client:
+        client.socket.sendall(client.request("destroy_traffic_manager", 8000, is_async=True))
+        assert client.answer() == [1, 1, None, [[1, False]]]
+
+
+def test_bytes_that_are_no_call_close_their_connection_and_no_other(
+    running: Live, caplog: pytest.LogCaptureFixture
+) -> None:
+    with running.client() as polite, running.client() as rude:
+        assert polite.call("version") == "0.9.16"
+        rude.socket.sendall(b"GET / HTTP/1.1\r\n\r\n")
+        assert rude.is_closed()
+        assert polite.call("tick_cue") == 1
+    assert "is closed: expected a request [0, id, method, parameters], got int 71" in caplog.text
+
+
+def test_calls_before_the_garbage_are_still_answered(running: Live) -> None:
+    with running.client() as client:
+        client.socket.sendall(client.request("tick_cue") + b"\xc1")
+        assert client.answer() == [1, 1, None, [[1, 1]]]
+        assert client.is_closed()
+
+
+def test_calls_sent_before_leaving_are_carried_out(running: Live) -> None:
+    with running.client() as client:
+        client.socket.sendall(b"".join(client.request("tick_cue") for _ in range(2 * CALLS_PER_TURN)))
+        client.socket.shutdown(socket.SHUT_WR)
+        for _ in range(2 * CALLS_PER_TURN):
+            client.answer()
+        assert client.is_closed()
+
+
+def test_a_client_that_is_killed_leaves_the_others_in_peace(running: Live) -> None:
+    with running.client() as survivor:
+        killed = running.client()
+        killed.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # reset, not closed
+        killed.socket.sendall(killed.request("tick_cue")[:-1])
+        killed.socket.close()
+        assert survivor.call("tick_cue") == 1
+
+
+def test_a_wrong_type_refuses_one_call_by_a_sentence(running: Live) -> None:
+    with running.client() as client:
+        with pytest.raises(RuntimeError, match=r"get_sensor_token: argument 1 \(stream_id\): expected an integer"):
+            client.call("get_sensor_token", "one")
+        with pytest.raises(RuntimeError, match=r"tick_cue takes 0 arguments \(none\), got 1"):
+            client.call("tick_cue", 5)
+        assert client.call("tick_cue") == 1
+
+
+def test_what_is_missing_is_refused_by_name(running: Live) -> None:
+    with running.client() as client:
+        with pytest.raises(RuntimeError, match=r"linden has no method 'console_command': CARLA 0.9.16 has it"):
+            client.call("console_command", "stat fps")
+        with pytest.raises(RuntimeError, match="linden has no method 'make_coffee', nor has CARLA"):
+            client.call("make_coffee")
+
+
+def test_a_bug_of_ours_refuses_one_call_and_the_server_goes_on(
+    running: Live, caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(_dt_s: float) -> None:
+        raise ZeroDivisionError("a wheel of no radius")
+
+    with running.client() as client:
+        with monkeypatch.context() as patched:
+            patched.setattr(running.simulation, "step", broken)
+            with pytest.raises(RuntimeError, match=r"internal error .* in tick_cue: ZeroDivisionError: a wheel of no"):
+                client.call("tick_cue")
+        assert client.call("tick_cue") == 1
+    assert "Traceback" in caplog.text
+
+
+def test_a_bug_in_a_frame_of_asynchronous_mode_is_logged_once_and_the_server_goes_on(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    failed = threading.Event()
+    tries = []
+
+    def broken(dt_s: float) -> None:
+        tries.append(dt_s)
+        if len(tries) > 3:
+            failed.set()
+        raise ZeroDivisionError("a wheel of no radius")
+
+    with live(EpisodeSettings(fixed_delta_seconds=0.001)) as running:
+        monkeypatch.setattr(running.simulation, "step", broken)
+        assert failed.wait(10)
+        with running.client() as client:
+            assert client.call("version") == "0.9.16"
+    assert caplog.text.count("Traceback") == 1
+
+
+def test_in_synchronous_mode_time_stands_still_between_ticks(running: Live) -> None:
+    with running.client() as client, running.client() as other, running.subscriber() as subscriber:
+        assert subscriber.frame() == 0  # sent on joining
+        assert client.call("tick_cue") == 1
+        assert other.call("tick_cue") == 2
+        assert [subscriber.frame(), subscriber.frame()] == [1, 2]
+        assert running.simulation.steps_s == [0.05, 0.05]
+
+
+def test_in_asynchronous_mode_frames_come_by_themselves() -> None:
+    with live(EpisodeSettings(fixed_delta_seconds=0.002)) as running, running.subscriber() as subscriber:
+        first = subscriber.frame()
+        assert [subscriber.frame() for _ in range(5)] == [first + i for i in range(1, 6)]
+        assert set(running.simulation.steps_s) == {0.002}
+
+
+def test_a_tick_is_granted_in_asynchronous_mode_too() -> None:
+    with live(EpisodeSettings(fixed_delta_seconds=10.0)) as running, running.client() as client:
+        assert client.call("tick_cue") == 1
+
+
+def test_settings_take_effect_from_the_next_frame_and_name_the_present_one(running: Live) -> None:
+    with running.client() as client:
+        client.call("tick_cue")
+        changed = [True, False, [True, 0.1], *ON_THE_WIRE[3:]]
+        assert client.call("set_episode_settings", changed) == 1
+        assert client.call("get_episode_settings") == changed
+        client.call("tick_cue")
+    assert running.simulation.steps_s == [0.05, 0.1]
+
+
+def test_whoever_joins_between_two_ticks_sees_the_world(running: Live) -> None:
+    with running.client() as client:
+        client.call("tick_cue")
+        with running.subscriber() as late:
+            assert late.frame() == 1
+
+
+def test_every_subscriber_has_its_own_copy() -> None:
+    with (
+        live(frames=FakeFrames(padding_rows=1000)) as running,
+        running.client() as client,
+        running.subscriber() as one,
+        running.subscriber() as another,
+    ):
+        assert one.frame() == another.frame() == 0
+        client.call("tick_cue")
+        assert one.message() == another.message()
+
+
+def test_a_sensor_is_sent_to_those_who_listen_to_it() -> None:
+    with (
+        live(frames=FakeFrames(sensor_bytes=300_000)) as running,
+        running.client() as client,
+        running.subscriber(1) as observer,
+        running.subscriber(2) as listener,
+    ):
+        assert observer.frame() == 0
+        wait_until(lambda: client.call("version") == "0.9.16" and 2 in running.server.context.streams.listened())
+        client.call("tick_cue")
+        assert len(listener.message()) == 300_000
+        assert observer.frame() == 1
+
+
+def test_a_subscriber_that_says_more_than_a_stream_id_is_closed(running: Live) -> None:
+    with running.client() as client, running.subscriber() as subscriber:
+        assert subscriber.frame() == 0
+        subscriber.socket.sendall(b"more")
+        with pytest.raises((EOFError, ConnectionError)):
+            subscriber.message()
+        assert client.call("tick_cue") == 1
+
+
+def test_a_subscriber_that_never_reads_holds_up_the_frames_for_a_while_and_is_then_closed(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setattr(subscribers, "QUEUED_BYTES", 1_000_000)
+    monkeypatch.setattr(subscribers, "PATIENCE_S", 0.3)
+    with live(frames=FakeFrames(padding_rows=2000)) as running, running.client() as client, running.client() as other:
+        with running.subscriber() as deaf:
+            assert deaf.frame() == 0
+            frame = 0
+            while "held up the frames" not in caplog.text:
+                client.send("tick_cue")
+                assert other.call("version") == "0.9.16"  # served meanwhile
+                frame += 1
+                assert client.answer() == [1, frame, None, [[1, frame]]]
+        queued = frame * 2000 * 119
+        assert queued < 64_000_000  # the system's own buffers took some too
+
+
+def test_in_asynchronous_mode_a_subscriber_that_never_reads_misses_frames_and_stays(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    caplog.set_level(logging.INFO, "linden")
+    settings = EpisodeSettings(fixed_delta_seconds=0.0005)
+    with live(settings, FakeFrames(padding_rows=5000)) as running, running.subscriber() as deaf:
+        assert deaf.frame() >= 0
+        with running.client() as client:
+            while "it misses some" not in caplog.text:
+                client.call("version")
+        frames = [deaf.frame() for _ in range(200)]
+        assert frames == sorted(frames)
+        assert any(late - early > 1 for early, late in pairwise(frames))
+
+
+def test_a_client_that_never_reads_its_answers_is_not_listened_to_and_the_others_are(running: Live) -> None:
+    running.simulation.opendrive_text = "<OpenDRIVE/>" + " " * 10_000_000
+    with running.client() as deaf, running.client() as other:
+        deaf.socket.sendall(b"".join(deaf.request("get_map_data") for _ in range(50)))
+        assert other.call("tick_cue") == 1
+        outgoing = running.server.unsent_bytes()
+        assert outgoing < 50 * 10_000_000
+        for _ in range(50):
+            assert len(deaf.answer()[3][0][1]) == 10_000_012
+
+
+def test_traffic_managers_go_with_the_client_that_ran_them(running: Live) -> None:
+    with running.client() as witness:
+        with running.client() as owner:
+            assert owner.call("add_traffic_manager_running", ["127.0.0.1", 8000]) is True
+            assert witness.call("add_traffic_manager_running", ["127.0.0.1", 8000]) is False
+            assert witness.call("get_traffic_manager_running", 8000) == ["127.0.0.1", 8000]
+        wait_until(lambda: witness.call("is_traffic_manager_running", 8000) is False)
+        assert witness.call("get_traffic_manager_running", 8000) == ["", 0]
+
+
+def test_a_new_episode_is_loaded_by_name_and_an_empty_name_is_the_present_map(running: Live) -> None:
+    with running.client() as client:
+        client.call("load_new_episode", "", *RESET_ALL_LAYERS)
+        assert client.call("get_map_info")[0] == "Carla/Maps/Plain"
+        assert client.call("get_episode_info")[0] == 2
+        assert client.call("get_episode_settings")[0] is False
+        with pytest.raises(RuntimeError, match="Map 'Atlantis' not found"):
+            client.call("load_new_episode", "Atlantis", *RESET_ALL_LAYERS)
+        assert client.call("get_episode_info")[0] == 2
+
+
+def wait_until(condition: Callable[[], bool]) -> None:
+    """Ask until it is so; every question is a turn of the server, and pytest's own limit ends it if it never is."""
+    while not condition():
+        pass
