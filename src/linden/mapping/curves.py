@@ -5,6 +5,7 @@ ends meet with equal headings. Lines and arcs alone, because both have exact len
 """
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 STRAIGHT_PER_M = 1e-7
@@ -99,7 +100,7 @@ def sampled(path: Path, step_m: float, left_m: float = 0.0) -> list[Pose]:
     return [moved(pose_at(path, total_m * i / count), left_m=left_m) for i in range(count + 1)]
 
 
-def rounded(points: list[Point], radius_m: float, ends_kept_m: float) -> Path:
+def rounded(points: Sequence[Point], radius_m: float, ends_kept_m: float) -> Path:
     """Return the polyline with each corner replaced by an arc that touches both its sides.
 
     ``radius_m`` is used where the sides are long enough; else the arc takes half of each inner side, and of the first

@@ -71,6 +71,15 @@ class Place(NamedTuple):
     point: Point
 
 
+class Route(NamedTuple):
+    """A way along streets, through points of theirs; ``stops`` are the ids of the stops called at, in their order."""
+
+    id: str
+    points: tuple[Point, ...]
+    closed: bool
+    stops: tuple[str, ...]
+
+
 class Ground(NamedTuple):
     """A plane: height in m at the origin, and its rise per metre north and east."""
 
@@ -90,9 +99,11 @@ class Facts(NamedTuple):
     intersections: tuple[Intersection, ...]
     stops: tuple[Stop, ...]
     schools: tuple[Place, ...]
-    routes: Mapping[str, tuple[Point, ...]]
+    routes: Mapping[str, Route]
 
 
+_ROUTES = frozenset({"route", "route_alternative"})
+_LINES = _ROUTES | {"street", "railroad"}
 _CHOICES = {
     "street_class": ("arterial", "collector", "local", "service"),
     "oneway": ("no", "forward"),
@@ -139,7 +150,7 @@ def read(document: object) -> Facts:
             for feature in features
             if feature.kind == "poi" and feature.properties.get("kind") == "school"
         ),
-        routes={f.text("id"): metres(f.lonlats()) for f in features if f.kind in {"route", "route_alternative"}},
+        routes={f.text("id"): _route(f, metres(f.lonlats())) for f in features if f.kind in _ROUTES},
     )
 
 
@@ -170,7 +181,7 @@ class _Feature:
         return float(found)
 
     def lonlats(self) -> list[tuple[float, float]]:
-        wanted = "LineString" if self.kind in {"street", "route", "route_alternative", "railroad"} else "Point"
+        wanted = "LineString" if self.kind in _LINES else "Point"
         geometry = self.geometry if isinstance(self.geometry, dict) else {}
         if geometry.get("type") != wanted:
             raise UserError(f"{self.label}: its geometry is {geometry.get('type')!r}; it must be a {wanted}")
@@ -237,4 +248,13 @@ def _stop(feature: _Feature, point: Point, streets: set[str]) -> Stop:
         street_id=street_id,
         forward=bool(feature.properties.get("forward", True)),
         confidence=str(feature.properties.get("confidence", "unknown")),
+    )
+
+
+def _route(feature: _Feature, points: tuple[Point, ...]) -> Route:
+    return Route(
+        id=feature.text("id"),
+        points=points,
+        closed=bool(feature.properties.get("closed", False)),
+        stops=tuple(map(str, feature.properties.get("stops", []))),
     )

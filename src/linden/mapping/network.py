@@ -13,8 +13,8 @@ from linden.mapping.facts import Control, Facts, Intersection, Street
 from linden.mapping.section import Section, View, of_street, view
 
 BEND_RADIUS_M = {"arterial": 60.0, "collector": 40.0, "local": 20.0, "service": 12.0}
-CORNER_RADIUS_M = 5.0  # kerb at a street corner; 3 to 7.5 m are usual in built-up areas (NACTO, "Corner Radii")
-TIGHT_CORNER_RADIUS_M = 3.0  # where junctions stand close
+CORNER_RADIUS_M = 6.0  # kerb at a street corner; 3 to 7.5 m are usual in built-up areas (NACTO, "Corner Radii")
+TIGHT_CORNER_RADIUS_M = 3.5  # where junctions stand close
 SHORTEST_ROAD_M = 5.0  # between two junctions; below that they are one
 SHORTEST_SETBACK_M = 6.0
 LONGEST_SETBACK_M = 40.0
@@ -35,6 +35,7 @@ class Edge(NamedTuple):
 
     street: Street
     section: Section
+    points: tuple[Point, ...]
     path: Path
     nodes: tuple[int, int]
 
@@ -85,6 +86,7 @@ def build(facts: Facts) -> Network:
             tight |= fresh
         else:
             groups = _merged(groups, too_short)
+            tight -= {node for group in groups if len(group) > 1 for node in group}
     junctions = tuple(
         (tuple(group), tuple(found)) for group, found in zip(groups, legs, strict=True) if len(found) > 1
     )
@@ -120,8 +122,9 @@ def _split(facts: Facts) -> tuple[tuple[Node, ...], tuple[Edge, ...]]:
                 numbers[point] = len(nodes)
                 nodes.append(Node(point, intersections.get(point)))
             if i > 0:
-                path = rounded(list(street.points[first : i + 1]), BEND_RADIUS_M[street.street_class], ends_kept_m=12.0)
-                edges.append(Edge(street, section, path, (numbers[street.points[first]], numbers[point])))
+                points = street.points[first : i + 1]
+                path = rounded(points, BEND_RADIUS_M[street.street_class], ends_kept_m=12.0)
+                edges.append(Edge(street, section, points, path, (numbers[points[0]], numbers[point])))
             first = i
     return tuple(nodes), tuple(edges)
 
