@@ -23,10 +23,12 @@ class Outgoing:
         """
         if sum(map(len, parts)) <= JOINED_BYTES:
             parts = (b"".join(parts),)
+        was_idle = not self._queue
         for part in parts:
             self._queue.append(memoryview(part))
             self.waiting_bytes += len(part)
-        self.flush()
+        if was_idle:  # else the system takes nothing yet, and the selector will say when it does
+            self.flush()
 
     def flush(self) -> None:
         """Send what the system takes of what waits.

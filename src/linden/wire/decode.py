@@ -230,15 +230,10 @@ def struct_decoder(struct: type) -> Decoder:
     required = len(names) - len(struct._field_defaults)  # type: ignore[attr-defined]
     decoders = [decoder(hints[name]) for name in names]
     make: Callable[[Any], Any] = struct._make  # type: ignore[attr-defined]
-    plain_types = _plain_types(hints, names)
 
     def decode(value: object) -> Any:  # noqa: ANN401 - a ``struct``
         if type(value) is not list or not required <= len(value) <= len(names):
             raise WireTypeError(f"expected {struct.__name__}, an array of {len(names)}, got {got(value)}")
-        # A control comes 250 times a tick. Where every field has the very type it is sent with, the one check that is
-        # left is that each is finite, and so is then their sum (an overflowing sum only takes the long way round).
-        if tuple(map(type, value)) == plain_types and math.isfinite(sum(value)) and _in_32_bits(value):
-            return make(value)
         try:
             fields = [decode_field(field) for decode_field, field in zip(decoders, value, strict=False)]
         except WireTypeError:
@@ -246,18 +241,28 @@ def struct_decoder(struct: type) -> Decoder:
             raise
         return make(fields) if len(fields) == len(names) else struct(*fields)
 
-    return decode
+    plain_types = tuple(hints[name] for name in names)
+    return _fast(decode, make, plain_types) if set(plain_types) <= {float, bool, int} else decode
 
 
-def _plain_types(hints: dict[str, Any], names: tuple[str, ...]) -> tuple[type, ...] | None:
-    """The types of a struct of plain numbers and bools; None where a field is anything else."""
-    found = tuple(hints[name] for name in names)
-    return found if all(each in (float, bool, int) for each in found) else None
+def _fast(decode: Decoder, make: Callable[[Any], Any], plain_types: tuple[type, ...]) -> Decoder:
+    """Put a short way before the decoder of a struct of plain numbers: a control comes 250 times a tick.
 
-
-def _in_32_bits(values: list[Any]) -> bool:
+    Where every field has the very type it is sent with and its integers fit, what is left to check is that each number
+    is finite, and then so is their sum. A sum that overflows, and whatever else is unusual, takes the long way.
+    """
     low, high = ANY_32_BITS
-    return all(low <= value <= high for value in values if type(value) is int)
+    integers = [i for i, each in enumerate(plain_types) if each is int]
+
+    def decode_fast(value: Any) -> Any:  # noqa: ANN401 - as ``decode``
+        if type(value) is list and tuple(map(type, value)) == plain_types and math.isfinite(sum(value)):
+            for i in integers:
+                if not low <= value[i] <= high:
+                    return decode(value)
+            return make(value)
+        return decode(value)
+
+    return decode_fast
 
 
 def _locate(values: list[Any], steps: Sequence[tuple[str, Decoder]]) -> None:

@@ -1,0 +1,281 @@
+"""The server: one thread and one selector. It carries out calls in their order, makes frames, and sends what they show.
+
+There is no lock, because nothing happens at the same time: between two events the simulation stands still.
+"""
+
+import errno
+import logging
+import selectors
+import socket
+import time
+import traceback
+from collections.abc import Callable
+
+from linden.errors import ProtocolError
+from linden.handlers import registry, session
+from linden.handlers.context import Context, Frames, MapLibrary
+from linden.server.pace import Pace
+from linden.server.peers import Peer, RpcPeer, StreamPeer
+from linden.server.ports import Ports, port_of
+from linden.server.subscribers import Subscribers
+from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
+
+log = logging.getLogger("linden")
+
+CALLS_PER_TURN = 256
+"""Calls of one client before the others have their turn: a scene's worth of controls, some ms."""
+UNREAD_ANSWERS_BYTES = 1024 * 1024
+"""A client that leaves more than this unread is not listened to until it has caught up."""
+ACCEPT_PAUSE_S = 1.0
+"""How long nobody is let in after the system has run out of sockets."""
+
+_READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
+
+
+class Server:
+    """Listens on two ports and serves one simulation until it is told to stop."""
+
+    def __init__(self, simulation: object, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
+        self._clock = time.monotonic
+        self._ports = ports
+        self._pace = Pace(self._clock())
+        self.context = Context(
+            simulation=simulation,
+            maps=maps,
+            frames=frames,
+            streams=StreamTable(port_of(ports.streaming)),
+            variable_step_s=lambda: self._pace.variable_step_s(self._clock()),
+        )
+        self._selector = selectors.DefaultSelector()
+        self._subscribers = Subscribers(self.context.streams, self._watch, self._close)
+        self._with_calls: dict[RpcPeer, None] = {}  # an ordered set: those whose calls wait for their turn
+        self._connections = 0
+        self._closed_to_newcomers_until_s: float | None = None
+        self._wake_reader, self._wake_writer = socket.socketpair()
+        self._stopping = False
+        self._listen()
+        self._wake_reader.settimeout(0.0)
+        self._wake_writer.settimeout(0.0)
+        self._selector.register(self._wake_reader, _READ, self._woken)
+
+    # -- life ----------------------------------------------------------------------------------------------------
+
+    def run(self) -> None:
+        """Serve until :meth:`stop`, then close every connection."""
+        try:
+            while not self._stopping:
+                self._turn()
+        finally:
+            for key in list(self._selector.get_map().values()):
+                self._selector.unregister(key.fileobj)
+                if isinstance(key.fileobj, socket.socket):
+                    key.fileobj.close()
+            self._selector.close()
+            self._wake_writer.close()
+
+    def stop(self) -> None:
+        """Ask the server to end; the one method that another thread or a signal handler may call."""
+        self._stopping = True
+        self._wake_writer.send(b"\0")
+
+    def unsent_bytes(self) -> int:
+        """Return how much waits to be sent to all clients together."""
+        peers = (key.data for key in self._selector.get_map().values())
+        return sum(peer.outgoing.waiting_bytes for peer in peers if isinstance(peer, Peer))
+
+    def _turn(self) -> None:
+        """Wait for the next thing to do, and do it."""
+        for key, events in self._selector.select(self._wait_s()):
+            key.data(events)
+        for peer in tuple(self._with_calls):
+            self._carry_out(peer)
+        self._make_due_frame()
+
+    def _wait_s(self) -> float | None:
+        """Return how long nothing needs doing unless something arrives; None is for ever."""
+        now_s = self._clock()
+        waits: list[float] = []
+        patience_s = self._subscribers.patience_s(now_s)
+        if patience_s is not None:
+            waits.append(patience_s)
+        if any(not self._must_wait(peer) for peer in self._with_calls):
+            return 0.0
+        settings = self.context.simulation.settings
+        if not settings.synchronous_mode:
+            waits.append(self._pace.wait_s(now_s, settings.fixed_delta_seconds))
+        if self._closed_to_newcomers_until_s is not None:
+            waits.append(max(0.0, self._closed_to_newcomers_until_s - now_s))
+            self._open_again(now_s)
+        return min(waits, default=None)
+
+    def _woken(self, _events: int) -> None:
+        self._wake_reader.recv(64)
+
+    # -- newcomers -----------------------------------------------------------------------------------------------
+
+    def _listen(self) -> None:
+        self._selector.register(self._ports.rpc, _READ, lambda _: self._accept(self._ports.rpc, RpcPeer))
+        self._selector.register(self._ports.streaming, _READ, lambda _: self._accept(self._ports.streaming, StreamPeer))
+
+    def _open_again(self, now_s: float) -> None:
+        if self._closed_to_newcomers_until_s is not None and now_s >= self._closed_to_newcomers_until_s:
+            self._closed_to_newcomers_until_s = None
+            self._listen()
+
+    def _accept(self, listener: socket.socket, kind: Callable[[socket.socket, int], Peer]) -> None:
+        try:
+            sock, _ = listener.accept()
+        except (BlockingIOError, InterruptedError, ConnectionAbortedError):
+            return
+        except OSError as error:
+            if error.errno not in (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM):
+                raise
+            log.warning("no more connections for %.0f s: %s", ACCEPT_PAUSE_S, error)
+            self._selector.unregister(self._ports.rpc)
+            self._selector.unregister(self._ports.streaming)
+            self._closed_to_newcomers_until_s = self._clock() + ACCEPT_PAUSE_S
+            return
+        self._connections += 1
+        try:
+            peer = kind(sock, self._connections)
+        except OSError:  # gone before it was greeted
+            sock.close()
+            return
+        log.debug("%s has come", peer)
+        self._watch(peer)
+
+    # -- connections ---------------------------------------------------------------------------------------------
+
+    def _watch(self, peer: Peer) -> None:
+        """Let the selector watch for what can be done with a peer now."""
+        reads = not (isinstance(peer, RpcPeer) and (peer.calls or peer.at_end))
+        interest = (_READ if reads else 0) | (_WRITE if peer.outgoing.waiting_bytes else 0)
+        if interest == peer.interest:
+            return
+        if not interest:
+            self._selector.unregister(peer.socket)
+        elif not peer.interest:
+            self._selector.register(peer.socket, interest, lambda events: self._serve(peer, events))
+        else:
+            self._selector.modify(peer.socket, interest, lambda events: self._serve(peer, events))
+        peer.interest = interest
+
+    def _serve(self, peer: Peer, events: int) -> None:
+        """Read from a peer and send to it, as far as it goes."""
+        if not peer.interest:  # closed in this very turn, on behalf of another
+            return
+        try:
+            if events & _WRITE:
+                peer.outgoing.flush()
+            data = peer.read() if events & _READ else None
+            if data is not None:
+                if isinstance(peer, RpcPeer):
+                    self._called(peer, data)
+                elif isinstance(peer, StreamPeer):
+                    self._subscribed(peer, data)
+        except ProtocolError as error:
+            log.warning("%s is closed: %s", peer, error)
+            self._close(peer)
+        except OSError as error:
+            log.info("%s is gone: %s", peer, error)
+            self._close(peer)
+        if peer.interest:
+            self._watch(peer)
+
+    def _close(self, peer: Peer) -> None:
+        if peer.interest:
+            self._selector.unregister(peer.socket)
+            peer.interest = 0
+        peer.socket.close()
+        if isinstance(peer, StreamPeer):
+            self._subscribers.remove(peer)
+        elif isinstance(peer, RpcPeer):
+            peer.calls.clear()
+            self._with_calls.pop(peer, None)
+            session.client_left(self.context, peer.number)
+
+    def _subscribed(self, peer: StreamPeer, data: bytes) -> None:
+        if not data:
+            log.debug("%s has left", peer)
+            self._close(peer)
+        elif peer.subscription.receive(data) and peer.subscription.stream_id is not None:
+            self._subscribers.add(peer, peer.subscription.stream_id)
+            if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # whoever joins between two ticks sees the world too
+                payload = self.context.frames.world_payload(self.context.simulation)
+                self._subscribers.send(peer, payload, self._clock())
+
+    # -- calls and frames ----------------------------------------------------------------------------------------
+
+    def _called(self, peer: RpcPeer, data: bytes) -> None:
+        if data:
+            peer.calls.extend(peer.connection.receive(data))
+        else:
+            peer.at_end = True
+        self._carry_out(peer)
+
+    def _carry_out(self, peer: RpcPeer) -> None:
+        """Carry out a client's calls in their order: some, and the rest at its next turn.
+
+        A client whose last calls are done and who sends nothing more is closed.
+        """
+        self._with_calls.pop(peer, None)
+        self.context.caller = peer.number
+        answers: list[bytes] = []
+        while peer.calls and len(answers) < CALLS_PER_TURN and not self._must_wait(peer):
+            answers.append(registry.dispatch(self.context, peer.calls.popleft()))
+            self._publish()
+        try:
+            if answers:
+                peer.outgoing.send(b"".join(answers))
+            if not peer.calls and peer.connection.is_broken:
+                peer.connection.receive(b"")
+        except (OSError, ProtocolError) as error:
+            log.warning("%s is closed: %s", peer, error)
+            self._close(peer)
+            return
+        if peer.calls:
+            self._with_calls[peer] = None
+        elif peer.at_end:
+            log.debug("%s has left", peer)
+            self._close(peer)
+            return
+        self._watch(peer)
+
+    def _must_wait(self, peer: RpcPeer) -> bool:
+        """Whether a client's next call cannot be carried out yet."""
+        if peer.outgoing.waiting_bytes > UNREAD_ANSWERS_BYTES:
+            return True
+        return (
+            registry.advances(peer.calls[0])
+            and self._is_synchronous()
+            and self._subscribers.patience_s(self._clock()) is not None
+        )
+
+    def _is_synchronous(self) -> bool:
+        synchronous: bool = self.context.simulation.settings.synchronous_mode
+        return synchronous
+
+    def _make_due_frame(self) -> None:
+        """Make a frame by the clock, in asynchronous mode only."""
+        settings = self.context.simulation.settings
+        now_s = self._clock()
+        if settings.synchronous_mode or self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0:
+            return
+        try:
+            self.context.advance()
+        except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
+            self.context.warn_once(
+                "internal error in a frame; the server goes on. " + "".join(traceback.format_exception(error))
+            )
+        self._pace.frame_made(now_s, settings.fixed_delta_seconds)
+        self._publish()
+
+    def _publish(self) -> None:
+        """Send what the last call or frame left in the outbox."""
+        if not self.context.outbox:
+            return
+        now_s = self._clock()
+        may_drop = not self._is_synchronous()
+        for stream_id, payload in self.context.outbox:
+            self._subscribers.publish(stream_id, payload, now_s, may_drop=may_drop)
+        self.context.outbox.clear()
