@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import traceback
 from dataclasses import asdict, replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import carla
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 
     from basu.managers.agent_loader import LoadedAgent
     from basu.managers.base_manager import Frame, Run
-    from basu.managers.sensors_manager import SensorsManager
 
 T = TypeVar("T")
 SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first tick, not during it
@@ -29,11 +28,9 @@ SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first 
 class AgentsManager(BaseManager):
     """Holds the agent. After ``tick``, ``control`` is what it answered; before its first answer, the brake is on."""
 
-    def __init__(
-        self, loaded: LoadedAgent, sensors: SensorsManager, *, step_limit_s: float, routes: str | None
-    ) -> None:
+    def __init__(self, loaded: LoadedAgent, *, step_limit_s: float, routes: str | None) -> None:
         """Make the agent and ask for its wishes; ``routes`` is the command line's, which goes before the agent's."""
-        self._sensors = sensors
+        self._sensor_data: dict[str, tuple[int, Any]] = {}
         self._step_limit_s = step_limit_s
         self._setup_limit_s = max(SETUP_LIMIT_S, step_limit_s)
         self._name = loaded.agent_class.__name__
@@ -52,7 +49,7 @@ class AgentsManager(BaseManager):
             return tuple(_point(place) for place in given)
         except (AttributeError, TypeError, ValueError) as error:
             raise AgentCrashedError(
-                f"get_initial_route_locations() of {self._name} returned something that is no list of locations: {error}"
+                f"get_initial_route_locations() of {self._name} returned what is no list of locations: {error}"
             ) from error
 
     def setup(self, run: Run) -> None:
@@ -69,10 +66,14 @@ class AgentsManager(BaseManager):
         self._bound = True
         self._ask("setup", self._setup_limit_s, self._agent.setup)
 
+    def perceive(self, sensor_data: dict[str, tuple[int, Any]]) -> None:
+        """Lay what the sensors measured before the agent for its next step."""
+        self._sensor_data = sensor_data
+
     def tick(self, frame: Frame) -> None:
         """Ask for a control."""
         del frame
-        data = self._sensors.data
+        data = self._sensor_data
         answer = self._ask("run_step", self._step_limit_s, lambda: self._agent.run_step(data))
         self.control = checked(answer, self._name)
 
@@ -93,7 +94,8 @@ class AgentsManager(BaseManager):
         except (Exception, SystemExit) as error:
             where = traceback.extract_tb(error.__traceback__)[-1]
             raise AgentCrashedError(
-                f"{method}() of {self._name} raised {type(error).__name__}: {error} (line {where.lineno} of {where.filename})"
+                f"{method}() of {self._name} raised {type(error).__name__}: {error} "
+                f"(line {where.lineno} of {where.filename})"
             ) from error
 
 

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import networkx as nx
 import numpy as np
 
+from basu.routing.roads import read_roads
+
 if TYPE_CHECKING:
     import carla
     from numpy.typing import NDArray
@@ -40,6 +42,13 @@ class LaneGraph:
     s_m: NDArray[np.float64]  # (M,) along the road's reference line
     points_m: NDArray[np.float64]  # (M, 3) CARLA frame
     yaw_rad: NDArray[np.float64]  # (M,) of the lane, CARLA frame
+    roads: dict[int, Road]
+
+    def streets(self) -> list[NDArray[np.float64]]:
+        """The lanes' centre lines as polylines in the plane, each (K, 2) in m: the town as a picture shows it."""
+        order = np.lexsort((self.s_m, self.key_of_sample))
+        cuts = np.flatnonzero(np.diff(self.key_of_sample[order])) + 1
+        return [self.points_m[lane, :2] for lane in np.split(order, cuts)]
 
 
 def key_of(waypoint: carla.Waypoint) -> LaneKey:
@@ -47,8 +56,9 @@ def key_of(waypoint: carla.Waypoint) -> LaneKey:
     return LaneKey(waypoint.road_id, waypoint.section_id, waypoint.lane_id)
 
 
-def build(carla_map: carla.Map, roads: dict[int, Road]) -> LaneGraph:
-    """Make the graph of a ``carla.Map`` whose ``roads`` were read; some tenths of a second for a city quarter."""
+def build(carla_map: carla.Map) -> LaneGraph:
+    """Make the graph of a ``carla.Map``; some tenths of a second for a city quarter."""
+    roads = read_roads(carla_map.to_opendrive())
     keys: dict[LaneKey, int] = {}
     key_of_sample, s_m, poses = [], [], []
     for waypoint in carla_map.generate_waypoints(SAMPLE_SPACING_M):
@@ -65,6 +75,7 @@ def build(carla_map: carla.Map, roads: dict[int, Road]) -> LaneGraph:
         s_m=np.array(s_m, dtype=np.float64),
         points_m=pose[:, :3],
         yaw_rad=np.radians(pose[:, 3]),
+        roads=roads,
     )
 
 

@@ -12,12 +12,12 @@ from basu.routing import lane_graph
 from basu.routing.controls import controls_on
 from basu.routing.join import Piece, join
 from basu.routing.model import Route, Stop
-from basu.routing.roads import read_roads
 
 if TYPE_CHECKING:
     import carla
     from numpy.typing import NDArray
 
+    from basu.routing.lane_graph import LaneGraph
     from basu.routing.roads import Road
     from basu.routing.route_file import RouteDescription
 
@@ -27,14 +27,15 @@ SEAM_M = 1e-3  # how far inside its lane a lane's first and last point is taken
 STOP_OFF_ROUTE_M = 8.0  # a service stop farther than this from the route is a mistake in the file
 
 
-def plan(carla_map: carla.Map, description: RouteDescription) -> Route:
-    """Lay ``description`` on ``carla_map``.
+def plan(carla_map: carla.Map, description: RouteDescription, lanes: LaneGraph | None = None) -> Route:
+    """Lay ``description`` on ``carla_map``; ``lanes``, its graph, spares making it again.
 
     Raises:
         UserError: a point lies off the road, points cannot be joined, or a stop lies off the route.
     """
-    roads = read_roads(carla_map.to_opendrive())
-    pieces = join(lane_graph.build(carla_map, roads), description)
+    lanes = lanes or lane_graph.build(carla_map)
+    roads = lanes.roads
+    pieces = join(lanes, description)
     waypoints = _thin([waypoint for piece in pieces for waypoint in _sample(carla_map, roads, piece)])
     points_m, yaw_rad = _poses(waypoints)
     s_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_m[:, :2], axis=0).T))])

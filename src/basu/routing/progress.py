@@ -1,4 +1,4 @@
-"""Where a vehicle is along its route: a monotone search, so that a route may cross itself or come back beside itself."""
+"""Where a vehicle is along its route: searched for near the last place, so a route may cross or accompany itself."""
 
 from __future__ import annotations
 
@@ -16,19 +16,18 @@ BACK_M, AHEAD_M = 5.0, 30.0  # how far from the last known place the next one is
 class Progress(NamedTuple):
     """A place along a route."""
 
-    index: int  # of the last route point that is not ahead
-    s_m: float
+    s_m: float  # along it
     lateral_m: float  # off the route, positive to the right
     distance_m: float  # from the nearest point of the route's polyline within the search window
 
     @staticmethod
     def at_start() -> Progress:
         """Before the first advance."""
-        return Progress(0, 0.0, 0.0, 0.0)
+        return Progress(0.0, 0.0, 0.0)
 
 
 def advance(route: Route, before: Progress, x_m: float, y_m: float) -> Progress:
-    """The place of (x, y), CARLA frame, searched for near ``before``: a metre back or thirty ahead, never the lap after.
+    """The place of (x, y), CARLA frame, searched for near ``before``: some metres back to thirty ahead.
 
     A vehicle that left the route is searched for farther ahead, as far again as it is away, so that it may come back
     beyond what it went round.
@@ -60,4 +59,4 @@ def _on_segment(route: Route, index: int, x_m: float, y_m: float) -> Progress:
     off_x_m, off_y_m = to_x_m - share * along_x_m, to_y_m - share * along_y_m
     right = along_x_m * off_y_m - along_y_m * off_x_m  # y points south: positive is to the right
     distance_m = math.hypot(off_x_m, off_y_m)
-    return Progress(index, float(route.s_m[index]) + share * length_m, math.copysign(distance_m, right), distance_m)
+    return Progress(float(route.s_m[index]) + share * length_m, math.copysign(distance_m, right), distance_m)

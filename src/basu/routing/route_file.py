@@ -50,7 +50,7 @@ class RouteDescription:
 
 
 def read_routes(path: Path) -> tuple[RouteDescription, ...]:
-    """Read every route of a file.
+    """Read every route of a file, and of the files that it includes (``<include file="…">``, seen from itself).
 
     Raises:
         UserError: the file is missing, empty, not route XML, or holds a point that is not one.
@@ -67,10 +67,21 @@ def read_routes(path: Path) -> tuple[RouteDescription, ...]:
         root = etree.fromstring(text, etree.XMLParser(resolve_entities=False, no_network=True))
     except etree.XMLSyntaxError as error:
         raise UserError(f"route file {path} is not XML: {error}") from error
+    included = [route for element in root.iterfind("include") for route in read_routes(_included(path, element))]
     elements = [root] if root.tag == "route" else list(root.iter("route"))
-    if not elements:
+    if not elements and not included:
         raise UserError(f"route file {path} holds no <route> (its outermost element is <{root.tag}>)")
-    return tuple(_description(element, path) for element in elements)
+    return (*included, *(_description(element, path) for element in elements))
+
+
+def _included(path: Path, element: etree._Element) -> Path:
+    """The file that an <include> of ``path`` names."""
+    name = element.get("file")
+    if not name or (path.parent / name).resolve() == path.resolve():
+        raise UserError(
+            f"route file {path}, line {element.sourceline}: <include> must name another file in its attribute 'file'"
+        )
+    return path.parent / name
 
 
 def _description(element: etree._Element, path: Path) -> RouteDescription:

@@ -1,0 +1,155 @@
+"""One run: the managers set up, ticked until the run is over, and closed in every case."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from typing import TYPE_CHECKING, NamedTuple
+
+from basu.errors import (
+    AgentCrashedError,
+    AgentError,
+    AgentInvalidControlError,
+    AgentTimedOutError,
+    SimulatorError,
+    UserError,
+)
+from basu.managers.base_manager import Frame, Run, ego_in
+from basu.managers.metrics_manager import MetricsManager
+from basu.managers.routes_manager import RoutesManager
+from basu.outcome import Outcome, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from basu.history import History
+    from basu.managers.agents_manager import AgentsManager
+    from basu.managers.base_manager import BaseManager
+    from basu.managers.sensors_manager import SensorsManager
+    from basu.metrics.score import Scoring
+
+STATUS_OF: dict[type[AgentError], Status] = {
+    AgentCrashedError: Status.AGENT_CRASHED,
+    AgentTimedOutError: Status.AGENT_TIMED_OUT,
+    AgentInvalidControlError: Status.AGENT_INVALID_CONTROL,
+}
+STRAGGLERS_S = 0.05  # wall time for events of the last frame, which come on connections of their own
+
+
+class Driven(NamedTuple):
+    """How a run ended and what was measured until then."""
+
+    outcome: Outcome
+    history: History | None  # None where nothing was driven
+    wall_s: float  # from the first step to the last
+    first_frame: int | None  # the server's number of it
+    bug: Exception | None  # an error of our own, to be raised again once all is written
+
+
+def drive(
+    run: Run,
+    agents: AgentsManager,
+    sensors: SensorsManager,
+    scoring: Scoring,
+    *,
+    why_gone: Callable[[], str | None],
+    on_tick: Callable[[RoutesManager, MetricsManager, Frame], None],
+) -> Driven:
+    """Drive one run to its end, whatever that is; ``why_gone`` tells whether the simulator is still there."""
+    routes = RoutesManager()
+    metrics = MetricsManager(agents, routes, scoring)
+    managers: tuple[BaseManager, ...] = (sensors, routes, metrics, agents)
+    began_s = time.perf_counter()
+    bug = None
+    try:
+        for manager in managers:
+            manager.setup(run)
+        began_s = time.perf_counter()
+        outcome = _until_over(run, agents, sensors, routes, metrics, on_tick)
+    except KeyboardInterrupt:
+        outcome = Outcome(Status.INTERRUPTED, "interrupted by the user")
+    except AgentError as error:
+        outcome = _agents_end(error, why_gone())
+    except UserError as error:
+        outcome = Outcome(Status.SETUP_FAILED, str(error))
+    except SimulatorError as error:
+        outcome = Outcome(Status.SIMULATOR_FAILED, why_gone() or str(error))
+    except Exception as error:  # noqa: BLE001 - a bug of ours: the run is written as such, then it is raised again
+        bug = error
+        outcome = Outcome(Status.BENCHMARK_FAILED, "".join(traceback.format_exception_only(error)).strip())
+    wall_s = time.perf_counter() - began_s
+    history = None
+    if metrics.ticks:
+        _hear_stragglers(run)
+        history = metrics.history()
+    outcome = _closed(managers, outcome)
+    return Driven(outcome, history, wall_s, metrics.first_frame, bug)
+
+
+def _until_over(
+    run: Run,
+    agents: AgentsManager,
+    sensors: SensorsManager,
+    routes: RoutesManager,
+    metrics: MetricsManager,
+    on_tick: Callable[[RoutesManager, MetricsManager, Frame], None],
+) -> Outcome:
+    """Tick, sense, ask the agent, apply, record; until the route manager says that it is over."""
+    frame = _next_frame(run, None)
+    while True:
+        sensors.tick(frame)
+        agents.perceive(sensors.data)
+        try:
+            agents.tick(frame)
+        finally:  # what the agent failed in is recorded as well
+            routes.tick(frame)
+            metrics.tick(frame)
+        on_tick(routes, metrics, frame)
+        if routes.outcome is not None:
+            return routes.outcome
+        run.vehicle.apply_control(agents.control)
+        frame = _next_frame(run, frame)
+
+
+def _next_frame(run: Run, before: Frame | None) -> Frame:
+    """Let the simulator make one step and look at it."""
+    try:
+        number = run.world.tick(run.timeout_s)
+        snapshot = run.world.get_snapshot()
+    except RuntimeError as error:
+        raise SimulatorError(f"the simulator did not make a step: {error}") from error
+    ego = snapshot.find(run.vehicle.id)
+    if ego is None:
+        raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
+    if before is not None and snapshot.frame != before.server_frame + 1:
+        raise UserError(
+            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (asked for: {number}); "
+            "somebody else ticks it too, and a benchmark has to be the only one"
+        )
+    return Frame(0 if before is None else before.tick + 1, snapshot.frame, snapshot, ego_in(ego))
+
+
+def _agents_end(error: AgentError, gone: str | None) -> Outcome:
+    """The agent failed; unless the simulator had left it alone, that is the agent's doing."""
+    if gone is not None:
+        return Outcome(Status.SIMULATOR_FAILED, gone)
+    return Outcome(STATUS_OF[type(error)], str(error))
+
+
+def _hear_stragglers(run: Run) -> None:
+    """Let events of the last frame arrive: one more step, which is not recorded, and a moment."""
+    try:
+        run.world.tick(run.timeout_s)
+    except RuntimeError:
+        return  # the simulator is gone, and says nothing more
+    time.sleep(STRAGGLERS_S)
+
+
+def _closed(managers: tuple[BaseManager, ...], outcome: Outcome) -> Outcome:
+    """Close all managers; an agent that fails in that is told of, but its drive is over and keeps its status."""
+    for manager in reversed(managers):
+        try:
+            manager.close()
+        except AgentError as error:  # noqa: PERF203 - four managers, once a run
+            outcome = outcome._replace(message=f"{outcome.message}; afterwards {error}")
+    return outcome

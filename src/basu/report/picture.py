@@ -1,0 +1,87 @@
+"""``path.png``: the path driven against the path planned, on the streets of the town."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from basu.metrics.score import infractions
+from basu.utils.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from basu.history import History
+
+MARGIN_M = 40.0  # of street map around the route
+WIDTH_INCHES, DPI = 10.0, 130
+STREET, PLANNED, DRIVEN, MARK = "#d9d9d9", "#3182bd", "#e6550d", "#a50f15"
+
+
+def draw(path: Path, history: History, streets: Sequence[NDArray[np.float64]], title: str) -> None:
+    """Write the picture; ``streets`` are the lanes' centre lines, each (K, 2) in m, CARLA frame."""
+    route, frames = history.facts.route, history.frames
+    low = np.minimum(route.points_m[:, :2].min(axis=0), [frames["x_m"].min(), frames["y_m"].min()]) - MARGIN_M
+    high = np.maximum(route.points_m[:, :2].max(axis=0), [frames["x_m"].max(), frames["y_m"].max()]) + MARGIN_M
+    spread = high - low
+    figure = Figure(figsize=(WIDTH_INCHES, float(np.clip(WIDTH_INCHES * spread[1] / spread[0], 4.0, 14.0)) + 0.6))
+    axes = figure.add_subplot()
+    for street in streets:
+        axes.plot(street[:, 0], street[:, 1], color=STREET, linewidth=2.0, solid_capstyle="butt", zorder=1)
+    _paths(axes, history)
+    _marks(axes, history)
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(high[1], low[1])  # CARLA's y points south: north is up
+    axes.set_aspect("equal")
+    axes.set_xlabel("east in m")
+    axes.set_ylabel("south in m")
+    axes.set_title(title)
+    axes.legend(loc="best", framealpha=0.9)
+    buffer = io.BytesIO()
+    with mpl.rc_context({"savefig.bbox": "tight"}):
+        figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
+    write_bytes(path, buffer.getvalue())
+
+
+def _paths(axes: Axes, history: History) -> None:
+    """The plan below, wide and pale; the drive on it, thin."""
+    route, frames = history.facts.route, history.frames
+    plan = route.points_m
+    axes.plot(plan[:, 0], plan[:, 1], color=PLANNED, linewidth=5.0, alpha=0.45, label="planned", zorder=2)
+    axes.plot(frames["x_m"], frames["y_m"], color=DRIVEN, linewidth=1.4, label="driven", zorder=3)
+    axes.plot(*plan[0, :2], marker="o", color="black", markersize=7, linestyle="none", label="start", zorder=5)
+    axes.plot(frames["x_m"][-1], frames["y_m"][-1], "s", color=DRIVEN, markersize=7, label="end of the drive", zorder=5)
+
+
+def _marks(axes: Axes, history: History) -> None:
+    """Service stops by name, infractions by kind."""
+    for stop in history.facts.route.stops:
+        axes.plot(stop.x_m, stop.y_m, marker="D", color=PLANNED, markersize=6, zorder=4)
+        axes.annotate(stop.name, (stop.x_m, stop.y_m), xytext=(6, 6), textcoords="offset points", fontsize=7)
+    for number, found in enumerate(infractions(history)):
+        axes.plot(
+            found.x_m,
+            found.y_m,
+            marker="X",
+            color=MARK,
+            markersize=9,
+            linestyle="none",
+            label="infraction" if number == 0 else None,
+            zorder=6,
+        )
+        axes.annotate(
+            found.kind.value,
+            (found.x_m, found.y_m),
+            xytext=(6, -10),
+            textcoords="offset points",
+            fontsize=7,
+            color=MARK,
+        )

@@ -1,0 +1,186 @@
+"""A simulator to drive in: one of our own that ends with us, or somebody's at an address; its town, clock and weather.
+
+The benchmark knows two things of ``linden``: the command that starts it, and the line it prints when it is ready.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections import deque
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import carla
+
+from basu.errors import SimulatorError, UserError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import IO
+
+READY = re.compile(r"ready, rpc port (\d+)")
+START_LIMIT_S = 180.0  # a first start compiles kernels
+END_LIMIT_S = 10.0
+LAST_LINES = 20  # of a server's log, kept to explain its end
+PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
+
+
+class OwnServer:
+    """A ``linden serve`` of our own, on ports that the system chose."""
+
+    def __init__(self, seed: int) -> None:
+        """Start it and wait for its ready line.
+
+        Raises:
+            SimulatorError: it ended, or was not ready in time.
+        """
+        command = [*linden_command(), "serve", "--port", "0", "--seed", str(seed)]
+        self._process = subprocess.Popen(  # noqa: S603 - our own command, arguments of our own
+            command,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,  # Ctrl-C is for us; we end the server when the run is written
+            preexec_fn=_end_with_parent if sys.platform == "linux" else None,  # noqa: PLW1509 - one prctl call, no lock
+        )
+        self._port: int | None = None
+        self._spoke = threading.Event()
+        self._log: deque[str] = deque(maxlen=LAST_LINES)
+        for stream in (self._process.stdout, self._process.stderr):
+            threading.Thread(target=self._read, args=(stream,), name="basu-server-log", daemon=True).start()
+        try:
+            self.port = self._wait_until_ready()
+        except BaseException:
+            self.end()
+            raise
+
+    def gone(self) -> str | None:
+        """Why it is gone, in words; None while it runs."""
+        code = self._process.poll()
+        if code is None:
+            return None
+        last = f": {self._log[-1]}" if self._log else ""
+        return f"the simulator ended by itself (exit status {code}){last}"
+
+    def end(self) -> None:
+        """End it; in good order if it lets us."""
+        if self._process.poll() is None:
+            self._process.send_signal(signal.SIGTERM)
+            try:
+                self._process.wait(END_LIMIT_S)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
+
+    def _wait_until_ready(self) -> int:
+        deadline = time.monotonic() + START_LIMIT_S
+        while self._port is None:
+            if (reason := self.gone()) is not None:
+                raise SimulatorError(reason)
+            if time.monotonic() > deadline:
+                raise SimulatorError(f"the simulator was not ready within {START_LIMIT_S:.0f} s")
+            self._spoke.wait(0.05)
+            self._spoke.clear()
+        return self._port
+
+    def _read(self, stream: IO[str] | None) -> None:
+        """Take what the server says until it ends: its port, its progress, its last words."""
+        assert stream is not None, "both streams are pipes"
+        for line in stream:
+            text = line.rstrip()
+            if (found := READY.search(text)) is not None:
+                self._port = int(found.group(1))
+            else:
+                self._log.append(text)
+                if self._port is None:
+                    print(text, file=sys.stderr, flush=True)  # a first start says what it is doing
+            self._spoke.set()
+        self._spoke.set()
+
+
+def linden_command() -> list[str]:
+    """How to start ``linden`` in this environment."""
+    beside = Path(sys.executable).with_name("linden")
+    if beside.is_file():
+        return [str(beside)]
+    found = shutil.which("linden")
+    return [found] if found is not None else [sys.executable, "-m", "linden.cli"]
+
+
+def _end_with_parent() -> None:
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+def connect(host: str, port: int, timeout_s: float) -> carla.Client:
+    """A client that has been answered.
+
+    Raises:
+        UserError: nobody answers there.
+    """
+    try:
+        client = carla.Client(host, port)
+        client.set_timeout(timeout_s)
+        client.get_server_version()
+    except RuntimeError as error:
+        raise UserError(
+            f"no simulator answers at {host}:{port}; start one with `linden serve`, or leave out --host ({error})"
+        ) from error
+    return client
+
+
+def world_of(client: carla.Client, town: str) -> carla.World:
+    """The world with ``town`` in it, loaded where another one is.
+
+    Raises:
+        UserError: the simulator has no such town.
+    """
+    world = client.get_world()
+    if _short(world.get_map().name) == town:
+        return world
+    names = sorted({_short(name) for name in client.get_available_maps()})
+    if town not in names:
+        raise UserError(f"the route is in {town}, which this simulator does not have; it has {', '.join(names)}")
+    return client.load_world(town)
+
+
+def _short(map_name: str) -> str:
+    """`Carla/Maps/Linden` as people call it."""
+    return map_name.rsplit("/", maxsplit=1)[-1]
+
+
+@contextlib.contextmanager
+def ticked_by_us(world: carla.World, step_s: float) -> Iterator[None]:
+    """Synchronous mode with a fixed step; the settings that were there before come back afterwards."""
+    before = world.get_settings()
+    settings = world.get_settings()
+    settings.synchronous_mode = True
+    settings.fixed_delta_seconds = step_s
+    world.apply_settings(settings)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(RuntimeError):  # where the simulator is gone, so are its settings
+            world.apply_settings(before)
+
+
+def weather_called(name: str) -> carla.WeatherParameters:
+    """One of CARLA's presets by its name.
+
+    Raises:
+        UserError: there is none of that name.
+    """
+    presets = {
+        key: value for key, value in vars(carla.WeatherParameters).items() if isinstance(value, carla.WeatherParameters)
+    }
+    if name not in presets:
+        raise UserError(f"there is no weather called '{name}'; there are {', '.join(sorted(presets))}")
+    return presets[name]
