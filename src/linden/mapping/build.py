@@ -208,8 +208,13 @@ class _Assembly:
         found = set()
         real = [number for number, node in enumerate(self.network.nodes) if node.intersection is not None]
         for school in self.facts.schools:
-            nearest = min(real, key=lambda number: math.dist(self.network.nodes[number].point, school.point), default=None)
-            if nearest is not None and math.dist(self.network.nodes[nearest].point, school.point) < SCHOOL_CROSSING_WITHIN_M:
+            nearest = min(
+                real, key=lambda number: math.dist(self.network.nodes[number].point, school.point), default=None
+            )
+            if (
+                nearest is not None
+                and math.dist(self.network.nodes[nearest].point, school.point) < SCHOOL_CROSSING_WITHIN_M
+            ):
                 found.add(nearest)
         return frozenset(found)
 
@@ -260,9 +265,7 @@ def _is_bend(found: list[Intersection], legs: tuple[Leg, ...]) -> bool:
     if len(legs) != 2 or any(one.control is not Control.NONE for one in found):
         return False
     come, go = legs[0].view, legs[1].view
-    return all(
-        len(come.driving(right=side)) == len(go.driving(right=not side)) for side in (False, True)
-    )
+    return all(len(come.driving(right=side)) == len(go.driving(right=not side)) for side in (False, True))
 
 
 def _priorities(

@@ -166,7 +166,9 @@ def _one_turn(begin: Pose, end: Pose) -> Path | None:
     tangent_m = min(before_m, after_m)
     radius_m = tangent_m / math.tan(abs(turn_rad) / 2)
     pieces = [Piece(begin, before_m - tangent_m, 0.0)]
-    pieces.append(Piece(moved(begin, before_m - tangent_m), radius_m * abs(turn_rad), math.copysign(1 / radius_m, turn_rad)))
+    pieces.append(
+        Piece(moved(begin, before_m - tangent_m), radius_m * abs(turn_rad), math.copysign(1 / radius_m, turn_rad))
+    )
     pieces.append(Piece(moved(end, tangent_m - after_m), after_m - tangent_m, 0.0))
     return tuple(piece for piece in pieces if piece.length_m > 1e-4)
 

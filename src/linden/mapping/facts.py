@@ -142,7 +142,9 @@ def read(document: object) -> Facts:
         ground=Ground(plane.get("base_m", 0.0), plane.get("rise_north", 0.0), plane.get("rise_east", 0.0)),
         streets=tuple(_street(feature, metres(feature.lonlats())) for feature in streets),
         intersections=tuple(
-            _intersection(feature, metres(feature.lonlats())[0]) for feature in features if feature.kind == "intersection"
+            _intersection(feature, metres(feature.lonlats())[0])
+            for feature in features
+            if feature.kind == "intersection"
         ),
         stops=tuple(_stop(f, metres(f.lonlats())[0], known) for f in features if f.kind == "shuttle_stop"),
         schools=tuple(

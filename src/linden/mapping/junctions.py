@@ -15,7 +15,7 @@ STRAIGHT_RAD = math.radians(35)
 
 
 class Turn(NamedTuple):
-    """One lane's way through a junction. The path runs along the lane's left edge; ``widths`` go with it."""
+    """One lane's way through a junction. The path is the lane's middle, so that distances along it are those driven."""
 
     come: Leg
     lane_in: int
@@ -44,17 +44,17 @@ def lane_pairs(legs: tuple[Leg, ...]) -> list[tuple[int, int, int, int]]:
 
 
 def pose_in(leg: Leg, lane: int) -> Pose:
-    """Return where the left edge of an incoming lane meets the junction, looking into it."""
-    return moved(leg.pose, left_m=leg.view.inner_edge_m(lane))
+    """Return where the middle of an incoming lane meets the junction, looking into it."""
+    return moved(leg.pose, left_m=leg.view.inner_edge_m(lane) - leg.view.lane(lane).width_m / 2)
 
 
 def pose_out(leg: Leg, lane: int) -> Pose:
-    """Return where the left edge of an outgoing lane leaves the junction, looking out."""
-    return turned_back(moved(leg.pose, left_m=leg.view.inner_edge_m(lane)))
+    """Return where the middle of an outgoing lane leaves the junction, looking out."""
+    return turned_back(moved(leg.pose, left_m=leg.view.inner_edge_m(lane) + leg.view.lane(lane).width_m / 2))
 
 
 def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int], height_m: float) -> RoadRecord:
-    """Return the connecting road of a turn: one driving lane on the right of its path, level."""
+    """Return the connecting road of a turn: one driving lane, its middle on the path (half its width is the offset)."""
     lane = LaneRecord(
         id=-1, kind="driving", widths=turn.widths, mark=Mark(), predecessor=turn.lane_in, successor=turn.lane_out
     )
@@ -67,7 +67,7 @@ def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int],
         successor=Link("road", road_ids[1], contact(turn.go.end)),
         speed_mph=min(turn.come.street.speed_limit_mph, turn.go.street.speed_limit_mph),
         elevation=(Cubic(0.0, height_m),),
-        axis=(),
+        axis=tuple(Cubic(w.s_m, w.a / 2, w.b / 2, w.c / 2, w.d / 2) for w in turn.widths),
         left=(),
         right=(lane,),
         centre=Mark(),
@@ -116,8 +116,7 @@ def conflicting(one: Turn, other: Turn) -> bool:
 
 
 def _middle_line(turn: Turn) -> LineString:
-    half_m = turn.come.view.lane(turn.lane_in).width_m / 2
-    return LineString([(pose.x_m, pose.y_m) for pose in sampled(turn.path, 2.0, left_m=-half_m)])
+    return LineString([(pose.x_m, pose.y_m) for pose in sampled(turn.path, 2.0)])
 
 
 def _direct(come: Leg, lane_in: int, go: Leg, lane_out: int) -> Turn:

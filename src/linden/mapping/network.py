@@ -77,7 +77,9 @@ def build(facts: Facts) -> Network:
         setbacks = {leg.end: leg.setback_m for group in legs for leg in group}
         roads = tuple(_road(number, edge, setbacks) for number, edge in enumerate(edges))
         too_short = [
-            edge.nodes for edge, road in zip(edges, roads, strict=True) if road is not None and length(road) < SHORTEST_ROAD_M
+            edge.nodes
+            for edge, road in zip(edges, roads, strict=True)
+            if road is not None and length(road) < SHORTEST_ROAD_M
         ]
         if not too_short:
             break
@@ -87,9 +89,7 @@ def build(facts: Facts) -> Network:
         else:
             groups = _merged(groups, too_short)
             tight -= {node for group in groups if len(group) > 1 for node in group}
-    junctions = tuple(
-        (tuple(group), tuple(found)) for group, found in zip(groups, legs, strict=True) if len(found) > 1
-    )
+    junctions = tuple((tuple(group), tuple(found)) for group, found in zip(groups, legs, strict=True) if len(found) > 1)
     return Network(nodes, edges, roads, junctions)
 
 
@@ -177,7 +177,12 @@ def _uncut(end: End, edge: Edge) -> Leg:
     near, far = pose_at(outward, 0.0), pose_at(outward, min(SIGHT_M, length(outward) / 2))
     heading = math.atan2(near.y_m - far.y_m, near.x_m - far.x_m)
     return Leg(
-        end, edge.nodes[end.at_end], edge.street, Pose(near.x_m, near.y_m, heading), view(edge.section, along=end.at_end), 0.0
+        end,
+        edge.nodes[end.at_end],
+        edge.street,
+        Pose(near.x_m, near.y_m, heading),
+        view(edge.section, along=end.at_end),
+        0.0,
     )
 
 

@@ -133,8 +133,13 @@ def touches_of_bend(record: RoadRecord) -> tuple[Touch, Touch]:
     """Return what the roads before and after a bend touch: its start and its end, lane by lane."""
     lanes = record.right + record.left
     return (
-        Touch(Link("road", record.id, "start"), {lane.predecessor: lane.id for lane in lanes if lane.predecessor is not None}),
-        Touch(Link("road", record.id, "end"), {lane.successor: lane.id for lane in lanes if lane.successor is not None}),
+        Touch(
+            Link("road", record.id, "start"),
+            {lane.predecessor: lane.id for lane in lanes if lane.predecessor is not None},
+        ),
+        Touch(
+            Link("road", record.id, "end"), {lane.successor: lane.id for lane in lanes if lane.successor is not None}
+        ),
     )
 
 

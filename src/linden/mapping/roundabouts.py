@@ -16,12 +16,13 @@ ISLAND_RADIUS_M = 4.3
 LANE_M = 4.6
 """Island and lane give an inscribed circle of 17.8 m; FHWA-SA-10-007 has 13.5 to 27 m for mini-roundabouts."""
 
-BEND_RADIUS_M = 9.0
-"""Of the left edge of the bends in and out; FHWA-SA-10-007 asks for entries that slow down to 25 km/h."""
+RING_RADIUS_M = ISLAND_RADIUS_M + LANE_M / 2
+BEND_RADIUS_M = 7.5
+"""Of the middle of the lane in the bends in and out; FHWA-SA-10-007 asks for entries that slow down to 25 km/h."""
 
 
 class _Approach(NamedTuple):
-    """A straight and a right-hand bend that ends on the island's edge, seen by somebody who comes in (or left, mirrored)."""
+    """A straight and a right-hand bend that ends on the ring, seen by somebody who comes in (or left, mirrored)."""
 
     straight_m: float
     turn_rad: float
@@ -39,7 +40,7 @@ def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
 
 
 def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -> tuple[Path, tuple[Cubic, ...]]:
-    """Return the path along the lane's left edge, and the lane's width along it."""
+    """Return the path of the lane's middle, and the lane's width along it."""
     entry = _approach(seen_from(begin, centre))
     ahead_m, left_m = seen_from(end, centre)
     leave = _approach((-ahead_m, left_m))
@@ -51,7 +52,7 @@ def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -
     at = moved(begin, forward_m=entry.straight_m)
     for turn_rad, radius_m in (
         (-entry.turn_rad, BEND_RADIUS_M),
-        (on_ring_rad, ISLAND_RADIUS_M),
+        (on_ring_rad, RING_RADIUS_M),
         (-leave.turn_rad, BEND_RADIUS_M),
     ):
         piece = Piece(at, abs(turn_rad) * radius_m, math.copysign(1 / radius_m, turn_rad))
@@ -69,17 +70,13 @@ def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -
 
 
 def _approach(centre: Point) -> _Approach:
-    """Return the way in for a centre that lies so far ahead and to the left: the bend touches the island from outside.
+    """Return the way in for a centre that lies so far ahead and to the left: the bend touches the ring's middle from outside.
 
     The bend's centre is ``BEND_RADIUS_M`` to the right; its distance to the island's centre is the sum of the radii.
     """
     ahead_m, left_m = centre
-    apart_m = BEND_RADIUS_M + ISLAND_RADIUS_M
+    apart_m = BEND_RADIUS_M + RING_RADIUS_M
     beside_m = left_m + BEND_RADIUS_M
     before_m = math.sqrt(apart_m**2 - beside_m**2)
     assert ahead_m > before_m, "the legs of a roundabout are cut back far enough for its bends"
     return _Approach(ahead_m - before_m, math.atan2(before_m, beside_m))
-
-
-
-

@@ -118,7 +118,9 @@ def positions(driven: Driven) -> list[Sample]:
     just before its end; and at the route's own ends.
     """
     found = [driven.samples[0]]
-    for (_, in_junction), group in itertools.groupby(driven.samples, key=lambda sample: (sample.road, sample.in_junction)):
+    for (_, in_junction), group in itertools.groupby(
+        driven.samples, key=lambda sample: (sample.road, sample.in_junction)
+    ):
         stretch = list(group)
         if in_junction or len(stretch) < 4:
             continue
