@@ -108,7 +108,7 @@ def _may_end(road: Road, section: LaneSection, lane_id: int, *, at_end: bool) ->
 
 
 def lane_links_returned(opendrive: OpenDrive) -> list[Finding]:
-    """Find lanes that name a next lane which does not name them back. Inside junctions the junction says who is next."""
+    """Find lanes that name a next lane that does not name them back. Inside junctions the junction tells."""
     tables, links = tables_of(opendrive), lane_links(opendrive)
     found = []
     for row, successors in enumerate(links.successors):

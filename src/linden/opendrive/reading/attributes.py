@@ -1,6 +1,7 @@
 """Typed reading of XML attributes: a number that is a number, or a sentence with the line."""
 
 import math
+from math import isfinite
 from typing import Any, NoReturn
 
 from lxml.etree import _Element as Element
@@ -24,11 +25,12 @@ def reject(node: Element, attribute: str, expected: str) -> NoReturn:
 
 def number(node: Element, attribute: str) -> float:
     """Return a finite number that has to be there."""
+    text = node.get(attribute, "")
     try:
-        value = float(node.attrib[attribute])
-    except (KeyError, ValueError):
+        value = float(text)
+    except ValueError:
         reject(node, attribute, "a number")
-    if not math.isfinite(value):
+    if not isfinite(value) or "_" in text:  # Python takes 1_000 for a number, nobody else does
         reject(node, attribute, "a finite number")
     return value
 
@@ -49,21 +51,23 @@ def positive(node: Element, attribute: str) -> float:
 def whole(node: Element, attribute: str) -> int:
     """Return a whole number that has to be there, in the range of the 32-bit ids CARLA keeps."""
     try:
-        value = int(node.attrib[attribute])
-    except (KeyError, ValueError):
+        value = int(node.get(attribute, ""))
+    except ValueError:
         reject(node, attribute, "a whole number (CARLA reads anything else as 0)")
     if not -(2**31) <= value < 2**31:
         reject(node, attribute, "a whole number of 32 bits")
     return value
 
 
-def whole_or_none(node: Element | None, attribute: str) -> int | None:
-    """Return a whole number, None where there is no such element."""
-    return None if node is None else whole(node, attribute)
-
-
 def cubic_coefficients(node: Element) -> tuple[float, float, float, float]:
     """Return a, b, c, d; what is missing counts as 0, as in LibCarla."""
+    get = node.get
+    try:
+        a, b, c, d = float(get("a") or 0.0), float(get("b") or 0.0), float(get("c") or 0.0), float(get("d") or 0.0)
+    except ValueError:
+        a = b = c = d = math.nan
+    if isfinite(a + b + c + d):
+        return a, b, c, d
     return number_or(node, "a", 0.0), number_or(node, "b", 0.0), number_or(node, "c", 0.0), number_or(node, "d", 0.0)
 
 

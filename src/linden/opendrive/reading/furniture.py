@@ -21,13 +21,15 @@ from linden.opendrive.reading.attributes import line_of, number, number_or, user
 _SPEED_STENCIL = re.compile(r"[Ss]peed_(?:STATIC_)?(\d+(?:\.\d+)?)")
 
 
-def read_signals(road: Element) -> tuple[Signal, ...]:
-    """Return the signals that stand at a road."""
-    return tuple(_signal(node) for node in road.iterfind("signals/signal"))
+def read_signals(signals: Element | None) -> tuple[Signal, ...]:
+    """Return the signals that stand at a road, from its <signals>."""
+    return () if signals is None else tuple(_signal(node) for node in signals.iterchildren("signal"))
 
 
-def read_signal_references(road: Element) -> tuple[SignalReference, ...]:
-    """Return the references of a road to signals that stand elsewhere."""
+def read_signal_references(signals: Element | None) -> tuple[SignalReference, ...]:
+    """Return the references of a road to signals that stand elsewhere, from its <signals>."""
+    if signals is None:
+        return ()
     return tuple(
         SignalReference(
             signal_id=node.get("id", ""),
@@ -36,20 +38,22 @@ def read_signal_references(road: Element) -> tuple[SignalReference, ...]:
             orientation=node.get("orientation", "none"),
             validities=_validities(node),
         )
-        for node in road.iterfind("signals/signalReference")
+        for node in signals.iterchildren("signalReference")
     )
 
 
-def read_objects(road: Element) -> tuple[RoadObject, ...]:
-    """Return the objects of a road, whatever their type."""
-    return tuple(_object(node) for node in road.iterfind("objects/object"))
+def read_objects(objects: Element | None) -> tuple[RoadObject, ...]:
+    """Return the objects of a road, whatever their type, from its <objects>."""
+    return () if objects is None else tuple(_object(node) for node in objects.iterchildren("object"))
 
 
-def read_speed_stencils(road: Element) -> tuple[Signal, ...]:
+def read_speed_stencils(objects: Element | None) -> tuple[Signal, ...]:
     """Return the speed limits that RoadRunner writes as objects named ``Speed_30``; LibCarla takes them for signs."""
+    if objects is None:
+        return ()
     return tuple(
         _speed_sign(node)
-        for node in road.iterfind("objects/object")
+        for node in objects.iterchildren("object")
         if _SPEED_STENCIL.fullmatch(node.get("name", "")) and node.get("id")
     )
 

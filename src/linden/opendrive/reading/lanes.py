@@ -11,7 +11,6 @@ from linden.opendrive.reading.attributes import (
     number_or,
     speed_mps,
     whole,
-    whole_or_none,
 )
 from linden.values.enums import LaneType
 
@@ -66,7 +65,7 @@ def _lanes_of(section: Element) -> tuple[Lane, ...]:
 
 def _lane(node: Element) -> Lane:
     widths, borders, marks, speeds, heights = [], [], [], [], []
-    link = None
+    links: dict[str, int] = {}
     for child in node:
         match child.tag:
             case "width":
@@ -74,7 +73,7 @@ def _lane(node: Element) -> Lane:
             case "roadMark":
                 marks.append(_mark(child))
             case "link":
-                link = child
+                links = {neighbour.tag: whole(neighbour, "id") for neighbour in child}
             case "height":
                 offset_m = number_or(child, "sOffset", 0.0)
                 heights.append(Height(offset_m, number_or(child, "inner", 0.0), number_or(child, "outer", 0.0)))
@@ -87,8 +86,8 @@ def _lane(node: Element) -> Lane:
     return Lane(
         id=whole(node, "id"),
         type=_LANE_TYPES.get((node.get("type") or "").lower(), LaneType.NONE),
-        predecessor=None if link is None else whole_or_none(link.find("predecessor"), "id"),
-        successor=None if link is None else whole_or_none(link.find("successor"), "id"),
+        predecessor=links.get("predecessor"),
+        successor=links.get("successor"),
         widths=tuple(widths),
         borders=tuple(borders),
         marks=tuple(marks),

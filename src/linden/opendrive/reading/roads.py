@@ -36,30 +36,28 @@ _STRAIGHT_PER_M = 1e-15
 def read_road(node: Element) -> Road:
     """Return one road with everything along it."""
     length_m = positive(node, "length")
-    lanes = node.find("lanes")
+    parts = {child.tag: child for child in node}
+    lanes, link, profile = parts.get("lanes"), parts.get("link"), parts.get("elevationProfile")
     if lanes is None:
         raise MapError(f"road {node.get('id')} has no <lanes>", line_of(node))
-    link = node.find("link")
+    links = {} if link is None else {end.tag: _link(end) for end in link if end.tag in {"predecessor", "successor"}}
     return Road(
         id=_road_id(node),
         name=node.get("name", ""),
         length_m=length_m,
         junction_id=whole(node, "junction") if node.get("junction") else NO_JUNCTION,
         is_right_hand=node.get("rule") != "LHT",
-        predecessor=None if link is None else _link(link.find("predecessor")),
-        successor=None if link is None else _link(link.find("successor")),
+        predecessor=links.get("predecessor"),
+        successor=links.get("successor"),
         types=tuple(_road_type(child) for child in node.iterchildren("type")),
-        geometries=_reference_line(node),
-        elevations=tuple(
-            Cubic(number(child, "s"), *cubic_coefficients(child))
-            for child in node.iterfind("elevationProfile/elevation")
-        ),
+        geometries=_reference_line(node, parts.get("planView")),
+        elevations=() if profile is None else _elevations(profile),
         lane_offsets=read_lane_offsets(lanes),
         sections=read_sections(lanes, length_m),
-        signals=(*read_signals(node), *read_speed_stencils(node)),
-        signal_references=read_signal_references(node),
-        objects=read_objects(node),
-        user_data=user_data(node),
+        signals=(*read_signals(parts.get("signals")), *read_speed_stencils(parts.get("objects"))),
+        signal_references=read_signal_references(parts.get("signals")),
+        objects=read_objects(parts.get("objects")),
+        user_data=user_data(node) if "userData" in parts else (),
         source_line=line_of(node),
     )
 
@@ -71,21 +69,23 @@ def _road_id(node: Element) -> int:
     return road_id
 
 
-def _link(node: Element | None) -> RoadLink | None:
-    if node is None:
-        return None
+def _link(node: Element) -> RoadLink:
     return RoadLink(node.get("elementType") == "junction", whole(node, "elementId"), node.get("contactPoint"))
 
 
+def _elevations(profile: Element) -> tuple[Cubic, ...]:
+    return tuple(Cubic(number(node, "s"), *cubic_coefficients(node)) for node in profile.iterchildren("elevation"))
+
+
 def _road_type(node: Element) -> RoadType:
-    speed = node.find("speed")
+    speed = next(node.iterchildren("speed"), None)
     return RoadType(
         number_or(node, "s", 0.0), node.get("type", ""), None if speed is None else speed_mps(speed), speed is not None
     )
 
 
-def _reference_line(road: Element) -> tuple[Geometry, ...]:
-    nodes = list(road.iterfind("planView/geometry"))
+def _reference_line(road: Element, plan_view: Element | None) -> tuple[Geometry, ...]:
+    nodes = [] if plan_view is None else list(plan_view.iterchildren("geometry"))
     if not nodes:
         raise MapError(f"road {road.get('id')} has no <planView> with a <geometry>", line_of(road))
     return tuple(
