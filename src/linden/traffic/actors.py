@@ -38,12 +38,12 @@ class TrafficActor(NamedTuple):
 
 
 def traffic_actors(opendrive: OpenDrive) -> tuple[tuple[TrafficActor, ...], LightPlan]:
-    """Return the map's lights and signs in the order of the file, and which lights change together."""
-    standing = [signal for signal in place(opendrive) if signal.is_light or signal.name != PAINTED]
-    lights = [signal for signal in standing if signal.is_light]
-    number = {signal.signal_id: light for light, signal in enumerate(lights)}
-    actors = tuple(_actor(signal, number.get(signal.signal_id, NO_LIGHT)) for signal in standing)
-    return actors, _plan(opendrive, lights)
+    """Return the map's lights, then its signs, each in the order of the file, and which lights change together."""
+    placed = place(opendrive)
+    lights = [signal for signal in placed if signal.is_light]
+    signs = [signal for signal in placed if not signal.is_light and signal.name != PAINTED]
+    actors = [_actor(signal, light) for light, signal in enumerate(lights)]
+    return (*actors, *(_actor(signal, NO_LIGHT) for signal in signs)), _plan(opendrive, lights)
 
 
 def world_volumes(actors: tuple[TrafficActor, ...]) -> list[tuple[int, BoundingBox]]:

@@ -6,7 +6,7 @@ Source: CARLA 0.9.16, TrafficLightGroup.cpp, TrafficLightController.cpp and .h.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 U8 = NDArray[np.uint8]
 Flags = NDArray[np.bool_]
+Indices = NDArray[np.integer[Any]]
 
 STAGES: U8 = np.array([TrafficLightState.GREEN, TrafficLightState.YELLOW, TrafficLightState.RED], np.uint8)
 """Colours of a turn in their order; a controller's ``stage`` counts in it."""
@@ -50,13 +51,15 @@ class LightState(NamedTuple):
     colour: U8
     """(L,) TrafficLightState of each light."""
     stage: I32
-    """(C,) index in ``STAGES``."""
-    elapsed_s: F64
-    """(C,) since the stage began."""
+    """(C,) index in ``STAGES``; the last one, but for the controllers whose turn it is."""
     turn: I32
     """(G,) the controller whose turn it is."""
-    frozen: Flags
-    """(G,)"""
+    elapsed_s: F64
+    """(G,) since its stage began; for all other controllers it is zero."""
+    lasts_s: F64
+    """(G,) for how long its stage lasts: follows from the turn, its stage and the times; inf where frozen."""
+    pace: F64
+    """(G,) 1, or 0 where time is frozen."""
     times_s: F64
     """(C, 3) of red, yellow, green."""
 
@@ -92,9 +95,10 @@ def initial(plan: LightPlan) -> LightState:
     dark = LightState(
         np.full(len(plan.controller_of_light), TrafficLightState.RED, np.uint8),
         np.full(controllers, LAST_STAGE, np.int32),
-        np.zeros(controllers),
         plan.first_controller[:-1].copy(),
-        np.zeros(groups, np.bool_),
+        np.zeros(groups),
+        np.zeros(groups),
+        np.ones(groups),
         plan.times_s.copy(),
     )
     return reset(plan, dark, np.arange(groups, dtype=np.int32))
@@ -105,32 +109,25 @@ def step(plan: LightPlan, state: LightState, dt_s: float) -> LightState:
 
     As in CARLA a stage lasts until its time is exceeded, and what is left of the step is not counted to the next.
     """
-    active = state.turn[~state.frozen]
-    elapsed_s = state.elapsed_s.copy()
-    elapsed_s[active] += dt_s
-    over = elapsed_s[active] > state.times_s[active, STAGES[state.stage[active]]] + ROUNDING_S
-    if not over.any():
-        return state._replace(elapsed_s=elapsed_s)
-    return _next_stage(plan, state._replace(elapsed_s=elapsed_s), active[over])
+    elapsed_s = state.elapsed_s + dt_s * state.pace
+    over = elapsed_s > state.lasts_s + ROUNDING_S
+    state = state._replace(elapsed_s=elapsed_s)
+    return _next_stage(plan, state, np.flatnonzero(over)) if over.any() else state
 
 
-def _next_stage(plan: LightPlan, state: LightState, controllers: I32) -> LightState:
-    """Move each of the controllers on, or where it has shown its last colour, the next one of its group."""
-    state.elapsed_s[controllers] = 0.0
-    stage, turn = state.stage.copy(), state.turn.copy()
-    done = stage[controllers] == LAST_STAGE
-    groups = plan.group_of_controller[controllers[done]]
-    following = controllers[done] + 1
-    following = np.where(following == plan.first_controller[groups + 1], plan.first_controller[groups], following)
-    turn[groups] = following
-    stage[following] = 0
-    state.elapsed_s[following] = 0.0
-    stage[controllers[~done]] += 1
-    changed = np.concatenate([controllers[~done], following])
-    return _show(plan, state._replace(stage=stage, turn=turn), changed)
+def _next_stage(plan: LightPlan, state: LightState, groups: Indices) -> LightState:
+    """Show the next colour of these groups' controllers, or where it was the last, the first of the next controller."""
+    stage, turn, elapsed_s = state.stage.copy(), state.turn.copy(), state.elapsed_s.copy()
+    done = groups[stage[turn[groups]] == LAST_STAGE]
+    stage[turn[np.setdiff1d(groups, done)]] += 1
+    following = turn[done] + 1
+    turn[done] = np.where(following == plan.first_controller[done + 1], plan.first_controller[done], following)
+    stage[turn[done]] = 0
+    elapsed_s[groups] = 0.0
+    return _timed(_show(plan, state._replace(stage=stage, turn=turn, elapsed_s=elapsed_s), turn[groups]))
 
 
-def _show(plan: LightPlan, state: LightState, controllers: I32) -> LightState:
+def _show(plan: LightPlan, state: LightState, controllers: Indices) -> LightState:
     """Give the lights of these controllers the colour of their stage."""
     lights = np.isin(plan.controller_of_light, controllers)
     colour = state.colour.copy()
@@ -138,16 +135,21 @@ def _show(plan: LightPlan, state: LightState, controllers: I32) -> LightState:
     return state._replace(colour=colour)
 
 
-def reset(plan: LightPlan, state: LightState, groups: I32) -> LightState:
+def _timed(state: LightState) -> LightState:
+    """Bring ``lasts_s`` up to date with what it follows from."""
+    times_s = state.times_s[state.turn, STAGES[state.stage[state.turn]]]
+    return state._replace(lasts_s=np.where(state.pace > 0.0, times_s, np.inf))
+
+
+def reset(plan: LightPlan, state: LightState, groups: Indices) -> LightState:
     """Begin the cycle of these groups anew: all red, but green for their first controllers. Times and freezing stay."""
-    stage, elapsed_s, turn = state.stage.copy(), state.elapsed_s.copy(), state.turn.copy()
+    stage, turn, elapsed_s = state.stage.copy(), state.turn.copy(), state.elapsed_s.copy()
     members = np.isin(plan.group_of_controller, groups)
     stage[members] = LAST_STAGE
-    elapsed_s[members] = 0.0
     turn[groups] = plan.first_controller[groups]
     stage[turn[groups]] = 0
-    fresh = state._replace(stage=stage, elapsed_s=elapsed_s, turn=turn)
-    return _show(plan, fresh, np.flatnonzero(members).astype(np.int32))
+    elapsed_s[groups] = 0.0
+    return _timed(_show(plan, state._replace(stage=stage, turn=turn, elapsed_s=elapsed_s), np.flatnonzero(members)))
 
 
 def with_colour(state: LightState, light: int, colour: TrafficLightState) -> LightState:
@@ -161,11 +163,24 @@ def with_time(plan: LightPlan, state: LightState, light: int, colour: TrafficLig
     """Set for how long red, yellow or green lasts: for all lights of the same controller, from now on."""
     times_s = state.times_s.copy()
     times_s[plan.controller_of_light[light], colour] = time_s
-    return state._replace(times_s=times_s)
+    return _timed(state._replace(times_s=times_s))
 
 
-def with_frozen(state: LightState, groups: I32, *, frozen: bool) -> LightState:
+def with_frozen(state: LightState, groups: Indices, *, frozen: bool) -> LightState:
     """Stop or restart time in these groups."""
-    flags = state.frozen.copy()
-    flags[groups] = frozen
-    return state._replace(frozen=flags)
+    pace = state.pace.copy()
+    pace[groups] = 0.0 if frozen else 1.0
+    return _timed(state._replace(pace=pace))
+
+
+def elapsed_s(plan: LightPlan, state: LightState) -> F64:
+    """Return for each light (L,) how long its controller's stage has lasted, as CARLA tells its clients."""
+    controller = plan.controller_of_light
+    group = plan.group_of_controller[controller]
+    return np.where(state.turn[group] == controller, state.elapsed_s[group], 0.0)
+
+
+def is_frozen(plan: LightPlan, state: LightState) -> Flags:
+    """Return for each light (L,) whether time stands still for it."""
+    frozen: Flags = state.pace[plan.group_of_controller[plan.controller_of_light]] == 0.0
+    return frozen

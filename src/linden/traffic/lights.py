@@ -19,8 +19,8 @@ class Traffic:
     """Lights and signs of one map. Lights are named by their number: their place among the lights.
 
     Attributes:
-        actors: every light and sign, in the order of the map.
-        lights: index in ``actors`` of each light.
+        actors: every light, then every sign, each in the order of the map.
+        lights: index in ``actors`` of each light: 0, 1, 2 and so on.
         state: how the lights stand; replaced whole.
     """
 
@@ -28,7 +28,7 @@ class Traffic:
         """Make the actors of a map's signals and begin their cycles."""
         self.actors: tuple[TrafficActor, ...]
         self.actors, self._plan = traffic_actors(opendrive)
-        self.lights = tuple(index for index, actor in enumerate(self.actors) if actor.light != NO_LIGHT)
+        self.lights = range(sum(actor.light != NO_LIGHT for actor in self.actors))
         self.state = cycle.initial(self._plan)
         self._grid = trigger_grid(world_volumes(self.actors))
 
@@ -94,8 +94,8 @@ class Traffic:
         rows["green_time"] = state.times_s[controller, TrafficLightState.GREEN]
         rows["yellow_time"] = state.times_s[controller, TrafficLightState.YELLOW]
         rows["red_time"] = state.times_s[controller, TrafficLightState.RED]
-        rows["elapsed_time"] = state.elapsed_s[controller]
-        rows["frozen"] = state.frozen[self._plan.group_of_controller[controller]]
+        rows["elapsed_time"] = cycle.elapsed_s(self._plan, state)
+        rows["frozen"] = cycle.is_frozen(self._plan, state)
         rows["state"] = state.colour
 
     def _group_of(self, light: int) -> I32:

@@ -38,8 +38,8 @@ class TriggerGrid(NamedTuple):
     corner_m: F64
     """(2,) least x and y of the grid."""
     cell_m: float
-    columns: int
-    """Cells along x; along y there are K / columns."""
+    side: int
+    """Cells along x, and along y: K = side²."""
     first: I32
     """(K + 1,) where each cell's boxes begin in ``members``."""
     members: I32
@@ -81,17 +81,16 @@ def owners_over(
     Separating axes in the plane, and overlap in height: Ericson, Real-Time Collision Detection, section 4.4.1.
     """
     found = np.full(len(slots), -1, np.int32)
-    cells = len(grid.first) - 1
     for i in range(len(slots)):
         slot = slots[i]
         cosine, sine = math.cos(rotation_rad[slot, 1]), math.sin(rotation_rad[slot, 1])
         x = position_m[slot, 0] + cosine * box_centre_m[slot, 0] - sine * box_centre_m[slot, 1]
         y = position_m[slot, 1] + sine * box_centre_m[slot, 0] + cosine * box_centre_m[slot, 1]
         z = position_m[slot, 2] + box_centre_m[slot, 2]
-        column = math.floor((x - grid.corner_m[0]) / grid.cell_m)
-        cell = math.floor((y - grid.corner_m[1]) / grid.cell_m) * grid.columns + column
-        if column < 0 or column >= grid.columns or cell < 0 or cell >= cells:
+        column, row = (x - grid.corner_m[0]) / grid.cell_m, (y - grid.corner_m[1]) / grid.cell_m
+        if not (0.0 <= column < grid.side and 0.0 <= row < grid.side):  # also where a place is no number
             continue
+        cell = int(row) * grid.side + int(column)
         nearest = math.inf
         for member in range(grid.first[cell], grid.first[cell + 1]):
             box = grid.members[member]
