@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from linden.geometry import from_opendrive
-from linden.opendrive.evaluate.nearest import MiddleLines, middle_lines
+from linden.opendrive.evaluate.nearest import MiddleLines, Nearest, middle_lines
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.furniture import Signal
 from linden.opendrive.model import OpenDrive, Road
@@ -24,48 +24,49 @@ _KEPT_NAMES = ("Stencil_STOP", "STATIC")  # signals of these names stay where th
 
 def landmark_transforms(opendrive: OpenDrive) -> tuple[Transform, ...]:
     """Return the pose of every signal in the order of the file, as ``carla.Landmark.transform`` gives it."""
-    signals = [(index, signal) for index, road in enumerate(opendrive.roads) for signal in road.signals]
+    signals = [signal for _, signal in opendrive.signals()]
     if not signals:
         return ()
     tables = tables_of(opendrive)
     lines = middle_lines(tables, LaneType.DRIVING | LaneType.SHOULDER)
     return tuple(
         pose if _stays(signal) else _pushed_out(tables, lines, pose)
-        for (_, signal), pose in zip(signals, unmoved_transforms(opendrive), strict=True)
+        for signal, pose in zip(signals, unmoved_transforms(opendrive), strict=True)
     )
 
 
 def unmoved_transforms(opendrive: OpenDrive) -> tuple[Transform, ...]:
     """Return the pose of every signal as the file says it, before LibCarla moves those that stand in a lane."""
-    tables = tables_of(opendrive)
-    return tuple(
-        _as_written(tables, index, signal) for index, road in enumerate(tables.roads) for signal in road.signals
-    )
+    signals = [signal for _, signal in opendrive.signals()]
+    if not signals:
+        return ()
+    poses = []
+    for signal, beside_road in zip(signals, _beside_roads(tables_of(opendrive)), strict=True):
+        if signal.inertial is None:
+            poses.append(_tilted(beside_road, signal.pitch_rad, signal.roll_rad))
+        else:
+            x_m, y_m, z_m, heading_rad, pitch_rad, roll_rad = signal.inertial
+            poses.append(_tilted(from_opendrive(x_m, y_m, z_m, heading_rad), pitch_rad, roll_rad))
+    return tuple(poses)
 
 
 def _stays(signal: Signal) -> bool:
     return signal.inertial is not None or any(name in signal.name for name in _KEPT_NAMES)
 
 
-def _as_written(tables: Tables, road_index: int, signal: Signal) -> Transform:
-    if signal.inertial is not None:
-        x_m, y_m, z_m, heading_rad, pitch_rad, roll_rad = signal.inertial
-        return _tilted(from_opendrive(x_m, y_m, z_m, heading_rad), pitch_rad, roll_rad)
-    return _tilted(_beside_road(tables, road_index, signal), signal.pitch_rad, signal.roll_rad)
-
-
-def _beside_road(tables: Tables, road_index: int, signal: Signal) -> Transform:
-    s_m = np.array([min(max(signal.s_m, 0.0), tables.roads[road_index].length_m)])
-    road = np.array([road_index])
-    x_m, y_m, heading_rad = (float(value[0]) for value in tables.curves.pose(road, s_m))
-    z_m = float(tables.elevation.value(road, s_m)[0]) + signal.z_offset_m
-    facing_rad = heading_rad + signal.heading_offset_rad
-    x_m -= math.sin(heading_rad) * signal.t_m
-    y_m += math.cos(heading_rad) * signal.t_m
-    if signal.is_light:
-        x_m += math.cos(facing_rad) * _LIGHT_ADVANCE_M
-        y_m += math.sin(facing_rad) * _LIGHT_ADVANCE_M
-    return from_opendrive(x_m, y_m, z_m, facing_rad)
+def _beside_roads(tables: Tables) -> list[Transform]:
+    """Return every signal at its s and t, turned by its heading offset; lights a little forward."""
+    road = np.array([index for index, road in enumerate(tables.roads) for _ in road.signals], dtype=np.int64)
+    signals = [signal for road in tables.roads for signal in road.signals]
+    s_m = np.clip([signal.s_m for signal in signals], 0.0, tables.road_length_m[road])
+    pose, z_m = tables.curves.pose(road, s_m), tables.elevation.value(road, s_m)
+    facing_rad = pose.heading_rad + [signal.heading_offset_rad for signal in signals]
+    t_m = np.array([signal.t_m for signal in signals])
+    advance_m = np.array([_LIGHT_ADVANCE_M * signal.is_light for signal in signals])
+    x_m = pose.x_m - np.sin(pose.heading_rad) * t_m + np.cos(facing_rad) * advance_m
+    y_m = pose.y_m + np.cos(pose.heading_rad) * t_m + np.sin(facing_rad) * advance_m
+    z_m = z_m + [signal.z_offset_m for signal in signals]
+    return [from_opendrive(*map(float, place)) for place in zip(x_m, y_m, z_m, facing_rad, strict=True)]
 
 
 def _tilted(pose: Transform, pitch_rad: float, roll_rad: float) -> Transform:
@@ -78,7 +79,10 @@ def _pushed_out(tables: Tables, lines: MiddleLines, pose: Transform) -> Transfor
     found = lines.nearest(x, -y, z)
     if found is None:
         return pose
-    lane_pose, width_m = _lane_pose(tables, found.lane, found.s_m)
+    width_m = _width_m(tables, found)
+    if found.distance_m >= _CLEAR_WIDTHS * width_m:
+        return pose
+    lane_pose = _lane_pose(tables, found)
     yaw_rad = math.radians(lane_pose.rotation.yaw)
     pushes = 0
     while found.distance_m < _CLEAR_WIDTHS * width_m and pushes < _PUSHES:
@@ -86,25 +90,30 @@ def _pushed_out(tables: Tables, lines: MiddleLines, pose: Transform) -> Transfor
         x -= math.sin(yaw_rad) * width_m * _PUSH_WIDTHS * direction
         y += math.cos(yaw_rad) * width_m * _PUSH_WIDTHS * direction
         found = lines.nearest(x, -y, z) or found
-        _, width_m = _lane_pose(tables, found.lane, found.s_m)
+        width_m = _width_m(tables, found)
         pushes += 1
         if direction == 0:
             break
-    if pushes in {0, _PUSHES}:
+    if pushes == _PUSHES:
         return pose
     return Transform(Vector3D(x, y, z), lane_pose.rotation)
 
 
-def _lane_pose(tables: Tables, lane: int, s_m: float) -> tuple[Transform, float]:
-    """Return the lane's middle, turned the way its traffic goes, and its width."""
-    places = tables.lane_centres(np.array([lane]), np.array([s_m]))
-    x_m, y_m, z_m, heading_rad, slope, width_m = (float(value[0]) for value in places)
-    row = tables.lanes[lane]
+def _width_m(tables: Tables, found: Nearest) -> float:
+    inner_m, outer_m = tables.lane_sides(np.array([found.lane]), np.array([found.s_m]))
+    return abs(float(outer_m[0] - inner_m[0]))
+
+
+def _lane_pose(tables: Tables, found: Nearest) -> Transform:
+    """Return the lane's middle, turned the way its traffic goes."""
+    places = tables.lane_centres(np.array([found.lane]), np.array([found.s_m]))
+    x_m, y_m, z_m, heading_rad, slope, _ = (float(value[0]) for value in places)
+    row = tables.lanes[found.lane]
     road: Road = tables.roads[row["road"]]
     backwards = (row["lane_id"] > 0) == road.is_right_hand
     pose = from_opendrive(x_m, y_m, z_m, heading_rad)
     yaw, pitch = pose.rotation.yaw + (180.0 if backwards else 0.0), math.degrees(slope)
-    return pose._replace(rotation=Rotation(360.0 - pitch if backwards else pitch, yaw, 0.0)), width_m
+    return pose._replace(rotation=Rotation(360.0 - pitch if backwards else pitch, yaw, 0.0))
 
 
 def _way_out(tables: Tables, lane: int) -> int:

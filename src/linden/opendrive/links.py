@@ -31,8 +31,8 @@ def lane_links(opendrive: OpenDrive) -> LaneLinks:
     successors: list[_Rows] = []
     predecessors: list[list[int]] = [[] for _ in range(len(tables.lanes))]
     places = zip(*(tables.lanes[name].tolist() for name in ("road", "section", "lane_id")), strict=True)
-    for row, (road_index, section_index, lane_id) in enumerate(places):
-        after = _after(tables, ways, index_of_road, (road_index, section_index, lane_id))
+    for row, place in enumerate(places):
+        after = _after(tables, ways, index_of_road, row, place)
         successors.append(after)
         for next_row in after:
             predecessors[next_row].append(row)
@@ -67,11 +67,10 @@ def _successor_of(lane: Lane) -> int | None:
     return lane.successor
 
 
-def _after(tables: Tables, ways: _Ways, index_of_road: dict[int, int], place: tuple[int, int, int]) -> _Rows:
+def _after(tables: Tables, ways: _Ways, index_of_road: dict[int, int], row: int, place: tuple[int, int, int]) -> _Rows:
     road_index, section_index, lane_id = place
     road = tables.roads[road_index]
-    lane = road.sections[section_index].lane(lane_id)
-    assert lane is not None
+    lane = tables.lane_values[row]
     forward = is_forward(road, lane_id)
     linked = lane.successor if forward else lane.predecessor
     following = range(section_index + 1, len(road.sections)) if forward else range(section_index - 1, -1, -1)

@@ -52,17 +52,23 @@ class PlacedSignal(NamedTuple):
 def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
     """Return every signal of the map, in the order of the file."""
     tables, links = tables_of(opendrive), lane_links(opendrive)
-    references = _references(opendrive)
-    controllers = defaultdict(list)
-    for controller in opendrive.controllers:
-        for signal_id in dict.fromkeys(controller.signals):
-            controllers[signal_id].append(controller.id)
+    controllers = _controllers(opendrive)
     junction_of_controller = {name: junction.id for junction in opendrive.junctions for name in junction.controllers}
+    references = _references(opendrive)
+    signals = list(opendrive.signals())
+    places = [
+        [lane for reference in references[signal.id] for lane in _driving_lanes(tables, reference)]
+        for _, signal in signals
+    ]
+    landmarks = landmark_transforms(opendrive)
+    transforms = [
+        Transform(landmark.location, Rotation(0.0, landmark.rotation.yaw + _MODEL_YAW_DEG, 0.0))
+        for landmark in landmarks
+    ]
+    boxes = trigger_boxes(tables, links, transforms, places)
     placed = []
-    for (road, signal), landmark in zip(opendrive.signals(), landmark_transforms(opendrive), strict=True):
-        places = [lane for reference in references[signal.id] for lane in _driving_lanes(tables, reference)]
-        guards = [junction_of_controller[name] for name in controllers[signal.id] if name in junction_of_controller]
-        transform = Transform(landmark.location, Rotation(0.0, landmark.rotation.yaw + _MODEL_YAW_DEG, 0.0))
+    for nth, (road, signal) in enumerate(signals):
+        guarded = [junction_of_controller[name] for name in controllers[signal.id] if name in junction_of_controller]
         placed.append(
             PlacedSignal(
                 signal_id=signal.id,
@@ -75,15 +81,24 @@ def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
                 is_light=signal.is_light,
                 road_id=road.id,
                 s_m=signal.s_m,
-                landmark=landmark,
-                transform=transform,
+                landmark=landmarks[nth],
+                transform=transforms[nth],
                 controllers=tuple(controllers[signal.id]),
-                junction_id=guards[0] if guards else _junction_ahead(tables, links, road, places),
-                lanes=tuple(_affected(tables, lane) for lane in places),
-                trigger_volumes=trigger_boxes(tables, links, transform, places),
+                junction_id=guarded[0] if guarded else _junction_ahead(tables, links, road, places[nth]),
+                lanes=tuple(_affected(tables, lane) for lane in places[nth]),
+                trigger_volumes=boxes[nth],
             )
         )
     return tuple(placed)
+
+
+def _controllers(opendrive: OpenDrive) -> dict[str, list[str]]:
+    """Map a signal's id to the controllers that switch it."""
+    controllers: dict[str, list[str]] = defaultdict(list)
+    for controller in opendrive.controllers:
+        for signal_id in dict.fromkeys(controller.signals):
+            controllers[signal_id].append(controller.id)
+    return controllers
 
 
 _Reference = tuple[int, float, tuple[Validity, ...]]

@@ -31,16 +31,58 @@ class LanePlace(NamedTuple):
     s_m: float
 
 
+class _Approach(NamedTuple):
+    """Lanes of one road that reach the same line side by side: rows ``first`` to ``last`` of the places asked for."""
+
+    signal: int
+    first: int
+    last: int
+
+
 def trigger_boxes(
-    tables: Tables, links: LaneLinks, world_from_signal: Transform, places: list[LanePlace]
-) -> tuple[BoundingBox, ...]:
-    """Return a box for each approach, local to the signal's actor, x across the lanes where the actor stands square."""
-    approaches: dict[tuple[int, int, bool, float], list[LanePlace]] = defaultdict(list)
-    for place in dict.fromkeys(_before_line(tables, links, place) for place in places):
-        row = tables.lanes[place.lane]
-        forward = is_forward(tables.roads[row["road"]], int(row["lane_id"]))
-        approaches[int(row["road"]), int(row["section"]), forward, round(place.s_m, 3)].append(place)
-    return tuple(_box(tables, world_from_signal, approach) for approach in approaches.values())
+    tables: Tables, links: LaneLinks, world_from_signals: list[Transform], places: list[list[LanePlace]]
+) -> list[tuple[BoundingBox, ...]]:
+    """Return each signal's boxes, one an approach, local to its actor: x across the lanes where it stands square."""
+    approaches: list[_Approach] = []
+    ordered: list[LanePlace] = []
+    for signal, own in enumerate(places):
+        groups: dict[tuple[int, int, bool, float], list[LanePlace]] = defaultdict(list)
+        for place in dict.fromkeys(_before_line(tables, links, place) for place in own):
+            row = tables.lanes[place.lane]
+            key = (int(row["road"]), int(row["section"]), _is_forward(tables, place.lane), round(place.s_m, 3))
+            groups[key].append(place)
+        for group in groups.values():
+            approaches.append(_Approach(signal, len(ordered), len(ordered) + len(group)))
+            ordered += group
+    boxes: list[list[BoundingBox]] = [[] for _ in places]
+    for signal, area in zip(
+        (approach.signal for approach in approaches), _areas(tables, approaches, ordered), strict=True
+    ):
+        boxes[signal].append(_box(world_from_signals[signal], *area))
+    return [tuple(own) for own in boxes]
+
+
+def _areas(tables: Tables, approaches: list[_Approach], places: list[LanePlace]) -> list[tuple[Transform, float]]:
+    """Return the middle of each approach's box, turned along the road, and half its width across the lanes in m."""
+    if not approaches:
+        return []
+    lanes = np.array([place.lane for place in places])
+    s_m = np.array([place.s_m for place in places])
+    sides = np.sort(np.stack(tables.lane_sides(lanes, s_m)), axis=0)  # lower and upper t of each lane
+    inset_m = INSET_WIDTHS * (sides[1] - sides[0])
+    first = np.array([approach.first for approach in approaches])
+    low_m = np.minimum.reduceat(sides[0] + inset_m, first)
+    high_m = np.maximum.reduceat(sides[1] - inset_m, first)
+    t_m = (low_m + high_m) / 2.0
+    road = tables.lanes["road"][lanes[first]].astype(np.int64)
+    pose, z_m = tables.curves.pose(road, s_m[first]), tables.elevation.value(road, s_m[first])
+    x_m = pose.x_m - np.sin(pose.heading_rad) * t_m
+    y_m = pose.y_m + np.cos(pose.heading_rad) * t_m
+    half_m = np.maximum((high_m - low_m) / 2.0, 0.01)
+    return [
+        (from_opendrive(*map(float, place)), float(half))
+        for *place, half in zip(x_m, y_m, z_m, pose.heading_rad, half_m, strict=True)
+    ]
 
 
 def _before_line(tables: Tables, links: LaneLinks, place: LanePlace) -> LanePlace:
@@ -65,24 +107,14 @@ def _is_forward(tables: Tables, lane: int) -> bool:
     return is_forward(tables.roads[tables.lanes["road"][lane]], int(tables.lanes["lane_id"][lane]))
 
 
-def _box(tables: Tables, world_from_signal: Transform, approach: list[LanePlace]) -> BoundingBox:
-    lanes = np.array([place.lane for place in approach])
-    s_m = np.array([place.s_m for place in approach])
-    sides = np.sort(np.stack(tables.lane_sides(lanes, s_m)), axis=0)  # lower and upper t of each lane
-    inset = INSET_WIDTHS * (sides[1] - sides[0])
-    low_m, high_m = float((sides[0] + inset).min()), float((sides[1] - inset).max())
-    road = tables.lanes["road"][lanes[:1]].astype(np.int64)
-    x_m, y_m, heading_rad = (float(value[0]) for value in tables.curves.pose(road, s_m[:1]))
-    z_m = float(tables.elevation.value(road, s_m[:1])[0])
-    t_m = (low_m + high_m) / 2.0
-    world = from_opendrive(x_m - math.sin(heading_rad) * t_m, y_m + math.cos(heading_rad) * t_m, z_m, heading_rad)
-    across, along = max((high_m - low_m) / 2.0, 0.01), HALF_LENGTH_M
-    turn_deg = math.remainder(world.rotation.yaw + 90.0 - world_from_signal.rotation.yaw, 180.0)
+def _box(world_from_signal: Transform, area: Transform, half_width_m: float) -> BoundingBox:
+    across, along = half_width_m, HALF_LENGTH_M
+    turn_deg = math.remainder(area.rotation.yaw + 90.0 - world_from_signal.rotation.yaw, 180.0)
     if abs(turn_deg) > 45.0:  # the actor stands along the road: its x axis is the box's length
         turn_deg -= math.copysign(90.0, turn_deg)
         across, along = along, across
     return BoundingBox(
-        location=_local(world_from_signal, world.location),
+        location=_local(world_from_signal, area.location),
         extent=Vector3D(across, along, HALF_HEIGHT_M),
         rotation=Rotation(0.0, turn_deg, 0.0),
     )

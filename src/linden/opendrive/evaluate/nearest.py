@@ -23,7 +23,7 @@ class Nearest(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MiddleLines:
-    """The middles of lanes as chords in OpenDRIVE's frame."""
+    """The middles of lanes as chords in OpenDRIVE's frame, sorted by the x of their starts."""
 
     lane: I64  # (N,)
     start: F64  # (N, 3), m
@@ -33,8 +33,8 @@ class MiddleLines:
 
     def nearest(self, x_m: float, y_m: float, z_m: float) -> Nearest | None:
         """Return the nearest place in space, None where no lane lies within ``REACH_M``."""
-        dx, dy = self.start[:, 0] - x_m, self.start[:, 1] - y_m
-        near = np.flatnonzero((np.abs(dx) < REACH_M) & (np.abs(dy) < REACH_M))
+        low, high = np.searchsorted(self.start[:, 0], [x_m - REACH_M, x_m + REACH_M])
+        near = low + np.flatnonzero(np.abs(self.start[low:high, 1] - y_m) < REACH_M)
         if not len(near):
             return None
         away = np.array([x_m, y_m, z_m]) - self.start[near]
@@ -62,6 +62,7 @@ def middle_lines(tables: Tables, types: LaneType) -> MiddleLines:
     centres = tables.lane_centres(lane, s_m)
     points = np.stack([centres.x_m, centres.y_m, centres.z_m], axis=1)
     goes_on = np.flatnonzero((lane[1:] == lane[:-1]) & (s_m[1:] > s_m[:-1])) if len(lane) else np.empty(0, np.int64)
+    goes_on = goes_on[np.argsort(points[goes_on, 0], kind="stable")]
     return MiddleLines(
         lane=lane[goes_on],
         start=points[goes_on],

@@ -47,6 +47,7 @@ class Tables:
     elevation: Pieces
     lane_offset: Pieces
     lanes: NDArray[np.void]  # of LANE, in the order of the file, each section from the left to the right
+    lane_values: tuple[Lane, ...]  # the same lanes as the file has them
     widths: Pieces
     heights_inner: Pieces
     heights_outer: Pieces
@@ -118,6 +119,7 @@ def tables_of(opendrive: OpenDrive) -> Tables:
         elevation=pieces_of([(0.0, road.elevations) for road in roads], lengths_m),
         lane_offset=pieces_of([(0.0, road.lane_offsets) for road in roads], lengths_m),
         lanes=_lane_rows(cells),
+        lane_values=tuple(lanes),
         widths=pieces_of(zip(origins_m, [lane.widths or lane.borders for lane in lanes], strict=True), ends_m),
         heights_inner=pieces_of(
             zip(origins_m, [[Cubic(h.offset_m, h.inner_m) for h in lane.heights] for lane in lanes], strict=True),
