@@ -1,0 +1,65 @@
+"""Claims about the driving score: the thesis's own table, and what may be adjusted."""
+
+import pytest
+
+from basu.errors import UserError
+from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
+from basu.metrics.score import Scoring, driving_score, infraction_score, infractions, score
+from fakes.drives import at, driven, hit, stop_sign, straight_route
+
+Counts = dict[Infraction, int]
+
+
+@pytest.mark.parametrize(
+    ("counts", "path", "driving"),
+    [
+        pytest.param({}, 0.98, 0.996, id="basic"),
+        pytest.param({Infraction.COLLISION_STATIC: 1, Infraction.SPEEDING: 1}, 0.18, 0.452, id="forward"),
+        # the thesis rounds 0.8 ** 3 = 0.512 to 0.51 before it goes on, hence 0.604 for 0.6056
+        pytest.param({Infraction.SPEEDING: 3}, 0.98, 0.6056, id="human"),
+    ],
+)
+def test_scores_match_table_5_1(counts: Counts, path: float, driving: float) -> None:
+    scoring = Scoring()
+    assert driving_score(infraction_score(counts, scoring), path, scoring) == pytest.approx(driving, abs=1e-9)
+
+
+def test_the_human_of_table_5_1_scores_what_is_printed_when_rounded_as_there() -> None:
+    rounded = round(infraction_score({Infraction.SPEEDING: 3}, Scoring()), 2)
+    assert driving_score(rounded, 0.98, Scoring()) == pytest.approx(0.604)
+
+
+def test_the_behavioral_of_table_5_1_fits_no_one_collision_and_one_speeding() -> None:
+    # the table prints 0.13 where equation 5.1 gives 0.52 for one static collision and one speeding; its driving
+    # score of 0.216 follows from the 0.13, so equation 5.5 is checked with it and the 0.13 stays unexplained
+    assert driving_score(0.13, 0.56, Scoring()) == pytest.approx(0.216)
+
+
+def test_weights_that_do_not_sum_to_one_are_refused() -> None:
+    with pytest.raises(UserError, match="must be non-negative and sum to 1"):
+        Scoring(infraction_weight=0.8, path_following_weight=0.3)
+
+
+@pytest.mark.parametrize("penalty", [-0.1, 1.5])
+def test_a_penalty_that_is_no_factor_is_refused(penalty: float) -> None:
+    with pytest.raises(UserError, match="penalty of speeding"):
+        Scoring(penalties={**DEFAULT_PENALTIES, Infraction.SPEEDING: penalty})
+
+
+def test_an_adjusted_penalty_enters_the_score() -> None:
+    history = driven(at(10.0, 20.1), collisions=[hit(50)])
+    mild = Scoring(penalties={**DEFAULT_PENALTIES, Infraction.COLLISION_STATIC: 0.9})
+    assert score(history, Scoring()).infraction == pytest.approx(0.65)
+    assert score(history, mild).infraction == pytest.approx(0.9)
+
+
+def test_a_clean_drive_to_the_end_scores_one() -> None:
+    assert score(driven(at(10.0, 20.1)), Scoring()) == (1.0, 1.0, 1.0)
+
+
+def test_infractions_come_in_the_order_in_which_they_happened() -> None:
+    history = driven(
+        at(12.5, 10.0), route=straight_route(limit_mps=11.0, controls=(stop_sign(60.0),)), collisions=[hit(180)]
+    )
+    kinds = [found.kind for found in infractions(history)]
+    assert kinds == [Infraction.SPEEDING, Infraction.STOP_SIGN, Infraction.COLLISION_STATIC]
