@@ -1,10 +1,11 @@
 """When a sensor measures: its ``sensor_tick`` as Unreal's tick interval has it.
 
-The first frame is due, then every frame that is at least the interval after the last due time. Where frames do not fall
-on due times, the overrun is credited to the next (TickTaskManager.cpp), so the mean rate is right; but there is at most
-one measurement a frame, and what was missed is not made up for.
+The first frame is due, and from there on the first frame in every interval. So where frames do not fall on due times,
+the overrun is credited to the next (as TickTaskManager.cpp does) and the mean rate is right. There is at most one
+measurement a frame, and what was missed in a long one is not made up for.
 """
 
+import math
 from typing import NamedTuple
 
 ROUNDING_S = 1e-6
@@ -22,8 +23,10 @@ class Schedule(NamedTuple):
 def advance(schedule: Schedule, now_s: float) -> tuple[bool, Schedule]:
     """Return whether the frame at ``now_s`` is one of the sensor's, and its schedule after it."""
     interval_s, due_s, made = schedule
-    if made and now_s < due_s - ROUNDING_S:
+    if not made:
+        due_s = now_s
+    late_s = now_s - due_s + ROUNDING_S
+    if late_s < 0.0:
         return False, schedule
-    following_s = (due_s if made else now_s) + interval_s
-    following_s = max(following_s, now_s)  # what was missed stays missed: the next frame is due at once
-    return True, Schedule(interval_s, following_s, made + 1)
+    missed = math.floor(late_s / interval_s) if interval_s > 0.0 else 0
+    return True, Schedule(interval_s, due_s + (missed + 1) * interval_s, made + 1)
