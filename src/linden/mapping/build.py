@@ -127,13 +127,17 @@ class _Assembly:
             self.ways.append(Way(record, turn.come.end, turn.go.end))
             connections.append(junctions.connection(record))
             turn_ids.append(record.id)
+        driven = junctions.surface(turns)
         for come, go in zip(legs, (*legs[1:], legs[0]), strict=True):
-            record = junctions.corner_road(next(self.way_ids), number, (come, go), self._ids(come, go), height_m)
+            record = junctions.corner_road(
+                next(self.way_ids), number, (come, go), self._ids(come, go), height_m, driven
+            )
             self.corners.append(record)
             connections.append(junctions.connection(record))
         ranks = self._add_controls(legs, rules, found, walked=not crossings.isdisjoint(nodes))
         if is_roundabout:
             self._add_island(legs[0], centre, found)
+            self.corners.append(roundabouts.island(next(self.way_ids), centre, height_m))
         self.junctions.append(
             JunctionRecord(
                 id=number,

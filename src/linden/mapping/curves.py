@@ -8,8 +8,9 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-STRAIGHT_PER_M = 1e-7
-"""Below this curvature a piece is a line: it leaves its tangent by 0.5 mm in 100 m."""
+STRAIGHT_PER_M = 2e-5
+"""An arc that is flatter becomes its chord: over 20 m the two lie 1 mm apart, and LibCarla, which finds an arc's points
+from its centre in single precision, is off by more than that where the radius exceeds 50 km."""
 
 
 class Pose(NamedTuple):
@@ -145,12 +146,20 @@ def joined(begin: Pose, end: Pose) -> Path:
     """
     single = _one_turn(begin, end)
     double = _two_arcs(begin, end)
-    return single if single is not None and sharpest(single) <= sharpest(double) + 1e-9 else double
+    found = single if single is not None and sharpest(single) <= sharpest(double) + 1e-9 else double
+    return tuple(_chord(piece) if abs(piece.curvature_per_m) < STRAIGHT_PER_M else piece for piece in found)
 
 
 def sharpest(path: Path) -> float:
     """Return the largest absolute curvature in 1/m."""
     return max(abs(piece.curvature_per_m) for piece in path)
+
+
+def _chord(piece: Piece) -> Piece:
+    """Return the line between the ends of a piece."""
+    end = along(piece, piece.length_m)
+    dx, dy = end.x_m - piece.start.x_m, end.y_m - piece.start.y_m
+    return Piece(piece.start._replace(heading_rad=math.atan2(dy, dx)), math.hypot(dx, dy), 0.0)
 
 
 def _one_turn(begin: Pose, end: Pose) -> Path | None:
@@ -199,6 +208,6 @@ def _arc_to(begin: Pose, point: Point) -> Piece:
     chord_m = math.hypot(forward_m, left_m)
     half_turn_rad = math.atan2(left_m, forward_m)
     curvature = 2 * math.sin(half_turn_rad) / chord_m
-    if abs(curvature) < STRAIGHT_PER_M:
+    if abs(curvature) < 1e-12:
         return Piece(begin, chord_m, 0.0)
     return Piece(begin, 2 * half_turn_rad / curvature, curvature)

@@ -34,6 +34,16 @@ def eased(s_m: float, over_m: float, values: tuple[float, float], slopes: tuple[
     )
 
 
+def value(cubics: tuple[Cubic, ...], s_m: float) -> float:
+    """Return the value of piecewise cubics at a distance, 0 where there are none."""
+    valid = [cubic for cubic in cubics if cubic.s_m <= s_m + 1e-9]
+    if not valid:
+        return 0.0
+    start_m, a, b, c, d = valid[-1]
+    ds = s_m - start_m
+    return a + ds * (b + ds * (c + ds * d))
+
+
 class Mark(NamedTuple):
     """A road mark on a lane's outer edge (the centre lane's: on the axis)."""
 
@@ -100,7 +110,7 @@ class RoadRecord(NamedTuple):
     path: Path
     predecessor: Link | None
     successor: Link | None
-    speed_mph: float
+    speed_mph: float | None
     elevation: tuple[Cubic, ...]
     axis: tuple[Cubic, ...]
     left: tuple[LaneRecord, ...]
@@ -214,8 +224,8 @@ def _add_road(root: etree._Element, road: RoadRecord) -> None:
         if end is not None:
             contact = {} if end.contact is None else {"contactPoint": end.contact}
             _add(link, tag, elementType=end.element, elementId=end.id, **contact)
-    speed = _add(_add(element, "type", s=0, type="town"), "speed", max=_fixed(road.speed_mph, 3), unit="mph")
-    assert speed is not None
+    if road.speed_mph is not None:
+        _add(_add(element, "type", s=0, type="town"), "speed", max=_fixed(road.speed_mph, 3), unit="mph")
     _add_plan(element, road.path)
     profile = _add(element, "elevationProfile")
     for cubic in road.elevation:

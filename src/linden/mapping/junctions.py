@@ -3,13 +3,15 @@
 import math
 from typing import NamedTuple
 
-from shapely import LineString
+from shapely import LineString, MultiPolygon, Point, Polygon, make_valid, unary_union
 
-from linden.mapping.curves import Path, Pose, joined, length, moved, sampled, turned_back, wrapped
-from linden.mapping.document import Connection, Cubic, LaneRecord, Link, Mark, RoadRecord, eased
+from linden.mapping.curves import Path, Pose, joined, length, moved, pose_at, sampled, turned_back, wrapped
+from linden.mapping.document import Connection, Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
 from linden.mapping.network import Leg
 from linden.mapping.roads import blended, contact, strips
 
+SHOULDER_STEP_M = 2.0  # between the widths given for the paved rest of a corner
+SHOULDER_REACH_M = 15.0
 STRAIGHT_RAD = math.radians(35)
 """Up to this change of heading a way through a junction counts as straight on."""
 
@@ -74,10 +76,23 @@ def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int],
     )
 
 
+def surface(ways: tuple[Turn, ...]) -> Polygon | MultiPolygon:
+    """Return the ground that the lanes of a junction's turns cover."""
+    return unary_union([_covered(turn) for turn in ways])
+
+
 def corner_road(
-    number: int, junction: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], height_m: float
+    number: int,
+    junction: int,
+    legs: tuple[Leg, Leg],
+    road_ids: tuple[int, int],
+    height_m: float,
+    driven: Polygon | MultiPolygon,
 ) -> RoadRecord:
-    """Return kerb, verge and sidewalk from the right side of one leg to the next leg counter-clockwise."""
+    """Return kerb, verge and sidewalk from the right side of one leg to the next leg counter-clockwise.
+
+    What lies between the kerb and the ``driven`` surface is paved too: a shoulder on the left of the kerb line.
+    """
     come, go = legs
     begin = moved(come.pose, left_m=come.view.kerb_m(right=True))
     end = turned_back(moved(go.pose, left_m=go.view.kerb_m(right=False)))
@@ -93,10 +108,33 @@ def corner_road(
         speed_mph=min(come.street.speed_limit_mph, go.street.speed_limit_mph),
         elevation=(Cubic(0.0, height_m),),
         axis=(),
-        left=(),
+        left=_shoulder(path, driven),
         right=strips(found, -1, length(path)),
         centre=Mark("curb"),
     )
+
+
+def _shoulder(path: Path, driven: Polygon | MultiPolygon) -> tuple[LaneRecord, ...]:
+    """Return the lane between a kerb line and the driven surface on its left, none where they touch all along."""
+    total_m = length(path)
+    count = math.ceil(total_m / SHOULDER_STEP_M)
+    stations = [total_m * i / count for i in range(count + 1)]
+    # 5 cm inside the ends: there the look across would run along the edge of the driven surface
+    gaps_m = [_gap(pose_at(path, min(max(s, 0.05), total_m - 0.05)), driven) for s in stations]
+    if max(gaps_m) < 0.1:
+        return ()
+    widths = tuple(
+        Cubic(s, gap, (gap_after - gap) / (after - s))
+        for s, after, gap, gap_after in zip(stations, stations[1:], gaps_m, gaps_m[1:], strict=False)
+    )
+    return (LaneRecord(id=1, kind="shoulder", widths=widths),)
+
+
+def _gap(pose: Pose, driven: Polygon | MultiPolygon) -> float:
+    """Return how far the driven surface lies to the left of a pose, 0 where it does not within ``SHOULDER_REACH_M``."""
+    far = moved(pose, left_m=SHOULDER_REACH_M)
+    across = LineString([pose[:2], far[:2]]).intersection(driven)
+    return 0.0 if across.is_empty else round(across.distance(Point(*pose[:2])), 3)
 
 
 def connection(record: RoadRecord) -> Connection:
@@ -113,6 +151,21 @@ def conflicting(one: Turn, other: Turn) -> bool:
     if (one.go.end, one.lane_out) == (other.go.end, other.lane_out):
         return True
     return bool(_middle_line(one).intersects(_middle_line(other)))
+
+
+def _covered(turn: Turn) -> Polygon | MultiPolygon:
+    """Return the ground under a turn's lane."""
+    total_m = length(turn.path)
+    count = math.ceil(total_m / 0.5)
+    left, right = [], []
+    for i in range(count + 1):
+        s_m = total_m * i / count
+        pose, half_m = pose_at(turn.path, s_m), value(turn.widths, s_m) / 2
+        left.append(moved(pose, left_m=half_m)[:2])
+        right.append(moved(pose, left_m=-half_m)[:2])
+    found = make_valid(Polygon([*left, *reversed(right)]))
+    assert isinstance(found, (Polygon, MultiPolygon)), "a lane covers an area"
+    return found
 
 
 def _middle_line(turn: Turn) -> LineString:

@@ -13,8 +13,9 @@ from linden.mapping.facts import Control, Facts, Intersection, Street
 from linden.mapping.section import Section, View, of_street, view
 
 BEND_RADIUS_M = {"arterial": 60.0, "collector": 40.0, "local": 20.0, "service": 12.0}
-CORNER_RADIUS_M = 6.0  # kerb at a street corner; 3 to 7.5 m are usual in built-up areas (NACTO, "Corner Radii")
-TIGHT_CORNER_RADIUS_M = 3.5  # where junctions stand close
+CORNER_RADII_M = (6.0, 4.5, 3.5)
+"""Kerbs at street corners, the tighter ones where junctions stand close; NACTO, "Corner Radii", has 3 to 7.5 m."""
+
 SHORTEST_ROAD_M = 5.0  # between two junctions; below that they are one
 SHORTEST_SETBACK_M = 6.0
 LONGEST_SETBACK_M = 40.0
@@ -71,9 +72,9 @@ def build(facts: Facts) -> Network:
     """Return the network of the facts; what it holds is in the order of the streets and their points."""
     nodes, edges = _split(facts)
     groups = [[number] for number in range(len(nodes))]
-    tight: set[int] = set()
+    tightness = [0] * len(nodes)
     while True:
-        legs = [_legs(group, nodes, edges, tight=not tight.isdisjoint(group)) for group in groups]
+        legs = [_legs(group, nodes, edges, CORNER_RADII_M[max(tightness[node] for node in group)]) for group in groups]
         setbacks = {leg.end: leg.setback_m for group in legs for leg in group}
         roads = tuple(_road(number, edge, setbacks) for number, edge in enumerate(edges))
         too_short = [
@@ -83,12 +84,13 @@ def build(facts: Facts) -> Network:
         ]
         if not too_short:
             break
-        fresh = {node for pair in too_short for node in pair} - tight
-        if fresh:
-            tight |= fresh
-        else:
+        loose = {node for pair in too_short for node in pair if tightness[node] + 1 < len(CORNER_RADII_M)}
+        for node in loose:
+            tightness[node] += 1
+        if not loose:
             groups = _merged(groups, too_short)
-            tight -= {node for group in groups if len(group) > 1 for node in group}
+            for node in (node for group in groups if len(group) > 1 for node in group):
+                tightness[node] = 0
     junctions = tuple((tuple(group), tuple(found)) for group, found in zip(groups, legs, strict=True) if len(found) > 1)
     return Network(nodes, edges, roads, junctions)
 
@@ -141,7 +143,7 @@ def _merged(groups: list[list[int]], pairs: list[tuple[int, int]]) -> list[list[
     return [kept[key] for key in sorted(kept)]
 
 
-def _legs(group: list[int], nodes: tuple[Node, ...], edges: tuple[Edge, ...], *, tight: bool) -> list[Leg]:
+def _legs(group: list[int], nodes: tuple[Node, ...], edges: tuple[Edge, ...], radius_m: float) -> list[Leg]:
     """Return the legs of a group of nodes, counter-clockwise by where they leave it. Inner edges are none."""
     inside = set(group)
     uncut = []
@@ -156,7 +158,6 @@ def _legs(group: list[int], nodes: tuple[Node, ...], edges: tuple[Edge, ...], *,
     centre = _centre([nodes[node].point for node in group])
     uncut.sort(key=lambda leg: _bearing(centre, pose_at(_outward(edges[leg.end.edge].path, leg.end), 30.0)))
     least_m = _least_setback(group, nodes, uncut)
-    radius_m = TIGHT_CORNER_RADIUS_M if tight else CORNER_RADIUS_M
     cut_m = [least_m] * len(uncut)
     for i, leg in enumerate(uncut):
         j = (i + 1) % len(uncut)

@@ -8,9 +8,10 @@ import math
 from typing import NamedTuple
 
 from linden.mapping.curves import Path, Piece, Point, Pose, along, joined, length, moved, seen_from
-from linden.mapping.document import Cubic, eased
+from linden.mapping.document import Cubic, LaneRecord, Mark, RoadRecord, eased
 from linden.mapping.junctions import Turn, lane_pairs, pose_in, pose_out
 from linden.mapping.network import Leg
+from linden.mapping.section import KERB_HEIGHT_M, KERB_M
 
 ISLAND_RADIUS_M = 4.3
 LANE_M = 4.6
@@ -37,6 +38,32 @@ def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
         path, widths = _way(begin, end, centre, widths_m)
         found.append(Turn(legs[come], lane_in, legs[go], lane_out, path, widths))
     return tuple(found)
+
+
+def island(number: int, centre: Point, height_m: float) -> RoadRecord:
+    """Return the central island: a kerb and grass to the left of a circle that nobody drives on."""
+    start = Pose(centre[0] + ISLAND_RADIUS_M, centre[1], math.pi / 2)
+    first = Piece(start, math.pi * ISLAND_RADIUS_M, 1 / ISLAND_RADIUS_M)
+    second = first._replace(start=along(first, first.length_m))
+    return RoadRecord(
+        id=number,
+        name="roundabout island",
+        junction=-1,
+        path=(first, second),
+        predecessor=None,
+        successor=None,
+        speed_mph=None,
+        elevation=(Cubic(0.0, height_m),),
+        axis=(),
+        left=(
+            LaneRecord(id=1, kind="border", widths=(Cubic(0.0, KERB_M),), height_m=KERB_HEIGHT_M),
+            LaneRecord(
+                id=2, kind="none", widths=(Cubic(0.0, ISLAND_RADIUS_M - KERB_M - 0.05),), height_m=KERB_HEIGHT_M
+            ),
+        ),
+        right=(),
+        centre=Mark("curb"),
+    )
 
 
 def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -> tuple[Path, tuple[Cubic, ...]]:

@@ -14,7 +14,7 @@ from linden.errors import UserError
 from linden.geometry import from_opendrive
 from linden.mapping.build import Built, nearest_road
 from linden.mapping.curves import Pose, length, moved, pose_at, turned_back, wrapped
-from linden.mapping.document import Cubic, RoadRecord
+from linden.mapping.document import RoadRecord, value
 from linden.mapping.facts import Route, Stop
 from linden.mapping.network import End
 from linden.mapping.section import view
@@ -205,21 +205,11 @@ def _centre(strand: _Strand, s_m: float) -> tuple[Pose, float]:
     """Return the middle of a strand's lane, looking along the drive, and its height."""
     record = strand.record
     side = record.right if strand.lane < 0 else record.left
-    inner_m = sum(_value(lane.widths, s_m) for lane in side if abs(lane.id) < abs(strand.lane))
-    width_m = next(_value(lane.widths, s_m) for lane in side if lane.id == strand.lane)
+    inner_m = sum(value(lane.widths, s_m) for lane in side if abs(lane.id) < abs(strand.lane))
+    width_m = next(value(lane.widths, s_m) for lane in side if lane.id == strand.lane)
     sign = -1 if strand.lane < 0 else 1
-    pose = moved(pose_at(record.path, s_m), left_m=_value(record.axis, s_m) + sign * (inner_m + width_m / 2))
-    return pose if strand.to_m > strand.from_m else turned_back(pose), _value(record.elevation, s_m)
-
-
-def _value(cubics: tuple[Cubic, ...], s_m: float) -> float:
-    """Return the value of piecewise cubics at a distance, 0 where there are none."""
-    valid = [cubic for cubic in cubics if cubic.s_m <= s_m + 1e-9]
-    if not valid:
-        return 0.0
-    start_m, a, b, c, d = valid[-1]
-    ds = s_m - start_m
-    return a + ds * (b + ds * (c + ds * d))
+    pose = moved(pose_at(record.path, s_m), left_m=value(record.axis, s_m) + sign * (inner_m + width_m / 2))
+    return pose if strand.to_m > strand.from_m else turned_back(pose), value(record.elevation, s_m)
 
 
 def _called(built: Built, samples: tuple[Sample, ...], stop: Stop) -> Called:
