@@ -54,3 +54,8 @@ def compose(world_from_parent: Transform, parent_from_child: Transform) -> Trans
 def from_opendrive(x_m: float, y_m: float, z_m: float, heading_rad: float) -> Transform:
     """Return the pose in CARLA's frame of a point and heading in OpenDRIVE's."""
     return Transform(Vector3D(x_m, -y_m, z_m), Rotation(0.0, -math.degrees(heading_rad), 0.0))
+
+
+def points_from_opendrive(points_m: Matrix) -> Matrix:
+    """Return points (N, 3) of OpenDRIVE's frame in CARLA's."""
+    return points_m * np.array([1.0, -1.0, 1.0])
