@@ -1,0 +1,88 @@
+"""Claims about the functions of a session; more of them are made through the official client."""
+
+import pytest
+
+from fakes.simulation import EMPTY_MAP, FakeFrames, FakeMaps, FakeSimulation
+from linden.errors import Refusal
+from linden.handlers import session
+from linden.handlers.context import Context
+from linden.values.episode import EpisodeSettings, OpendriveGenerationParameters
+from linden.wire.stream import StreamTable, token_bytes
+
+
+@pytest.fixture
+def context() -> Context:
+    return Context(
+        simulation=FakeSimulation(),
+        maps=FakeMaps(),
+        frames=FakeFrames(sensor_bytes=10),
+        streams=StreamTable(2001),
+        variable_step_s=lambda: 0.04,
+    )
+
+
+def test_a_variable_step_is_asked_of_the_clock_and_a_fixed_one_is_not(context: Context) -> None:
+    session.tick_cue(context)
+    context.simulation.settings = EpisodeSettings(fixed_delta_seconds=0.05)
+    session.tick_cue(context)
+    assert context.simulation.steps_s == [0.04, 0.05]
+
+
+def test_a_frame_is_put_into_the_outbox_for_those_who_listen_only(context: Context) -> None:
+    assert session.tick_cue(context) == 1
+    assert context.outbox == []
+    context.streams.subscribe(1)
+    context.streams.subscribe(2)
+    assert session.tick_cue(context) == 2
+    assert [stream for stream, _ in context.outbox] == [1, 2]
+
+
+def test_tokens_name_the_real_streaming_port(context: Context) -> None:
+    assert session.get_episode_info(context).token.data == token_bytes(1, 2001)
+    assert session.get_sensor_token(context, 7).data == token_bytes(7, 2001)
+
+
+def test_an_opendrive_text_can_be_loaded_once_it_was_sent(context: Context) -> None:
+    with pytest.raises(Refusal, match="not found"):
+        session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF)
+    session.copy_opendrive_to_file(context, EMPTY_MAP, OpendriveGenerationParameters())
+    session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF)
+    assert session.get_map_info(context).name == "Carla/Maps/OpenDriveMap"
+
+
+def test_no_file_is_offered_and_none_is_given(context: Context) -> None:
+    assert session.get_required_files(context, "Nav") == []
+    with pytest.raises(Refusal, match="secrets' not found"):
+        session.request_file(context, "../../secrets")
+
+
+def test_a_traffic_manager_port_belongs_to_the_first_who_takes_it(context: Context) -> None:
+    context.caller = 5
+    assert session.add_traffic_manager_running(context, ("10.0.0.1", 8000))
+    context.caller = 6
+    assert not session.add_traffic_manager_running(context, ("10.0.0.2", 8000))
+    session.client_left(context, 6)
+    assert session.get_traffic_manager_running(context, 8000) == ("10.0.0.1", 8000)
+    session.client_left(context, 5)
+    assert not session.is_traffic_manager_running(context, 8000)
+    assert not session.destroy_traffic_manager(context, 8000)
+
+
+@pytest.mark.parametrize("fixed_s", [0.0, -0.05, 10.5])
+def test_a_step_must_be_one(context: Context, fixed_s: float) -> None:
+    with pytest.raises(Refusal, match="fixed_delta_seconds must be above 0"):
+        session.set_episode_settings(context, EpisodeSettings(fixed_delta_seconds=fixed_s))
+    assert context.simulation.settings == EpisodeSettings()
+
+
+def test_substeps_shorter_than_the_step_are_warned_about(context: Context, caplog: pytest.LogCaptureFixture) -> None:
+    session.set_episode_settings(context, EpisodeSettings(fixed_delta_seconds=0.1))
+    assert not caplog.text
+    session.set_episode_settings(context, EpisodeSettings(fixed_delta_seconds=0.2))
+    assert "longer than max_substeps" in caplog.text
+
+
+def test_without_substepping_their_figures_do_not_matter(context: Context) -> None:
+    settings = EpisodeSettings(substepping=False, max_substeps=0, max_substep_delta_time=0.0)
+    assert session.set_episode_settings(context, settings) == 0
+    assert context.simulation.settings == settings
