@@ -1,64 +1,36 @@
-"""What a handler may touch: the simulation, the maps, the streams, and what goes out with this call.
-
-The protocols say what the handlers of a session ask of the simulation; :class:`linden.simulation.Simulation` has it.
-"""
+"""What a handler may touch: the simulation, the maps, the streams, and what goes out with this call."""
 
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Protocol
 
+from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
+from linden.world.maps import MapLibrary
 
 log = logging.getLogger("linden")
 
 _REMEMBERED_WARNINGS = 1000  # distinct sentences of one run; more are a flood, and shown every time
 
 
-class MapLibrary(Protocol):
-    """The maps that can be loaded by name."""
-
-    def names(self) -> Sequence[str]:
-        """Return the names as ``get_available_maps`` lists them."""
-        ...
-
-    def load(self, name: str) -> Any:  # noqa: ANN401 - what the simulation's ``load`` takes
-        """Return a map by any of its names, ready to be driven on.
-
-        Raises:
-            Refusal: ``Map '<name>' not found``.
-        """
-        ...
-
-    def from_opendrive(self, text: str) -> Any:  # noqa: ANN401 - as above
-        """Make a map of an OpenDRIVE text and keep it, to be loaded as OpenDriveMap.
-
-        Raises:
-            Refusal: the text is no road network; which line, and why.
-        """
-        ...
-
-
 class Frames(Protocol):
     """What one frame looks like on the wire: :mod:`linden.handlers.frames`."""
 
-    def world_payload(self, simulation: Any) -> bytes:  # noqa: ANN401 - whatever the context holds
+    def world_payload(self, simulation: Simulation) -> bytes:
         """Return the world snapshot: headers and one row for each actor."""
         ...
 
-    def sensor_payloads(self, simulation: Any, listened: set[int]) -> Sequence[tuple[int, bytes]]:  # noqa: ANN401
+    def sensor_payloads(self, simulation: Simulation, listened: set[int]) -> Sequence[tuple[int, bytes]]:
         """Return what this frame's sensors measured, by stream, for the streams that somebody reads."""
         ...
 
 
 @dataclass(slots=True)
 class Context:
-    """One server's state as its handlers see it.
+    """One server's state as its handlers see it."""
 
-    ``simulation`` is any: each family of handlers names what it asks of it, and the types meet where it is made.
-    """
-
-    simulation: Any
+    simulation: Simulation
     maps: MapLibrary
     frames: Frames
     streams: StreamTable
@@ -79,8 +51,7 @@ class Context:
         if WORLD_OBSERVER_ID in listened:
             self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.simulation)))
         self.outbox.extend(self.frames.sensor_payloads(self.simulation, listened))
-        frame: int = self.simulation.frame
-        return frame
+        return self.simulation.frame
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""

@@ -25,6 +25,7 @@ from linden.wire.decode import Decoder, WireTypeError, decoder
 from linden.wire.encode import Encoder, encoder
 from linden.wire.rpc import Call, Reply
 from linden.wire.vocabulary import CARLA_FUNCTIONS
+from linden.world.actors import ActorRefusal
 
 log = logging.getLogger("linden")
 
@@ -120,7 +121,7 @@ def dispatch(context: Context, call: Call) -> bytes:
             return rpc.value(call, found.encode(result) if found.encode else result)
         return rpc.void(call) if found.reply is Reply.VOID else rpc.bare(call, result)
     except Refusal as refusal:
-        return _refuse(context, call, str(refusal), found.reply)
+        return _refuse(context, call, told(call.method, refusal), found.reply)
     except Exception as error:
         log.exception("internal error in %s; the call is refused and the server goes on", call.method)
         sentence = (
@@ -128,6 +129,13 @@ def dispatch(context: Context, call: Call) -> bytes:
             f"goes on, its log has the traceback"
         )
         return _refuse(context, call, sentence, found.reply)
+
+
+def told(function: str, refusal: Refusal) -> str:
+    """Return a refusal as the client reads it; where an actor is at fault, CARLA names the function first."""
+    return (
+        f"Responding error from function {function}: {refusal}" if isinstance(refusal, ActorRefusal) else str(refusal)
+    )
 
 
 def _missing(context: Context, call: Call) -> bytes:

@@ -39,7 +39,8 @@ def touching(
             gap = np.abs(apart[:, 0] * np.cos(axis) + apart[:, 1] * np.sin(axis))
             own = _reach(box.extent.x, box.extent.y, yaw - axis)
             meets &= gap < own + _reach(half[:, 0], half[:, 1], directions - axis)
-    return candidates[meets]
+    found: NDArray[np.int64] = candidates[meets]
+    return found
 
 
 def _reach(half_x_m: F64 | float, half_y_m: F64 | float, angle_rad: F64) -> F64:

@@ -57,7 +57,8 @@ class ActorTable:
         self._row_of: dict[int, int] = {}
         self._by_slot: dict[int, ActorRecord] = {}
         self._next_id = 1
-        self._leaving: list[int] = []
+        self._dying: list[int] = []
+        self._told: list[int] = []
         self.version = 0
         """Grows whenever an actor comes or goes, so that what is derived from the set can be kept until then."""
         self._allocate(256)
@@ -149,18 +150,18 @@ class ActorTable:
         self.slot[row] = NO_BODY
         self.parent_row[row] = -1
         if announce:
-            self._leaving.append(actor_id)
+            self._dying.append(actor_id)
         else:
             self._drop([actor_id])
         self.version += 1
         return record
 
-    def drop_announced(self) -> None:
-        """Forget the rows of actors whose end a snapshot has told."""
-        if self._leaving:
-            self._drop(self._leaving)
-            self._leaving = []
+    def turn_page(self) -> None:
+        """Begin a frame: those whose end the last snapshot told go, those that died since then are told in this one."""
+        if self._told:
+            self._drop(self._told)
             self.version += 1
+        self._told, self._dying = self._dying, []
 
     def _drop(self, actor_ids: list[int]) -> None:
         count = len(self)
@@ -179,3 +180,14 @@ class ActorTable:
         """Return where an actor is in the world, as of the last step or of the last call that moved it."""
         x, y, z, pitch, yaw, roll = map(float, self.pose[self._row_of[actor_id]])
         return Transform(Vector3D(x, y, z), Rotation(pitch, yaw, roll))
+
+    def relative_transform(self, actor_id: int) -> Transform:
+        """Return where an attached actor is in its parent's frame."""
+        x, y, z, pitch, yaw, roll = map(float, self.relative[self._row_of[actor_id]])
+        return Transform(Vector3D(x, y, z), Rotation(pitch, yaw, roll))
+
+    def place(self, actor_id: int, pose: Transform) -> None:
+        """Move an actor without a body: in the world, or in its parent's frame where it has one."""
+        row = self._row_of[actor_id]
+        column = self.pose if self.parent_row[row] < 0 else self.relative
+        column[row] = (*pose.location, *pose.rotation)

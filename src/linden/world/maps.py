@@ -12,7 +12,6 @@ from linden.ground import Ground
 from linden.opendrive.mesh import road_mesh
 from linden.opendrive.model import OpenDrive
 from linden.opendrive.parse import parse
-from linden.opendrive.signals import PlacedSignal, place
 from linden.opendrive.spawn import spawn_points
 from linden.values.space import Transform
 
@@ -42,7 +41,6 @@ class LoadedMap:
     lane_of_triangle: NDArray[np.int32]
     lanes: NDArray[np.void]
     spawn_points: tuple[Transform, ...]
-    signals: tuple[PlacedSignal, ...]
 
     @property
     def full_name(self) -> str:
@@ -66,7 +64,6 @@ class LoadedMap:
             lane_of_triangle=mesh.lane_of_triangle,
             lanes=mesh.lanes,
             spawn_points=spawn_points(opendrive),
-            signals=place(opendrive),
         )
 
 
@@ -101,8 +98,7 @@ class MapLibrary:
         bare = name.removeprefix(_FOLDERS[0]).removeprefix(_FOLDERS[1]).removesuffix(".xodr")
         if bare not in self._loaded:
             if bare not in self._files:
-                known = ", ".join(sorted(self._files))
-                raise Refusal(f"Map '{name}' not found; this server has: {known}")
+                raise Refusal(f"Map '{name}' not found; this server has: {', '.join(sorted(self._files))}")
             try:
                 text = self._files[bare].read_text("utf-8")
                 self._loaded[bare] = LoadedMap.from_text(bare, text)

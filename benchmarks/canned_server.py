@@ -1,0 +1,38 @@
+"""A server that simulates nothing: every tick shows the actors where they were spawned. The limit that ticks.py names.
+
+Wire, handlers and snapshot are linden's own, so what is left is the client's time and the way between the two.
+"""
+
+from linden.handlers import frames, registry
+from linden.server.loop import Server
+from linden.server.ports import open_ports, port_of
+from linden.simulation import Simulation
+from linden.world.maps import HOME_MAP, MapLibrary
+
+
+class StillWorld(Simulation):
+    """Time passes, and nothing else does."""
+
+    def step(self, dt_s: float) -> None:
+        self.frame += 1
+        self.total_s += dt_s
+        self.delta_s = dt_s
+        self.episode.elapsed_s += dt_s
+        if len(self.episode.actors) != self._shown:
+            self.episode.observe()
+            self._shown = len(self.episode.actors)
+
+    _shown = -1
+
+
+def main() -> None:
+    registry.load_handlers()
+    maps = MapLibrary()
+    ports = open_ports("127.0.0.1", 0, None)
+    server = Server(StillWorld(maps.load(HOME_MAP)), maps, frames, ports)
+    print(f"linden: ready, rpc port {port_of(ports.rpc)}, streaming port {port_of(ports.streaming)}", flush=True)
+    server.run()
+
+
+if __name__ == "__main__":
+    main()

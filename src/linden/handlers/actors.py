@@ -1,0 +1,157 @@
+"""Any actor: blueprints, spawning, destroying, moving and pushing. Source of names: LibCarla 0.9.16."""
+
+import math
+
+from linden.errors import Refusal
+from linden.handlers.context import Context
+from linden.handlers.registry import method
+from linden.values.actors import Actor, ActorDefinition, ActorDescription
+from linden.values.space import BoundingBox, Transform, Vector3D
+from linden.wire.decode import U8, U32
+from linden.world.actors import ActorRecord
+
+
+def message(context: Context, record: ActorRecord) -> Actor:
+    """Return an actor as the client learns of it."""
+    token = context.streams.token(record.stream_id).data if record.stream_id else b""
+    return Actor(record.id, record.parent_id, record.description, record.box, record.semantic_tags, token)
+
+
+@method("get_actor_definitions")
+def get_actor_definitions(context: Context) -> tuple[ActorDefinition, ...]:
+    """Return the blueprint library."""
+    return context.simulation.library.definitions
+
+
+@method("get_actors_by_id")
+def get_actors_by_id(context: Context, actor_ids: list[U32]) -> list[Actor]:
+    """Return the actors of these ids; ids that nobody has are left out."""
+    found = map(context.simulation.episode.actors.find, actor_ids)
+    return [message(context, record) for record in found if record is not None]
+
+
+@method("get_spectator")
+def get_spectator(context: Context) -> Actor:
+    """Return the spectator, which every episode has."""
+    episode = context.simulation.episode
+    return message(context, episode.actors.get(episode.spectator_id))
+
+
+@method("spawn_actor")
+def spawn_actor(context: Context, description: ActorDescription, pose: Transform) -> Actor:
+    """Put an actor into the world, or refuse where something stands there already."""
+    return message(context, context.simulation.spawn(description, pose))
+
+
+@method("spawn_actor_with_parent")
+def spawn_actor_with_parent(
+    context: Context, description: ActorDescription, pose: Transform, parent_id: U32, _attachment: U8, socket: str
+) -> Actor:
+    """Attach an actor to another; spring arms hold as rigidly as the rest, for there is no screen to calm."""
+    if socket:
+        raise Refusal(f"unable to attach actor: the parent has no socket or bone '{socket}'; attach without one")
+    return message(context, context.simulation.spawn(description, pose, parent_id=parent_id))
+
+
+@method("destroy_actor")
+def destroy_actor(context: Context, actor_id: U32) -> bool:
+    """Take an actor, and what is attached to it, out of the world."""
+    context.simulation.destroy(actor_id)
+    return True
+
+
+@method("get_actor_bounding_box")
+def get_actor_bounding_box(context: Context, actor_id: U32) -> BoundingBox:
+    """Return the box in the actor's frame."""
+    return context.simulation.episode.actors.get(actor_id).box
+
+
+@method("set_actor_transform")
+def set_actor_transform(context: Context, actor_id: U32, pose: Transform) -> None:
+    """Put an actor somewhere."""
+    context.simulation.episode.place(actor_id, pose)
+
+
+@method("set_actor_location")
+def set_actor_location(context: Context, actor_id: U32, location: Vector3D) -> None:
+    """Put an actor somewhere and keep its rotation."""
+    episode = context.simulation.episode
+    episode.place(actor_id, episode.own_transform(actor_id)._replace(location=location))
+
+
+@method("set_actor_target_velocity")
+def set_actor_target_velocity(context: Context, actor_id: U32, velocity: Vector3D) -> None:
+    """Give an actor a velocity in m/s, in the world."""
+    episode = context.simulation.episode
+    episode.bodies.set_target_velocity(episode.body(actor_id), velocity)
+
+
+@method("set_actor_target_angular_velocity")
+def set_actor_target_angular_velocity(context: Context, actor_id: U32, angular_velocity: Vector3D) -> None:
+    """Give an actor an angular velocity in degrees/s, about the world's axes."""
+    episode = context.simulation.episode
+    radians = Vector3D(*map(math.radians, angular_velocity))
+    episode.bodies.set_target_angular_velocity(episode.body(actor_id), radians)
+
+
+@method("enable_actor_constant_velocity")
+def enable_actor_constant_velocity(context: Context, actor_id: U32, velocity: Vector3D) -> None:
+    """Hold a velocity in m/s in the actor's own frame until it is disabled."""
+    episode = context.simulation.episode
+    episode.bodies.enable_constant_velocity(episode.body(actor_id), velocity)
+
+
+@method("disable_actor_constant_velocity")
+def disable_actor_constant_velocity(context: Context, actor_id: U32) -> None:
+    """Let forces rule the actor's velocity again."""
+    episode = context.simulation.episode
+    episode.bodies.disable_constant_velocity(episode.body(actor_id))
+
+
+@method("add_actor_impulse")
+def add_actor_impulse(context: Context, actor_id: U32, impulse: Vector3D) -> None:
+    """Push an actor at its centre of mass, N·s in the world."""
+    episode = context.simulation.episode
+    episode.bodies.add_impulse(episode.body(actor_id), impulse)
+
+
+@method("add_actor_force")
+def add_actor_force(context: Context, actor_id: U32, force: Vector3D) -> None:
+    """Push an actor at its centre of mass during the next frame, N in the world."""
+    episode = context.simulation.episode
+    episode.bodies.add_force(episode.body(actor_id), force)
+
+
+@method("add_actor_angular_impulse")
+def add_actor_angular_impulse(context: Context, actor_id: U32, impulse: Vector3D) -> None:
+    """Turn an actor; the official client sends degrees, as CARLA's server takes them."""
+    episode = context.simulation.episode
+    episode.bodies.add_angular_impulse(episode.body(actor_id), impulse)
+
+
+@method("add_actor_torque")
+def add_actor_torque(context: Context, actor_id: U32, torque: Vector3D) -> None:
+    """Turn an actor during the next frame, N·m in the world."""
+    episode = context.simulation.episode
+    episode.bodies.add_torque(episode.body(actor_id), torque)
+
+
+@method("set_actor_simulate_physics")
+def set_actor_simulate_physics(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
+    """Let forces move an actor, or hold it where it is put."""
+    episode = context.simulation.episode
+    episode.bodies.set_simulate(episode.body(actor_id), simulate=enabled)
+
+
+@method("set_actor_enable_gravity")
+def set_actor_enable_gravity(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
+    """Let an actor fall, or float."""
+    episode = context.simulation.episode
+    episode.bodies.gravity[episode.body(actor_id)] = enabled
+
+
+@method("set_actor_collisions")
+def set_actor_collisions(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
+    """Let an actor stand in the way of others, or be passed through."""
+    episode = context.simulation.episode
+    episode.bodies.collides[episode.body(actor_id)] = enabled

@@ -1,0 +1,81 @@
+"""Batches of commands, carried out in their order. Source: LibCarla 0.9.16, ``carla/rpc/Command.h``."""
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+from linden.errors import Refusal
+from linden.handlers import actors, lights, vehicles, walkers
+from linden.handlers.context import Context
+from linden.handlers.registry import method, told
+from linden.wire import commands as cmd
+
+Answer: TypeAlias = tuple[tuple[int, Any]]
+"""``((1, actor id),)`` or ``((0, (message,)),)``: CARLA's Response of an actor id."""
+
+_RUN: dict[type[cmd.Command], Callable[..., object]] = {
+    cmd.DestroyActor: actors.destroy_actor,
+    cmd.ApplyVehicleControl: vehicles.apply_control_to_vehicle,
+    cmd.ApplyVehicleAckermannControl: vehicles.apply_ackermann_control_to_vehicle,
+    cmd.ApplyWalkerControl: walkers.apply_control_to_walker,
+    cmd.ApplyWalkerState: walkers.apply_walker_state,
+    cmd.ApplyVehiclePhysicsControl: vehicles.apply_physics_control,
+    cmd.ApplyTransform: actors.set_actor_transform,
+    cmd.ApplyLocation: actors.set_actor_location,
+    cmd.ApplyTargetVelocity: actors.set_actor_target_velocity,
+    cmd.ApplyTargetAngularVelocity: actors.set_actor_target_angular_velocity,
+    cmd.ApplyImpulse: actors.add_actor_impulse,
+    cmd.ApplyForce: actors.add_actor_force,
+    cmd.ApplyAngularImpulse: actors.add_actor_angular_impulse,
+    cmd.ApplyTorque: actors.add_actor_torque,
+    cmd.SetSimulatePhysics: actors.set_actor_simulate_physics,
+    cmd.SetEnableGravity: actors.set_actor_enable_gravity,
+    cmd.SetAutopilot: vehicles.set_actor_autopilot,
+    cmd.SetVehicleLightState: vehicles.set_light_bits,
+    cmd.SetTrafficLightState: lights.set_traffic_light_state,
+}
+"""Commands whose fields are the arguments of a function that can also be called alone."""
+
+
+@method("apply_batch", bare=True, advances=True)
+def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answer]:  # noqa: FBT001 - the wire's order
+    """Carry out commands in their order; one that fails says so in its own answer and stops none of the others."""
+    answers = [_answer(context, command) for command in batch]
+    if do_tick:
+        context.advance()
+    return answers
+
+
+def _answer(context: Context, command: cmd.Command) -> Answer:
+    try:
+        return ((1, _run(context, command)),)
+    except Refusal as refusal:
+        run = _RUN.get(type(command))
+        return ((0, (told(run.__name__ if run else "spawn_actor", refusal),)),)
+
+
+def _run(context: Context, command: cmd.Command) -> int:
+    """Carry out one command and return the id of the actor it concerns.
+
+    Raises:
+        Refusal: it cannot be done.
+    """
+    if isinstance(command, cmd.SpawnActor):
+        return _spawn(context, command)
+    run = _RUN.get(type(command))
+    if run is None:
+        raise Refusal(f"command {type(command).__name__}: CARLA has it, linden not yet")
+    run(context, *command)
+    return int(command[0])
+
+
+def _spawn(context: Context, command: cmd.SpawnActor) -> int:
+    """Spawn, then do what should follow; as in CARLA, what fails of the latter does not undo the spawn."""
+    record = context.simulation.spawn(command.description, command.transform, parent_id=command.parent_id or 0)
+    for follow_up in command.do_after:
+        aimed = follow_up
+        if not isinstance(follow_up, cmd.SpawnActor) and follow_up[0] == cmd.JUST_SPAWNED:
+            aimed = follow_up._replace(actor_id=record.id)
+        ((status, result),) = _answer(context, aimed)
+        if not status:
+            context.warn_once(f"{type(aimed).__name__} after spawning actor {record.id}: {result[0]}")
+    return record.id

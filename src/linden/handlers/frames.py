@@ -1,0 +1,60 @@
+"""What one frame looks like on the wire: the world's snapshot, and what its sensors measured."""
+
+import msgpack
+
+from linden.sensors.collision import SCENERY, Collision
+from linden.sensors.imu import ImuMeasurement
+from linden.simulation import Simulation
+from linden.simulation.measuring import Measurement
+from linden.values.actors import Actor, ActorDescription
+from linden.values.space import BoundingBox, Transform
+from linden.wire.headers import SensorType, SimulationState, episode_header, sensor_header
+from linden.world.actors import ActorRecord
+
+
+def world_payload(simulation: Simulation) -> bytes:
+    """Return the world snapshot: headers and one row for each actor.
+
+    The platform's time stamp is simulated time since the server began, not a clock's: so two runs are equal byte by
+    byte (docs/decisions/0003-determinism.md).
+    """
+    episode = simulation.episode
+    state = SimulationState.MAP_CHANGE if simulation.map_changed else SimulationState.NONE
+    return b"".join(
+        (
+            sensor_header(SensorType.WORLD_OBSERVER, simulation.frame, episode.elapsed_s, Transform()),
+            episode_header(simulation.episode_id, simulation.total_s, simulation.delta_s, state),
+            episode.actors.rows[: len(episode.actors)].tobytes(),
+        )
+    )
+
+
+def sensor_payloads(simulation: Simulation, listened: set[int]) -> list[tuple[int, bytes]]:
+    """Return (stream id, message) of everything that sensors measured in this frame for somebody who listens."""
+    return [(item.sensor.stream_id, _payload(simulation, item)) for item in simulation.measure(listened)]
+
+
+def _payload(simulation: Simulation, measurement: Measurement) -> bytes:
+    kind, body = _encoded(simulation, measurement)
+    header = sensor_header(kind, simulation.frame, simulation.elapsed_s, measurement.pose)
+    packed: bytes = msgpack.packb(body)
+    return header + packed
+
+
+def _encoded(simulation: Simulation, measurement: Measurement) -> tuple[SensorType, object]:
+    """Return the sensor's index and the value that msgpack carries after the header."""
+    reading = measurement.reading
+    if isinstance(reading, Collision):
+        actors = simulation.episode.actors
+        own = _described(actors.of_slot(reading.slot))
+        if reading.other_slot == SCENERY:
+            other = Actor(0, 0, ActorDescription(0, reading.scenery_type), BoundingBox())
+        else:
+            other = _described(actors.of_slot(reading.other_slot))
+        return SensorType.COLLISION, (own, other, reading.impulse_ns)
+    return SensorType.IMU if isinstance(reading, ImuMeasurement) else SensorType.GNSS, reading
+
+
+def _described(record: ActorRecord) -> Actor:
+    """Return an actor that takes part in a collision as the client learns of it; it has a body, thus no stream."""
+    return Actor(record.id, record.parent_id, record.description, record.box, record.semantic_tags)

@@ -1,0 +1,221 @@
+"""One episode: a map, the actors on it, and everything else that a load of a map begins anew."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.physics.bodies import Bodies
+from linden.physics.step import CONTACT
+from linden.sensors.instrument import Instrument
+from linden.simulation import rows
+from linden.simulation.motion import MOTION_OFFSET, gather_motion
+from linden.simulation.scenery import signal_posts
+from linden.traffic.lights import Traffic
+from linden.values.actors import ActorDescription
+from linden.values.enums import TrafficLightState
+from linden.values.episode import WeatherParameters
+from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW
+from linden.values.space import BoundingBox, Transform
+from linden.world.actors import NO_BODY, ActorRecord, ActorRefusal, ActorTable
+from linden.world.blueprints import DOT, Kind
+from linden.world.maps import LoadedMap
+
+DEFAULT_SPEED_LIMIT_KMH = 30.0
+"""What CARLA's vehicles start with until a sign says otherwise."""
+
+STANDARD_GRAVITY_MPS2 = 9.81
+"""What CARLA's IMU adds unless told otherwise."""
+
+_MPS_TO_KMH = 3.6
+_MOTION = np.dtype(
+    {"names": ["motion"], "formats": [("<f4", (15,))], "offsets": [MOTION_OFFSET], "itemsize": ROW.itemsize}
+)
+
+
+class Episode:
+    """Everything that ends with a load.
+
+    Attributes:
+        map: what is driven on.
+        first_frame: number of the frame before the episode's first.
+        elapsed_s: simulated time since it began.
+        actors: who is there, with the packed rows of the snapshot.
+        bodies: what occupies space and moves.
+        statics: oriented boxes that stand in the way, as ``physics`` takes them.
+        traffic: the lights.
+        contacts: of the last step, as ``physics`` reports them.
+        instruments: sensors that measure by themselves, by actor id.
+    """
+
+    def __init__(self, world_map: LoadedMap, *, first_frame: int) -> None:
+        self.map = world_map
+        self.first_frame = first_frame
+        self.elapsed_s = 0.0
+        self.actors = ActorTable()
+        self.bodies = Bodies()
+        self.traffic = Traffic(world_map.opendrive)
+        self.statics = signal_posts(self.traffic.actors, world_map.ground)
+        self.weather = WeatherParameters()
+        self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
+        self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
+        self.light_ids = self._add_traffic()
+        self._light_rows = np.array([self.actors.row(light_id) for light_id in self.light_ids], np.int64)
+        self._light_actor_id = np.array(self.light_ids, np.int32)
+        self._limit_of_lane_kmh = world_map.lanes["speed_limit_mps"] * _MPS_TO_KMH
+        self.contacts: NDArray[np.void] = np.zeros(0, CONTACT)
+        self.instruments: dict[int, Instrument] = {}
+        self._speed_limit_kmh: dict[int, float] = {}
+        self._seen_version = -1
+
+    def _add_fixture(
+        self, type_id: str, kind: Kind, pose: Transform, box: BoundingBox, tags: bytes = b"", sign_id: str = ""
+    ) -> ActorRecord:
+        record = ActorRecord(
+            id=self.actors.next_id(),
+            description=ActorDescription(0, type_id),
+            kind=kind,
+            box=box,
+            semantic_tags=tags,
+            sign_id=sign_id,
+        )
+        self.actors.add(record, pose)
+        return record
+
+    def _add_traffic(self) -> list[int]:
+        """Make actors of lights and signs; returns the ids of the lights in their order."""
+        light_ids: list[int] = []
+        for index, item in enumerate(self.traffic.actors):
+            is_light = index in self.traffic.lights
+            kind, layout = (
+                (Kind.TRAFFIC_LIGHT, TRAFFIC_LIGHT_ROW) if is_light else (Kind.TRAFFIC_SIGN, TRAFFIC_SIGN_ROW)
+            )
+            record = self._add_fixture(item.type_id, kind, item.transform, item.box, item.semantic_tags, item.sign_id)
+            row = self.actors.rows.view(layout)[self.actors.row(record.id)]
+            row["sign_id"] = item.sign_id.encode()[:32]
+            if is_light:
+                row["pole_index"] = self.traffic.pole_index(len(light_ids))
+                light_ids.append(record.id)
+        return light_ids
+
+    # -- who is meant --------------------------------------------------------------------------------------------
+
+    def body(self, actor_id: int) -> int:
+        """Return the slot of an actor's body.
+
+        Raises:
+            ActorRefusal: no such actor, or it occupies no space.
+        """
+        record = self.actors.get(actor_id)
+        if record.slot == NO_BODY:
+            raise ActorRefusal("Actor does not match the expected type", actor_id)
+        return record.slot
+
+    def vehicle(self, actor_id: int) -> int:
+        """Return the slot of a vehicle.
+
+        Raises:
+            ActorRefusal: no such actor, or no vehicle.
+        """
+        return self._slot_of_kind(actor_id, Kind.VEHICLE, "Actor is not a Vehicle")
+
+    def walker(self, actor_id: int) -> int:
+        """Return the slot of a walker.
+
+        Raises:
+            ActorRefusal: no such actor, or no walker.
+        """
+        return self._slot_of_kind(actor_id, Kind.WALKER, "Actor is not a Walker")
+
+    def _slot_of_kind(self, actor_id: int, kind: Kind, otherwise: str) -> int:
+        record = self.actors.get(actor_id)
+        if record.kind is not kind or record.slot == NO_BODY:
+            raise ActorRefusal(otherwise, actor_id)
+        return record.slot
+
+    def light(self, actor_id: int) -> int:
+        """Return the number of a traffic light.
+
+        Raises:
+            ActorRefusal: no such actor, or no traffic light.
+        """
+        if self.actors.get(actor_id).kind is not Kind.TRAFFIC_LIGHT:
+            raise ActorRefusal("Actor is not a traffic light", actor_id)
+        return self.light_ids.index(actor_id)
+
+    # -- where things are ----------------------------------------------------------------------------------------
+
+    def transform(self, actor_id: int) -> Transform:
+        """Return where an actor is in the world."""
+        slot = self.actors.get(actor_id).slot
+        return self.actors.transform(actor_id) if slot == NO_BODY else self.bodies.pose(slot)
+
+    def own_transform(self, actor_id: int) -> Transform:
+        """Return where an actor is as :meth:`place` takes it: relative to its parent where it has one."""
+        if self.actors.get(actor_id).parent_id:
+            return self.actors.relative_transform(actor_id)
+        return self.transform(actor_id)
+
+    def place(self, actor_id: int, pose: Transform) -> None:
+        """Put an actor somewhere in the world, or relative to its parent where it has one.
+
+        Raises:
+            ActorRefusal: there is none of that id.
+        """
+        record = self.actors.get(actor_id)
+        if record.slot == NO_BODY:
+            self.actors.place(actor_id, pose)
+        else:
+            self.bodies.set_pose(record.slot, pose)
+
+    # -- what the snapshot shows ---------------------------------------------------------------------------------
+
+    def observe(self) -> None:
+        """Bring the rows of the snapshot up to date with everything else."""
+        if self._seen_version != self.actors.version:
+            self._survey()
+        actors, bodies, count = self.actors, self.bodies, len(self.actors)
+        gather_motion(
+            count, actors.pose, actors.relative, actors.parent_row, actors.slot,
+            bodies.position, bodies.rotation, bodies.velocity, bodies.angular_velocity, bodies.acceleration,
+            self._motion,
+        )  # fmt: skip
+        actors.rows.view(_MOTION)["motion"][:count] = self._motion[:count]
+        if self.light_ids:
+            lights = actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows]
+            self.traffic.write(lights)
+            actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows] = lights
+        if len(self._vehicle_slots):
+            self._observe_vehicles()
+
+    def _survey(self) -> None:
+        """Note which rows are vehicles'; called when somebody has come or gone."""
+        self._keep_limits()
+        vehicles = [record for record in self.actors if record.kind is Kind.VEHICLE and record.slot != NO_BODY]
+        self._vehicle_ids = [record.id for record in vehicles]
+        self._vehicle_slots = np.array([record.slot for record in vehicles], np.int32)
+        self._vehicle_rows = np.array([self.actors.row(record.id) for record in vehicles], np.int32)
+        self._limits_kmh = np.array(
+            [self._speed_limit_kmh.get(actor_id, DEFAULT_SPEED_LIMIT_KMH) for actor_id in self._vehicle_ids]
+        )
+        self._row_bytes: NDArray[np.uint8] = self.actors.rows.view(np.uint8).reshape(-1, ROW.itemsize)
+        self._motion = np.zeros((len(self.actors.rows), 15), np.float32)
+        self._seen_version = self.actors.version
+
+    def _keep_limits(self) -> None:
+        if self._seen_version >= 0:
+            self._speed_limit_kmh = dict(zip(self._vehicle_ids, map(float, self._limits_kmh), strict=True))
+
+    def _observe_vehicles(self) -> None:
+        bodies, slots = self.bodies, self._vehicle_slots
+        rows.write_controls(
+            self._row_bytes, self._vehicle_rows, slots, bodies.throttle, bodies.steer, bodies.brake,
+            bodies.hand_brake, bodies.reverse, bodies.manual_gear_shift, bodies.gear,
+        )  # fmt: skip
+        rows.limits_under(
+            self.map.ground, self.map.lane_of_triangle, self._limit_of_lane_kmh, bodies.position, slots,
+            self._limits_kmh,
+        )  # fmt: skip
+        light = self.traffic.over(bodies.position, bodies.rotation, bodies.box_centre, bodies.half_extent, slots)
+        rows.write_surroundings(
+            self._row_bytes, self._vehicle_rows, self._limits_kmh, light, self.traffic.state.colour,
+            self._light_actor_id, TrafficLightState.GREEN,
+        )  # fmt: skip

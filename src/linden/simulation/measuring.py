@@ -1,0 +1,68 @@
+"""What the sensors of an episode measured in a frame; called once a frame, after its step."""
+
+from collections import defaultdict
+from collections.abc import Container
+from typing import NamedTuple, TypeAlias
+
+from linden.sensors.collision import Collision, collisions
+from linden.sensors.instrument import Moment, Reading, observe
+from linden.simulation.episode import Episode
+from linden.values.space import Transform, Vector3D
+from linden.world.actors import NO_BODY, ActorRecord
+
+COLLISION_SENSOR = "sensor.other.collision"
+
+
+class Measurement(NamedTuple):
+    """One reading of one sensor, and where the sensor was in the world."""
+
+    sensor: ActorRecord
+    pose: Transform
+    reading: "Reading | Collision"
+
+
+Measurements: TypeAlias = list[Measurement]
+
+
+def measure(episode: Episode, listened: Container[int]) -> Measurements:
+    """Return what is due in this frame of the sensors whose streams somebody reads, in the order of the sensors."""
+    found: Measurements = []
+    for sensor_id, instrument in episode.instruments.items():
+        sensor = episode.actors.get(sensor_id)
+        moment = Moment(
+            now_s=episode.elapsed_s,
+            pose=episode.actors.transform(sensor_id),
+            angular_velocity_radps=_turning(episode, sensor),
+            origin_deg=episode.map.opendrive.geo_origin,
+            gravity_mps2=episode.imu_gravity_mps2,
+        )
+        reading, after = observe(instrument, moment, wanted=sensor.stream_id in listened)
+        episode.instruments[sensor_id] = after
+        if reading is not None:
+            found.append(Measurement(sensor, moment.pose, reading))
+    if len(episode.contacts):
+        found += _collisions(episode, listened)
+    return found
+
+
+def _turning(episode: Episode, sensor: ActorRecord) -> Vector3D:
+    """Return the angular velocity, rad/s in the world, of the body that carries a sensor."""
+    carrier = episode.actors.find(sensor.parent_id)
+    if carrier is None or carrier.slot == NO_BODY:
+        return Vector3D()
+    return Vector3D(*map(float, episode.bodies.angular_velocity[carrier.slot]))
+
+
+def _collisions(episode: Episode, listened: Container[int]) -> Measurements:
+    carriers: dict[int, list[int]] = defaultdict(list)
+    for record in episode.actors:
+        if record.description.id == COLLISION_SENSOR and record.stream_id in listened:
+            parent = episode.actors.find(record.parent_id)
+            if parent is not None and parent.slot != NO_BODY:
+                carriers[parent.slot].append(record.id)
+    if not carriers:
+        return []
+    return [
+        Measurement(episode.actors.get(event.sensor_id), episode.actors.transform(event.sensor_id), event)
+        for event in collisions(episode.contacts, carriers)
+    ]

@@ -1,0 +1,120 @@
+"""The running world: an episode, the settings that rule its time, and the step that makes the next frame."""
+
+import math
+from collections.abc import Container
+
+from linden.simulation.episode import Episode
+from linden.simulation.measuring import Measurements, measure
+from linden.simulation.spawning import destroy, spawn
+from linden.simulation.step import step
+from linden.values.actors import ActorDescription
+from linden.values.episode import EpisodeSettings
+from linden.values.space import Transform
+from linden.world.actors import ActorRecord
+from linden.world.blueprints import BlueprintLibrary
+from linden.world.maps import LoadedMap
+
+FIRST_SENSOR_STREAM = 2
+"""Stream 1 is the world observer's, as in CARLA."""
+
+_FRAMES_THAT_TELL_OF_A_NEW_MAP = 3
+"""How many snapshots tell of a load; the client needs one, and may miss one while it connects."""
+
+
+class Simulation:
+    """A world in which time passes by calls of :meth:`step` only. Knows no clock, no network and no client.
+
+    Attributes:
+        settings: how time passes; replaced whole.
+        frame: number of the last frame made; grows for the life of the server.
+        total_s: simulated time since the server began, over all episodes.
+        episode: everything that a load of a map begins anew.
+    """
+
+    def __init__(self, world_map: LoadedMap, *, seed: int = 0) -> None:
+        """Begin the first episode on ``world_map``; ``seed`` rules all that is random and not given by a client."""
+        self.library = BlueprintLibrary.load()
+        self.settings = EpisodeSettings()
+        self.seed = seed
+        self.frame = 0
+        self.episode_id = 0
+        self.total_s = 0.0
+        self._next_stream = FIRST_SENSOR_STREAM
+        self._begin(world_map)
+
+    def load(self, world_map: LoadedMap, *, reset_settings: bool) -> None:
+        """End the episode and begin another; actors, weather and lights start anew."""
+        if reset_settings:
+            self.settings = EpisodeSettings()
+        self._begin(world_map)
+
+    def _begin(self, world_map: LoadedMap) -> None:
+        self.episode_id += 1
+        self.episode = Episode(world_map, first_frame=self.frame)
+        self.delta_s = self.settings.fixed_delta_seconds or 0.0
+        self.episode.observe()
+
+    @property
+    def map_name(self) -> str:
+        """Name of the map as the client knows it."""
+        return self.episode.map.full_name
+
+    @property
+    def opendrive_text(self) -> str:
+        """The map, word for word as it was read."""
+        return self.episode.map.text
+
+    @property
+    def spawn_points(self) -> tuple[Transform, ...]:
+        """The map's recommended spawn points."""
+        return self.episode.map.spawn_points
+
+    @property
+    def elapsed_s(self) -> float:
+        """Simulated time since the episode began."""
+        return self.episode.elapsed_s
+
+    @property
+    def map_changed(self) -> bool:
+        """Whether the snapshot of this frame tells that the map is new."""
+        return self.frame - self.episode.first_frame < _FRAMES_THAT_TELL_OF_A_NEW_MAP
+
+    def step(self, dt_s: float) -> None:
+        """Make the next frame, ``dt_s`` after the last."""
+        self.frame += 1
+        self.total_s += dt_s
+        self.delta_s = dt_s
+        step(self.episode, dt_s, self._substeps(dt_s))
+
+    def _substeps(self, dt_s: float) -> int:
+        """Return into how many parts the physics cuts a step: CARLA's rule for its substepping settings."""
+        if not self.settings.substepping:
+            return 1
+        wanted = math.ceil(dt_s / self.settings.max_substep_delta_time - 1e-9)
+        return max(1, min(wanted, self.settings.max_substeps))
+
+    def spawn(self, description: ActorDescription, pose: Transform, *, parent_id: int = 0) -> ActorRecord:
+        """Put an actor into the world; ``pose`` is relative where there is a parent.
+
+        Raises:
+            Refusal: unknown blueprint, unfit attribute, no such parent, or something stands there.
+        """
+        blueprint = self.library.find(description.id)
+        complete = self.library.validate(description)
+        record = spawn(self.episode, blueprint, complete, pose, parent_id)
+        if blueprint.has_stream:
+            record.stream_id = self._next_stream
+            self._next_stream += 1
+        return record
+
+    def destroy(self, actor_id: int) -> None:
+        """Take an actor and all that is attached to it out of the world.
+
+        Raises:
+            Refusal: there is none of that id, or it belongs to the map.
+        """
+        destroy(self.episode, actor_id)
+
+    def measure(self, listened: Container[int]) -> Measurements:
+        """Return what the sensors measured in this frame; to be called once a frame, ``listened`` being stream ids."""
+        return measure(self.episode, listened)

@@ -1,0 +1,127 @@
+"""Actors come and go: what is checked before one is spawned, and what goes with one that is destroyed."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.errors import Refusal
+from linden.geometry import compose
+from linden.physics.bodies import Bodies
+from linden.sensors.collision import scenery_type
+from linden.sensors.instrument import instrument
+from linden.simulation.episode import Episode
+from linden.simulation.overlap import touching
+from linden.values.actors import ActorDescription
+from linden.values.space import BoundingBox, Transform
+from linden.world.actors import NO_BODY, ActorRecord
+from linden.world.blueprints import Blueprint, Kind
+
+_NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
+"""Props are put where the caller says, as CARLA does; vehicles and walkers only where nothing stands."""
+
+_OF_THE_MAP = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
+
+
+def spawn(
+    episode: Episode, blueprint: Blueprint, description: ActorDescription, pose: Transform, parent_id: int
+) -> ActorRecord:
+    """Put an actor into the episode; ``pose`` is relative to the parent where ``parent_id`` is not 0.
+
+    Raises:
+        Refusal: no such parent, or something stands there; begins with CARLA's own words.
+    """
+    if parent_id and parent_id not in episode.actors:
+        raise Refusal(f"unable to attach actor: parent actor not found (no actor has id {parent_id})")
+    world_pose = compose(episode.transform(parent_id), pose) if parent_id else pose
+    if blueprint.kind in _NEEDS_ROOM:
+        _refuse_without_room(episode, blueprint, world_pose)
+    record = ActorRecord(
+        id=episode.actors.next_id(),
+        description=description,
+        kind=blueprint.kind,
+        box=blueprint.box,
+        semantic_tags=blueprint.semantic_tags,
+        parent_id=parent_id,
+        slot=NO_BODY if parent_id else _embody(episode, blueprint, world_pose),
+    )
+    episode.actors.add(record, world_pose, pose if parent_id else None)
+    if (made := instrument(description)) is not None:
+        episode.instruments[record.id] = made
+    return record
+
+
+def _embody(episode: Episode, blueprint: Blueprint, pose: Transform) -> int:
+    bodies = episode.bodies
+    if blueprint.vehicle is not None:
+        model = blueprint.vehicle
+        return bodies.add_vehicle(model.physics, pose, blueprint.box, wheel_offsets_m=model.wheel_offsets_m)
+    if blueprint.kind is Kind.WALKER:
+        return bodies.add_walker(pose, blueprint.box, blueprint.mass_kg)
+    if blueprint.kind is Kind.PROP:
+        return bodies.add_prop(pose, blueprint.box, None)
+    return NO_BODY
+
+
+def _refuse_without_room(episode: Episode, blueprint: Blueprint, pose: Transform) -> None:
+    other = _first_touching(episode, blueprint.box, pose)
+    if other is None:
+        return
+    free = next(
+        (point for point in _by_distance(episode, pose) if _first_touching(episode, blueprint.box, point) is None), None
+    )
+    at = ", ".join(f"{value:.2f}" for value in pose.location)
+    advice = "no recommended spawn point is free" if free is None else f"the nearest free spawn point is {_place(free)}"
+    raise Refusal(f"Spawn failed because of collision at spawn position ({at}): {other} stands there; {advice}")
+
+
+def _place(pose: Transform) -> str:
+    return f"({pose.location.x:.2f}, {pose.location.y:.2f}, {pose.location.z:.2f}), yaw {pose.rotation.yaw:.0f}"
+
+
+def _by_distance(episode: Episode, pose: Transform) -> list[Transform]:
+    def distance_m(point: Transform) -> float:
+        return abs(point.location.x - pose.location.x) + abs(point.location.y - pose.location.y)
+
+    return sorted(episode.map.spawn_points, key=distance_m)[:20]
+
+
+def _first_touching(episode: Episode, box: BoundingBox, pose: Transform) -> str | None:
+    """Return the name of what stands where a box would be: a body first, then the scenery."""
+    bodies, statics = episode.bodies, episode.statics
+    solid = np.flatnonzero(bodies.alive & bodies.collides)
+    found = touching(box, pose, _world_centres(bodies), bodies.half_extent, bodies.rotation[:, 1], solid)
+    if found.size:
+        record = episode.actors.of_slot(int(found[0]))
+        return f"{record.description.id} (actor {record.id})"
+    found = touching(box, pose, statics.centre, statics.half, statics.yaw_rad, np.arange(len(statics.id)))
+    return scenery_type(int(statics.tag[found[0]])) if found.size else None
+
+
+def _world_centres(bodies: Bodies) -> NDArray[np.float64]:
+    """Return the middles of all boxes in the world (N, 3), m; what little they lean is left out."""
+    cosine, sine = np.cos(bodies.rotation[:, 1]), np.sin(bodies.rotation[:, 1])
+    x, y, z = bodies.box_centre.T
+    centres: NDArray[np.float64] = bodies.position + np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])
+    return centres
+
+
+def destroy(episode: Episode, actor_id: int) -> None:
+    """Take an actor and everything attached to it out of the episode.
+
+    Raises:
+        Refusal: there is none of that id, or it belongs to the map.
+    """
+    record = episode.actors.find(actor_id)
+    if record is None:
+        raise Refusal(f"unable to destroy actor: not found (no actor has id {actor_id})")
+    if record.kind in _OF_THE_MAP or actor_id == episode.spectator_id:
+        raise Refusal(f"unable to destroy actor: {record.description.id} (actor {actor_id}) belongs to the map")
+    _remove(episode, actor_id, announce=False)
+
+
+def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
+    for child in episode.actors.children(actor_id):
+        _remove(episode, child.id, announce=True)
+    record = episode.actors.remove(actor_id, announce=announce)
+    if record.slot != NO_BODY:
+        episode.bodies.remove(record.slot)
+    episode.instruments.pop(actor_id, None)

@@ -1,0 +1,13 @@
+"""One step of the world, stage after stage: lights, bodies, then what the snapshot shows of them."""
+
+from linden.physics.step import advance
+from linden.simulation.episode import Episode
+
+
+def step(episode: Episode, dt_s: float, substeps: int) -> None:
+    """Let ``dt_s`` pass in an episode; the physics takes it in ``substeps`` equal parts."""
+    episode.actors.turn_page()
+    episode.traffic.step(dt_s)
+    episode.contacts = advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
+    episode.elapsed_s += dt_s
+    episode.observe()
