@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.geometry import points_from_opendrive
 from linden.opendrive.evaluate.pieces import F64, I64
-from linden.opendrive.evaluate.sampling import Samples, sample, sections_of
+from linden.opendrive.evaluate.strips import edges_of, strips_of
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import LaneType, SemanticTag
@@ -47,24 +48,15 @@ class RoadMesh(NamedTuple):
     lanes: NDArray[np.void]  # of LANES; a lane whose speed limit changes on the way has a row for each
 
 
-class _Strips(NamedTuple):
-    """Every lane at every sample of its section, lane after lane."""
-
-    lane: I64  # (P,), row of Tables.lanes
-    sample: I64  # (P,)
-    continues: NDArray[np.bool_]  # (P,), whether the next one lies further along the same lane
-
-
 def road_mesh(opendrive: OpenDrive) -> RoadMesh:
     """Return the surface of all lanes of a map, those inside junctions too."""
     tables = tables_of(opendrive)
     if not len(tables.lanes):
         return RoadMesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.int32), np.empty(0, LANES))
-    samples = sample(tables, sections_of(tables))
-    strips = _strips(tables, samples)
-    vertices = _vertices(tables, samples, strips)
+    strips = strips_of(tables)
+    vertices = points_from_opendrive(np.concatenate(edges_of(tables, strips)))
     quads = np.flatnonzero(strips.continues)
-    speed_mps = tables.speeds.value(strips.lane[quads], samples.probe_m[strips.sample[quads]])
+    speed_mps = tables.speeds.value(strips.lane[quads], strips.probe_m[quads])
     row_of_quad, lanes = _lane_table(tables, strips.lane[quads], speed_mps)
     triangles = _triangles(quads, len(strips.lane), tables.lanes["lane_id"][strips.lane[quads]] > 0)
     lane_of_triangle = np.repeat(row_of_quad, 2)
@@ -74,36 +66,6 @@ def road_mesh(opendrive: OpenDrive) -> RoadMesh:
     # inside a bend tighter than the lane is wide a strip folds over; its triangles are turned to face up again
     triangles[twice_area < 0.0] = triangles[twice_area < 0.0][:, [0, 2, 1]]
     return RoadMesh(vertices, triangles[kept].astype(np.int32), lane_of_triangle[kept].astype(np.int32), lanes)
-
-
-def _strips(tables: Tables, samples: Samples) -> _Strips:
-    sections_before = np.concatenate([[0], np.cumsum([len(road.sections) for road in tables.roads])])
-    section_of_lane = sections_before[tables.lanes["road"]] + tables.lanes["section"]
-    count_of_section = np.bincount(samples.section, minlength=int(sections_before[-1]))
-    first_of_section = np.cumsum(count_of_section) - count_of_section
-    counts = count_of_section[section_of_lane]
-    lane = np.repeat(np.arange(len(tables.lanes)), counts)
-    nth = np.arange(len(lane)) - np.repeat(np.cumsum(counts) - counts, counts)
-    return _Strips(lane, first_of_section[section_of_lane[lane]] + nth, nth < counts[lane] - 1)
-
-
-def _vertices(tables: Tables, samples: Samples, strips: _Strips) -> F64:
-    """Return the inner edges of all places, then the outer edges: (2P, 3) in CARLA's frame."""
-    s_m, probe_m = samples.s_m[strips.sample], samples.probe_m[strips.sample]
-    pose = tables.curves.pose(samples.road, samples.s_m, samples.probe_m)
-    z_m = tables.elevation.value(samples.road, samples.s_m, samples.probe_m)[strips.sample]
-    east, north = -np.sin(pose.heading_rad)[strips.sample], np.cos(pose.heading_rad)[strips.sample]
-    x_m, y_m = pose.x_m[strips.sample], pose.y_m[strips.sample]
-    inner_m, outer_m = tables.lane_sides(strips.lane, s_m, probe_m)
-    lift = (
-        tables.heights_inner.value(strips.lane, s_m, probe_m),
-        tables.heights_outer.value(strips.lane, s_m, probe_m),
-    )
-    edges = [
-        np.stack([x_m + east * t_m, -(y_m + north * t_m), z_m + lift_m], axis=1)
-        for t_m, lift_m in zip((inner_m, outer_m), lift, strict=True)
-    ]
-    return np.concatenate(edges)
 
 
 def _triangles(quads: I64, places: int, is_left: NDArray[np.bool_]) -> I64:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linden.opendrive.evaluate.pieces import F64, I64
-from linden.opendrive.evaluate.sampling import sample, sections_of
+from linden.opendrive.evaluate.strips import strips_of
 from linden.opendrive.evaluate.tables import Tables
 from linden.values.enums import LaneType
 
@@ -49,24 +49,16 @@ class MiddleLines:
 
 def middle_lines(tables: Tables, types: LaneType) -> MiddleLines:
     """Return the middles of all lanes whose type is among ``types``."""
-    samples = sample(tables, sections_of(tables))
-    sections_before = np.concatenate([[0], np.cumsum([len(road.sections) for road in tables.roads])])
-    rows = np.flatnonzero(tables.lanes["type_bits"] & int(types))
-    section_of_row = sections_before[tables.lanes["road"][rows]] + tables.lanes["section"][rows]
-    counts = np.bincount(samples.section, minlength=int(sections_before[-1]))
-    before = np.cumsum(counts) - counts
-    lane = np.repeat(rows, counts[section_of_row])
-    nth = np.concatenate([np.arange(count) for count in counts[section_of_row]] or [np.empty(0, np.int64)])
-    place = np.repeat(before[section_of_row], counts[section_of_row]) + nth
-    s_m = samples.s_m[place]
-    centres = tables.lane_centres(lane, s_m)
+    strips = strips_of(tables, np.flatnonzero(tables.lanes["type_bits"] & int(types)))
+    s_m = strips.s_m
+    centres = tables.lane_centres(strips.lane, s_m)
     points = np.stack([centres.x_m, centres.y_m, centres.z_m], axis=1)
-    goes_on = np.flatnonzero((lane[1:] == lane[:-1]) & (s_m[1:] > s_m[:-1])) if len(lane) else np.empty(0, np.int64)
-    goes_on = goes_on[np.argsort(points[goes_on, 0], kind="stable")]
+    chords = np.flatnonzero(strips.continues)
+    chords = chords[np.argsort(points[chords, 0], kind="stable")]
     return MiddleLines(
-        lane=lane[goes_on],
-        start=points[goes_on],
-        step=points[goes_on + 1] - points[goes_on],
-        start_s_m=s_m[goes_on],
-        step_s_m=s_m[goes_on + 1] - s_m[goes_on],
+        lane=strips.lane[chords],
+        start=points[chords],
+        step=points[chords + 1] - points[chords],
+        start_s_m=s_m[chords],
+        step_s_m=s_m[chords + 1] - s_m[chords],
     )

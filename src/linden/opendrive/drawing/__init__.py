@@ -1,0 +1,1 @@
+"""A map as an SVG picture, north up, one unit a metre: surfaces, marks, furniture, words."""
