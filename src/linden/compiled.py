@@ -4,7 +4,9 @@
 gives the same bits. The compiled code is kept beside the source (numba's cache), so it is paid for once.
 """
 
+import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import TypeVar, cast
 
 import numba
@@ -15,3 +17,20 @@ Function = TypeVar("Function", bound=Callable[..., object])
 def kernel(function: Function) -> Function:
     """Compile ``function`` with numba at its first call; its Python form stays at ``.py_func``."""
     return cast("Function", numba.njit(cache=True, error_model="numpy")(function))
+
+
+def part(function: Function) -> Function:
+    """Compile ``function`` into the kernels that call it; it keeps no file of its own that could outlive an edit.
+
+    numba renews a kernel's file when the module it stands in changes, not when a module it calls changes. So a kernel
+    across modules is built of parts, and carries a fingerprint of all their sources (see :func:`fingerprint`).
+    """
+    return cast("Function", numba.njit(error_model="numpy")(function))
+
+
+def fingerprint(*sources: Path) -> int:
+    """Return 62 bits that change with the text of any of the files; a kernel that closes over it is renewed with them."""
+    digest = hashlib.sha256()
+    for source in sorted(sources):
+        digest.update(source.read_bytes())
+    return int.from_bytes(digest.digest()[:8], "little") >> 2

@@ -1,1 +1,1 @@
-"""How bodies move: stages of a step, one idea a file, over structure-of-arrays."""
+"""How bodies move: stages of a step, one idea a file, over structure-of-arrays. Start at ``step.advance``."""

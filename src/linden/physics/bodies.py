@@ -1,0 +1,186 @@
+"""All moving bodies of the world: slots that stay put, columns to read, and what a client may do to one of them."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.physics.columns import finite
+from linden.physics.state import BODY, PROP, VEHICLE, WALKER
+from linden.physics.vehicle.cockpit import Cockpits
+from linden.physics.vehicle.parameters import check, default_wheel_offsets, local_wheels, yaw_inertia_kgm2
+from linden.values.space import BoundingBox, Transform, Vector3D
+from linden.values.vehicles import AckermannSettings, VehiclePhysicsControl
+from linden.values.walkers import WalkerControl
+
+_FARTHEST_M = 1e7
+_MOST_PUSH = 1e9  # N·s, N, N·m·s or N·m
+
+
+class Bodies(Cockpits):
+    """Structure of arrays with stable slots; a freed slot is given out again, the lowest first.
+
+    What only vehicles have (controls, physics control, telemetry) stands in ``vehicle.cockpit``. Numbers of a client
+    may be anything: nan counts as 0 and the rest is held within limits, so that no body's state ever becomes nan.
+    """
+
+    # -- slots ---------------------------------------------------------------------------------------------------------
+
+    def _add(self, kind: int, pose: Transform, box: BoundingBox, mass_kg: float) -> int:
+        free = np.flatnonzero(~self.alive[: self.count])
+        slot = int(free[0]) if len(free) else self.count
+        if slot == len(self.alive):
+            self.state = np.concatenate([self.state, np.zeros_like(self.state)])
+            self.specs = np.concatenate([self.specs, np.zeros_like(self.specs)])
+        self.count = max(self.count, slot + 1)
+        self.state[slot] = np.zeros((), BODY)
+        s = self.state
+        s["alive"][slot] = s["simulate"][slot] = s["gravity"][slot] = s["collides"][slot] = True
+        s["kind"][slot], s["mass_kg"][slot], s["support_mps2"][slot] = kind, mass_kg, 0.0
+        s["box_centre"][slot] = box.location
+        s["half_extent"][slot] = np.maximum(box.extent, 1e-3)
+        s["ackermann_gains"][slot] = AckermannSettings()
+        self.set_pose(slot, pose)
+        return slot
+
+    def add_vehicle(
+        self,
+        control: VehiclePhysicsControl,
+        pose: Transform,
+        box: BoundingBox,
+        wheel_offsets_m: Sequence[Vector3D] | None = None,
+    ) -> int:
+        """Add a vehicle at ``pose`` and return its slot.
+
+        ``wheel_offsets_m``: contact points in the vehicle's frame (m), in the wheels' order; without it they are taken
+        from ``control.wheels`` (cm, world), and where those all lie at the world's origin, from the box.
+
+        Raises:
+            Refusal: the physics control describes nothing that can drive.
+        """
+        check(control)
+        if wheel_offsets_m is None:
+            wheel_offsets_m = local_wheels(control, pose) or default_wheel_offsets(box, len(control.wheels))
+        slot = self._add(VEHICLE, pose, box, control.mass)
+        self.state["target_gear"][slot] = self.state["gear"][slot] = 1
+        self._fit(slot, control, wheel_offsets_m)
+        return slot
+
+    def add_walker(self, pose: Transform, box: BoundingBox, mass_kg: float) -> int:
+        """Add a walker, whose origin is the middle of its body; return its slot."""
+        slot = self._add(WALKER, pose, box, mass_kg)
+        self.state["yaw_inertia_kgm2"][slot] = math.inf
+        return slot
+
+    def add_prop(self, pose: Transform, box: BoundingBox, mass_kg: float | None) -> int:
+        """Add a box that slides when it is hit, or with mass None one that nothing moves; return its slot."""
+        slot = self._add(PROP, pose, box, mass_kg if mass_kg is not None else 1.0)
+        self.state["immovable"][slot] = mass_kg is None
+        self.state["yaw_inertia_kgm2"][slot] = yaw_inertia_kgm2(float(self.mass_kg[slot]), box)
+        return slot
+
+    def remove(self, slot: int) -> None:
+        """Free a slot; its number is given out again."""
+        self.state[slot] = np.zeros((), BODY)
+        self._forget_vehicle(slot)
+        while self.count and not self.alive[self.count - 1]:
+            self.count -= 1
+
+    # -- place and motion ----------------------------------------------------------------------------------------------
+
+    def set_pose(self, slot: int, pose: Transform) -> None:
+        """Put the actor there; it keeps its velocity (as CARLA does) and finds its footing anew."""
+        s = self.state
+        s["position"][slot] = [finite(x, -_FARTHEST_M, _FARTHEST_M) for x in pose.location]
+        s["rotation"][slot] = [
+            math.radians(math.remainder(angle, 360.0)) if math.isfinite(angle) else 0.0 for angle in pose.rotation
+        ]
+        s["footing"][slot] = 0.0
+        s["velocity"][slot, 2] -= s["heave_mps"][slot]
+        s["heave_mps"][slot] = 0.0
+        s["tilt_radps"][slot] = 0.0
+        self.wake(slot)
+
+    def set_simulate(self, slot: int, *, simulate: bool) -> None:
+        """Switch the physics of one body; without it the body stays where it is put, and others collide with it."""
+        self.state["simulate"][slot] = simulate
+        self.state["footing"][slot] = 0.0
+        self.wake(slot)
+
+    def set_target_velocity(self, slot: int, velocity_mps: Sequence[float]) -> None:
+        """Set the velocity of the origin, world frame; it changes from there on as forces will have it."""
+        self.state["velocity"][slot] = [finite(v, -1e3, 1e3) for v in velocity_mps]
+        self.state["heave_mps"][slot] = 0.0
+        self.wake(slot)
+
+    def set_target_angular_velocity(self, slot: int, angular_velocity_radps: Sequence[float]) -> None:
+        """Set the angular velocity about the world's axes."""
+        x, y, z = (finite(v, -1e2, 1e2) for v in angular_velocity_radps)
+        yaw = float(self.rotation[slot, 1])
+        self.state["angular_velocity"][slot] = (x, y, z)
+        self.state["tilt_radps"][slot] = (
+            x * math.sin(yaw) - y * math.cos(yaw),
+            -x * math.cos(yaw) - y * math.sin(yaw),
+        )
+        self.wake(slot)
+
+    def enable_constant_velocity(self, slot: int, local_mps: Sequence[float]) -> None:
+        """Hold the velocity (in the body's own frame) from now on; a vehicle can still be steered."""
+        self.state["constant_velocity"][slot] = [finite(v, -1e3, 1e3) for v in local_mps]
+        self.state["constant_velocity_on"][slot] = True
+
+    def disable_constant_velocity(self, slot: int) -> None:
+        """Let forces have their way again."""
+        self.state["constant_velocity_on"][slot] = False
+
+    def add_impulse(self, slot: int, impulse_ns: Sequence[float], at_m: Sequence[float] | None = None) -> None:
+        """Push once at the start of the next step: N·s in the world frame, at a point or the centre of mass."""
+        self._add_push(slot, self.state["impulse"], self.state["angular_impulse"], impulse_ns, at_m)
+
+    def add_force(self, slot: int, force_n: Sequence[float], at_m: Sequence[float] | None = None) -> None:
+        """Push throughout the next advance: N in the world frame."""
+        self._add_push(slot, self.state["force"], self.state["torque"], force_n, at_m)
+
+    def add_angular_impulse(self, slot: int, impulse_nms: Sequence[float]) -> None:
+        """Turn once: N·m·s about the world's axes."""
+        self.state["angular_impulse"][slot] += [finite(v, -_MOST_PUSH, _MOST_PUSH) for v in impulse_nms]
+
+    def add_torque(self, slot: int, torque_nm: Sequence[float]) -> None:
+        """Turn throughout the next advance: N·m."""
+        self.state["torque"][slot] += [finite(v, -_MOST_PUSH, _MOST_PUSH) for v in torque_nm]
+
+    def _add_push(
+        self,
+        slot: int,
+        linear: NDArray[np.float64],
+        angular: NDArray[np.float64],
+        push: Sequence[float],
+        at_m: Sequence[float] | None,
+    ) -> None:
+        vector = np.array([finite(v, -_MOST_PUSH, _MOST_PUSH) for v in push])
+        linear[slot] += vector
+        if at_m is not None:
+            arm = np.array([finite(v, -_FARTHEST_M, _FARTHEST_M) for v in at_m]) - self._mass_point(slot)
+            angular[slot] += np.cross(arm, vector)
+
+    def _mass_point(self, slot: int) -> NDArray[np.float64]:
+        """Return where the centre of mass is, world, m (the body taken as upright)."""
+        x, y, z = self.state["centre_of_mass"][slot]
+        cosine, sine = math.cos(self.rotation[slot, 1]), math.sin(self.rotation[slot, 1])
+        point: NDArray[np.float64] = self.position[slot] + (cosine * x - sine * y, sine * x + cosine * y, z)
+        return point
+
+    # -- walkers -------------------------------------------------------------------------------------------------------
+
+    def set_walker_control(self, slot: int, control: WalkerControl) -> None:
+        """Tell a walker where to go, how fast, and whether to jump (once)."""
+        s = self.state
+        s["walker_direction"][slot] = [finite(x, -1e3, 1e3) for x in control.direction]
+        s["walker_speed"][slot] = finite(control.speed, 0.0, 50.0)
+        s["jump"][slot] = s["jump_pending"][slot] = bool(control.jump)
+
+    def walker_control(self, slot: int) -> WalkerControl:
+        """Return what the walker was told last."""
+        direction = Vector3D(*map(float, self.walker_direction[slot]))
+        return WalkerControl(direction, float(self.walker_speed[slot]), bool(self.jump[slot]))

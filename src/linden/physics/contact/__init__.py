@@ -1,0 +1,1 @@
+"""What happens where bodies meet: which pairs are near, where boxes overlap, what impulse parts them."""

@@ -1,0 +1,170 @@
+"""What parts two bodies that overlap: impulses against approach and sliding, and a push out of each other.
+
+Every impulse takes energy or leaves it: normal impulses only press, with a restitution below one; friction at most
+stops the sliding. Guendelman et al. 2003, "Nonconvex rigid bodies with stacking", treats pairs in sequence likewise;
+the formula of the impulse at a point is Mirtich 1996, eq. 3.18, in the plane.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.compiled import part
+from linden.physics.contact.boxes import COS, HALF_X, HALF_Y, HIGH, LOW, SIN, X, Y, overlap
+from linden.physics.contact.pairs import box_centre, is_fixed
+from linden.physics.contact.statics import Statics
+from linden.physics.state import VEHICLE, Body, Rows
+
+F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
+
+RESTITUTION = 0.1  # car bodies at town speeds: 0.05 to 0.2, Brach, Vehicle Accident Analysis and Reconstruction Methods
+BOUNCES_FROM_MPS = 0.5  # slower contacts do not bounce
+FRICTION = 0.4
+CLEARANCE_M = 0.2  # what a vehicle's wheels roll over does not meet its body
+_ROUNDS = 4
+_SLOP_M = 0.005  # overlap that is left, so that resting contacts stay contacts
+_PUSHED_OUT = 0.4  # of the rest, per step
+
+JX, JY, JZ, PX, PY, PZ, TOUCHED = range(7)
+"""Columns of the account kept per pair: impulse on the first body (N·s), last contact point (m), whether they met."""
+
+
+@part
+def part_bodies(rows: Rows, pairs: I32, statics: Statics, account: F64) -> None:
+    """Find which pairs overlap, change velocities and positions of the movable, and enter it in ``account`` (P, 7)."""
+    hits = np.empty((len(pairs), 6))  # number of the pair, depth, normal, point
+    count = 0
+    a, b = np.empty(8), np.empty(8)
+    for n in range(len(pairs)):
+        if _both_rest(rows, pairs[n, 0], pairs[n, 1]):
+            continue
+        _write_box(rows[pairs[n, 0]], a)
+        _write_other(rows, pairs[n, 1], statics, b)
+        depth, normal_x, normal_y, x, y = overlap(a, b)
+        if depth > 0.0:
+            hits[count, 0], hits[count, 1] = n, depth
+            hits[count, 2], hits[count, 3], hits[count, 4], hits[count, 5] = normal_x, normal_y, x, y
+            account[n, PX], account[n, PY] = x, y
+            account[n, PZ] = 0.5 * (max(a[LOW], b[LOW]) + min(a[HIGH], b[HIGH]))
+            account[n, TOUCHED] = 1.0
+            count += 1
+    for turn in range(_ROUNDS if count > 1 else min(count, 2)):
+        for k in range(count):
+            _strike(rows, pairs[int(hits[k, 0])], hits[k], turn == 0, account[int(hits[k, 0])])
+    for k in range(count):
+        _push_out(rows, pairs[int(hits[k, 0])], hits[k])
+
+
+@part
+def _both_rest(rows: Rows, i: int, other: int) -> bool:
+    """Tell whether neither of the two has moved since it came to rest."""
+    return bool(rows[i].resting and (other < 0 or rows[other].resting or is_fixed(rows[other])))
+
+
+@part
+def _write_box(v: Body, box: F64) -> None:
+    """Write a body's box; a vehicle's begins at its ground clearance."""
+    box[X], box[Y] = box_centre(v)
+    box[COS], box[SIN] = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    box[HALF_X], box[HALF_Y] = v.half_extent[0], v.half_extent[1]
+    middle = v.position[2] + v.box_centre[2]
+    box[LOW], box[HIGH] = middle - v.half_extent[2], middle + v.half_extent[2]
+    if v.kind == VEHICLE:
+        box[LOW] = max(box[LOW], v.position[2] + CLEARANCE_M)
+
+
+@part
+def _write_other(rows: Rows, other: int, statics: Statics, box: F64) -> None:
+    """Write the box of a body, or of the static numbered -1 - ``other``."""
+    if other >= 0:
+        _write_box(rows[other], box)
+        return
+    n = -1 - other
+    box[X], box[Y] = statics.centre[n, 0], statics.centre[n, 1]
+    box[COS], box[SIN] = math.cos(statics.yaw_rad[n]), math.sin(statics.yaw_rad[n])
+    box[HALF_X], box[HALF_Y] = statics.half[n, 0], statics.half[n, 1]
+    box[LOW], box[HIGH] = statics.centre[n, 2] - statics.half[n, 2], statics.centre[n, 2] + statics.half[n, 2]
+
+
+@part
+def _ease(rows: Rows, i: int, x: float, y: float, along_x: float, along_y: float) -> float:
+    """Return how much a unit impulse at a point moves that point, along the given direction: 1/kg; 0 for the fixed."""
+    if i < 0 or is_fixed(rows[i]):
+        return 0.0
+    com_x, com_y = _centre(rows[i])
+    lever = (x - com_x) * along_y - (y - com_y) * along_x
+    return float(1.0 / rows[i].mass_kg + lever * lever / rows[i].yaw_inertia_kgm2)
+
+
+@part
+def _centre(v: Body) -> tuple[float, float]:
+    """Return where the centre of mass is in the world, x and y in m."""
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    ahead, right = v.centre_of_mass[0], v.centre_of_mass[1]
+    return v.position[0] + cosine * ahead - sine * right, v.position[1] + sine * ahead + cosine * right
+
+
+@part
+def _point_speed(rows: Rows, i: int, x: float, y: float, along_x: float, along_y: float) -> float:
+    """Return how fast the body's point at (x, y) moves along a direction, m/s; 0 for statics."""
+    if i < 0:
+        return 0.0
+    turn = rows[i].angular_velocity[2]
+    speed_x = rows[i].velocity[0] - turn * (y - rows[i].position[1])
+    speed_y = rows[i].velocity[1] + turn * (x - rows[i].position[0])
+    return float(speed_x * along_x + speed_y * along_y)
+
+
+@part
+def push_at(rows: Rows, i: int, x: float, y: float, impulse_x: float, impulse_y: float) -> None:
+    """Change the motion of a movable body by an impulse (N·s) at a point of the world."""
+    if i < 0 or is_fixed(rows[i]):
+        return
+    com_x, com_y = _centre(rows[i])
+    turn = ((x - com_x) * impulse_y - (y - com_y) * impulse_x) / rows[i].yaw_inertia_kgm2
+    rows[i].velocity[0] += impulse_x / rows[i].mass_kg + turn * (com_y - rows[i].position[1])
+    rows[i].velocity[1] += impulse_y / rows[i].mass_kg - turn * (com_x - rows[i].position[0])
+    rows[i].angular_velocity[2] += turn
+
+
+@part
+def _strike(rows: Rows, pair: I32, hit: F64, bounces: bool, entry: F64) -> None:
+    """Apply one contact's impulse: against approach along the normal, then against sliding across it."""
+    i, j = pair[0], pair[1]
+    normal_x, normal_y, x, y = hit[2], hit[3], hit[4], hit[5]
+    approach = _point_speed(rows, i, x, y, normal_x, normal_y) - _point_speed(rows, j, x, y, normal_x, normal_y)
+    if approach >= 0.0:
+        return
+    ease = _ease(rows, i, x, y, normal_x, normal_y) + _ease(rows, j, x, y, normal_x, normal_y)
+    back = RESTITUTION if bounces and approach < -BOUNCES_FROM_MPS else 0.0
+    press = -(1.0 + back) * approach / ease
+    push_at(rows, i, x, y, press * normal_x, press * normal_y)
+    push_at(rows, j, x, y, -press * normal_x, -press * normal_y)
+    across_x, across_y = -normal_y, normal_x
+    sliding = _point_speed(rows, i, x, y, across_x, across_y) - _point_speed(rows, j, x, y, across_x, across_y)
+    ease = _ease(rows, i, x, y, across_x, across_y) + _ease(rows, j, x, y, across_x, across_y)
+    rub = max(-FRICTION * press, min(FRICTION * press, -sliding / ease))
+    push_at(rows, i, x, y, rub * across_x, rub * across_y)
+    push_at(rows, j, x, y, -rub * across_x, -rub * across_y)
+    entry[JX] += press * normal_x + rub * across_x
+    entry[JY] += press * normal_y + rub * across_y
+
+
+@part
+def _push_out(rows: Rows, pair: I32, hit: F64) -> None:
+    """Move two bodies out of each other along the normal, the lighter one further."""
+    i, j = pair[0], pair[1]
+    ease_i = 0.0 if is_fixed(rows[i]) else 1.0 / rows[i].mass_kg
+    ease_j = 0.0 if j < 0 or is_fixed(rows[j]) else 1.0 / rows[j].mass_kg
+    out_m = _PUSHED_OUT * max(0.0, hit[1] - _SLOP_M) / (ease_i + ease_j)
+    if out_m == 0.0:
+        return
+    rows[i].position[0] += out_m * ease_i * hit[2]
+    rows[i].position[1] += out_m * ease_i * hit[3]
+    rows[i].resting = False
+    if j >= 0:
+        rows[j].position[0] -= out_m * ease_j * hit[2]
+        rows[j].position[1] -= out_m * ease_j * hit[3]
+        rows[j].resting = False

@@ -1,0 +1,66 @@
+"""Impulses, forces and torques that a client gives: impulses once, forces for as long as a frame lasts."""
+
+import math
+
+from linden.compiled import part
+from linden.physics.state import VEHICLE, Body
+
+
+@part
+def _turn(v: Body, yaw_radps: float, roll_push: float, pitch_push: float) -> None:
+    """Add to the rates: yaw about the centre of mass; roll and pitch pushes in N·m·s about a vehicle's own axes."""
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    ahead, right = v.centre_of_mass[0], v.centre_of_mass[1]
+    v.angular_velocity[2] += yaw_radps
+    v.velocity[0] += yaw_radps * (sine * ahead + cosine * right)
+    v.velocity[1] -= yaw_radps * (cosine * ahead - sine * right)
+    if v.kind == VEHICLE and (roll_push != 0.0 or pitch_push != 0.0):
+        x, y, z = v.half_extent[0], v.half_extent[1], v.half_extent[2]
+        v.tilt_radps[0] -= 3.0 * pitch_push / (v.mass_kg * (x * x + z * z))
+        v.tilt_radps[1] -= 3.0 * roll_push / (v.mass_kg * (y * y + z * z))
+
+
+@part
+def _push(v: Body, share: float, linear: bool) -> None:
+    """Apply impulses whole (``linear`` False) or forces for ``share`` seconds (True)."""
+    push = v.force if linear else v.impulse
+    spin = v.torque if linear else v.angular_impulse
+    if push[0] == 0.0 and push[1] == 0.0 and push[2] == 0.0 and spin[0] == 0.0 and spin[1] == 0.0 and spin[2] == 0.0:
+        return
+    for axis in range(3):
+        v.velocity[axis] += share * push[axis] / v.mass_kg
+    v.heave_mps += share * push[2] / v.mass_kg
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    about_nose = share * (spin[0] * cosine + spin[1] * sine)
+    about_side = share * (spin[1] * cosine - spin[0] * sine)
+    _turn(v, share * spin[2] / v.yaw_inertia_kgm2, about_nose, about_side)
+    v.resting = False
+
+
+@part
+def apply_impulses(v: Body) -> None:
+    """Apply what was given once: N·s and N·m·s."""
+    _push(v, 1.0, False)
+
+
+@part
+def apply_forces(v: Body, dt_s: float) -> None:
+    """Apply for one substep what acts throughout the frame: N and N·m."""
+    _push(v, dt_s, True)
+
+
+@part
+def clear_pushes(v: Body) -> None:
+    """Forget all pushes: the frame is over."""
+    for axis in range(3):
+        v.impulse[axis], v.angular_impulse[axis] = 0.0, 0.0
+        v.force[axis], v.torque[axis] = 0.0, 0.0
+
+
+@part
+def hold_velocity(v: Body) -> None:
+    """Give a walker or prop the constant velocity that was asked for, in its own frame."""
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    ahead, right = v.constant_velocity[0], v.constant_velocity[1]
+    v.velocity[0] = cosine * ahead - sine * right
+    v.velocity[1] = sine * ahead + cosine * right

@@ -1,0 +1,140 @@
+"""The state of all bodies: the columns that the kernels read and write. Row = slot; SI units, radians, CARLA's frame.
+
+The columns lie side by side in one numpy structured array, and so do the constants of the vehicles: numba compiles a
+function of one array of records in a tenth of the time of one of sixty arrays, and calls it faster.
+Columns without a unit in their name: position m, rotation (pitch, yaw, roll) rad, velocity m/s, angular_velocity rad/s
+about the world's x, y, z, acceleration m/s², box_centre and half_extent m in the body's frame.
+"""
+
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Rows = NDArray[Any]
+"""Array of BODY (N,), or of VEHICLE_SPEC (N,)."""
+Body: TypeAlias = Any
+"""One record of BODY, as kernels see it."""
+Spec: TypeAlias = Any
+"""One record of VEHICLE_SPEC, as kernels see it."""
+
+NO_BODY, VEHICLE, WALKER, PROP = range(4)
+"""Values of the column ``kind``."""
+
+WHEELS = 4
+CURVE_POINTS = 32
+GEARS = 16
+
+VEHICLE_SPEC = np.dtype(
+    [
+        ("wheel_count", "i4"),
+        ("wheel_x_m", "f8", WHEELS),  # of the contact point, forward of the actor's origin
+        ("wheel_y_m", "f8", WHEELS),  # and to its right
+        ("wheel_radius_m", "f8", WHEELS),
+        ("wheel_inertia_kgm2", "f8", WHEELS),
+        ("wheel_damping_nms", "f8", WHEELS),
+        ("friction", "f8", WHEELS),
+        ("cornering_per_rad", "f8", WHEELS),  # cornering stiffness over the wheel's load at rest
+        ("cornering_full_load", "f8", WHEELS),  # load over that at rest beyond which cornering stiffness grows no more
+        ("slip_stiffness_n", "f8", WHEELS),  # longitudinal force per unit of slip
+        ("steer_max_rad", "f8", WHEELS),
+        ("brake_nm", "f8", WHEELS),
+        ("hand_brake_nm", "f8", WHEELS),
+        ("drive_share", "f8", WHEELS),  # of the axle torque; adds up to 1
+        ("load_share", "f8", WHEELS),  # of the weight at rest on the flat; adds up to 1
+        ("load_per_ax", "f8", WHEELS),  # load over mass per m/s² of forward acceleration; adds up to 0
+        ("load_per_ay", "f8", WHEELS),  # likewise to the right
+        ("wheelbase_m", "f8"),
+        ("track_m", "f8"),  # 0 for a two-wheeler
+        ("axle_front_m", "f8"),
+        ("axle_rear_m", "f8"),
+        ("com_height_m", "f8"),
+        ("drag_kgpm", "f8"),  # force over the square of the speed
+        ("engine_inertia_kgm2", "f8"),
+        ("engine_max_radps", "f8"),
+        ("damping_full_throttle", "f8"),  # N·m·s/rad, as the next two
+        ("damping_engaged", "f8"),
+        ("damping_disengaged", "f8"),
+        ("clutch_nms", "f8"),
+        ("switch_time_s", "f8"),
+        ("autobox", "u1"),
+        ("gear_count", "i4"),
+        ("gear_ratio", "f8", GEARS),  # axle turns into engine turns, final drive included
+        ("gear_down", "f8", GEARS),  # of the engine's greatest speed
+        ("gear_up", "f8", GEARS),
+        ("torque_points", "i4"),
+        ("torque_radps", "f8", CURVE_POINTS),
+        ("torque_nm", "f8", CURVE_POINTS),
+        ("steering_points", "i4"),
+        ("steering_mps", "f8", CURVE_POINTS),
+        ("steering_fraction", "f8", CURVE_POINTS),
+    ],
+    align=True,
+)
+"""What a vehicle is, one record a slot, made from CARLA's VehiclePhysicsControl by ``vehicle.parameters``."""
+
+
+BODY = np.dtype(
+    [
+        ("alive", "?"),
+        ("kind", "u1"),
+        ("simulate", "?"),
+        ("gravity", "?"),
+        ("collides", "?"),
+        ("immovable", "?"),  # a prop without mass
+        ("position", "f8", 3),
+        ("rotation", "f8", 3),
+        ("velocity", "f8", 3),  # of the actor's origin
+        ("angular_velocity", "f8", 3),
+        ("acceleration", "f8", 3),
+        ("box_centre", "f8", 3),
+        ("half_extent", "f8", 3),
+        ("mass_kg", "f8"),
+        ("yaw_inertia_kgm2", "f8"),  # inf for what no push can turn (walkers)
+        ("centre_of_mass", "f8", 3),  # m, in the body's frame
+        ("throttle", "f8"),
+        ("steer", "f8"),
+        ("brake", "f8"),
+        ("hand_brake", "?"),
+        ("reverse", "?"),
+        ("manual_gear_shift", "?"),
+        ("gear_command", "i4"),
+        ("gear", "i4"),  # engaged now: 0 while changing
+        ("engine_rpm", "f8"),
+        ("wheel_omega", "f8", WHEELS),  # rad/s, positive forward
+        ("wheel_steer", "f8", WHEELS),  # rad, positive to the right
+        ("wheel_long_slip", "f8", WHEELS),
+        ("wheel_lat_slip", "f8", WHEELS),  # rad
+        ("wheel_load", "f8", WHEELS),  # N, as the next two
+        ("wheel_long_force", "f8", WHEELS),
+        ("wheel_lat_force", "f8", WHEELS),
+        ("wheel_torque", "f8", WHEELS),  # N·m of engine less brake
+        ("walker_direction", "f8", 3),
+        ("walker_speed", "f8"),
+        ("jump", "?"),
+        # from here on: the kernels' memory
+        ("heave_mps", "f8"),  # vertical speed against the ground's own
+        ("tilt_radps", "f8", 2),  # rates of pitch and roll
+        ("footing", "f8", 4),  # of the ground under the wheels: height m, pitch rad, roll rad, 1 where known
+        ("felt_mps2", "f8", 2),  # smoothed force over mass, forward and right: moves the load
+        ("support_mps2", "f8"),  # force of the ground over mass
+        ("target_gear", "i4"),
+        ("shift_left_s", "f8"),
+        ("was_reverse", "?"),
+        ("resting", "?"),  # nothing has moved, nothing will until an input changes
+        ("rest_input", "f8", 6),  # the inputs it rests under
+        ("jump_pending", "?"),
+        ("impulse", "f8", 3),  # N·s, once
+        ("angular_impulse", "f8", 3),  # N·m·s, once
+        ("force", "f8", 3),  # N, during the next advance
+        ("torque", "f8", 3),  # N·m, likewise
+        ("constant_velocity_on", "?"),
+        ("constant_velocity", "f8", 3),  # m/s in the body's frame
+        ("ackermann_on", "?"),
+        ("ackermann", "f8", 5),  # the target; as linden.values.AckermannControl
+        ("ackermann_gains", "f8", 6),
+        ("ackermann_memory", "f8", 8),  # of its two controllers
+    ],
+    align=True,
+)
+"""What a body does, one record a slot."""

@@ -1,0 +1,172 @@
+"""One frame of physics: pushes, vehicles, walkers, props, contacts, as often as there are substeps. No clock, no I/O."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+import linden.compiled
+import linden.ground
+from linden.compiled import fingerprint, kernel, part
+from linden.ground import Ground
+from linden.physics.contact.impulses import JX, JZ, PX, PZ, TOUCHED, part_bodies
+from linden.physics.contact.pairs import find_pairs, is_fixed
+from linden.physics.contact.statics import Statics
+from linden.physics.prop import advance_prop
+from linden.physics.pushes import apply_forces, apply_impulses, clear_pushes, hold_velocity
+from linden.physics.state import VEHICLE, WALKER, WHEELS, Rows
+from linden.physics.vehicle.ackermann import drive_to_target
+from linden.physics.vehicle.motion import advance_vehicle
+from linden.physics.walker import advance_walker
+
+if TYPE_CHECKING:
+    from linden.physics.bodies import Bodies
+
+F64 = NDArray[np.float64]
+
+GRAVITY_MPS2 = 9.81
+
+CONTACT = np.dtype(
+    [
+        ("a", "i4"),  # slot
+        ("b", "i4"),  # slot, greater than a; -1: a static
+        ("static_id", "i8"),  # as given to Statics; -1 where b is a slot
+        ("tag", "u1"),  # of the static; 0 where b is a slot
+        ("impulse", "f8", 3),  # N·s on a, over the whole call; b gets the opposite
+        ("point", "f8", 3),  # m, where they last touched
+    ]
+)
+Contacts = NDArray[Any]
+"""Array of CONTACT ordered by (a, b, static's number), at most one row a pair."""
+
+_Advance = Callable[[Rows, Rows, int, Ground, Statics, float, int, float], F64]
+
+
+@part
+def _advance_bodies(
+    rows: Rows, specs: Rows, count: int, ground: Ground, wheels: F64, work: F64, gravity_mps2: float, dt_s: float
+) -> None:
+    """Advance every body by one substep, in the order of the slots."""
+    for i in range(count):
+        v = rows[i]
+        if not v.alive:
+            continue
+        if is_fixed(v):
+            v.velocity[:] = 0.0
+            v.angular_velocity[:] = 0.0
+            continue
+        apply_forces(v, dt_s)
+        if v.kind == VEHICLE:
+            advance_vehicle(v, specs[i], wheels, ground, work, gravity_mps2, dt_s)
+            continue
+        if v.constant_velocity_on:
+            hold_velocity(v)
+        if v.kind == WALKER:
+            advance_walker(v, ground, gravity_mps2, dt_s)
+        else:
+            advance_prop(v, ground, gravity_mps2, dt_s)
+
+
+@part
+def _report(pairs: NDArray[np.int32], account: F64) -> F64:
+    """Return the pairs that touched: first, second, impulse, point (C, 8)."""
+    rows = np.empty((len(pairs), 8))
+    found = 0
+    for n in range(len(pairs)):
+        pressed = account[n, JX] != 0.0 or account[n, JX + 1] != 0.0
+        if account[n, TOUCHED] != 0.0 and pressed:
+            rows[found, 0], rows[found, 1] = pairs[n, 0], pairs[n, 1]
+            rows[found, 2:5] = account[n, JX : JZ + 1]
+            rows[found, 5:8] = account[n, PX : PZ + 1]
+            found += 1
+    return rows[:found]
+
+
+def _build(sources: int) -> _Advance:
+    """Return the compiled frame; ``sources`` becomes part of the name it is cached under."""
+
+    def advance(
+        rows: Rows,
+        specs: Rows,
+        count: int,
+        ground: Ground,
+        statics: Statics,
+        dt_s: float,
+        substeps: int,
+        gravity_mps2: float,
+    ) -> F64:
+        _fingerprint = sources
+        wheels, work = np.zeros((16, WHEELS)), np.zeros((4, 3))
+        for i in range(count):
+            v = rows[i]
+            v.acceleration[:] = v.velocity
+            if v.alive and not is_fixed(v):
+                apply_impulses(v)
+                if v.kind == VEHICLE and v.ackermann_on:
+                    drive_to_target(v, specs[i], dt_s)
+        pairs = find_pairs(rows, count, statics, dt_s)
+        account = np.zeros((len(pairs), 7))
+        for _ in range(substeps):
+            _advance_bodies(rows, specs, count, ground, wheels, work, gravity_mps2, dt_s / substeps)
+            if len(pairs) > 0:
+                part_bodies(rows, pairs, statics, account)
+        for i in range(count):
+            v = rows[i]
+            v.acceleration[:] = (v.velocity - v.acceleration) / dt_s
+            clear_pushes(v)
+        return _report(pairs, account)
+
+    return kernel(advance)
+
+
+_SOURCES = [*Path(__file__).parent.rglob("*.py"), Path(linden.ground.__file__), Path(linden.compiled.__file__)]
+_advance = _build(fingerprint(*_SOURCES))
+
+
+def advance(
+    bodies: "Bodies",
+    ground: Ground,
+    statics: Statics,
+    dt_s: float,
+    substeps: int = 1,
+    *,
+    gravity_mps2: float = GRAVITY_MPS2,
+) -> Contacts:
+    """Advance all bodies by ``dt_s`` in ``substeps`` equal steps and return what touched.
+
+    Impulses act at the start, forces throughout; both are forgotten afterwards. Accelerations are those of the whole
+    ``dt_s``. Raises ValueError where ``dt_s`` or ``substeps`` is not positive.
+    """
+    if not (0.0 < dt_s < np.inf and substeps >= 1):
+        raise ValueError(f"a step needs a positive duration and at least one substep, not {dt_s} s in {substeps}")
+    rows = _advance(
+        bodies.state, bodies.specs, bodies.count, ground, statics, float(dt_s), int(substeps), float(gravity_mps2)
+    )
+    return _contacts(rows, statics) if len(rows) else _NO_CONTACTS
+
+
+def step(
+    bodies: "Bodies", ground: Ground, statics: Statics, dt_s: float, *, gravity_mps2: float = GRAVITY_MPS2
+) -> Contacts:
+    """Advance all bodies by one step of ``dt_s``; see :func:`advance`."""
+    return advance(bodies, ground, statics, dt_s, 1, gravity_mps2=gravity_mps2)
+
+
+def _contacts(rows: F64, statics: Statics) -> Contacts:
+    """Return rows of (first, second, impulse, point) as CONTACT."""
+    contacts = np.zeros(len(rows), CONTACT)
+    other = rows[:, 1].astype(np.int64)
+    standing = other < 0
+    contacts["a"] = rows[:, 0]
+    contacts["b"] = np.where(standing, -1, other)
+    contacts["static_id"] = -1
+    contacts["static_id"][standing] = statics.id[-1 - other[standing]]
+    contacts["tag"][standing] = statics.tag[-1 - other[standing]]
+    contacts["impulse"], contacts["point"] = rows[:, 2:5], rows[:, 5:8]
+    return contacts
+
+
+_NO_CONTACTS: Contacts = cast("Contacts", np.zeros(0, CONTACT))
+_NO_CONTACTS.flags.writeable = False

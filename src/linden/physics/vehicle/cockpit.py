@@ -1,0 +1,176 @@
+"""What a client says to and asks of a vehicle: controls, physics control, Ackermann targets, telemetry."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.physics.columns import Columns, finite
+from linden.physics.state import VEHICLE
+from linden.physics.vehicle.parameters import (
+    centre_of_mass,
+    check,
+    local_wheels,
+    specification,
+    world_wheels,
+    yaw_inertia_kgm2,
+)
+from linden.values.space import BoundingBox, Rotation, Transform, Vector3D
+from linden.values.vehicles import (
+    AckermannControl,
+    AckermannSettings,
+    VehicleControl,
+    VehiclePhysicsControl,
+    VehicleTelemetry,
+    WheelTelemetry,
+)
+
+F64 = NDArray[np.float64]
+
+
+class Cockpits(Columns):
+    """The part of the bodies that concerns vehicles. Slots given here must hold one."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._physics: dict[int, VehiclePhysicsControl] = {}
+        self._offsets_m: dict[int, tuple[Vector3D, ...]] = {}
+
+    def pose(self, slot: int) -> Transform:
+        """Return where the actor's origin is, m and degrees."""
+        location = Vector3D(*map(float, self.position[slot]))
+        return Transform(location, Rotation(*(math.degrees(angle) for angle in self.rotation[slot])))
+
+    # -- controls ------------------------------------------------------------------------------------------------------
+
+    def set_control(self, slot: int, control: VehicleControl) -> None:
+        """Set pedals, wheel and gear lever from now on; ends Ackermann control."""
+        s = self.state
+        s["throttle"][slot] = finite(control.throttle, 0.0, 1.0)
+        s["steer"][slot] = finite(control.steer, -1.0, 1.0)
+        s["brake"][slot] = finite(control.brake, 0.0, 1.0)
+        s["hand_brake"][slot], s["reverse"][slot] = control.hand_brake, control.reverse
+        s["manual_gear_shift"][slot] = control.manual_gear_shift
+        s["gear_command"][slot] = max(-1, min(99, int(control.gear)))
+        s["ackermann_on"][slot] = False
+
+    def set_controls(self, slots: NDArray[np.integer], pedals: F64, levers: NDArray[np.bool_], gears: F64) -> None:
+        """Set many at once: ``pedals`` (K, 3) throttle, steer, brake; ``levers`` (K, 3) hand brake, reverse, manual."""
+        s = self.state
+        clean = np.nan_to_num(pedals, nan=0.0)
+        s["throttle"][slots] = np.clip(clean[:, 0], 0.0, 1.0)
+        s["steer"][slots] = np.clip(clean[:, 1], -1.0, 1.0)
+        s["brake"][slots] = np.clip(clean[:, 2], 0.0, 1.0)
+        s["hand_brake"][slots], s["reverse"][slots], s["manual_gear_shift"][slots] = (
+            levers[:, 0],
+            levers[:, 1],
+            levers[:, 2],
+        )
+        s["gear_command"][slots] = np.clip(gears, -1, 99)
+        s["ackermann_on"][slots] = False
+
+    def control(self, slot: int) -> VehicleControl:
+        """Return the control in force; ``gear`` is the one engaged, -1 in reverse, 0 while the gearbox changes."""
+        s = self.state
+        return VehicleControl(
+            throttle=float(s["throttle"][slot]),
+            steer=float(s["steer"][slot]),
+            brake=float(s["brake"][slot]),
+            hand_brake=bool(s["hand_brake"][slot]),
+            reverse=bool(s["reverse"][slot]),
+            manual_gear_shift=bool(s["manual_gear_shift"][slot]),
+            gear=int(s["gear"][slot]),
+        )
+
+    def set_ackermann(self, slot: int, target: AckermannControl) -> None:
+        """Drive towards a target from now on, until :meth:`set_control` is called."""
+        s = self.state
+        if not s["ackermann_on"][slot]:
+            s["ackermann_memory"][slot] = 0.0
+        s["ackermann"][slot] = [finite(value, -1e3, 1e3) for value in target]
+        s["ackermann_on"][slot] = True
+
+    def ackermann_settings(self, slot: int) -> AckermannSettings:
+        """Return the gains of the two controllers."""
+        return AckermannSettings(*map(float, self.state["ackermann_gains"][slot]))
+
+    def set_ackermann_settings(self, slot: int, settings: AckermannSettings) -> None:
+        """Set the gains of the two controllers."""
+        self.state["ackermann_gains"][slot] = [finite(value, -1e6, 1e6) for value in settings]
+
+    # -- what it is ----------------------------------------------------------------------------------------------------
+
+    def physics_control(self, slot: int) -> VehiclePhysicsControl:
+        """Return the vehicle's dynamics, with the wheels where they are now (cm, world)."""
+        control = self._physics[slot]
+        return control._replace(wheels=world_wheels(control, self.pose(slot), self._offsets_m[slot]))
+
+    def set_physics_control(self, slot: int, control: VehiclePhysicsControl) -> None:
+        """Change the vehicle's dynamics while it drives; wheels at the world's origin stay where they are on it.
+
+        Raises:
+            Refusal: the physics control describes nothing that can drive, or changes the number of wheels.
+        """
+        check(control, wheel_count=len(self._offsets_m[slot]))
+        self._fit(slot, control, local_wheels(control, self.pose(slot)) or self._offsets_m[slot])
+
+    def _fit(self, slot: int, control: VehiclePhysicsControl, offsets_m: Sequence[Vector3D]) -> None:
+        s = self.state
+        box = BoundingBox(Vector3D(*map(float, s["box_centre"][slot])), Vector3D(*map(float, s["half_extent"][slot])))
+        com_m = centre_of_mass(control, box, offsets_m)
+        self.specs[slot] = specification(control, box, offsets_m, com_m)
+        s["mass_kg"][slot] = control.mass
+        s["yaw_inertia_kgm2"][slot] = yaw_inertia_kgm2(control.mass, box)
+        s["centre_of_mass"][slot] = com_m
+        s["target_gear"][slot] = min(s["target_gear"][slot], len(control.forward_gears))
+        s["footing"][slot] = 0.0
+        self.wake(slot)
+        self._physics[slot] = control
+        self._offsets_m[slot] = tuple(offsets_m)
+
+    def _forget_vehicle(self, slot: int) -> None:
+        self._physics.pop(slot, None)
+        self._offsets_m.pop(slot, None)
+
+    # -- what it does --------------------------------------------------------------------------------------------------
+
+    def wheel_steer_deg(self, slot: int, wheel: int) -> float:
+        """Return the steering angle of one wheel, degrees, positive to the right."""
+        return math.degrees(float(self.wheel_steer[slot, wheel]))
+
+    def telemetry(self, slot: int) -> VehicleTelemetry:
+        """Return speeds, forces and slips as they were at the end of the last step."""
+        assert self.kind[slot] == VEHICLE
+        s = self.state
+        cosine, sine = math.cos(s["rotation"][slot, 1]), math.sin(s["rotation"][slot, 1])
+        ahead = float(s["velocity"][slot, 0] * cosine + s["velocity"][slot, 1] * sine)
+        return VehicleTelemetry(
+            speed=float(np.linalg.norm(s["velocity"][slot])),
+            steer=float(s["steer"][slot]),
+            throttle=float(s["throttle"][slot]),
+            brake=float(s["brake"][slot]),
+            engine_rpm=float(s["engine_rpm"][slot]),
+            gear=int(s["gear"][slot]),
+            drag=float(self.specs[slot]["drag_kgpm"]) * ahead * ahead,
+            wheels=tuple(self._wheel_telemetry(slot, k) for k in range(len(self._offsets_m[slot]))),
+        )
+
+    def _wheel_telemetry(self, slot: int, k: int) -> WheelTelemetry:
+        s, spec = self.state, self.specs[slot]
+        load_n = float(s["wheel_load"][slot, k])
+        rest_n = float(spec["load_share"][k]) * float(s["mass_kg"][slot]) * 9.81
+        long_n, lat_n = float(s["wheel_long_force"][slot, k]), float(s["wheel_lat_force"][slot, k])
+        return WheelTelemetry(
+            tire_friction=float(spec["friction"][k]),
+            lat_slip=float(s["wheel_lat_slip"][slot, k]),
+            long_slip=float(s["wheel_long_slip"][slot, k]),
+            omega=float(s["wheel_omega"][slot, k]),
+            tire_load=load_n,
+            normalized_tire_load=load_n / rest_n if rest_n > 0.0 else 0.0,
+            torque=float(s["wheel_torque"][slot, k]),
+            long_force=long_n,
+            lat_force=lat_n,
+            normalized_long_force=long_n / load_n if load_n > 0.0 else 0.0,
+            normalized_lat_force=lat_n / load_n if load_n > 0.0 else 0.0,
+        )

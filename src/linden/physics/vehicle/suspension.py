@@ -1,0 +1,117 @@
+"""How a vehicle stands on the ground: height, pitch and roll follow the ground under the wheels like damped springs.
+
+One spring for each of the three, solved by backward Euler, so a long step is only softer. The spring is as stiff as a
+body that bounces at ``BOUNCE_RADPS``; a force only ever pushes up, so a vehicle can leave the ground and land again.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.compiled import part
+from linden.ground import Ground, surface_under
+from linden.physics.axes import forward, rightward
+from linden.physics.state import Body, Spec
+
+F64 = NDArray[np.float64]
+
+BOUNCE_RADPS = 12.0  # 1.9 Hz: between a soft car (1.0 to 1.5 Hz, Gillespie, chapter 5) and a stiff shuttle
+DAMPING = 0.7  # of critical
+DEEPEST_M = 0.15  # the bump stops: the body goes no deeper below its place
+_HANGING_M = 1.0  # a wheel over an edge hangs this much below the highest, no lower
+_STEEPEST_LEAN_RAD = 0.7
+
+
+@part
+def find_footing(v: Body, spec: Spec, wheels: F64, ground: Ground) -> None:
+    """Set ``footing``: height under the origin, pitch and roll of the plane through the ground under the wheels."""
+    count = spec.wheel_count
+    heights = wheels[0]
+    x, y, z = v.position[0], v.position[1], v.position[2]
+    pitch, yaw, roll = v.rotation[0], v.rotation[1], v.rotation[2]
+    cosine, sine = math.cos(yaw), math.sin(yaw)
+    highest = -math.inf
+    for k in range(count):
+        ahead, right = spec.wheel_x_m[k], spec.wheel_y_m[k]
+        hint = z + math.sin(pitch) * ahead
+        if spec.track_m > 0.0:  # the lean of a two-wheeler is not that of its ground
+            hint -= math.sin(roll) * right
+        heights[k], _, _, _, _ = surface_under(
+            ground, x + cosine * ahead - sine * right, y + sine * ahead + cosine * right, hint
+        )
+        highest = max(highest, heights[k])
+    half = count // 2
+    front, rear, left, right_side = 0.0, 0.0, 0.0, 0.0
+    for k in range(count):
+        height = max(heights[k], highest - _HANGING_M)
+        front += height / half if k < half else 0.0
+        rear += height / half if k >= half else 0.0
+        left += height / half if spec.wheel_y_m[k] < 0.0 else 0.0
+        right_side += height / half if spec.wheel_y_m[k] > 0.0 else 0.0
+    rise = (front - rear) / spec.wheelbase_m
+    fall = (left - right_side) / spec.track_m if spec.track_m > 0.0 else 0.0
+    v.footing[0] = front - rise * spec.axle_front_m
+    v.footing[1] = math.atan(rise)
+    v.footing[2] = math.atan(fall / math.sqrt(1.0 + rise * rise))
+    v.footing[3] = 1.0
+
+
+@part
+def settle(v: Body, spec: Spec, speed_x_mps: float, speed_y_mps: float, gravity_mps2: float, dt_s: float) -> None:
+    """Advance height, pitch and roll towards the footing, the vehicle moving at these speeds forward and right."""
+    pitch, roll, yaw = v.footing[1], v.footing[2], v.rotation[1]
+    nose, side = forward(pitch, yaw), rightward(pitch, yaw, roll)
+    ground_mps = nose[2] * speed_x_mps + side[2] * speed_y_mps
+    fall = gravity_mps2 if v.gravity else 0.0
+    stiff = 1.0 + 2.0 * DAMPING * BOUNCE_RADPS * dt_s + (BOUNCE_RADPS * dt_s) ** 2
+    above = v.position[2] - v.footing[0]
+    before = v.velocity[2]
+    pushed = before + dt_s * (2.0 * DAMPING * BOUNCE_RADPS * ground_mps - BOUNCE_RADPS * BOUNCE_RADPS * above)
+    rate = pushed / stiff
+    support = fall + (rate - before) / dt_s
+    if support <= 0.0:  # off the ground: free fall
+        rate = before - fall * dt_s
+        v.position[2] += 0.5 * (before + rate) * dt_s
+        v.support_mps2 = 0.0
+    else:
+        v.position[2] += rate * dt_s
+        v.support_mps2 = support * _upright(pitch, roll)
+        if v.position[2] < v.footing[0] - DEEPEST_M:
+            v.position[2] = v.footing[0] - DEEPEST_M
+            rate = max(rate, ground_mps)
+    v.velocity[2] = rate
+    v.heave_mps = rate - ground_mps
+    if v.support_mps2 > 0.0:
+        _lean(v, spec, stiff, dt_s)
+    else:
+        v.rotation[0] += v.tilt_radps[0] * dt_s
+        v.rotation[2] += v.tilt_radps[1] * dt_s
+
+
+@part
+def _upright(pitch_rad: float, roll_rad: float) -> float:
+    """Return how upright the ground is: the vertical part of its normal."""
+    return math.cos(pitch_rad) * math.cos(roll_rad)
+
+
+@part
+def _lean(v: Body, spec: Spec, stiff: float, dt_s: float) -> None:
+    """Advance pitch and roll: towards the ground's, squatting under thrust and leaning out of the bend.
+
+    The angle under an acceleration a at height h is a h / (bounce² (l/2)²), of springs that sit half a wheelbase or
+    half a track l/2 away; a two-wheeler instead leans into the bend until weight and tyre force are in line with it.
+    """
+    lever = spec.com_height_m / (BOUNCE_RADPS * BOUNCE_RADPS)
+    ahead, right = v.felt_mps2[0], v.felt_mps2[1]
+    pitch = v.footing[1] + lever * ahead / (0.25 * spec.wheelbase_m * spec.wheelbase_m)
+    if spec.track_m > 0.0:
+        roll = v.footing[2] - lever * right / (0.25 * spec.track_m * spec.track_m)
+    else:
+        roll = v.footing[2] + math.atan(v.felt_mps2[1] / max(1.0, v.support_mps2))
+    for axis, target in ((0, pitch), (1, roll)):
+        angle = v.rotation[2 * axis]
+        pushed = v.tilt_radps[axis] + dt_s * BOUNCE_RADPS * BOUNCE_RADPS * (target - angle)
+        v.tilt_radps[axis] = pushed / stiff
+        angle += v.tilt_radps[axis] * dt_s
+        v.rotation[2 * axis] = max(-_STEEPEST_LEAN_RAD, min(_STEEPEST_LEAN_RAD, angle))
