@@ -23,7 +23,7 @@ USUAL_WHEELBASE_SHARE = 0.6  # of the length, for a server that does not tell wh
 
 
 class Steering(NamedTuple):
-    """What the wheel does: ``steer = 1`` turns the front wheels by ``full_rad`` times a factor that depends on speed."""
+    """What the wheel does: ``steer = 1`` turns the front wheels by ``full_rad`` times a factor for the speed."""
 
     full_rad: float
     speeds_kmh: tuple[float, ...]

@@ -14,7 +14,9 @@ FOLLOW_1PS = 1.5  # how fast a lag behind the reference speed is made up
 LEARN = 0.15  # share of a step's surprise that the estimate of the disturbance takes up
 MAX_DISTURBANCE_MPS2 = 4.0
 HOLD_BRAKE = 0.6  # when standing
-HOLD_STEP = 0.04  # it is pressed down this much a step, so that the stop is not felt
+HOLD_STEP = 0.04  # it is pressed down this much more a step …
+ROLLING_STEP = 0.01  # … and this much while the wheels still turn a little, so that the stop is not felt
+ROLLING_MPS = 0.005
 STUCK_MPS = 0.1  # below this the vehicle may be held by friction, from which nothing is learnt
 
 
@@ -55,7 +57,8 @@ class PedalControl:
         self._learn(speed_mps)
         if holding:
             pressed = self.last.brake if self.last.throttle == 0.0 else 0.0
-            self.last = Pedals(0.0, min(HOLD_BRAKE, pressed + HOLD_STEP))
+            more = ROLLING_STEP if abs(speed_mps) > ROLLING_MPS else HOLD_STEP
+            self.last = Pedals(0.0, min(HOLD_BRAKE, pressed + more))
             return self.last
         lag_mps = reference_mps - reference_mps2 * self.dt_s - speed_mps
         demand_mps2 = reference_mps2 + FOLLOW_1PS * lag_mps - self.disturbance_mps2

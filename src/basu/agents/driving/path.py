@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 SPACING_M = 0.5  # between the points of a path
-SMOOTHING_M = 3.0  # way points are averaged over this: a bend of radius r is cut by SMOOTHING_M**2 / (24 r)
+SMOOTHING_M = 2.0  # way points are averaged over this, twice: a bend of radius r is cut by SMOOTHING_M**2 / (12 r)
 FINE_M = 0.05  # step of that averaging
 LOST_M = 6.0  # farther beside the path than this, the place is looked for anew on the whole of it
 SAME_PLACE_M = 1.0  # two places that fit a pose about equally well: the earlier one is meant
@@ -97,7 +97,7 @@ def make_path(points_m: NDArray[np.float64], s_m: NDArray[np.float64]) -> Path:
     """
     fine_s_m = np.arange(0.0, s_m[-1] + FINE_M / 2, FINE_M)
     half = min(round(SMOOTHING_M / FINE_M / 2), (len(fine_s_m) - 1) // 2)
-    smooth = [_averaged(np.interp(fine_s_m, s_m, points_m[:, axis]), half) for axis in (0, 1)]
+    smooth = [_averaged(_averaged(np.interp(fine_s_m, s_m, points_m[:, axis]), half), half) for axis in (0, 1)]
     every = round(SPACING_M / FINE_M)
     heading_rad = np.unwrap(np.arctan2(np.gradient(smooth[1]), np.gradient(smooth[0])))
     arc_m = np.hypot(np.gradient(smooth[0]), np.gradient(smooth[1]))

@@ -7,6 +7,7 @@ bounded by construction: a step changes the acceleration by no more than the lim
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from basu.agents.driving.comfort import Limits, approach_accel_mps2, slowing_distance_m
@@ -23,7 +24,7 @@ FULL_MPS2 = 7.5  # emergency braking, about what tyres give on dry asphalt (0.8 
 FULL_JERK_MPS3 = 60.0  # brakes build up within a tenth of a second or two
 ESCALATE_M = 0.3  # missing a mark by less than this in comfort is better than firm braking
 ARRIVED_M = 0.8  # standing this near before a mark, one stays rather than creep up to it
-STANDING_MPS = 0.02
+STANDING_MPS = 0.005
 OVERSPEED_MPS = 0.15  # this much above the limit nothing is done about it
 RESYNC_MPS = 0.6  # the reference farther than this from the vehicle starts again from the vehicle
 
@@ -90,15 +91,16 @@ class Planner:
         """The most acceleration up to ``wanted_mps2`` with which the restriction can still be met."""
         if self._missed_by_m(restriction, wanted_mps2, COMFORT) <= 0.0:
             return wanted_mps2
-        low = wanted_mps2
-        for rung in range(restriction.urgency + 1):
-            limits = LADDER[rung]
-            low = min(self._range(limits)[0], wanted_mps2)
-            missed_m = self._missed_by_m(restriction, low, limits)
-            if missed_m <= 0.0:
-                return self._largest(restriction, low, wanted_mps2, limits)
-            if missed_m <= ESCALATE_M:
-                return low
+        low = min(self._range(COMFORT)[0], wanted_mps2)
+        missed_m = self._missed_by_m(restriction, low, COMFORT)
+        if missed_m <= 0.0:
+            return self._largest(restriction, low, wanted_mps2)
+        if missed_m <= ESCALATE_M:
+            return low
+        for milder, rougher in pairwise(LADDER[: restriction.urgency + 1]):
+            low = min(self._range(rougher)[0], wanted_mps2)
+            if self._missed_by_m(restriction, low, rougher) <= ESCALATE_M:
+                return self._mildest(restriction, milder, rougher)
         return self._emergency(restriction, low) if restriction.urgency is Urgency.VITAL else low
 
     def _missed_by_m(self, restriction: Restriction, accel_mps2: float, limits: Limits) -> float:
@@ -109,15 +111,26 @@ class Planner:
         needed_m = slowing_distance_m(speed_mps, accel_mps2, restriction.speed_mps, limits)
         return needed_m + speed_mps * self.dt_s - restriction.distance_m if needed_m > 0.0 else -math.inf
 
-    def _largest(self, restriction: Restriction, low: float, high: float, limits: Limits) -> float:
-        """Bisect between an acceleration that meets the restriction and one that does not."""
+    def _largest(self, restriction: Restriction, low: float, high: float) -> float:
+        """Bisect between an acceleration that still allows for comfort and one that does not."""
         for _ in range(7):
             middle = 0.5 * (low + high)
-            if self._missed_by_m(restriction, middle, limits) <= 0.0:
+            if self._missed_by_m(restriction, middle, COMFORT) <= 0.0:
                 low = middle
             else:
                 high = middle
         return low
+
+    def _mildest(self, restriction: Restriction, milder: Limits, rougher: Limits) -> float:
+        """Brake at once and evenly, no harder than it takes: bisect for the deceleration between two rungs."""
+        low, high = milder.accel_mps2, rougher.accel_mps2
+        for _ in range(7):
+            middle = Limits(0.5 * (low + high), rougher.jerk_mps3)
+            if self._missed_by_m(restriction, self._range(middle)[0], middle) <= 0.0:
+                high = middle.accel_mps2
+            else:
+                low = middle.accel_mps2
+        return self._range(Limits(high, rougher.jerk_mps3))[0]
 
     def _emergency(self, restriction: Restriction, hard_mps2: float) -> float:
         """Brake as hard as the way that is really left demands, beyond all comfort."""

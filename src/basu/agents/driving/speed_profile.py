@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 LATERAL_ACCEL_MPS2 = 0.9  # in bends; the passengers' limit of 1.0 less a margin for tracking
 LATERAL_JERK_MPS3 = 0.9  # on the way into and out of bends, likewise
 SLOWEST_MPS = 1.5  # no bend is driven slower than this
+STEP_MPS = 0.1  # bends are driven at multiples of this, so that a bend is one speed and not a shiver of many
+AROUND_M = 1.5  # the least limit this near before and behind holds, for the same reason
 POSTED_MARGIN_MPS = 0.25  # kept below a posted limit
 SAVED_MPS = 0.1  # a slowdown is left out where the next one already brings the speed this near to it
 BRAKING_MPS2 = 0.8  # assumed in deciding which slowdowns matter; the planner brakes a little harder
@@ -40,7 +42,11 @@ def bend_limit_mps(curvature_1pm: NDArray[np.float64], spacing_m: float) -> NDAr
     bend = np.maximum(np.abs(curvature_1pm), 1e-6)
     onset = np.maximum(np.abs(np.gradient(curvature_1pm, spacing_m)), 1e-9)
     slow = np.minimum(np.sqrt(LATERAL_ACCEL_MPS2 / bend), np.cbrt(LATERAL_JERK_MPS3 / onset))
-    return np.asarray(np.maximum(slow, SLOWEST_MPS))
+    around = round(AROUND_M / spacing_m)
+    slowest_near = np.lib.stride_tricks.sliding_window_view(np.pad(slow, around, mode="edge"), 2 * around + 1).min(
+        axis=1
+    )
+    return np.asarray(np.maximum(np.floor(slowest_near / STEP_MPS) * STEP_MPS, SLOWEST_MPS))
 
 
 def reachable_mps(limit_mps: NDArray[np.float64], spacing_m: float, braking_mps2: float) -> NDArray[np.float64]:
