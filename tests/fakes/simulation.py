@@ -45,7 +45,7 @@ class FakeMaps:
     def load(self, name: str) -> str:
         if name.rsplit("/", 1)[-1] not in ("Plain", *("OpenDriveMap" for _ in self.sent)):
             raise Refusal(f"Map '{name}' not found")
-        return name
+        return f"Carla/Maps/{name.rsplit('/', 1)[-1]}"
 
     def from_opendrive(self, text: str) -> str:
         self.sent.append(text)

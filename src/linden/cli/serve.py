@@ -8,10 +8,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linden.server.loop import Server
+    from linden.simulation import Simulation
 
 DEFAULT_PORT = 2000
 LOG_LEVELS = ("debug", "info", "warning", "error")
@@ -57,7 +58,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
-    from linden.simulation.simulation import Simulation  # noqa: PLC0415 - see above
+    from linden.simulation import Simulation  # noqa: PLC0415 - see above
     from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
 
     registry.load_handlers()
@@ -74,7 +75,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     return server
 
 
-def _warm_up(simulation: Any) -> None:  # noqa: ANN401 - a throw-away simulation
+def _warm_up(simulation: "Simulation") -> None:
     """Run every kernel once, so that the first tick of a client takes no longer than the others."""
     simulation.step(0.05)
 
@@ -84,7 +85,7 @@ def _told_of_compiling() -> Iterator[None]:
     """Say so once, where the kernels are not in the cache and the compiler has to run."""
     from numba.core import event  # noqa: PLC0415 - as in _make_server
 
-    class Teller(event.Listener):  # type: ignore[misc]
+    class Teller(event.Listener):
         """Speaks at the first kernel that is compiled."""
 
         told = False
@@ -92,17 +93,17 @@ def _told_of_compiling() -> Iterator[None]:
         def on_start(self, _event: object) -> None:
             if not self.told:
                 self.told = True
-                _say("linden: compiling the physics kernels, about half a minute, once")
+                _say("linden: compiling the physics kernels, about a minute, once on this machine")
 
         def on_end(self, _event: object) -> None:
             """Nothing to say."""
 
     teller = Teller()
-    event.register("numba:compile", teller)
+    event.register("numba:compile", teller)  # type: ignore[no-untyped-call]
     try:
         yield
     finally:
-        event.unregister("numba:compile", teller)
+        event.unregister("numba:compile", teller)  # type: ignore[no-untyped-call]
 
 
 @contextmanager

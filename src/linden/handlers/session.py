@@ -38,7 +38,7 @@ def version(_context: Context) -> str:
 @method("get_available_maps")
 def get_available_maps(context: Context) -> list[str]:
     """Return the names of the maps that can be loaded."""
-    return list(context.maps.names())
+    return context.maps.names()
 
 
 @method("load_new_episode")
@@ -66,15 +66,13 @@ def copy_opendrive_to_file(context: Context, opendrive: str, parameters: Opendri
 @method("get_map_info")
 def get_map_info(context: Context) -> MapInfo:
     """Return the map's name as CARLA writes it, and the recommended spawn points."""
-    name: str = context.simulation.map_name
-    return MapInfo(name if "/" in name else f"Carla/Maps/{name}", tuple(context.simulation.spawn_points))
+    return MapInfo(context.simulation.map_name, context.simulation.spawn_points)
 
 
 @method("get_map_data")
 def get_map_data(context: Context) -> str:
     """Return the OpenDRIVE text."""
-    text: str = context.simulation.opendrive_text
-    return text
+    return context.simulation.opendrive_text
 
 
 @method("get_required_files")
@@ -104,8 +102,7 @@ def get_sensor_token(context: Context, stream_id: U32) -> Token:
 @method("get_episode_settings")
 def get_episode_settings(context: Context) -> EpisodeSettings:
     """Return how time passes."""
-    settings: EpisodeSettings = context.simulation.settings
-    return settings
+    return context.simulation.settings
 
 
 @method("set_episode_settings")
@@ -113,8 +110,7 @@ def set_episode_settings(context: Context, settings: EpisodeSettings) -> int:
     """Change how time passes, from the next frame on; returns the present frame, for which no client has to wait."""
     _check(settings)
     context.simulation.settings = settings
-    frame: int = context.simulation.frame
-    return frame
+    return context.simulation.frame
 
 
 @method("tick_cue", advances=True)

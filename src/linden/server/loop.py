@@ -13,12 +13,14 @@ from collections.abc import Callable
 
 from linden.errors import ProtocolError
 from linden.handlers import registry, session
-from linden.handlers.context import Context, Frames, MapLibrary
+from linden.handlers.context import Context, Frames
 from linden.server.pace import Pace
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports, port_of
 from linden.server.subscribers import Subscribers
+from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
+from linden.world.maps import MapLibrary
 
 log = logging.getLogger("linden")
 
@@ -35,7 +37,7 @@ _READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 class Server:
     """Listens on two ports and serves one simulation until it is told to stop."""
 
-    def __init__(self, simulation: object, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
+    def __init__(self, simulation: Simulation, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
         self._clock = time.monotonic
         self._ports = ports
         self._pace = Pace(self._clock())
@@ -252,8 +254,7 @@ class Server:
         )
 
     def _is_synchronous(self) -> bool:
-        synchronous: bool = self.context.simulation.settings.synchronous_mode
-        return synchronous
+        return self.context.simulation.settings.synchronous_mode
 
     def _make_due_frame(self) -> None:
         """Make a frame by the clock, in asynchronous mode only."""
