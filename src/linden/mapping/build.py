@@ -7,11 +7,12 @@ from typing import NamedTuple
 
 from linden.mapping import controls, junctions, roads, roundabouts
 from linden.mapping.curves import Point, length, pose_at, seen_from
-from linden.mapping.document import Controller, Document, JunctionRecord, Link, Object, RoadRecord, Signal, text
+from linden.mapping.document import Controller, Document, JunctionRecord, Link, Object, RoadRecord, Signal
 from linden.mapping.facts import Control, Facts, Intersection, read
-from linden.mapping.network import End, Leg, Network
+from linden.mapping.network import End, Leg, Network, nearest_road
 from linden.mapping.network import build as build_network
 from linden.mapping.section import view
+from linden.mapping.writing import text
 
 FIRST_JUNCTION_ID = 1_000_000  # above all road ids: LibCarla takes a link to an unknown road for a junction
 FIRST_CONTROLLER_ID = 2_000_000
@@ -155,7 +156,7 @@ class _Assembly:
     def _add_controls(
         self, legs: tuple[Leg, ...], rules: list[Control], found: list[Intersection], *, walked: bool
     ) -> dict[End, int]:
-        """Put signs, lines and crosswalks on the legs' roads; return who gives way: 0 for legs without a sign, else 1."""
+        """Put signs, lines and crosswalks on the legs' roads; return 0 for legs without a sign, else 1."""
         ranks = {}
         confidence = found[0].control_confidence if found else "unknown"
         for leg, rule in zip(legs, rules, strict=True):
@@ -248,20 +249,6 @@ class _Assembly:
         record = roads.street_road(self.road_ids[edge], one.street, one.section, path, heights)
         record = roads.linked(record, self.touches.get(begin), self.touches.get(end))
         return record._replace(signals=tuple(self.signals[edge]), objects=tuple(self.objects[edge]))
-
-
-def nearest_road(network: Network, street_id: str, point: Point) -> tuple[int, float]:
-    """Return which road (edge) of a street passes nearest to a point, and how far along, looked up every 0.25 m."""
-    best = (math.inf, -1, 0.0)
-    for number, (edge, road) in enumerate(zip(network.edges, network.roads, strict=True)):
-        if edge.street.id != street_id or road is None:
-            continue
-        steps = math.ceil(length(road) / 0.25)
-        for i in range(steps + 1):
-            s_m = length(road) * i / steps
-            pose = pose_at(road, s_m)
-            best = min(best, (math.dist((pose.x_m, pose.y_m), point), number, s_m))
-    return best[1], best[2]
 
 
 def _is_bend(found: list[Intersection], legs: tuple[Leg, ...]) -> bool:

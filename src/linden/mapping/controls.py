@@ -1,9 +1,8 @@
 """What tells drivers at a junction what to do: signs, lights, stop lines, crosswalks; and where they stand."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
-from linden.mapping.curves import Path, wrapped
+from linden.mapping.curves import wrapped
 from linden.mapping.document import Object, Signal
 from linden.mapping.facts import Control, Intersection
 from linden.mapping.network import Leg
@@ -141,7 +140,7 @@ def _across(
     size_m: tuple[float, float],
     confidence: str,
 ) -> Object:
-    """Return a painted rectangle over a leg. ``place``: the road's length, m before its end, m left of its reference line."""
+    """Return a painted rectangle over a leg. ``place``: the road's length, m before its end, m left of its line."""
     road_m, before_m, left_m = place
     return Object(
         number,

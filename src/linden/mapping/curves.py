@@ -6,6 +6,7 @@ ends meet with equal headings. Lines and arcs alone, because both have exact len
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 STRAIGHT_PER_M = 2e-5
@@ -107,8 +108,8 @@ def rounded(points: Sequence[Point], radius_m: float, ends_kept_m: float) -> Pat
     ``radius_m`` is used where the sides are long enough; else the arc takes half of each inner side, and of the first
     and last all but ``ends_kept_m`` (but half at least), because a junction will stand there.
     """
-    headings = [math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in zip(points, points[1:], strict=False)]
-    sides_m = [math.dist(a, b) for a, b in zip(points, points[1:], strict=False)]
+    headings = [math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in pairwise(points)]
+    sides_m = [math.dist(a, b) for a, b in pairwise(points)]
     room_m = [side / 2 for side in sides_m]
     room_m[0] = max(room_m[0], sides_m[0] - ends_kept_m)
     room_m[-1] = max(room_m[-1], sides_m[-1] - ends_kept_m)

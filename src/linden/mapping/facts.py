@@ -7,6 +7,7 @@ frame, x east and y north, and rounded to 1 mm, so that what follows does not de
 import math
 from collections.abc import Iterable, Mapping
 from enum import Enum
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 from pyproj import Proj
@@ -195,9 +196,7 @@ class _Feature:
             raise UserError(f"{self.label}: its coordinates are not pairs of longitude and latitude") from None
         if any(not (abs(lon) <= 180 and abs(lat) <= 90) for lon, lat in lonlats):
             raise UserError(f"{self.label}: its coordinates are not degrees of longitude and latitude")
-        if wanted == "LineString" and (
-            len(lonlats) < 2 or any(a == b for a, b in zip(lonlats, lonlats[1:], strict=False))
-        ):
+        if wanted == "LineString" and (len(lonlats) < 2 or any(a == b for a, b in pairwise(lonlats))):
             raise UserError(f"{self.label}: it needs two points at least, and no point twice in a row")
         return lonlats
 

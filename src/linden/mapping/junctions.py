@@ -78,7 +78,9 @@ def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int],
 
 def surface(ways: tuple[Turn, ...]) -> Polygon | MultiPolygon:
     """Return the ground that the lanes of a junction's turns cover."""
-    return unary_union([_covered(turn) for turn in ways])
+    found = unary_union([_covered(turn) for turn in ways])
+    assert isinstance(found, (Polygon, MultiPolygon)), "lanes cover an area"
+    return found
 
 
 def corner_road(

@@ -60,7 +60,7 @@ class Leg(NamedTuple):
 
 
 class Network(NamedTuple):
-    """The roads (edges cut back, None inside a junction) and, for each junction, its nodes and its legs counter-clockwise."""
+    """The roads (cut back, None inside a junction); for each junction its nodes, and its legs counter-clockwise."""
 
     nodes: tuple[Node, ...]
     edges: tuple[Edge, ...]
@@ -93,6 +93,20 @@ def build(facts: Facts) -> Network:
                 tightness[node] = 0
     junctions = tuple((tuple(group), tuple(found)) for group, found in zip(groups, legs, strict=True) if len(found) > 1)
     return Network(nodes, edges, roads, junctions)
+
+
+def nearest_road(network: Network, street_id: str, point: Point) -> tuple[int, float]:
+    """Return which road (edge) of a street passes nearest to a point, and how far along, looked up every 0.25 m."""
+    best = (math.inf, -1, 0.0)
+    for number, (edge, road) in enumerate(zip(network.edges, network.roads, strict=True)):
+        if edge.street.id != street_id or road is None:
+            continue
+        steps = math.ceil(length(road) / 0.25)
+        for i in range(steps + 1):
+            s_m = length(road) * i / steps
+            pose = pose_at(road, s_m)
+            best = min(best, (math.dist((pose.x_m, pose.y_m), point), number, s_m))
+    return best[1], best[2]
 
 
 def _road(number: int, edge: Edge, setbacks: dict[End, float]) -> Path | None:
@@ -150,9 +164,7 @@ def _legs(group: list[int], nodes: tuple[Node, ...], edges: tuple[Edge, ...], ra
     for number, edge in enumerate(edges):
         if inside.issuperset(edge.nodes) and len(group) > 1:
             continue
-        for at_end in (False, True):
-            if edge.nodes[at_end] in inside:
-                uncut.append(_uncut(End(number, at_end), edge))
+        uncut += [_uncut(End(number, at_end), edge) for at_end in (False, True) if edge.nodes[at_end] in inside]
     if len(uncut) < 2:
         return []
     centre = _centre([nodes[node].point for node in group])
@@ -224,7 +236,7 @@ def _corner(leg: Leg, after: Leg, radius_m: float) -> tuple[float, float]:
     kerb_after_m = after.view.kerb_m(right=False)
     ux, uy = math.cos(out.heading_rad), math.sin(out.heading_rad)
     vx, vy = math.cos(out_after.heading_rad), math.sin(out_after.heading_rad)
-    # a point on the leg's right kerb is out + left * kerb + a * u; on the other's left kerb, after + right * kerb + b * v
+    # points on the kerbs: out + kerb to its left + a u, and out_after + kerb to its right + b v
     dx = (out_after.x_m + vy * kerb_after_m) - (out.x_m - uy * kerb_m)
     dy = (out_after.y_m - vx * kerb_after_m) - (out.y_m + ux * kerb_m)
     sin = ux * vy - uy * vx

@@ -18,7 +18,7 @@ Numbered = tuple[tuple[int, Lane], ...]
 
 
 class Touch(NamedTuple):
-    """What one end of a road touches: the link, and for each of its lanes the one it goes on in (none at a junction)."""
+    """What one end of a road touches: the link, and for each lane the one it goes on in (none at a junction)."""
 
     link: Link
     lanes: dict[int, int]
@@ -149,7 +149,7 @@ def contact(end: End) -> str:
 
 
 def blended(before: Numbered, after: Numbered) -> tuple[Strip, ...]:
-    """Pair the lanes of two roads' sides kind by kind, from the axis outward; what has no partner narrows to nothing."""
+    """Pair the lanes of two roads' sides kind by kind, from the axis out; what has no partner narrows to nothing."""
     found = []
     for kind in KINDS:
         ours = [(number, lane.width_m) for number, lane in before if lane.kind == kind]

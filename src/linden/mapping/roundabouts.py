@@ -1,7 +1,7 @@
 """Mini-roundabouts: ways round a central island, counter-clockwise, from each entry to each exit.
 
-Every way is one connecting road (right-hand bend in, arc round the island, right-hand bend out), so the circulating lane
-is where these roads lie on each other; ``docs/decisions/0104-roundabouts.md`` says why it is not a ring of roads.
+Every way is one connecting road: a right-hand bend in, an arc round the island, a right-hand bend out. The circulating
+lane is where these roads lie on each other; ``docs/decisions/0105-roundabouts.md`` says why it is not a ring of roads.
 """
 
 import math
@@ -30,7 +30,7 @@ class _Approach(NamedTuple):
 
 
 def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
-    """Return the ways through a roundabout about ``centre``; where a right turn leaves no room for the ring, a direct one."""
+    """Return the ways through a roundabout; a right turn that leaves no room for the ring goes directly."""
     found = []
     for come, lane_in, go, lane_out in lane_pairs(legs):
         begin, end = pose_in(legs[come], lane_in), pose_out(legs[go], lane_out)
@@ -97,7 +97,7 @@ def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -
 
 
 def _approach(centre: Point) -> _Approach:
-    """Return the way in for a centre that lies so far ahead and to the left: the bend touches the ring's middle from outside.
+    """Return the way in for a centre so far ahead and to the left: the bend touches the ring's middle from outside.
 
     The bend's centre is ``BEND_RADIUS_M`` to the right; its distance to the island's centre is the sum of the radii.
     """

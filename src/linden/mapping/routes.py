@@ -12,11 +12,11 @@ from lxml import etree
 
 from linden.errors import UserError
 from linden.geometry import from_opendrive
-from linden.mapping.build import Built, nearest_road
+from linden.mapping.build import Built
 from linden.mapping.curves import Pose, length, moved, pose_at, turned_back, wrapped
 from linden.mapping.document import RoadRecord, value
 from linden.mapping.facts import Route, Stop
-from linden.mapping.network import End
+from linden.mapping.network import End, nearest_road
 from linden.mapping.section import view
 from linden.values.space import Transform
 

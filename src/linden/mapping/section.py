@@ -25,7 +25,7 @@ class Lane(NamedTuple):
 
 
 class Section(NamedTuple):
-    """Lanes right and left of the axis, each from the axis outward. ``axis_m``: how far left of the centre-line it runs."""
+    """Lanes right and left of the axis, from it outward; ``axis_m``: how far left of the centre-line it runs."""
 
     right: tuple[Lane, ...]
     left: tuple[Lane, ...]
