@@ -13,7 +13,7 @@ from linden.opendrive.spawn import spawn_points
 _MARGIN = 0.04  # of the longer side
 _LONGER_SIDE_PX = 1800
 _LINES = 50.0  # as many lines of text would fill the longer side
-_NAME_SIZE_M = (4.0, 14.0)  # street names stay legible, and within their street
+_NAME_SIZE_M = 4.5  # street names stay within their street
 
 
 def svg(opendrive: OpenDrive) -> str:
@@ -29,7 +29,6 @@ def svg(opendrive: OpenDrive) -> str:
     width, height = float(high[0]) + margin_m - left, float(high[1]) + margin_m - top
     scale = _LONGER_SIDE_PX / max(width, height)
     unit_m = side_m / _LINES
-    name_m = min(max(unit_m / 3.0, _NAME_SIZE_M[0]), _NAME_SIZE_M[1])
     view_box = f"{left:.1f} {top:.1f} {width:.1f} {height:.1f}"
     size = f'width="{width * scale:.0f}" height="{height * scale:.0f}" viewBox="{view_box}"'
     ground = f'<rect x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{GRASS}"/>'
@@ -41,7 +40,7 @@ def svg(opendrive: OpenDrive) -> str:
         *objects(tables),
         *spawn_marks(spawn_points(opendrive)),
         *signals(place(opendrive)),
-        *street_names(tables, name_m),
+        *street_names(tables, _NAME_SIZE_M),
         *frame(opendrive, (left, top, width, height), unit_m),
         "</svg>\n",
     ]

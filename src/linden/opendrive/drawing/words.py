@@ -24,6 +24,8 @@ def street_names(tables: Tables, size_m: float) -> list[str]:
     texts = []
     for name, roads in named.items():
         taken: list[tuple[float, float]] = []
+        if sum(tables.road_length_m[roads]) < _LETTER_M * size_m * len(name):
+            continue  # it would reach far beyond its street
         for index in sorted(roads, key=lambda road: (-tables.road_length_m[road], road)):
             length_m = tables.road_length_m[index]
             pose = tables.curves.pose(np.array([index]), np.array([length_m / 2.0]))
