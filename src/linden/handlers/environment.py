@@ -2,7 +2,7 @@
 
 from linden.handlers.context import Context
 from linden.handlers.registry import method
-from linden.values.episode import WeatherParameters
+from linden.values.episode import LightState, WeatherParameters
 
 
 @method("get_weather_parameters")
@@ -27,3 +27,9 @@ def get_imui_gravity(context: Context) -> float:
 def set_imui_gravity(context: Context, gravity_mps2: float) -> None:
     """Set the gravity that IMU sensors add."""
     context.simulation.episode.imu_gravity_mps2 = gravity_mps2
+
+
+@method("query_lights_state")
+def query_lights_state(_context: Context, _client: str) -> tuple[LightState, ...]:
+    """Return the lamps of streets and houses: as yet the world has none."""
+    return ()

@@ -74,3 +74,14 @@ class LabelledPoint(NamedTuple):
 
     location: Vector3D
     label: int
+
+
+class LightState(NamedTuple):
+    """One lamp of a street or house: colour 0 to 255, intensity in lumens, group a carla.LightGroup."""
+
+    id: int
+    location: Vector3D
+    intensity: float
+    group: int
+    color: tuple[int, int, int]
+    active: bool
