@@ -34,7 +34,9 @@ def test_the_distance_is_that_of_the_manoeuvre_driven(speed_mps: float, accel_mp
         return  # already slower, and only the acceleration has to be let go: not a slowing
     expected_m = driven_m(speed_mps, accel_mps2, target_mps, LIMITS)
     assert slowing_distance_m(speed_mps, accel_mps2, target_mps, LIMITS) == pytest.approx(
-        expected_m, abs=0.06, rel=0.01
+        expected_m,
+        abs=0.1,
+        rel=0.02,  # the steps end up to 0.04 s early
     )
 
 
