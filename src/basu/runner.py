@@ -30,7 +30,7 @@ from basu.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, make_fold
 from basu.report.result import result
 from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription, read_routes
-from basu.simulator import OwnServer, connect, ticked_by_us, weather_called, world_of
+from basu.simulator import OwnServer, asking, connect, ticked_by_us, weather_called, world_of
 from basu.utils.packaged import find
 from basu.vehicle import vehicle_at_start
 
@@ -155,10 +155,11 @@ def _one(
     """One run from an empty road to its folder."""
     started = datetime.now(timezone.utc)
     config = agents.config
-    if repetition and simulator.own:
-        simulator.client.reload_world()
-    world = world_of(simulator.client, description.town)
-    carla_map = world.get_map()
+    with asking(f"loading {description.town}"):
+        if repetition and simulator.own:
+            simulator.client.reload_world()
+        world = world_of(simulator.client, description.town)
+        carla_map = world.get_map()
     lanes = lane_graph.build(carla_map)
     own_points = agents.own_route()
     if own_points is not None:
@@ -167,21 +168,25 @@ def _one(
         )
     route = plan(carla_map, description, lanes)
     sensors = SensorsManager(prepared.sensor_file)
-    with ticked_by_us(world, STEP_S):
+    with (
+        asking("getting the vehicle ready"),
+        ticked_by_us(world, STEP_S),
+        vehicle_at_start(world, route, config.vehicle) as vehicle,
+        ProgressBar(route.length_m, STEP_S) as bar,
+    ):
         world.set_weather(weather_called(config.weather))
-        with vehicle_at_start(world, route, config.vehicle) as vehicle, ProgressBar(route.length_m, STEP_S) as bar:
-            this_run = Run(
-                client=simulator.client,
-                world=world,
-                carla_map=carla_map,
-                vehicle=vehicle,
-                route=route,
-                config=config,
-                step_s=STEP_S,
-                seed=options.seed,
-                timeout_s=options.timeout_s,
-            )
-            driven = drive(this_run, agents, sensors, scoring, why_gone=simulator.why_gone, on_tick=bar.tick)
+        this_run = Run(
+            client=simulator.client,
+            world=world,
+            carla_map=carla_map,
+            vehicle=vehicle,
+            route=route,
+            config=config,
+            step_s=STEP_S,
+            seed=options.seed,
+            timeout_s=options.timeout_s,
+        )
+        driven = drive(this_run, agents, sensors, scoring, why_gone=simulator.why_gone, on_tick=bar.tick)
     folder = make_folder(options.output, started.astimezone(), prepared.loaded.name, route.id)
     _leave(folder, driven, scoring, lanes, _config(options, scoring, prepared, agents, route.id, simulator, started))
     if driven.bug is not None:

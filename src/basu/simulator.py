@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from typing import IO
 
 READY = re.compile(r"ready, rpc port (\d+)")
-START_LIMIT_S = 180.0  # a first start compiles kernels
+START_LIMIT_S = 600.0  # a first start compiles kernels, on a machine that may be busy with other things
 END_LIMIT_S = 10.0
 LAST_LINES = 20  # of a server's log, kept to explain its end
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
@@ -135,6 +135,19 @@ def connect(host: str, port: int, timeout_s: float) -> carla.Client:
             f"no simulator answers at {host}:{port}; start one with `linden serve`, or leave out --host ({error})"
         ) from error
     return client
+
+
+@contextlib.contextmanager
+def asking(what: str) -> Iterator[None]:
+    """Calls to the simulator; where it refuses or does not answer, that is told as its failure.
+
+    Raises:
+        SimulatorError: the client raised what the simulator said.
+    """
+    try:
+        yield
+    except RuntimeError as error:
+        raise SimulatorError(f"the simulator failed at {what}: {error}") from error
 
 
 def world_of(client: carla.Client, town: str) -> carla.World:

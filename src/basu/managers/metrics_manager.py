@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import carla
 
+from basu.errors import SimulatorError
 from basu.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
 from basu.managers.base_manager import BaseManager
 from basu.managers.neighbours import Neighbours
@@ -61,9 +62,12 @@ class MetricsManager(BaseManager):
             ("sensor.other.collision", self._hear_collision),
             ("sensor.other.lane_invasion", self._hear_lane_invasion),
         ):
-            sensor = run.world.spawn_actor(library.find(name), carla.Transform(), attach_to=run.vehicle)
-            self._sensors.append(sensor)
-            sensor.listen(hear)
+            try:
+                sensor = run.world.spawn_actor(library.find(name), carla.Transform(), attach_to=run.vehicle)
+                self._sensors.append(sensor)
+                sensor.listen(hear)
+            except RuntimeError as error:
+                raise SimulatorError(f"the benchmark's own {name} cannot be attached: {error}") from error
 
     def tick(self, frame: Frame) -> None:
         """Record a frame."""

@@ -1,0 +1,91 @@
+"""Claims about finding an agent: by name, in a file without imports, and a sentence for every way that fails."""
+
+from pathlib import Path
+
+import pytest
+
+from basu.agents.autonomous_agent import AutonomousAgent
+from basu.errors import UserError
+from basu.managers.agent_loader import load_agent
+
+SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
+COMPLETE = """
+class {name}(AutonomousAgent):
+    def setup(self): pass
+    def run_step(self, sensor_data): return carla.VehicleControl()
+    def config(self): return {{}}
+"""
+
+
+def written(folder: Path, text: str) -> str:
+    path = folder / "an_agent.py"
+    path.write_text(text)
+    return str(path)
+
+
+def test_the_thesis_sample_is_loaded_as_it_stands_there() -> None:
+    assert "import" not in SAMPLE.read_text()
+    loaded = load_agent(str(SAMPLE))
+    assert loaded.agent_class.__name__ == "ForwardAgent"
+    assert loaded.name == "forward_agent"
+    agent = loaded.agent_class()
+    assert agent.run_step({}).throttle == pytest.approx(0.9)
+    assert agent.config()["vehicle"] == "vehicle.tesla.model3"
+    assert agent.get_initial_route_locations() is None
+
+
+@pytest.mark.parametrize("name", ["basic", "forward"])
+def test_the_built_in_agents_are_found_by_name(name: str) -> None:
+    loaded = load_agent(name)
+    assert issubclass(loaded.agent_class, AutonomousAgent)
+    assert (loaded.name, loaded.file) == (name, None)
+
+
+def test_imported_agents_are_not_taken_for_the_files_own(tmp_path: Path) -> None:
+    text = "from basu.agents.forward import ForwardAgent" + COMPLETE.format(name="Mine")
+    assert load_agent(written(tmp_path, text)).agent_class.__name__ == "Mine"
+
+
+def test_an_agent_may_be_of_several_files(tmp_path: Path) -> None:
+    (tmp_path / "part_of_an_agent.py").write_text("THROTTLE = 0.25")
+    text = "from part_of_an_agent import THROTTLE" + COMPLETE.format(name="Mine")
+    assert load_agent(written(tmp_path, text)).agent_class.__name__ == "Mine"
+
+
+def test_one_of_several_agents_is_named_behind_a_colon(tmp_path: Path) -> None:
+    path = written(tmp_path, COMPLETE.format(name="First") + COMPLETE.format(name="Second"))
+    assert load_agent(f"{path}:Second").agent_class.__name__ == "Second"
+    with pytest.raises(UserError, match=r"holds 2 agents \(First, Second\); name one as .*:First"):
+        load_agent(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("basik", "no agent called 'basik'; did you mean 'basic'"),
+        ("zzz", "there are basic, forward, or name a Python file"),
+        ("human", "the agent 'human' follows in a later version"),
+        ("behavioral", "the agent 'behavioral' follows in a later version"),
+        ("nowhere.py", "file nowhere.py does not exist"),
+    ],
+)
+def test_a_name_that_is_none_gets_a_sentence(name: str, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        load_agent(name)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        pytest.param("x = 1", "holds no subclass of AutonomousAgent", id="no agent"),
+        pytest.param("def f(:", "is no Python: line 1", id="no Python"),
+        pytest.param("import nothing_of_this_name", "line 1: ModuleNotFoundError", id="import fails"),
+        pytest.param("x = 1\ny = x / 0", "line 2: ZeroDivisionError", id="raises"),
+        pytest.param(
+            "class A(AutonomousAgent):\n  def setup(self): pass", "A in .* lacks config, run_step", id="incomplete"
+        ),
+    ],
+)
+def test_a_file_that_is_no_agent_gets_a_sentence(tmp_path: Path, text: str, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        load_agent(written(tmp_path, text))
