@@ -36,7 +36,7 @@ from linden.physics.vehicle.wheels import (
 F64 = NDArray[np.float64]
 
 MOST_ROUNDS = 12
-SETTLED_MPS = 1e-6
+SETTLED_MPS = 1e-5
 
 
 @part
@@ -69,23 +69,28 @@ def solve_motion(v: Body, spec: Spec, wheels: F64, start: F64, pull: F64, drive:
 def _can_hold(v: Body, spec: Spec, wheels: F64, start: F64, pull: F64, drive: F64, dt_s: float) -> bool:
     """Tell whether brakes and tyres suffice to end the step at rest: Coulomb's friction in the time-stepped form.
 
-    Along: what is left of each brake after engine and wheel inertia, within the tyre's limit; across: the tyres' limit;
-    both on one ellipse. Turning: the limits times their lever arms.
+    Along: what is left of each brake after engine and wheel inertia, within the tyre's limit, against what drives
+    wheels beyond their own brakes; across: the tyres' limit; both on one ellipse. Turning: the limits times their
+    lever arms.
     """
-    along, across, turning = 0.0, 0.0, 0.0
-    for k in range(spec.wheel_count):
-        engine = abs(spec.drive_share[k] * drive[0] * drive[1])
-        inertia = spec.wheel_inertia_kgm2[k] * abs(v.wheel_omega[k]) / dt_s
-        held = max(0.0, wheels[BRAKE, k] - engine - inertia) / spec.wheel_radius_m[k]
-        along += min(held, wheels[LIMIT, k])
-        across += wheels[LIMIT, k]
-        turning += wheels[LIMIT, k] * math.hypot(wheels[ARM_X, k], wheels[ARM_Y, k])
+    along, across, turning, driven = 0.0, 0.0, 0.0, 0.0
     need_x = v.mass_kg * start[0] / dt_s + pull[0]
     need_y = v.mass_kg * start[1] / dt_s + pull[1]
     need_turn = v.yaw_inertia_kgm2 * start[2] / dt_s + pull[2]
-    if along <= 0.0 or across <= 0.0 or abs(need_turn) > turning:
+    for k in range(spec.wheel_count):
+        across += wheels[LIMIT, k]
+    if max(abs(need_x), abs(need_y)) >= across:
         return False
-    return bool((need_x / along) ** 2 + (need_y / across) ** 2 <= 1.0)
+    for k in range(spec.wheel_count):
+        engine = abs(spec.drive_share[k] * drive[0] * drive[1])
+        inertia = spec.wheel_inertia_kgm2[k] * abs(v.wheel_omega[k]) / dt_s
+        held = (wheels[BRAKE, k] - engine - inertia) / spec.wheel_radius_m[k]
+        along += min(max(0.0, held), wheels[LIMIT, k])
+        driven += max(0.0, -held)
+        turning += wheels[LIMIT, k] * math.hypot(wheels[ARM_X, k], wheels[ARM_Y, k])
+    if along <= 0.0 or abs(need_turn) > turning:
+        return False
+    return bool(((abs(need_x) + driven) / along) ** 2 + (need_y / across) ** 2 <= 1.0)
 
 
 @part
@@ -143,7 +148,7 @@ def _spin_push(v: Body, spec: Spec, wheels: F64, k: int, drive: F64, dt_s: float
 def _solve_linear(
     v: Body, spec: Spec, wheels: F64, start: F64, pull: F64, drive: F64, dt_s: float, speeds: F64
 ) -> None:
-    """Solve the three equations of motion with the stiffnesses as they stand (symmetric, positive definite)."""
+    """Solve the equations of motion with the stiffnesses as they stand (symmetric, positive definite)."""
     inertia_x, inertia_turn = v.mass_kg / dt_s, v.yaw_inertia_kgm2 / dt_s
     xx, yy, tt = inertia_x + spec.drag_kgpm * abs(speeds[0]), inertia_x, inertia_turn
     xy, xt, yt = 0.0, 0.0, 0.0
