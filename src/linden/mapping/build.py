@@ -5,6 +5,7 @@ import math
 from collections import defaultdict
 from typing import NamedTuple
 
+from linden.errors import UserError
 from linden.mapping import controls, junctions, roads, roundabouts
 from linden.mapping.curves import Point, length, pose_at, seen_from
 from linden.mapping.document import Controller, Document, JunctionRecord, Link, Object, RoadRecord, Signal
@@ -95,7 +96,7 @@ class _Assembly:
             roads=tuple(every),
             controllers=tuple(self.controllers),
             junctions=tuple(self.junctions),
-            notes=(("source", "built from street facts; confidence stands beside each part"),),
+            notes=(("elevation_confidence", self.facts.ground.confidence),),
         )
         return Built(self.facts, self.network, street_roads, tuple(self.ways), document)
 
@@ -121,6 +122,8 @@ class _Assembly:
         rules = [controls.control_of(found, self.network.nodes[leg.node].intersection) for leg in legs]
         is_roundabout = Control.ROUNDABOUT in rules
         centre = self.network.nodes[nodes[0]].point
+        if is_roundabout and len(nodes) > 1:
+            raise UserError(f"intersection {found[0].id}: a roundabout needs more room to the next junction")
         turns = roundabouts.turns(legs, centre) if is_roundabout else junctions.turns(legs)
         connections, turn_ids = [], []
         for turn in turns:

@@ -143,7 +143,7 @@ def rounded(points: Sequence[Point], radius_m: float, ends_kept_m: float) -> Pat
 def joined(begin: Pose, end: Pose) -> Path:
     """Return a smooth path from one pose to another: line and arc where a single turn fits, else two arcs.
 
-    Of the two the one with the larger smallest radius is taken.
+    Of the two the one with the larger smallest radius is taken. The end must not lie right behind the beginning.
     """
     single = _one_turn(begin, end)
     double = _two_arcs(begin, end)
@@ -191,9 +191,8 @@ def _two_arcs(begin: Pose, end: Pose) -> Path:
     v_dot_t = vx * (bx + ex) + vy * (by + ey)
     v_dot_v = vx * vx + vy * vy
     apart = 2 * (1 - (bx * ex + by * ey))
-    if apart < 1e-9:
-        reach_m = v_dot_v / (2 * v_dot_t)
-    else:
+    reach_m = 0.0  # of no account where the headings agree: then the arcs meet half way
+    if apart > 1e-9:
         reach_m = (math.sqrt(v_dot_t * v_dot_t + apart * v_dot_v) - v_dot_t) / apart
     middle = (
         (begin.x_m + end.x_m + reach_m * (bx - ex)) / 2,

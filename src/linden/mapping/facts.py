@@ -27,7 +27,10 @@ class Control(Enum):
 
 
 class Street(NamedTuple):
-    """One centre-line with what lies across it. ``width_m`` is between the kerbs."""
+    """One centre-line with what lies across it. ``width_m`` is between the kerbs.
+
+    ``confidences``: which fact, how sure ("width_confidence", "estimated").
+    """
 
     id: str
     name: str
@@ -39,7 +42,7 @@ class Street(NamedTuple):
     oneway: bool
     parking: str
     sidewalk: str
-    confidence: str
+    confidences: tuple[tuple[str, str], ...]
 
 
 class Intersection(NamedTuple):
@@ -87,6 +90,7 @@ class Ground(NamedTuple):
     base_m: float
     north: float
     east: float
+    confidence: str
 
 
 class Facts(NamedTuple):
@@ -103,6 +107,7 @@ class Facts(NamedTuple):
     routes: Mapping[str, Route]
 
 
+NARROWEST_M = 2.0  # of a lane; a car is 1.8 m wide
 _ROUTES = frozenset({"route", "route_alternative"})
 _LINES = _ROUTES | {"street", "railroad"}
 _CHOICES = {
@@ -135,15 +140,21 @@ def read(document: object) -> Facts:
     known = {feature.text("id") for feature in streets}
     if len(known) < len(streets):
         raise UserError("two streets share an id; each needs its own")
+    names = {feature.text("name") for feature in streets}
     plane = metadata.get("ground", {})
     return Facts(
         name=str(metadata.get("name", document.get("name", "map"))),
         longitude_deg=longitude,
         latitude_deg=latitude,
-        ground=Ground(plane.get("base_m", 0.0), plane.get("rise_north", 0.0), plane.get("rise_east", 0.0)),
+        ground=Ground(
+            plane.get("base_m", 0.0),
+            plane.get("rise_north", 0.0),
+            plane.get("rise_east", 0.0),
+            str(plane.get("confidence", "unknown")),
+        ),
         streets=tuple(_street(feature, metres(feature.lonlats())) for feature in streets),
         intersections=tuple(
-            _intersection(feature, metres(feature.lonlats())[0])
+            _intersection(feature, metres(feature.lonlats())[0], names)
             for feature in features
             if feature.kind == "intersection"
         ),
@@ -207,32 +218,45 @@ class _Feature:
 
 
 def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
+    lanes, width_m = int(feature.positive("lanes")), feature.positive("width_m")
+    if lanes != feature.properties["lanes"] or width_m < NARROWEST_M * lanes:
+        raise UserError(
+            f"{feature.label}: {feature.properties['lanes']} lanes do not fit between kerbs {width_m} m apart; "
+            f"`lanes` is a whole number, and each lane takes {NARROWEST_M} m"
+        )
     return Street(
         id=feature.text("id"),
         name=feature.text("name"),
         points=points,
         street_class=feature.choice("street_class"),
-        lanes=int(feature.positive("lanes")),
-        width_m=feature.positive("width_m"),
+        lanes=lanes,
+        width_m=width_m,
         speed_limit_mph=feature.positive("speed_limit_mph"),
         oneway=feature.choice("oneway") == "forward",
         parking=feature.choice("parking"),
         sidewalk=feature.choice("sidewalk"),
-        confidence=str(feature.properties.get("confidence", "unknown")),
+        confidences=tuple(
+            (key, str(value)) for key, value in sorted(feature.properties.items()) if key.endswith("confidence")
+        ),
     )
 
 
-def _intersection(feature: _Feature, point: Point) -> Intersection:
+def _intersection(feature: _Feature, point: Point, streets: set[str]) -> Intersection:
     control = feature.text("control")
     if control not in {member.value for member in Control}:
         known = ", ".join(repr(member.value) for member in Control)
         raise UserError(f"{feature.label}: `control` is {control!r}; it can be {known}")
+    stops = frozenset(map(str, feature.properties.get("stop_controlled_streets", [])))
+    if not stops <= streets:
+        raise UserError(
+            f"{feature.label}: `stop_controlled_streets` names {min(stops - streets)!r}, which is no street"
+        )
     return Intersection(
         id=feature.text("id"),
         name=feature.text("name"),
         point=point,
         control=Control(control),
-        stops=frozenset(map(str, feature.properties.get("stop_controlled_streets", []))),
+        stops=stops,
         confidence=str(feature.properties.get("confidence", "unknown")),
         control_confidence=str(feature.properties.get("control_confidence", "unknown")),
     )

@@ -8,6 +8,7 @@ import math
 from collections import defaultdict
 from typing import NamedTuple
 
+from linden.errors import UserError
 from linden.mapping.curves import Path, Point, Pose, length, pose_at, rounded, trimmed, turned_back, wrapped
 from linden.mapping.facts import Control, Facts, Intersection, Street
 from linden.mapping.section import Section, View, of_street, view
@@ -71,12 +72,17 @@ class Network(NamedTuple):
 def build(facts: Facts) -> Network:
     """Return the network of the facts; what it holds is in the order of the streets and their points."""
     nodes, edges = _split(facts)
+    met = {node.point for node in nodes}
+    for intersection in facts.intersections:
+        if intersection.point not in met:
+            raise UserError(f"intersection {intersection.id}: no two streets share its point; give them the same one")
     groups = [[number] for number in range(len(nodes))]
     tightness = [0] * len(nodes)
     while True:
         legs = [_legs(group, nodes, edges, CORNER_RADII_M[max(tightness[node] for node in group)]) for group in groups]
         setbacks = {leg.end: leg.setback_m for group in legs for leg in group}
-        roads = tuple(_road(number, edge, setbacks) for number, edge in enumerate(edges))
+        home = {node: number for number, group in enumerate(groups) for node in group if len(group) > 1}
+        roads = tuple(_road(number, edge, setbacks, home) for number, edge in enumerate(edges))
         too_short = [
             edge.nodes
             for edge, road in zip(edges, roads, strict=True)
@@ -109,12 +115,12 @@ def nearest_road(network: Network, street_id: str, point: Point) -> tuple[int, f
     return best[1], best[2]
 
 
-def _road(number: int, edge: Edge, setbacks: dict[End, float]) -> Path | None:
+def _road(number: int, edge: Edge, setbacks: dict[End, float], home: dict[int, int]) -> Path | None:
     """Return what is left of an edge between its junctions, None where it lies inside one."""
-    begin_m, end_m = (setbacks.get(End(number, at_end)) for at_end in (False, True))
-    if begin_m is None and end_m is None:
+    if edge.nodes[0] in home and home[edge.nodes[0]] == home.get(edge.nodes[1]):
         return None
-    return trimmed(edge.path, begin_m or 0.0, length(edge.path) - (end_m or 0.0))
+    begin_m, end_m = (setbacks.get(End(number, at_end), 0.0) for at_end in (False, True))
+    return trimmed(edge.path, begin_m, length(edge.path) - end_m)
 
 
 def _split(facts: Facts) -> tuple[tuple[Node, ...], tuple[Edge, ...]]:

@@ -83,7 +83,7 @@ def street_road(number: int, street: Street, section: Section, path: Path, heigh
         left=_lanes(section.left, 1),
         right=_lanes(section.right, -1),
         centre=centre,
-        notes=(("street", street.id), ("class", street.street_class), ("confidence", street.confidence)),
+        notes=(("street", street.id), ("class", street.street_class), *street.confidences),
     )
 
 
@@ -125,7 +125,7 @@ def bend(number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: 
         left=strips(left, 1, total_m),
         right=strips(right, -1, total_m),
         centre=Mark("broken", "yellow"),
-        notes=(("street", come.street.id), ("confidence", come.street.confidence)),
+        notes=(("street", come.street.id), *come.street.confidences),
     )
 
 

@@ -7,6 +7,7 @@ lane is where these roads lie on each other; ``docs/decisions/0105-roundabouts.m
 import math
 from typing import NamedTuple
 
+from linden.errors import UserError
 from linden.mapping.curves import Path, Piece, Point, Pose, along, joined, length, moved, seen_from
 from linden.mapping.document import Cubic, LaneRecord, Mark, RoadRecord, eased
 from linden.mapping.junctions import Turn, lane_pairs, pose_in, pose_out
@@ -104,6 +105,9 @@ def _approach(centre: Point) -> _Approach:
     ahead_m, left_m = centre
     apart_m = BEND_RADIUS_M + RING_RADIUS_M
     beside_m = left_m + BEND_RADIUS_M
-    before_m = math.sqrt(apart_m**2 - beside_m**2)
-    assert ahead_m > before_m, "the legs of a roundabout are cut back far enough for its bends"
+    before_m = math.sqrt(max(apart_m**2 - beside_m**2, 0.0))
+    if before_m == 0.0 or ahead_m < before_m:
+        raise UserError(
+            "a street leads past the middle of a roundabout, not to it; straighten its last 20 m or change the control"
+        )
     return _Approach(ahead_m - before_m, math.atan2(before_m, beside_m))
