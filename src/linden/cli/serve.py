@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from linden.server.loop import Server
-    from linden.simulation import Simulation
 
 DEFAULT_PORT = 2000
 LOG_LEVELS = ("debug", "info", "warning", "error")
@@ -56,6 +55,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     # here, not above: these bring in the compiler, which other commands of this program do not need
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
+    from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
@@ -68,16 +68,12 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         world_map = maps.load(arguments.map)
     except Refusal as refusal:
         raise UserError(f"--map: {refusal}") from refusal
-    with _told_of_compiling():
-        _warm_up(Simulation(world_map))
-    server = Server(Simulation(world_map, seed=arguments.seed), maps, frames, ports)
+    with _told_of_compiling():  # all of them now, so that a client's first tick takes no longer than the others
+        warm_up()
+        simulation = Simulation(world_map, seed=arguments.seed)
+    server = Server(simulation, maps, frames, ports)
     _say(f"linden: ready, rpc port {port_of(ports.rpc)}, streaming port {port_of(ports.streaming)}")
     return server
-
-
-def _warm_up(simulation: "Simulation") -> None:
-    """Run every kernel once, so that the first tick of a client takes no longer than the others."""
-    simulation.step(0.05)
 
 
 @contextmanager
