@@ -65,7 +65,7 @@ def test_everything_sets_off(drive: dict[str, dict[str, float]]) -> None:
 
 def test_everything_goes_straight_on(drive: dict[str, dict[str, float]]) -> None:
     for name, off_m in drive["off its line, m"].items():
-        assert min(off_m, 40.0 - off_m) < 0.01, name
+        assert min(off_m, 40.0 - off_m) < 0.05, name  # after two kilometres and more
 
 
 def test_everything_stops_and_stays(drive: dict[str, dict[str, float]]) -> None:
