@@ -2,8 +2,13 @@
 
 import math
 
+import numpy as np
+from numpy.typing import NDArray
+
 from linden.compiled import part
 from linden.physics.state import VEHICLE, Body
+
+F64 = NDArray[np.float64]
 
 
 @part
@@ -21,10 +26,8 @@ def _turn(v: Body, yaw_radps: float, roll_push: float, pitch_push: float) -> Non
 
 
 @part
-def _push(v: Body, share: float, linear: bool) -> None:
-    """Apply impulses whole (``linear`` False) or forces for ``share`` seconds (True)."""
-    push = v.force if linear else v.impulse
-    spin = v.torque if linear else v.angular_impulse
+def _push(v: Body, push: F64, spin: F64, share: float) -> None:
+    """Apply a push and a turn (3,), whole or for ``share`` seconds; wakes a body at rest."""
     if push[0] == 0.0 and push[1] == 0.0 and push[2] == 0.0 and spin[0] == 0.0 and spin[1] == 0.0 and spin[2] == 0.0:
         return
     for axis in range(3):
@@ -40,13 +43,13 @@ def _push(v: Body, share: float, linear: bool) -> None:
 @part
 def apply_impulses(v: Body) -> None:
     """Apply what was given once: N·s and N·m·s."""
-    _push(v, 1.0, False)
+    _push(v, v.impulse, v.angular_impulse, 1.0)
 
 
 @part
 def apply_forces(v: Body, dt_s: float) -> None:
     """Apply for one substep what acts throughout the frame: N and N·m."""
-    _push(v, dt_s, True)
+    _push(v, v.force, v.torque, dt_s)
 
 
 @part

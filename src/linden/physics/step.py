@@ -1,4 +1,4 @@
-"""One frame of physics: pushes, vehicles, walkers, props, contacts, as often as there are substeps. No clock, no I/O."""
+"""One frame of physics: pushes, vehicles, walkers, props, contacts, in as many substeps as asked. No clock, no I/O."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -35,7 +35,10 @@ def advance_walker(v: Body, ground: Ground, gravity_mps2: float, dt_s: float) ->
     else:
         v.position[0] += step_x
         v.position[1] += step_y
-    _fall(v, ahead, half, standing, gravity_mps2, dt_s)
+    if standing and feet - ahead <= STEP_UP_M:  # what is a step down is stepped down
+        v.position[2], v.velocity[2] = ahead + half, 0.0
+    else:
+        _fall(v, ahead + half, gravity_mps2 if v.gravity else 0.0, dt_s)
 
 
 @part
@@ -54,17 +57,10 @@ def _walk(v: Body, dt_s: float) -> None:
 
 
 @part
-def _fall(v: Body, ground_m: float, half_m: float, standing: bool, gravity_mps2: float, dt_s: float) -> None:
-    """Keep the feet on the ground, or let them fall onto it; what is a step down is stepped down."""
-    feet = v.position[2] - half_m
-    if standing and feet - ground_m <= STEP_UP_M:
-        v.position[2] = ground_m + half_m
-        v.velocity[2] = 0.0
-        return
-    fall = gravity_mps2 if v.gravity else 0.0
-    after = v.velocity[2] - fall * dt_s
-    feet += 0.5 * (v.velocity[2] + after) * dt_s
-    if feet <= ground_m:
-        feet, after = ground_m, 0.0
-    v.position[2] = feet + half_m
-    v.velocity[2] = after
+def _fall(v: Body, lowest_m: float, fall_mps2: float, dt_s: float) -> None:
+    """Let the body fall freely, its origin no lower than ``lowest_m``."""
+    after = v.velocity[2] - fall_mps2 * dt_s
+    z = v.position[2] + 0.5 * (v.velocity[2] + after) * dt_s
+    if z <= lowest_m:
+        z, after = lowest_m, 0.0
+    v.position[2], v.velocity[2] = z, after

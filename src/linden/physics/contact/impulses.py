@@ -52,7 +52,7 @@ def part_bodies(rows: Rows, pairs: I32, statics: Statics, account: F64) -> None:
             count += 1
     for turn in range(_ROUNDS if count > 1 else min(count, 2)):
         for k in range(count):
-            _strike(rows, pairs[int(hits[k, 0])], hits[k], turn == 0, account[int(hits[k, 0])])
+            _strike(rows, pairs[int(hits[k, 0])], hits[k], RESTITUTION if turn == 0 else 0.0, account[int(hits[k, 0])])
     for k in range(count):
         _push_out(rows, pairs[int(hits[k, 0])], hits[k])
 
@@ -130,7 +130,7 @@ def push_at(rows: Rows, i: int, x: float, y: float, impulse_x: float, impulse_y:
 
 
 @part
-def _strike(rows: Rows, pair: I32, hit: F64, bounces: bool, entry: F64) -> None:
+def _strike(rows: Rows, pair: I32, hit: F64, restitution: float, entry: F64) -> None:
     """Apply one contact's impulse: against approach along the normal, then against sliding across it."""
     i, j = pair[0], pair[1]
     normal_x, normal_y, x, y = hit[2], hit[3], hit[4], hit[5]
@@ -138,7 +138,7 @@ def _strike(rows: Rows, pair: I32, hit: F64, bounces: bool, entry: F64) -> None:
     if approach >= 0.0:
         return
     ease = _ease(rows, i, x, y, normal_x, normal_y) + _ease(rows, j, x, y, normal_x, normal_y)
-    back = RESTITUTION if bounces and approach < -BOUNCES_FROM_MPS else 0.0
+    back = restitution if approach < -BOUNCES_FROM_MPS else 0.0
     press = -(1.0 + back) * approach / ease
     push_at(rows, i, x, y, press * normal_x, press * normal_y)
     push_at(rows, j, x, y, -press * normal_x, -press * normal_y)

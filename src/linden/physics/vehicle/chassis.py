@@ -196,7 +196,7 @@ def _solve_symmetric(
 
 @part
 def _spin(v: Body, spec: Spec, wheels: F64, drive: F64, dt_s: float) -> None:
-    """Write the wheels' spins that go with the contact speeds, and whether a brake locks them or which way they turn."""
+    """Write the spins that go with the contact speeds, and whether a brake locks a wheel or which way it turns."""
     tied, constant = _coupling(v, spec, wheels, drive, dt_s)
     for k in range(spec.wheel_count):
         constant += spec.drive_share[k] * wheels[GRIP, k] * wheels[ALONG, k]

@@ -22,7 +22,7 @@ _LEAST_COM_HEIGHT_M = 0.1
 
 
 def default_wheel_offsets(box: BoundingBox, wheel_count: int) -> tuple[Vector3D, ...]:
-    """Return where wheels sit when nobody says: axles at 0.6 of the half length, at 0.75 of the half width; m, local."""
+    """Return where wheels sit when nobody says: axles at 0.6 of the half length, 0.75 of the half width; m, local."""
     x, y = 0.6 * box.extent.x, 0.75 * box.extent.y
     if wheel_count == 2:
         return Vector3D(x, 0.0, 0.0), Vector3D(-x, 0.0, 0.0)
@@ -104,7 +104,7 @@ def yaw_inertia_kgm2(mass_kg: float, box: BoundingBox) -> float:
 def specification(
     control: VehiclePhysicsControl, box: BoundingBox, offsets_m: Sequence[Vector3D], com_m: Vector3D
 ) -> Rows:
-    """Return one VEHICLE_SPEC record. ``offsets_m``: the wheels in the vehicle's frame, FL, FR, BL, BR (front, back)."""
+    """Return a VEHICLE_SPEC record. ``offsets_m``: wheels in the vehicle's frame, FL, FR, BL, BR (front, back)."""
     spec: Rows = np.zeros((), VEHICLE_SPEC)
     count = len(control.wheels)
     spec["wheel_count"] = count

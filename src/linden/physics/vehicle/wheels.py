@@ -15,7 +15,7 @@ F64 = NDArray[np.float64]
 LIMIT, SLIP, CORNERING, COS, SIN, ARM_X, ARM_Y, BRAKE, TURNS, ALONG, ACROSS, OMEGA, PUSH_X, PUSH_Y, OWN, GRIP = range(
     16
 )
-"""Rows of the scratch array ``wheels`` (16, 4), a number per wheel: friction limit (N), stiffness to slip and to slip angle (N, N/rad),
+"""Rows of the scratch array ``wheels`` (16, 4): friction limit (N), stiffness to slip and to slip angle (N, N/rad),
 cosine and sine of the steering angle, place from the centre of mass (m), braking torque (N·m), which way it turns
 (-1, 0 locked, 1), speed of the contact along and across the wheel (m/s), spin (rad/s), secant stiffnesses (N·s/m),
 resistance to a change of spin (N·m·s/rad), and how much of it the road's grip passes on (1/m)."""
