@@ -25,6 +25,12 @@ def another(server: RunningServer) -> carla.Client:
     return client
 
 
+def await_frame(world: carla.World, frame: int) -> None:
+    """Wait until the snapshot of a frame that another client made has reached this one."""
+    while world.get_snapshot().frame < frame:
+        pass
+
+
 def spawn(world: carla.World, place: int = 0) -> carla.Actor:
     blueprint = world.get_blueprint_library().filter("vehicle.*")[0]
     return world.spawn_actor(blueprint, world.get_map().get_spawn_points()[place])
@@ -50,7 +56,8 @@ def test_two_clients_ticking_advance_two_frames(server: RunningServer, world: ca
     first = world.tick()
     assert other.tick() == first + 1
     assert world.tick() == first + 2
-    assert world.get_snapshot().timestamp.delta_seconds == other.get_snapshot().timestamp.delta_seconds
+    await_frame(other, first + 2)
+    assert world.get_snapshot().timestamp == other.get_snapshot().timestamp
 
 
 def test_what_one_client_spawns_another_drives_and_a_third_destroys(server: RunningServer, world: carla.World) -> None:
@@ -58,7 +65,7 @@ def test_what_one_client_spawns_another_drives_and_a_third_destroys(server: Runn
     world.tick()
     driver, wrecker = another(server).get_world(), another(server).get_world()
     driver.get_actor(vehicle.id).apply_control(carla.VehicleControl(throttle=0.5))
-    driver.tick()
+    await_frame(world, driver.tick())
     assert world.get_actor(vehicle.id).get_control().throttle == 0.5
     assert wrecker.get_actor(vehicle.id).destroy()
     wrecker.tick()
