@@ -66,7 +66,7 @@ class MetricsManager(BaseManager):
                 sensor = run.world.spawn_actor(library.find(name), carla.Transform(), attach_to=run.vehicle)
                 self._sensors.append(sensor)
                 sensor.listen(hear)
-            except RuntimeError as error:
+            except RuntimeError as error:  # noqa: PERF203 - two sensors, once a run
                 raise SimulatorError(f"the benchmark's own {name} cannot be attached: {error}") from error
 
     def tick(self, frame: Frame) -> None:

@@ -41,8 +41,8 @@ def draw(path: Path, history: History, streets: Sequence[NDArray[np.float64]], t
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(high[1], low[1])  # CARLA's y points south: north is up
     axes.set_aspect("equal")
-    axes.set_xlabel("east in m")
-    axes.set_ylabel("south in m")
+    axes.set_xlabel("x (east) in m")
+    axes.set_ylabel("y (south) in m")
     axes.set_title(title)
     axes.legend(loc="best", framealpha=0.9)
     buffer = io.BytesIO()

@@ -1,0 +1,30 @@
+"""A live simulator for the tests of whole runs, and a short piece of a Linden street to drive on."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from servers import RunningServer, running_server
+
+SHORT_ROUTE = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"
+
+
+@pytest.fixture(scope="session")
+def simulator() -> Iterator[RunningServer]:
+    """One server for all runs of a session; each run puts its own things away."""
+    with running_server() as running:
+        yield running
+
+
+@pytest.fixture
+def route_file(tmp_path: Path) -> Path:
+    """The first hundred metres or so of the short route."""
+    lines = SHORT_ROUTE.read_text(encoding="utf-8").splitlines()
+    points = [line for line in lines if "<position" in line or "<waypoint " in line]
+    path = tmp_path / "piece.xml"
+    path.write_text(
+        '<routes><route id="piece" town="Linden"><waypoints>' + "\n".join(points[:3]) + "</waypoints></route></routes>",
+        encoding="utf-8",
+    )
+    return path
