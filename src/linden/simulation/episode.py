@@ -13,7 +13,7 @@ from linden.traffic.lights import Traffic
 from linden.values.actors import ActorDescription
 from linden.values.enums import TrafficLightState
 from linden.values.episode import WeatherParameters
-from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW
+from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, WALKER_ROW
 from linden.values.space import BoundingBox, Transform
 from linden.world.actors import NO_BODY, ActorRecord, ActorRefusal, ActorTable
 from linden.world.blueprints import DOT, Kind
@@ -185,20 +185,30 @@ class Episode:
             actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows] = lights
         if len(self._vehicle_slots):
             self._observe_vehicles()
+        if len(self._walker_slots):
+            walkers, slots = actors.rows.view(WALKER_ROW), self._walker_slots
+            walkers["direction"][self._walker_rows] = bodies.walker_direction[slots]
+            walkers["speed"][self._walker_rows] = bodies.walker_speed[slots]
+            walkers["jump"][self._walker_rows] = bodies.jump[slots]
 
     def _survey(self) -> None:
-        """Note which rows are vehicles'; called when somebody has come or gone."""
+        """Note which rows are vehicles' and walkers'; called when somebody has come or gone."""
         self._keep_limits()
-        vehicles = [record for record in self.actors if record.kind is Kind.VEHICLE and record.slot != NO_BODY]
-        self._vehicle_ids = [record.id for record in vehicles]
-        self._vehicle_slots = np.array([record.slot for record in vehicles], np.int32)
-        self._vehicle_rows = np.array([self.actors.row(record.id) for record in vehicles], np.int32)
+        self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(Kind.VEHICLE)
+        _, self._walker_slots, self._walker_rows = self._embodied(Kind.WALKER)
         self._limits_kmh = np.array(
             [self._speed_limit_kmh.get(actor_id, DEFAULT_SPEED_LIMIT_KMH) for actor_id in self._vehicle_ids]
         )
         self._row_bytes: NDArray[np.uint8] = self.actors.rows.view(np.uint8).reshape(-1, ROW.itemsize)
         self._motion = np.zeros((len(self.actors.rows), 15), np.float32)
         self._seen_version = self.actors.version
+
+    def _embodied(self, kind: Kind) -> tuple[list[int], NDArray[np.int32], NDArray[np.int32]]:
+        """Return ids, slots and rows of all actors of a kind that have a body."""
+        found = [record for record in self.actors if record.kind is kind and record.slot != NO_BODY]
+        slots = np.array([record.slot for record in found], np.int32)
+        rows_of_kind = np.array([self.actors.row(record.id) for record in found], np.int32)
+        return [record.id for record in found], slots, rows_of_kind
 
     def _keep_limits(self) -> None:
         if self._seen_version >= 0:

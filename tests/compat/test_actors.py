@@ -1,0 +1,145 @@
+"""Actors through the official client: spawning, refusing, attaching, moving, destroying, batches."""
+
+import carla
+import pytest
+
+
+@pytest.fixture
+def blueprints(world: carla.World) -> carla.BlueprintLibrary:
+    return world.get_blueprint_library()
+
+
+@pytest.fixture
+def point(world: carla.World) -> carla.Transform:
+    return world.get_map().get_spawn_points()[100]
+
+
+@pytest.fixture
+def car(world: carla.World, blueprints: carla.BlueprintLibrary, point: carla.Transform) -> carla.Vehicle:
+    vehicle = world.spawn_actor(blueprints.find("vehicle.tesla.model3"), point)
+    for _ in range(20):  # it lands
+        world.tick()
+    return vehicle
+
+
+def test_the_library_holds_carlas_vehicles_and_the_shuttle(blueprints) -> None:
+    assert len(blueprints.filter("vehicle.*")) == 41 + 1
+    assert len(blueprints.filter("walker.pedestrian.*")) == 52
+    shuttle = blueprints.find("vehicle.easymile.ez10")
+    assert int(shuttle.get_attribute("number_of_wheels")) == 4
+
+
+def test_spawning_where_something_stands_is_refused_in_carlas_words(world, blueprints, car, point) -> None:
+    with pytest.raises(
+        RuntimeError, match="^Spawn failed because of collision at spawn position.*actor [0-9]+"
+    ) as info:
+        world.spawn_actor(blueprints.find("vehicle.audi.tt"), point)
+    assert "nearest free spawn point" in str(info.value)
+    assert world.try_spawn_actor(blueprints.find("vehicle.audi.tt"), point) is None
+
+
+def test_an_attached_sensor_follows_its_vehicle(world, blueprints, car) -> None:
+    place = carla.Transform(carla.Location(x=1.0, z=2.0), carla.Rotation(yaw=90.0))
+    sensor = world.spawn_actor(blueprints.find("sensor.other.gnss"), place, attach_to=car)
+    car.apply_control(carla.VehicleControl(throttle=0.5))
+    for _ in range(40):
+        world.tick()
+    expected = car.get_transform().transform(carla.Location(x=1.0, z=2.0))
+    assert sensor.get_location().distance(expected) < 1e-3
+    assert sensor.parent.id == car.id
+    turn = (sensor.get_transform().rotation.yaw - car.get_transform().rotation.yaw) % 360.0
+    assert turn == pytest.approx(90.0, abs=0.01)
+
+
+def test_destroying_a_vehicle_takes_its_sensors_along(world, blueprints, car) -> None:
+    sensor = world.spawn_actor(blueprints.find("sensor.other.gnss"), carla.Transform(), attach_to=car)
+    world.tick()
+    assert car.destroy()
+    world.tick()
+    assert not sensor.is_alive
+    world.tick()
+    assert {car.id, sensor.id}.isdisjoint(actor.id for actor in world.get_actors())
+
+
+def test_an_actor_of_the_map_cannot_be_destroyed(world) -> None:
+    sign = world.get_actors().filter("traffic.stop")[0]
+    assert not sign.destroy()
+    world.tick()
+    assert sign.id in {actor.id for actor in world.get_actors()}
+
+
+def test_a_teleported_vehicle_is_where_it_was_put(world, car) -> None:
+    target = world.get_map().get_spawn_points()[300]
+    car.set_transform(target)
+    world.tick()
+    assert car.get_location().distance(target.location) < 0.1
+
+
+def test_without_physics_a_vehicle_stays_in_the_air(world, car) -> None:
+    car.set_simulate_physics(False)
+    high = car.get_transform()
+    high.location.z += 5.0
+    car.set_transform(high)
+    for _ in range(10):
+        world.tick()
+    assert car.get_location().z == pytest.approx(high.location.z, abs=1e-4)
+    car.set_simulate_physics(True)
+    for _ in range(60):
+        world.tick()
+    assert car.get_location().z == pytest.approx(high.location.z - 5.0, abs=0.1)
+
+
+def test_a_target_velocity_moves_a_vehicle(world, car) -> None:
+    ahead = car.get_transform().get_forward_vector()
+    car.set_target_velocity(ahead * 5.0)
+    world.tick()
+    assert car.get_velocity().length() == pytest.approx(5.0, abs=0.5)
+
+
+def test_a_batch_answers_for_each_of_its_commands(client, world, blueprints, point) -> None:
+    spawn = carla.command.SpawnActor
+    model = blueprints.find("vehicle.tesla.model3")
+    drive = carla.command.ApplyVehicleControl(carla.command.FutureActor, carla.VehicleControl(throttle=1.0))
+    answers = client.apply_batch_sync([spawn(model, point).then(drive), spawn(model, point)], True)
+    assert not answers[0].has_error()
+    assert answers[1].error.startswith("Spawn failed because of collision at spawn position")
+    for _ in range(60):
+        world.tick()
+    assert world.get_actor(answers[0].actor_id).get_velocity().length() > 2.0
+    gone = client.apply_batch_sync([carla.command.DestroyActor(answers[0].actor_id)] * 2, True)
+    assert [answer.has_error() for answer in gone] == [False, True]
+
+
+def test_a_function_for_vehicles_refuses_a_walker(client, world, blueprints, point) -> None:
+    walker = world.spawn_actor(blueprints.find("walker.pedestrian.0001"), point)
+    command = carla.command.ApplyVehicleControl(walker.id, carla.VehicleControl())
+    error = client.apply_batch_sync([command], False)[0].error
+    assert error == (
+        f"Responding error from function apply_control_to_vehicle: Actor is not a Vehicle.  Actor Id: {walker.id}"
+    )
+
+
+def test_a_walker_walks_where_it_is_told(world, blueprints, point) -> None:
+    walker = world.spawn_actor(blueprints.find("walker.pedestrian.0001"), point)
+    for _ in range(20):
+        world.tick()
+    begin = walker.get_location()
+    walker.apply_control(carla.WalkerControl(direction=carla.Vector3D(1.0, 0.0, 0.0), speed=1.5))
+    for _ in range(41):
+        world.tick()
+    assert walker.get_location().x - begin.x == pytest.approx(1.5 * 41 * 0.05, abs=0.15)
+    assert walker.get_control().speed == pytest.approx(1.5)
+
+
+def test_the_spectator_goes_where_it_is_sent(world) -> None:
+    target = carla.Transform(carla.Location(1.0, 2.0, 300.0), carla.Rotation(pitch=-30.0, yaw=45.0))
+    world.get_spectator().set_transform(target)
+    world.tick()
+    seen = world.get_spectator().get_transform()
+    assert seen.location.distance(target.location) < 1e-4
+    assert seen.rotation.pitch == pytest.approx(-30.0, abs=1e-4)
+
+
+def test_weather_is_kept_as_it_was_set(world) -> None:
+    world.set_weather(carla.WeatherParameters.HardRainNoon)
+    assert world.get_weather() == carla.WeatherParameters.HardRainNoon

@@ -1,0 +1,107 @@
+"""Vehicles through the official client: controls, physics control, collisions, limits."""
+
+import math
+
+import carla
+import pytest
+
+
+@pytest.fixture
+def car(world: carla.World) -> carla.Vehicle:
+    return settled(world, "vehicle.tesla.model3", world.get_map().get_spawn_points()[100])
+
+
+def settled(world: carla.World, model: str, at: carla.Transform) -> carla.Vehicle:
+    vehicle = world.spawn_actor(world.get_blueprint_library().find(model), at)
+    for _ in range(20):
+        world.tick()
+    return vehicle
+
+
+def test_throttle_drives_and_the_brake_stops(world, car) -> None:
+    car.apply_control(carla.VehicleControl(throttle=0.6))
+    for _ in range(60):
+        world.tick()
+    assert car.get_velocity().length() > 4.0
+    assert car.get_control().throttle == pytest.approx(0.6)
+    car.apply_control(carla.VehicleControl(brake=1.0))
+    for _ in range(60):
+        world.tick()
+    assert car.get_velocity().length() < 0.01
+
+
+def test_reverse_drives_backwards(world, car) -> None:
+    ahead = car.get_transform().get_forward_vector()
+    car.apply_control(carla.VehicleControl(throttle=0.5, reverse=True))
+    for _ in range(60):
+        world.tick()
+    assert car.get_velocity().dot(ahead) < -1.0
+    assert car.get_control().gear == -1
+
+
+def test_positive_steer_turns_to_the_right(world, car) -> None:
+    begin = car.get_transform().rotation.yaw
+    car.apply_control(carla.VehicleControl(throttle=0.4, steer=0.3))
+    for _ in range(50):
+        world.tick()
+    assert 5.0 < (car.get_transform().rotation.yaw - begin) % 360.0 < 180.0
+    assert car.get_wheel_steer_angle(carla.VehicleWheelLocation.FL_Wheel) > 1.0
+
+
+def test_physics_control_comes_back_as_it_was_given(world, car) -> None:
+    control = car.get_physics_control()
+    assert len(control.wheels) == 4
+    control.mass = 2222.0
+    control.torque_curve = [carla.Vector2D(0.0, 300.0), carla.Vector2D(4000.0, 100.0)]
+    car.apply_physics_control(control)
+    world.tick()
+    after = car.get_physics_control()
+    assert after.mass == pytest.approx(2222.0)
+    assert [(point.x, point.y) for point in after.torque_curve] == [(0.0, 300.0), (4000.0, 100.0)]
+    wheel, centre = after.wheels[0].position, car.get_location()
+    assert math.hypot(wheel.x / 100.0 - centre.x, wheel.y / 100.0 - centre.y) < 3.0  # cm, in the world
+
+
+def test_the_speed_limit_is_that_of_the_road(world, car) -> None:
+    assert car.get_speed_limit() == pytest.approx(35 * 1.609344, abs=0.01) or car.get_speed_limit() == pytest.approx(
+        25 * 1.609344, abs=0.01
+    )
+
+
+def test_a_collision_is_told_with_its_partner(world, car) -> None:
+    events: list[carla.CollisionEvent] = []
+    library = world.get_blueprint_library()
+    sensor = world.spawn_actor(library.find("sensor.other.collision"), carla.Transform(), attach_to=car)
+    sensor.listen(events.append)
+    ahead = car.get_transform()
+    ahead.location += ahead.get_forward_vector() * 10.0
+    ahead.location.z += 0.5
+    other = settled(world, "vehicle.audi.tt", ahead)
+    car.set_target_velocity(car.get_transform().get_forward_vector() * 8.0)
+    for _ in range(60):
+        world.tick()
+    sensor.stop()
+    assert events
+    assert {event.other_actor.id for event in events} == {other.id}
+    assert events[0].actor.id == car.id
+    assert events[0].normal_impulse.length() > 1000.0
+
+
+def test_lights_are_kept(world, car) -> None:
+    state = carla.VehicleLightState(carla.VehicleLightState.Position | carla.VehicleLightState.LowBeam)
+    car.set_light_state(state)
+    world.tick()
+    assert car.get_light_state() == state
+    assert world.get_vehicles_light_states()[car.id] == state
+
+
+def test_crossing_a_lane_is_noticed_by_the_clients_own_sensor(world, car) -> None:
+    events: list[carla.LaneInvasionEvent] = []
+    library = world.get_blueprint_library()
+    sensor = world.spawn_actor(library.find("sensor.other.lane_invasion"), carla.Transform(), attach_to=car)
+    sensor.listen(events.append)
+    car.apply_control(carla.VehicleControl(throttle=0.5, steer=-0.3))
+    for _ in range(80):
+        world.tick()
+    sensor.stop()
+    assert any(event.crossed_lane_markings for event in events)
