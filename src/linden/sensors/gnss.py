@@ -32,6 +32,6 @@ def measure(spec: GnssSpec, number: int, location: Vector3D, origin_deg: tuple[f
     exact = geolocation(location, *origin_deg)
     errors = gaussian(spec.seed, number, spec.deviation)
     latitude, longitude, altitude = (
-        value + bias + float(error) for value, bias, error in zip(exact, spec.bias, errors, strict=True)
+        value + bias + error for value, bias, error in zip(exact, spec.bias, errors, strict=True)
     )
     return GeoLocation(latitude, longitude, altitude)

@@ -8,8 +8,6 @@ wrong way round; and with a ``sensor_tick`` it takes the time of a frame for tha
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from linden.geometry import rotation_matrix
 from linden.sensors.description import ImuSpec
 from linden.sensors.noise import gaussian
@@ -74,14 +72,21 @@ def measure(
 
     Both vectors are in the world; at rest the accelerometer reads ``gravity_mps2`` upwards.
     """
-    world_from_sensor = rotation_matrix(pose.rotation)
-    felt = np.asarray(acceleration_mps2) + np.array([0.0, 0.0, gravity_mps2])
+    axes = rotation_matrix(pose.rotation).T.tolist()  # forward, right and up of the sensor, in the world
+    felt = acceleration_mps2._replace(z=acceleration_mps2.z + gravity_mps2)
     errors = gaussian(spec.seed, number, (*spec.accelerometer_deviation, *spec.gyroscope_deviation))
-    accelerometer = felt @ world_from_sensor + errors[:3]
-    gyroscope = np.asarray(angular_velocity_radps) @ world_from_sensor + spec.gyroscope_bias + errors[3:]
-    compass = compass_rad(float(world_from_sensor[0, 0]), float(world_from_sensor[1, 0]))
     return ImuMeasurement(
-        Vector3D(*map(float, accelerometer)),
-        Vector3D(*map(float, gyroscope)),
-        compass,
+        Vector3D(*(_along(felt, axis) + error for axis, error in zip(axes, errors[:3], strict=True))),
+        Vector3D(
+            *(
+                _along(angular_velocity_radps, axis) + bias + error
+                for axis, bias, error in zip(axes, spec.gyroscope_bias, errors[3:], strict=True)
+            )
+        ),
+        compass_rad(axes[0][0], axes[0][1]),
     )
+
+
+def _along(vector: Vector3D, axis: list[float]) -> float:
+    """Return the part of a vector along an axis of length 1, both in the world."""
+    return vector.x * axis[0] + vector.y * axis[1] + vector.z * axis[2]
