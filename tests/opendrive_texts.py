@@ -103,8 +103,10 @@ def street_through_junction(signals: str = "", objects: str = "", more: str = ""
     )
     junction = (
         '<junction id="100" name="crossing">'
-        '<connection id="0" incomingRoad="1" connectingRoad="10" contactPoint="start"><laneLink from="-1" to="-1"/></connection>'
-        '<connection id="1" incomingRoad="2" connectingRoad="11" contactPoint="start"><laneLink from="1" to="-1"/></connection>'
+        '<connection id="0" incomingRoad="1" connectingRoad="10" contactPoint="start">'
+        '<laneLink from="-1" to="-1"/></connection>'
+        '<connection id="1" incomingRoad="2" connectingRoad="11" contactPoint="start">'
+        '<laneLink from="1" to="-1"/></connection>'
         f"{controllers and controllers.partition('|')[2]}</junction>"
     )
     return opendrive(west, east, eastward, westward, controllers.partition("|")[0], junction, more)

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linden.opendrive.evaluate.tables import tables_of
+from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.furniture import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE
-from linden.opendrive.links import lane_links
+from linden.opendrive.links import is_forward, lane_links
 from linden.opendrive.model import OpenDrive
 from linden.opendrive.spawn import spawn_points
 from linden.values.enums import LaneType
@@ -35,6 +35,16 @@ class Counts(NamedTuple):
     sidewalk_km: float
 
 
+def _is_paired_with_its_end(tables: Tables, row: int) -> bool:
+    """Return whether LibCarla pairs a lane that leads nowhere with its own end (Map.cpp, GenerateTopology).
+
+    It looks for that end in single precision, and finds nothing where rounding puts it beyond the road.
+    """
+    lane = tables.lanes[row]
+    road = tables.roads[lane["road"]]
+    return not is_forward(road, int(lane["lane_id"])) or float(np.float32(lane["end_m"])) < road.length_m
+
+
 def count(opendrive: OpenDrive) -> Counts:
     """Return the counts of a map."""
     tables, links = tables_of(opendrive), lane_links(opendrive)
@@ -59,7 +69,7 @@ def count(opendrive: OpenDrive) -> Counts:
         street_names=len({road.name for road in opendrive.roads if road.name and not road.is_in_junction}),
         lanes=len(tables.lanes),
         spawn_points=len(spawn_points(opendrive)),
-        topology=sum(max(1, len(links.successors[row])) for row in driving),
+        topology=sum(len(links.successors[row]) or _is_paired_with_its_end(tables, row) for row in driving),
         road_km=float(sum(road.length_m for road in opendrive.roads if not road.is_in_junction)) / 1000.0,
         driving_lane_km=float(length_m[driving].sum()) / 1000.0,
         sidewalk_km=float(length_m[kinds == int(LaneType.SIDEWALK)].sum()) / 1000.0,

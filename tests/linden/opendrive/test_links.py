@@ -1,12 +1,12 @@
 """Claims about which lane leads into which, LibCarla being the second reader."""
 
 import carla
-from opendrive_texts import follows, lane, line, opendrive, road, section, street_through_junction, touches
 
 from linden.opendrive.evaluate.tables import tables_of
 from linden.opendrive.links import lane_links
 from linden.opendrive.model import OpenDrive
 from linden.opendrive.parse import parse
+from opendrive_texts import follows, lane, line, opendrive, road, section, street_through_junction, touches
 
 
 def leads_to(opendrive_map: OpenDrive) -> dict[tuple[int, int, int], set[tuple[int, int]]]:

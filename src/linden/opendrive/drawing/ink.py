@@ -33,7 +33,8 @@ OTHER_SURFACE = ("other lanes", "#999d9f")
 
 def points(corners: NDArray[np.float64]) -> str:
     """Write (N, 2) points in m, to the centimetre."""
-    return " ".join(f"{x:.2f},{y:.2f}" for x, y in corners.tolist())
+    rounded = np.round(corners, 2) + 0.0  # no negative zeros
+    return " ".join(f"{x:.2f},{y:.2f}" for x, y in rounded.tolist())
 
 
 def path(rings: Iterable[NDArray[np.float64]], *, closed: bool) -> str:

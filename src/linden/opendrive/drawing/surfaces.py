@@ -1,6 +1,7 @@
 """Draws what vehicles and people walk on: the lanes' areas by type, and the marks painted on them."""
 
 from collections import defaultdict
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +28,7 @@ def surfaces(tables: Tables) -> list[str]:
     inner, outer = (points_from_opendrive(edge)[:, :2] for edge in edges)
     begins = np.flatnonzero(np.diff(strips.lane, prepend=-1)).tolist()
     areas: dict[int, list[Corners]] = defaultdict(list)
-    for first, last in zip(begins, [*begins[1:], len(strips.lane)], strict=True):
+    for first, last in pairwise([*begins, len(strips.lane)]):
         ring = np.concatenate([inner[first:last], outer[first:last][::-1]])
         areas[int(tables.lanes["type_bits"][strips.lane[first]])].append(ring)
     drawn = []

@@ -43,6 +43,11 @@ def sections_of(tables: Tables) -> Sections:
     return Sections(table[:, 0].astype(np.int64), table[:, 1], table[:, 2])
 
 
+def sections_before(tables: Tables) -> I64:
+    """Return (roads + 1,) how many sections the roads before each one have; the last tells how many there are."""
+    return np.cumsum([0, *(len(road.sections) for road in tables.roads)], dtype=np.int64)
+
+
 def sample(tables: Tables, sections: Sections) -> Samples:
     """Cut every section where any record begins, and each piece into equal steps fit for its shape."""
     base_m = tables.curves.base_m
@@ -99,7 +104,6 @@ def _bends(pieces: Pieces, owner: I64, s_m: F64) -> NDArray[np.bool_]:
 def _sections_with_bent_widths(tables: Tables, sections: int) -> NDArray[np.bool_]:
     bent = np.zeros(sections, dtype=np.bool_)
     lanes = tables.lanes
-    first_of_road = np.concatenate([[0], np.cumsum([len(road.sections) for road in tables.roads])])
     owner = _owners(tables.widths)[np.any(tables.widths.coefficients[:, 2:] != 0.0, axis=1)]
-    bent[first_of_road[lanes["road"][owner]] + lanes["section"][owner]] = True
+    bent[sections_before(tables)[lanes["road"][owner]] + lanes["section"][owner]] = True
     return bent

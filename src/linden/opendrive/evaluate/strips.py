@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.opendrive.evaluate.pieces import F64, I64
-from linden.opendrive.evaluate.sampling import Samples, sample, sections_of
+from linden.opendrive.evaluate.sampling import Samples, sample, sections_before, sections_of
 from linden.opendrive.evaluate.tables import Tables
 
 
@@ -40,10 +40,10 @@ def strips_of(tables: Tables, rows: I64 | None = None) -> Strips:
     """Lay out all lanes, or those of the given rows of Tables.lanes."""
     samples = sample(tables, sections_of(tables))
     rows = np.arange(len(tables.lanes)) if rows is None else rows
-    sections_before = np.concatenate([[0], np.cumsum([len(road.sections) for road in tables.roads])])
-    count_of_section = np.bincount(samples.section, minlength=int(sections_before[-1]))
+    before = sections_before(tables)
+    count_of_section = np.bincount(samples.section, minlength=int(before[-1]))
     first_of_section = np.cumsum(count_of_section) - count_of_section
-    section = sections_before[tables.lanes["road"][rows]] + tables.lanes["section"][rows]
+    section = before[tables.lanes["road"][rows]] + tables.lanes["section"][rows]
     counts = count_of_section[section]
     of_row = np.repeat(np.arange(len(rows)), counts)
     nth = np.arange(len(of_row)) - np.repeat(np.cumsum(counts) - counts, counts)

@@ -1,0 +1,79 @@
+"""Claims about `linden map`: what it prints, what it writes, and how it ends."""
+
+from pathlib import Path
+
+import pytest
+
+from linden.cli import main
+from opendrive_texts import street_through_junction
+
+
+@pytest.fixture
+def good_map(tmp_path: Path) -> Path:
+    file = tmp_path / "good.xodr"
+    file.write_text(street_through_junction())
+    return file
+
+
+def test_check_of_a_good_map_ends_with_0_and_a_summary(good_map: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "check", str(good_map)]) == 0
+    assert capsys.readouterr().out == f"{good_map}: 0 findings, 2 notes; --notes tells them\n"
+
+
+def test_check_tells_notes_on_request(good_map: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "check", "--notes", str(good_map)]) == 0
+    assert capsys.readouterr().out.startswith("note dead end road 1 s=0.00 (x=0.00, y=")
+
+
+def test_check_of_a_bad_map_ends_with_1_and_tells_each_finding(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "bad.xodr"
+    file.write_text(street_through_junction().replace('x="70" y="0" hdg="0"', 'x="70" y="0.05" hdg="0"'))
+    assert main(["map", "check", str(file)]) == 1
+    *lines, summary = capsys.readouterr().out.splitlines()
+    assert all(line.startswith("error gap road") for line in lines)
+    assert summary.startswith(f"{file}: {len(lines)} findings")
+
+
+@pytest.mark.parametrize("text", ["", "<OpenDRIVE>", "no map at all", "<svg/>"])
+def test_a_file_that_is_no_map_ends_with_2_and_a_sentence(
+    text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "none.xodr"
+    file.write_text(text)
+    assert main(["map", "check", str(file)]) == 2
+    assert capsys.readouterr().err.startswith("linden: line ")
+
+
+def test_a_file_that_is_not_there_is_told_with_the_built_in_maps(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "info", "Atlantis"]) == 2
+    told = capsys.readouterr().err
+    assert "cannot read Atlantis: No such file or directory" in told
+    assert "built-in map: Linden" in told
+
+
+@pytest.mark.parametrize("name", ["Linden", "Linden.xodr"])
+def test_a_built_in_map_is_known_by_its_name(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "info", name]) == 0
+    assert "junctions" in capsys.readouterr().out
+
+
+def test_show_writes_a_picture(good_map: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "map.svg"
+    assert main(["map", "show", str(good_map), "-o", str(picture)]) == 0
+    assert picture.read_text().startswith("<svg")
+
+
+def test_a_picture_that_cannot_be_written_is_told(
+    good_map: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["map", "show", str(good_map), "-o", str(tmp_path / "no" / "map.svg")]) == 2
+    assert "name a file in a folder that exists" in capsys.readouterr().err
+
+
+def test_streets_that_are_no_geojson_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    streets = tmp_path / "streets.geojson"
+    streets.write_text("{")
+    assert main(["map", "build", str(streets), "-o", str(tmp_path / "map.xodr")]) == 2
+    assert "is no GeoJSON" in capsys.readouterr().err
