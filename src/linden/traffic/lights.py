@@ -31,8 +31,7 @@ class Traffic:
         self.lights = range(sum(actor.light != NO_LIGHT for actor in self.actors))
         self.state = cycle.initial(self._plan)
         self._grid = trigger_grid(world_volumes(self.actors))
-        nobody = np.zeros((0, 3))  # asked for once now, so that the first vehicle does not wait for the compiler
-        self.over(nobody, nobody, nobody, nobody, np.zeros(0, np.int32))
+        self._compile()
 
     def step(self, dt_s: float) -> None:
         """Let ``dt_s`` pass."""
@@ -45,6 +44,11 @@ class Traffic:
         The columns are those of the bodies, (N, 3); ``triggers.owners_over`` says more.
         """
         return owners_over(self._grid, position_m, rotation_rad, box_centre_m, half_extent_m, slots)
+
+    def _compile(self) -> None:
+        """Compile :meth:`over` for columns such as the bodies have (parts of records), before the first vehicle waits."""
+        column = np.zeros((2, 4))[:, :3]
+        self.over(column, column, column, column, np.zeros(0, np.int32))
 
     def group(self, light: int) -> tuple[int, ...]:
         """Return the lights that take turns with this one, itself among them."""
