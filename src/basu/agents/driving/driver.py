@@ -59,7 +59,7 @@ class Task:
 
 def make_task(route: Route, body: Body, cap_mps: float) -> Task:
     """Lay out a route for a vehicle that drives ``cap_mps`` at most."""
-    path = make_path(route.points_m, route.s_m)
+    path = make_path(route.points_m, route.s_m, route.lane_width_m, body)
     nearest = np.searchsorted(route.s_m, path.s_m).clip(0, len(route.s_m) - 1)
     profile = make_profile(path, route.speed_limit_mps[nearest], cap_mps, SPACING_M)
     length_m = body.front_m + body.rear_m

@@ -33,11 +33,10 @@ def steer_angle_rad(path: Path, place: Place, yaw_rad: float, speed_mps: float, 
         body: axles.
         preview_s: how much later the angle takes effect; heading and curvature are read that much farther on.
     """
-    ahead_m = max(speed_mps, 0.0) * preview_s
-    index = path.index_at(place.s_m + ahead_m)
-    heading_rad = path.heading_rad[index] + path.curvature_1pm[index] * (place.s_m + ahead_m - path.s_m[index])
+    ahead_s_m = place.s_m + max(speed_mps, 0.0) * preview_s
+    heading_rad, curvature_1pm = path.heading_at_rad(ahead_s_m), path.curvature_at_1pm(ahead_s_m)
     rear_m = body.rear_axle_m
-    steady_slip_rad = math.asin(max(-0.9, min(0.9, path.curvature_1pm[index] * rear_m)))
+    steady_slip_rad = math.asin(max(-0.9, min(0.9, curvature_1pm * rear_m)))
     calm = rear_m / max(rear_m, CALM_S * speed_mps)
     catch_m = max(CATCH_M, CATCH_S * speed_mps)
     turn_in_rad = max(-MAX_TURN_IN_RAD, min(MAX_TURN_IN_RAD, math.atan(place.lateral_m / catch_m)))
