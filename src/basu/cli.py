@@ -6,6 +6,7 @@ import argparse
 import json
 import signal
 import sys
+import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -44,6 +45,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _say(error, Fault.SIMULATOR)
     except KeyboardInterrupt:
         return _say("interrupted", Fault.USER)
+    except Exception:  # noqa: BLE001 - a bug of ours: told in full, with an exit status that is nobody else's
+        traceback.print_exc()
+        return Fault.BENCHMARK.value
     return code
 
 

@@ -44,6 +44,7 @@ class Driven(NamedTuple):
     wall_s: float  # from the first step to the last
     first_frame: int | None  # the server's number of it
     bug: Exception | None  # an error of our own, to be raised again once all is written
+    agent_error: AgentError | None  # what the agent failed with; its cause has the traceback
 
 
 def drive(
@@ -60,7 +61,7 @@ def drive(
     metrics = MetricsManager(agents, routes, scoring)
     managers: tuple[BaseManager, ...] = (sensors, routes, metrics, agents)
     began_s = time.perf_counter()
-    bug = None
+    bug = agent_error = None
     try:
         for manager in managers:
             manager.setup(run)
@@ -69,6 +70,7 @@ def drive(
     except KeyboardInterrupt:
         outcome = Outcome(Status.INTERRUPTED, "interrupted by the user")
     except AgentError as error:
+        agent_error = error
         outcome = _agents_end(error, why_gone())
     except UserError as error:
         outcome = Outcome(Status.SETUP_FAILED, str(error))
@@ -83,7 +85,7 @@ def drive(
         _hear_stragglers(run)
         history = metrics.history()
     outcome = _closed(managers, outcome)
-    return Driven(outcome, history, wall_s, metrics.first_frame, bug)
+    return Driven(outcome, history, wall_s, metrics.first_frame, bug, agent_error)
 
 
 def _until_over(

@@ -6,9 +6,11 @@ import contextlib
 import platform
 import random
 import sys
+import traceback
 from dataclasses import asdict, dataclass
 from datetime import datetime, timezone
 from importlib.metadata import version
+from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -127,7 +129,7 @@ def _simulator(options: RunOptions) -> Iterator[Simulator]:
         client = connect(options.host, options.port, options.timeout_s)
         yield Simulator(client, own=False, why_gone=lambda: _silence(client, options))
         return
-    server = OwnServer(options.seed)
+    server = OwnServer()
     try:
         yield Simulator(connect("127.0.0.1", server.port, options.timeout_s), own=True, why_gone=server.gone)
     finally:
@@ -157,7 +159,7 @@ def _one(
     config = agents.config
     with asking(f"loading {description.town}"):
         if repetition and simulator.own:
-            simulator.client.reload_world()
+            simulator.client.reload_world(reset_settings=False)
         world = world_of(simulator.client, description.town)
         carla_map = world.get_map()
     lanes = lane_graph.build(carla_map)
@@ -187,11 +189,20 @@ def _one(
             timeout_s=options.timeout_s,
         )
         driven = drive(this_run, agents, sensors, scoring, why_gone=simulator.why_gone, on_tick=bar.tick)
-    folder = make_folder(options.output, started.astimezone(), prepared.loaded.name, route.id)
-    _leave(folder, driven, scoring, lanes, _config(options, scoring, prepared, agents, route.id, simulator, started))
+    if options.debug and driven.agent_error is not None:
+        traceback.print_exception(driven.agent_error)
+    label = _label(description, prepared)
+    folder = make_folder(options.output, started.astimezone(), prepared.loaded.name, label)
+    _leave(folder, driven, scoring, lanes, _config(options, scoring, prepared, agents, description, simulator, started))
     if driven.bug is not None:
         raise driven.bug
     return driven.outcome
+
+
+def _label(description: RouteDescription, prepared: Plan) -> str:
+    """What a route is called in a folder's name: its file, and its id where the file has several."""
+    stem = PurePath(description.source).stem
+    return stem if len(prepared.routes) == 1 else f"{stem}-{description.id}"
 
 
 def _config(
@@ -199,17 +210,19 @@ def _config(
     scoring: Scoring,
     prepared: Plan,
     agents: AgentsManager,
-    route_id: str,
+    description: RouteDescription,
     simulator: Simulator,
     started: datetime,
 ) -> dict[str, Any]:
     """What is needed to run it again."""
-    again = ["basu", "run", options.agent, "--route-id", route_id, "--seed", str(options.seed)]
+    again = ["basu", "run", options.agent, "--route-id", description.id, "--seed", str(options.seed)]
     return {
         "started": started.isoformat(timespec="seconds"),
         "command": again if options.routes is None else [*again, "--routes", options.routes],
         "agent": {"name": prepared.loaded.name, "class": prepared.loaded.agent_class.__name__, "file": options.agent},
         "agent_config": asdict(agents.config),
+        "route": description.id,
+        "town": description.town,
         "seed": options.seed,
         "step_s": STEP_S,
         "step_limit_s": options.step_limit_s,
@@ -243,8 +256,8 @@ def _leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, con
         "agent": config["agent"],
         "vehicle": config["agent_config"]["vehicle"],
         "weather": config["agent_config"]["weather"],
-        "route": None if history is None else history.facts.route.id,
-        "town": None if history is None else history.facts.route.town,
+        "route": config["route"],
+        "town": config["town"],
         "versions": config["versions"],
     }
     document = result(driven.outcome, history, scoring, meta)
@@ -253,7 +266,7 @@ def _leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, con
     write_json(folder / RESULT_FILE, document)
     if history is not None:
         write_history(folder, history)
-        title = f"{config['agent']['name']} on {history.facts.route.id}: {document['status']}"
+        title = f"{config['agent']['name']} on route {config['route']} of {config['town']}: {document['status']}"
         picture.draw(folder / PICTURE_FILE, history, lanes.streets(), title)
     point_latest(folder)
     print(f"result folder     {folder}")

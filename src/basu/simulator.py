@@ -34,15 +34,15 @@ PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent
 
 
 class OwnServer:
-    """A ``linden serve`` of our own, on ports that the system chose."""
+    """A ``linden serve`` of our own, on ports that the system chose, still until the first tick."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self) -> None:
         """Start it and wait for its ready line.
 
         Raises:
             SimulatorError: it ended, or was not ready in time.
         """
-        command = [*linden_command(), "serve", "--port", "0", "--seed", str(seed)]
+        command = [*linden_command(), "serve", "--port", "0", "--sync"]
         self._process = subprocess.Popen(  # noqa: S603 - our own command, arguments of our own
             command,
             stdin=subprocess.DEVNULL,
@@ -162,7 +162,7 @@ def world_of(client: carla.Client, town: str) -> carla.World:
     names = sorted({_short(name) for name in client.get_available_maps()})
     if town not in names:
         raise UserError(f"the route is in {town}, which this simulator does not have; it has {', '.join(names)}")
-    return client.load_world(town)
+    return client.load_world(town, reset_settings=False)
 
 
 def _short(map_name: str) -> str:

@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from basu.history import History
 
 TOLERANCE_MPS = 1.0  # above the limit; 2.2 mph, about what a speedometer may be off at 25 mph
+ON_ROUTE_M = 2.0  # from the planned line; nearer than this the vehicle is on the plan's lane, and its limit holds
 LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of driving
 
 
 def speeding(history: History) -> tuple[Evidence, ...]:
     """One infraction for each episode: it begins ``TOLERANCE_MPS`` over and ends back at the limit.
 
-    The limit is the one the simulator posts to the vehicle; where it posts none, the planned route's where the vehicle
-    is; where that has none either, there is none.
+    Whose limit holds, :func:`limits_mps` says.
     """
     speed_mps, limit_mps = history.speed_mps(), limits_mps(history)
     found = []
@@ -47,12 +47,18 @@ def speeding(history: History) -> tuple[Evidence, ...]:
 
 
 def limits_mps(history: History) -> NDArray[np.float64]:
-    """(T,) the limit that holds in each frame, inf where there is none."""
+    """(T,) the limit that holds in each frame, inf where there is none.
+
+    On the planned lane it is the map's limit of that lane. Elsewhere, and where the map posts none, it is what the
+    simulator posts to the vehicle: in a junction, where lanes lie over one another, a simulator may mean any of them.
+    """
     route = history.facts.route
     posted = history.frames["speed_limit_mps"].astype(np.float64)
     index = np.clip(np.searchsorted(route.s_m, history.frames["route_s_m"], side="right") - 1, 0, None)
-    planned = np.nan_to_num(route.speed_limit_mps[index], nan=np.inf)
-    return np.where(posted > 0.0, posted, planned)
+    planned = route.speed_limit_mps[index]
+    off_route = np.abs(history.frames["lateral_m"]) > ON_ROUTE_M
+    elsewhere = np.where(posted > 0.0, posted, np.inf)
+    return np.where(off_route | np.isnan(planned), elsewhere, planned)
 
 
 def _episodes(speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64]) -> list[tuple[int, int]]:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import io
+import math
 from typing import TYPE_CHECKING
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
 from basu.metrics.score import infractions
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 
     from basu.history import History
 
+CROWDED_M = 60.0  # stops nearer to each other than this have their names one below the other
 MARGIN_M = 40.0  # of street map around the route
 WIDTH_INCHES, DPI = 10.0, 130
 STREET, PLANNED, DRIVEN, MARK = "#d9d9d9", "#3182bd", "#e6550d", "#a50f15"
@@ -32,10 +35,10 @@ def draw(path: Path, history: History, streets: Sequence[NDArray[np.float64]], t
     low = np.minimum(route.points_m[:, :2].min(axis=0), [frames["x_m"].min(), frames["y_m"].min()]) - MARGIN_M
     high = np.maximum(route.points_m[:, :2].max(axis=0), [frames["x_m"].max(), frames["y_m"].max()]) + MARGIN_M
     spread = high - low
-    figure = Figure(figsize=(WIDTH_INCHES, float(np.clip(WIDTH_INCHES * spread[1] / spread[0], 4.0, 14.0)) + 0.6))
+    height_inches = float(np.clip(WIDTH_INCHES * spread[1] / spread[0], 4.0, 14.0)) + 0.6
+    figure = Figure(figsize=(WIDTH_INCHES, height_inches), layout="constrained")
     axes = figure.add_subplot()
-    for street in streets:
-        axes.plot(street[:, 0], street[:, 1], color=STREET, linewidth=2.0, solid_capstyle="butt", zorder=1)
+    axes.add_collection(LineCollection(list(streets), colors=STREET, linewidths=2.0, zorder=1))
     _paths(axes, history)
     _marks(axes, history)
     axes.set_xlim(low[0], high[0])
@@ -44,7 +47,7 @@ def draw(path: Path, history: History, streets: Sequence[NDArray[np.float64]], t
     axes.set_xlabel("x (east) in m")
     axes.set_ylabel("y (south) in m")
     axes.set_title(title)
-    axes.legend(loc="best", framealpha=0.9)
+    figure.legend(loc="outside lower center", ncols=5, frameon=False)
     buffer = io.BytesIO()
     with mpl.rc_context({"savefig.bbox": "tight"}):
         figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
@@ -63,9 +66,13 @@ def _paths(axes: Axes, history: History) -> None:
 
 def _marks(axes: Axes, history: History) -> None:
     """Service stops by name, infractions by kind."""
-    for stop in history.facts.route.stops:
+    stops = history.facts.route.stops
+    for number, stop in enumerate(stops):
+        near = sum(math.hypot(stop.x_m - s.x_m, stop.y_m - s.y_m) < CROWDED_M for s in stops[:number])
         axes.plot(stop.x_m, stop.y_m, marker="D", color=PLANNED, markersize=6, zorder=4)
-        axes.annotate(stop.name, (stop.x_m, stop.y_m), xytext=(6, 6), textcoords="offset points", fontsize=7)
+        axes.annotate(
+            stop.name, (stop.x_m, stop.y_m), xytext=(6, 6 - 16 * near), textcoords="offset points", fontsize=7
+        )
     for number, found in enumerate(infractions(history)):
         axes.plot(
             found.x_m,

@@ -29,10 +29,20 @@ def test_an_excess_of_a_moment_is_forgiven() -> None:
     assert speeding(driven([*at(10.0, 1.0), *at(13.0, LEAST_S - 0.1), *at(10.0, 1.0)], limit_mps=11.0)) == ()
 
 
-def test_the_simulators_limit_goes_before_the_plans() -> None:
-    route = straight_route(limit_mps=5.0)
-    assert speeding(driven(at(10.0, 5.0), route=route, limit_mps=11.0)) == ()
-    assert len(speeding(driven(at(10.0, 5.0), route=route, limit_mps=0.0))) == 1
+def test_on_the_planned_lane_its_own_limit_holds_whatever_lies_over_it() -> None:
+    route = straight_route(limit_mps=11.0)
+    assert speeding(driven(at(10.0, 5.0), route=route, limit_mps=5.0)) == ()
+    assert len(speeding(driven(at(13.0, 5.0), route=route, limit_mps=20.0))) == 1
+
+
+def test_off_the_planned_lane_the_simulators_limit_holds() -> None:
+    route = straight_route(limit_mps=20.0)
+    assert len(speeding(driven(at(10.0, 5.0), route=route, limit_mps=5.0, lateral_m=3.0))) == 1
+
+
+def test_where_the_map_posts_none_the_simulators_limit_holds() -> None:
+    route = straight_route(limit_mps=math.nan)
+    assert len(speeding(driven(at(10.0, 5.0), route=route, limit_mps=5.0))) == 1
 
 
 def test_without_any_limit_nothing_is_too_fast() -> None:
