@@ -4,7 +4,7 @@ from linden.opendrive.checks.finding import Finding, Severity
 from linden.opendrive.checks.furniture import controllers, objects, signals
 from linden.opendrive.checks.joints import lane_joints, road_joints
 from linden.opendrive.checks.links import junctions, lane_ends, lane_links_returned, road_links
-from linden.opendrive.checks.overlaps import overlaps
+from linden.opendrive.checks.overlaps import overlaps, raised_ground
 from linden.opendrive.checks.shape import lane_widths, profiles, reference_lines
 from linden.opendrive.checks.wording import georeference, lane_changes, speed_limits
 from linden.opendrive.model import OpenDrive
@@ -28,6 +28,7 @@ _CHECKS = (
     controllers,
     objects,
     overlaps,
+    raised_ground,
 )
 
 

@@ -144,6 +144,15 @@ def test_a_bridge_does_not_overlap_the_street_below() -> None:
     assert found(crossing(6.0)) == []
 
 
+def test_a_pavement_that_reaches_into_another_roads_lane_is_found() -> None:
+    drive = road(1, 40.0, line(0, 0, 0, 0, 40), section(right=lane(-1)))
+    walk = road(2, 10.0, line(0, 20, -8, math.pi / 2, 10), section(left=lane(1, "sidewalk", 1.5)))
+    (overlap,) = found(opendrive(drive, walk))
+    assert overlap.kind == "overlap"
+    assert "driving lane -1 of road 1" in overlap.what
+    assert "sidewalk lane 1 of road 2" in overlap.what
+
+
 def test_roads_that_meet_end_to_end_do_not_overlap() -> None:
     first = road(
         1,

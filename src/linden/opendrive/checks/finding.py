@@ -13,6 +13,7 @@ STEP_M = 0.02  # in height, likewise
 KINK_DEG = 1.5  # between headings that should agree
 JUMP_M = 0.01  # of a lane's width or place where one record follows another
 OVERLAP_M = 0.10  # how deep two surfaces reach into each other
+KERB_REACH_M = 0.20  # of a kerb or pavement into a lane: wheels keep further than that from the lane's edge
 LAYER_M = 2.0  # surfaces further apart in height are a bridge and a road under it
 SIGNAL_REACH_M = 12.0  # beyond the outermost lane; a signal further away belongs to no road
 SIGNAL_SHIFT_M = 0.05  # how far LibCarla may move a signal out of a lane before it counts

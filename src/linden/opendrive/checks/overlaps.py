@@ -1,11 +1,11 @@
-"""Surfaces that lie in one another: driving lanes of different streets, or of different junctions, at one height."""
+"""Surfaces that lie in one another at one height: driving lanes of different streets, kerbs in somebody's lane."""
 
 from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.opendrive.checks.finding import LAYER_M, OVERLAP_M, Finding, Severity, worst_of_each
+from linden.opendrive.checks.finding import KERB_REACH_M, LAYER_M, OVERLAP_M, Finding, Severity, worst_of_each
 from linden.opendrive.evaluate.pieces import F64, I64
 from linden.opendrive.mesh import RoadMesh, road_mesh
 from linden.opendrive.model import OpenDrive
@@ -15,38 +15,69 @@ _CELL_M = 12.0
 
 
 def overlaps(opendrive: OpenDrive) -> list[Finding]:
-    """Find pairs of roads, or of junctions, whose driving lanes share ground, with the depth of it."""
+    """Find pairs of roads, or of junctions, whose driving lanes share ground, with the depth of it.
+
+    The ways through one junction share ground by nature, and a road touches the junctions it leads into.
+    """
     mesh = road_mesh(opendrive)
-    driving = np.flatnonzero(mesh.lanes["type_bits"][mesh.lane_of_triangle] == int(LaneType.DRIVING))
-    corners = mesh.vertices[mesh.triangles[driving]]  # (N, 3, 3)
+    driving = np.flatnonzero(_has_type(mesh, LaneType.DRIVING))
     lanes = mesh.lanes[mesh.lane_of_triangle[driving]]
     in_junction = lanes["junction"] >= 0
-    owner = np.where(in_junction, -1 - lanes["junction"], lanes["road_id"]).astype(np.int64)
+    owner = np.where(in_junction, -1 - lanes["junction"], lanes["road_id"])
+    return _shared_ground(mesh, driving, owner, in_junction, alike=True, limit_m=OVERLAP_M)
+
+
+def raised_ground(opendrive: OpenDrive) -> list[Finding]:
+    """Find pavements and kerbs that reach into another road's driving lane, where wheels would climb them."""
+    mesh = road_mesh(opendrive)
+    chosen = np.flatnonzero(_has_type(mesh, LaneType.DRIVING | LaneType.SIDEWALK | LaneType.BORDER))
+    lanes = mesh.lanes[mesh.lane_of_triangle[chosen]]
+    is_driving = lanes["type_bits"] == int(LaneType.DRIVING)
+    return _shared_ground(mesh, chosen, lanes["road_id"], is_driving, alike=False, limit_m=KERB_REACH_M)
+
+
+def _has_type(mesh: RoadMesh, types: LaneType) -> NDArray[np.bool_]:
+    has: NDArray[np.bool_] = mesh.lanes["type_bits"][mesh.lane_of_triangle] & int(types) != 0
+    return has
+
+
+def _shared_ground(
+    mesh: RoadMesh,
+    chosen: I64,
+    owner: NDArray[np.int32],
+    group: NDArray[np.bool_],
+    *,
+    alike: bool,
+    limit_m: float,
+) -> list[Finding]:
+    """Return the deepest overlap of each two owners, between triangles whose groups are alike (or are not)."""
+    corners = mesh.vertices[mesh.triangles[chosen]]  # (N, 3, 3)
     found: list[tuple[object, Finding]] = []
-    for first, second in _near_pairs(corners, owner, in_junction):
-        depth = _depth_m(corners[first, :, :2], corners[second, :, :2])
-        for nth in np.flatnonzero(depth > OVERLAP_M):
-            one, other = int(first[nth]), int(second[nth])
-            found.append(
-                (frozenset({int(owner[one]), int(owner[other])}), _finding(mesh, driving, one, other, depth[nth]))
-            )
+    for first, second in _near_pairs(corners, owner):
+        kept = (group[first] == group[second]) == alike
+        one, other = first[kept], second[kept]
+        depth_m = _depth_m(corners[one, :, :2], corners[other, :, :2])
+        for nth in np.flatnonzero(depth_m > limit_m):
+            pair = (int(chosen[one[nth]]), int(chosen[other[nth]]))
+            owners = frozenset({int(owner[one[nth]]), int(owner[other[nth]])})
+            found.append((owners, _finding(mesh, pair, float(depth_m[nth]))))
     return worst_of_each(found)
 
 
-def _finding(mesh: RoadMesh, driving: I64, one: int, other: int, depth_m: float) -> Finding:
-    lanes = mesh.lanes[mesh.lane_of_triangle[driving[[one, other]]]]
-    x_m, y_m = mesh.vertices[mesh.triangles[driving[one]], :2].mean(axis=0)
+def _finding(mesh: RoadMesh, triangles: tuple[int, int], depth_m: float) -> Finding:
+    lanes = mesh.lanes[mesh.lane_of_triangle[list(triangles)]]
+    x_m, y_m = mesh.vertices[mesh.triangles[triangles[0]], :2].mean(axis=0)
     names = [
-        f"lane {lane['lane_id']} of road {lane['road_id']}"
+        f"{LaneType(int(lane['type_bits'])).name or 'unknown'} lane {lane['lane_id']} of road {lane['road_id']}".lower()
         + (f" in junction {lane['junction']}" if lane["junction"] >= 0 else "")
         for lane in lanes
     ]
     text = f"{names[0]} and {names[1]} share ground, {depth_m:.2f} m deep"
     road_id = int(lanes[0]["road_id"])
-    return Finding(Severity.ERROR, "overlap", text, float(depth_m), road_id, x_m=float(x_m), y_m=float(y_m))
+    return Finding(Severity.ERROR, "overlap", text, depth_m, road_id, x_m=float(x_m), y_m=float(y_m))
 
 
-def _near_pairs(corners: F64, owner: I64, in_junction: NDArray[np.bool_]) -> Iterator[tuple[I64, I64]]:
+def _near_pairs(corners: F64, owner: NDArray[np.int32]) -> Iterator[tuple[I64, I64]]:
     """Yield pairs of triangles of different owners in the same square, at about the same height."""
     low = np.floor(corners[:, :, :2].min(axis=1) / _CELL_M).astype(np.int64)
     high = np.floor(corners[:, :, :2].max(axis=1) / _CELL_M).astype(np.int64)
@@ -56,16 +87,14 @@ def _near_pairs(corners: F64, owner: I64, in_junction: NDArray[np.bool_]) -> Ite
     nth = np.arange(len(triangle)) - np.repeat(np.cumsum(count) - count, count)
     column, row = low[triangle, 0] + nth % span[triangle, 0], low[triangle, 1] + nth // span[triangle, 0]
     order = np.lexsort((triangle, row, column))
-    begins = np.flatnonzero(np.diff(column[order], prepend=np.nan) != 0) if len(order) else order
-    begins = np.union1d(begins, np.flatnonzero(np.diff(row[order], prepend=np.nan) != 0)) if len(order) else begins
+    changes = (np.diff(column[order]) != 0) | (np.diff(row[order]) != 0)
     height = corners[:, :, 2].mean(axis=1)
-    for members in np.split(triangle[order], begins[1:]):
+    for members in np.split(triangle[order], np.flatnonzero(changes) + 1):
         if len(members) < 2 or (owner[members] == owner[members[0]]).all():
             continue
         one, other = np.triu_indices(len(members), 1)
         one, other = members[one], members[other]
-        kept = (owner[one] != owner[other]) & (in_junction[one] == in_junction[other])
-        kept &= np.abs(height[one] - height[other]) < LAYER_M
+        kept = (owner[one] != owner[other]) & (np.abs(height[one] - height[other]) < LAYER_M)
         if kept.any():
             yield one[kept], other[kept]
 
