@@ -39,6 +39,8 @@ class LightPlan(NamedTuple):
     """(L,)"""
     group_of_controller: I32
     """(C,) never falling: the controllers of a group lie next to each other, in the order of their turns."""
+    group_of_light: I32
+    """(L,) follows from the two before."""
     first_controller: I32
     """(G + 1,) where each group's controllers begin, and C."""
     times_s: F64
@@ -81,9 +83,11 @@ def plan(groups: Sequence[Sequence[Sequence[int]]], times_s: F64 | None = None) 
     for controller, lights in enumerate(controllers):
         controller_of_light[list(lights)] = controller
     sizes = [len(group) for group in groups]
+    group_of_controller = np.repeat(np.arange(len(groups), dtype=np.int32), sizes)
     return LightPlan(
         controller_of_light,
-        np.repeat(np.arange(len(groups), dtype=np.int32), sizes),
+        group_of_controller,
+        group_of_controller[controller_of_light],
         np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32),
         np.tile(TIMES_S, (len(controllers), 1)) if times_s is None else times_s,
     )
@@ -175,12 +179,11 @@ def with_frozen(state: LightState, groups: Indices, *, frozen: bool) -> LightSta
 
 def elapsed_s(plan: LightPlan, state: LightState) -> F64:
     """Return for each light (L,) how long its controller's stage has lasted, as CARLA tells its clients."""
-    controller = plan.controller_of_light
-    group = plan.group_of_controller[controller]
-    return np.where(state.turn[group] == controller, state.elapsed_s[group], 0.0)
+    has_turn = state.turn[plan.group_of_light] == plan.controller_of_light
+    return np.where(has_turn, state.elapsed_s[plan.group_of_light], 0.0)
 
 
 def is_frozen(plan: LightPlan, state: LightState) -> Flags:
     """Return for each light (L,) whether time stands still for it."""
-    frozen: Flags = state.pace[plan.group_of_controller[plan.controller_of_light]] == 0.0
+    frozen: Flags = state.pace[plan.group_of_light] == 0.0
     return frozen

@@ -30,6 +30,7 @@ class Traffic:
         self.actors, self._plan = traffic_actors(opendrive)
         self.lights = range(sum(actor.light != NO_LIGHT for actor in self.actors))
         self.state = cycle.initial(self._plan)
+        self._shown: cycle.LightState | None = None
         self._grid = trigger_grid(world_volumes(self.actors))
         self._compile()
 
@@ -46,14 +47,14 @@ class Traffic:
         return owners_over(self._grid, position_m, rotation_rad, box_centre_m, half_extent_m, slots)
 
     def _compile(self) -> None:
-        """Compile :meth:`over` for columns such as the bodies have (parts of records), before the first vehicle waits."""
+        """Compile :meth:`over` for columns such as the bodies have (parts of records) before the first vehicle."""
         column = np.zeros((2, 4))[:, :3]
         self.over(column, column, column, column, np.zeros(0, np.int32))
 
     def group(self, light: int) -> tuple[int, ...]:
         """Return the lights that take turns with this one, itself among them."""
-        group_of_light = self._plan.group_of_controller[self._plan.controller_of_light]
-        return tuple(map(int, np.flatnonzero(group_of_light == group_of_light[light])))
+        groups = self._plan.group_of_light
+        return tuple(map(int, np.flatnonzero(groups == groups[light])))
 
     def pole_index(self, light: int) -> int:
         """Return the place of a light within its group."""
@@ -94,18 +95,23 @@ class Traffic:
     def write(self, rows: NDArray[np.void]) -> None:
         """Write how the lights stand into their rows of the snapshot: (L,) of TRAFFIC_LIGHT_ROW, in the lights' order.
 
+        The rows keep what they hold from call to call: what has not changed since the last one is not written again.
         Sign ids and pole indices never change and are left to whoever makes the rows.
         """
-        state, controller = self.state, self._plan.controller_of_light
-        rows["green_time"] = state.times_s[controller, TrafficLightState.GREEN]
-        rows["yellow_time"] = state.times_s[controller, TrafficLightState.YELLOW]
-        rows["red_time"] = state.times_s[controller, TrafficLightState.RED]
+        state, shown, controller = self.state, self._shown, self._plan.controller_of_light
         rows["elapsed_time"] = cycle.elapsed_s(self._plan, state)
-        rows["frozen"] = cycle.is_frozen(self._plan, state)
-        rows["state"] = state.colour
+        if shown is None or state.times_s is not shown.times_s:
+            rows["green_time"] = state.times_s[controller, TrafficLightState.GREEN]
+            rows["yellow_time"] = state.times_s[controller, TrafficLightState.YELLOW]
+            rows["red_time"] = state.times_s[controller, TrafficLightState.RED]
+        if shown is None or state.pace is not shown.pace:
+            rows["frozen"] = cycle.is_frozen(self._plan, state)
+        if shown is None or state.colour is not shown.colour:
+            rows["state"] = state.colour
+        self._shown = state
 
     def _group_of(self, light: int) -> I32:
-        return self._plan.group_of_controller[self._plan.controller_of_light[light : light + 1]]
+        return self._plan.group_of_light[light : light + 1]
 
     def _groups(self) -> I32:
         return np.arange(len(self._plan.first_controller) - 1, dtype=np.int32)

@@ -171,6 +171,29 @@ def test_rows_of_the_snapshot_show_colours_times_and_freezing(traffic: Traffic) 
     assert rows["elapsed_time"].tolist() == [0.5, 0.0, 0.5, 0.0, 0.0]
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_rows_written_from_call_to_call_are_as_if_written_at_once(traffic: Traffic, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    rows = np.zeros(5, TRAFFIC_LIGHT_ROW)
+    for _ in range(60):
+        number, choice = int(random.integers(5)), int(random.integers(8))
+        if choice == 0:
+            traffic.set_time(number, YELLOW, float(random.uniform(1, 5)))
+        elif choice == 1:
+            traffic.set_colour(number, TrafficLightState.OFF)
+        elif choice == 2:
+            traffic.freeze(number, frozen=bool(random.integers(2)))
+        elif choice == 3:
+            traffic.reset_group(number)
+        else:
+            traffic.step(1.5)
+        traffic.write(rows)
+    fresh = np.zeros(5, TRAFFIC_LIGHT_ROW)
+    traffic._shown = None
+    traffic.write(fresh)
+    assert rows.tobytes() == fresh.tobytes()
+
+
 def test_freezing_and_resetting_reach_one_group_or_all(traffic: Traffic) -> None:
     traffic.freeze_all(frozen=True)
     for _ in range(30):
