@@ -53,7 +53,6 @@ def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
     """Return every signal of the map, in the order of the file."""
     tables, links = tables_of(opendrive), lane_links(opendrive)
     controllers = _controllers(opendrive)
-    junction_of_controller = {name: junction.id for junction in opendrive.junctions for name in junction.controllers}
     references = _references(opendrive)
     signals = list(opendrive.signals())
     places = [
@@ -68,7 +67,6 @@ def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
     boxes = trigger_boxes(tables, links, transforms, places)
     placed = []
     for nth, (road, signal) in enumerate(signals):
-        guarded = [junction_of_controller[name] for name in controllers[signal.id] if name in junction_of_controller]
         placed.append(
             PlacedSignal(
                 signal_id=signal.id,
@@ -84,7 +82,7 @@ def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
                 landmark=landmarks[nth],
                 transform=transforms[nth],
                 controllers=tuple(controllers[signal.id]),
-                junction_id=guarded[0] if guarded else _junction_ahead(tables, links, road, places[nth]),
+                junction_id=_junction(opendrive, links, road, controllers[signal.id], places[nth]),
                 lanes=tuple(_affected(tables, lane) for lane in places[nth]),
                 trigger_volumes=boxes[nth],
             )
@@ -149,10 +147,16 @@ def _affected(tables: Tables, place: LanePlace) -> AffectedLane:
     return AffectedLane(tables.roads[row["road"]].id, int(row["lane_id"]), place.s_m)
 
 
-def _junction_ahead(tables: Tables, links: LaneLinks, road: Road, places: list[LanePlace]) -> int:
-    """Return the junction the signal's road belongs to or its lanes lead into next, -1 where there is none."""
+def _junction(
+    opendrive: OpenDrive, links: LaneLinks, road: Road, controllers: list[str], places: list[LanePlace]
+) -> int:
+    """Return the junction of the signal's controller or road, else the one its lanes lead into, -1 for none."""
+    for junction in opendrive.junctions if controllers else ():
+        if controllers[0] in junction.controllers:
+            return junction.id
     if road.is_in_junction:
         return road.junction_id
+    tables = tables_of(opendrive)
     for place in places:
         here = int(tables.lanes["road"][place.lane])
         rows = links.successors[place.lane]

@@ -53,9 +53,7 @@ def _shared_ground(
     """Return the deepest overlap of each two owners, between triangles whose groups are alike (or are not)."""
     corners = mesh.vertices[mesh.triangles[chosen]]  # (N, 3, 3)
     found: list[tuple[object, Finding]] = []
-    for first, second in _near_pairs(corners, owner):
-        kept = (group[first] == group[second]) == alike
-        one, other = first[kept], second[kept]
+    for one, other in _near_pairs(corners, owner, group, alike=alike):
         depth_m = _depth_m(corners[one, :, :2], corners[other, :, :2])
         for nth in np.flatnonzero(depth_m > limit_m):
             pair = (int(chosen[one[nth]]), int(chosen[other[nth]]))
@@ -77,10 +75,12 @@ def _finding(mesh: RoadMesh, triangles: tuple[int, int], depth_m: float) -> Find
     return Finding(Severity.ERROR, "overlap", text, depth_m, road_id, x_m=float(x_m), y_m=float(y_m))
 
 
-def _near_pairs(corners: F64, owner: NDArray[np.int32]) -> Iterator[tuple[I64, I64]]:
-    """Yield pairs of triangles of different owners in the same square, at about the same height."""
-    low = np.floor(corners[:, :, :2].min(axis=1) / _CELL_M).astype(np.int64)
-    high = np.floor(corners[:, :, :2].max(axis=1) / _CELL_M).astype(np.int64)
+def _near_pairs(
+    corners: F64, owner: NDArray[np.int32], group: NDArray[np.bool_], *, alike: bool
+) -> Iterator[tuple[I64, I64]]:
+    """Yield pairs of triangles of different owners whose bounds meet, at about the same height."""
+    lowest, highest = corners[:, :, :2].min(axis=1), corners[:, :, :2].max(axis=1)
+    low, high = (np.floor(bound / _CELL_M).astype(np.int64) for bound in (lowest, highest))
     span = high - low + 1
     count = span[:, 0] * span[:, 1]
     triangle = np.repeat(np.arange(len(corners)), count)
@@ -92,11 +92,15 @@ def _near_pairs(corners: F64, owner: NDArray[np.int32]) -> Iterator[tuple[I64, I
     for members in np.split(triangle[order], np.flatnonzero(changes) + 1):
         if len(members) < 2 or (owner[members] == owner[members[0]]).all():
             continue
-        one, other = np.triu_indices(len(members), 1)
-        one, other = members[one], members[other]
-        kept = (owner[one] != owner[other]) & (np.abs(height[one] - height[other]) < LAYER_M)
-        if kept.any():
-            yield one[kept], other[kept]
+        yes, no = members[group[members]], members[~group[members]]
+        for these, those in ((yes, yes), (no, no)) if alike else ((yes, no),):
+            one, other = np.repeat(these, len(those)), np.tile(those, len(these))
+            kept = (owner[one] < owner[other]) if alike else (owner[one] != owner[other])
+            one, other = one[kept], other[kept]
+            kept = np.abs(height[one] - height[other]) < LAYER_M
+            kept &= ((lowest[one] < highest[other]) & (lowest[other] < highest[one])).all(axis=1)
+            if kept.any():
+                yield one[kept], other[kept]
 
 
 def _depth_m(first: F64, second: F64) -> F64:
