@@ -3,7 +3,8 @@
 How an annotation travels (reference: LibCarla's msgpack adaptors, 0.9.16): a named tuple is an array of its fields, of
 which trailing ones may be left out where they have defaults; ``X | None`` is ``[false]`` or ``[true, x]``; a union of
 other types is CARLA's variant ``[index, x]``; ``tuple[X, ...]`` an array; an enum its number. A bool is never a number,
-nor a number a bool. A number that is not finite is refused: no field of the protocol means anything by one.
+nor a number a bool. A number that no 32-bit float can hold is refused: no field of the protocol means anything by one,
+and what the server holds is sent back in 32 bits.
 """
 
 import math
@@ -11,6 +12,8 @@ import types
 from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
 
 from linden.errors import Refusal
 
@@ -32,6 +35,9 @@ I32 = Annotated[int, IntRange(-(2**31), 2**31 - 1)]
 
 ANY_32_BITS = IntRange(-(2**31), 2**32 - 1)
 """What a plain ``int`` may hold: the protocol has no wider integers outside object ids, which say :data:`U64`."""
+
+LARGEST_NUMBER = float(np.finfo(np.float32).max)
+"""Beyond it a number would be infinite in the snapshot."""
 
 _SHOWN = 40  # characters of a wrong value that an error quotes
 
@@ -66,14 +72,12 @@ def got(value: object) -> str:
 
 
 def decode_float(value: object) -> float:
-    """Return a finite number; integers are numbers, bools are not."""
-    if type(value) is float:
-        if math.isfinite(value):
-            return value
-        raise WireTypeError(f"expected a finite number, got {value}")
-    if type(value) is int:
+    """Return a number that 32 bits can hold; integers are numbers, bools are not."""
+    if type(value) is not float and type(value) is not int:
+        raise WireTypeError(f"expected a number, got {got(value)}")
+    if abs(value) <= LARGEST_NUMBER:
         return float(value)
-    raise WireTypeError(f"expected a number, got {got(value)}")
+    raise WireTypeError(f"expected a finite number of 32 bits, got {value}")
 
 
 def decode_bool(value: object) -> bool:
@@ -248,14 +252,15 @@ def struct_decoder(struct: type) -> Decoder:
 def _fast(decode: Decoder, make: Callable[[Any], Any], plain_types: tuple[type, ...]) -> Decoder:
     """Put a short way before the decoder of a struct of plain numbers: a control comes 250 times a tick.
 
-    Where every field has the very type it is sent with and its integers fit, what is left to check is that each number
-    is finite, and then so is their sum. A sum that overflows, and whatever else is unusual, takes the long way.
+    Where every field has the very type it is sent with and its integers fit, what is left to check is that no number is
+    too large, and none is larger than the root of the sum of their squares, which is NaN where one of them is. Whatever
+    else is unusual takes the long way.
     """
     low, high = ANY_32_BITS
     integers = [i for i, each in enumerate(plain_types) if each is int]
 
     def decode_fast(value: Any) -> Any:  # noqa: ANN401 - as ``decode``
-        if type(value) is list and tuple(map(type, value)) == plain_types and math.isfinite(sum(value)):
+        if type(value) is list and tuple(map(type, value)) == plain_types and math.hypot(*value) <= LARGEST_NUMBER:
             for i in integers:
                 if not low <= value[i] <= high:
                     return decode(value)
