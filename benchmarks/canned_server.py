@@ -15,7 +15,6 @@ class StillWorld(Simulation):
 
     def step(self, dt_s: float) -> None:
         self.frame += 1
-        self.total_s += dt_s
         self.delta_s = dt_s
         self.episode.elapsed_s += dt_s
         if len(self.episode.actors) != self._shown:

@@ -38,14 +38,9 @@ class Recording:
 
 def drive(*, throttle: float) -> list[bytes]:
     """Return every snapshot of a drive of many vehicles that bump into each other, walkers and changing lights."""
-    with running_server("--seed", "5") as server:
+    with running_server("--sync") as server:
         client = carla.Client("127.0.0.1", server.port)
         client.set_timeout(20.0)
-        world = client.get_world()
-        settings = world.get_settings()
-        settings.synchronous_mode, settings.fixed_delta_seconds = True, 0.05
-        world.apply_settings(settings)
-        client.reload_world(False)  # a fresh episode, whose first frames no client's start-up has shifted
         world = client.get_world()
         recording = Recording(server)
         library, points = world.get_blueprint_library(), world.get_map().get_spawn_points()

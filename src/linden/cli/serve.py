@@ -10,10 +10,13 @@ from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
 
+from linden.values.episode import EpisodeSettings
+
 if TYPE_CHECKING:
     from linden.server.loop import Server
 
 DEFAULT_PORT = 2000
+SYNCHRONOUS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
 LOG_LEVELS = ("debug", "info", "warning", "error")
 
 
@@ -29,7 +32,11 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     serve.add_argument(
         "--maps", type=Path, action="append", default=[], metavar="DIR", help="offer every .xodr of a folder as a map"
     )
-    serve.add_argument("--seed", type=int, default=0, help="of all that is random (default: %(default)s)")
+    serve.add_argument(
+        "--sync",
+        action="store_true",
+        help="begin in synchronous mode with steps of 0.05 s: no frame before the first tick",
+    )
     serve.add_argument("--log-level", choices=LOG_LEVELS, default="warning", help="(default: %(default)s)")
     serve.set_defaults(command=run)
 
@@ -40,9 +47,8 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UserError: a port or a map cannot be had.
     """
-    logging.basicConfig(
-        level=arguments.log_level.upper(), stream=sys.stderr, format="linden: %(levelname)s: %(message)s"
-    )
+    logging.basicConfig(level=logging.WARNING, stream=sys.stderr, format="linden: %(levelname)s: %(message)s")
+    logging.getLogger("linden").setLevel(arguments.log_level.upper())  # the compiler's own log is nobody's business
     with _ending_cleanly():
         server = _make_server(arguments)
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -70,7 +76,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         raise UserError(f"--map: {refusal}") from refusal
     with _told_of_compiling():  # all of them now, so that a client's first tick takes no longer than the others
         warm_up()
-        simulation = Simulation(world_map, seed=arguments.seed)
+        simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
     server = Server(simulation, maps, frames, ports)
     _say(f"linden: ready, rpc port {port_of(ports.rpc)}, streaming port {port_of(ports.streaming)}")
     return server

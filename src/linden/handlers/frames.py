@@ -15,15 +15,15 @@ from linden.world.actors import ActorRecord
 def world_payload(simulation: Simulation) -> bytes:
     """Return the world snapshot: headers and one row for each actor.
 
-    The platform's time stamp is simulated time since the server began, not a clock's: so two runs are equal byte by
-    byte (docs/decisions/0003-determinism.md).
+    The platform's time stamp repeats the simulated time, for no clock's may be in it: two runs are equal byte by byte
+    (docs/decisions/0003-determinism.md).
     """
     episode = simulation.episode
     state = SimulationState.MAP_CHANGE if simulation.map_changed else SimulationState.NONE
     return b"".join(
         (
             sensor_header(SensorType.WORLD_OBSERVER, simulation.frame, episode.elapsed_s, Transform()),
-            episode_header(simulation.episode_id, simulation.total_s, simulation.delta_s, state),
+            episode_header(simulation.episode_id, episode.elapsed_s, simulation.delta_s, state),
             episode.actors.rows[: len(episode.actors)].tobytes(),
         )
     )

@@ -27,18 +27,15 @@ class Simulation:
     Attributes:
         settings: how time passes; replaced whole.
         frame: number of the last frame made; grows for the life of the server.
-        total_s: simulated time since the server began, over all episodes.
         episode: everything that a load of a map begins anew.
     """
 
-    def __init__(self, world_map: LoadedMap, *, seed: int = 0) -> None:
-        """Begin the first episode on ``world_map``; ``seed`` rules all that is random and not given by a client."""
+    def __init__(self, world_map: LoadedMap, settings: EpisodeSettings = EpisodeSettings()) -> None:  # noqa: B008 - frozen
+        """Begin the first episode on ``world_map``. Nothing is random but sensors' noise, whose seeds clients give."""
         self.library = BlueprintLibrary.load()
-        self.settings = EpisodeSettings()
-        self.seed = seed
+        self.settings = settings
         self.frame = 0
         self.episode_id = 0
-        self.total_s = 0.0
         self._next_stream = FIRST_SENSOR_STREAM
         self._begin(world_map)
 
@@ -82,7 +79,6 @@ class Simulation:
     def step(self, dt_s: float) -> None:
         """Make the next frame, ``dt_s`` after the last."""
         self.frame += 1
-        self.total_s += dt_s
         self.delta_s = dt_s
         step(self.episode, dt_s, self._substeps(dt_s))
 
