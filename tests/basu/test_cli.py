@@ -1,0 +1,96 @@
+"""Claims about the command line: sentences and exit codes, without a simulator."""
+
+import socket
+from pathlib import Path
+
+import pytest
+
+from basu.cli import main
+from basu.history import LaneInvasion
+from basu.history.files import write_history
+from fakes.drives import at, driven, hit
+
+SAMPLE = str(Path(__file__).parents[2] / "examples" / "forward_agent.py")
+
+
+def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
+    """Exit code and what stood on stderr."""
+    return main(arguments), capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["record", "resume", "hud", "sumo"])
+def test_an_option_of_a_later_version_is_refused_before_anything_starts(
+    capsys: pytest.CaptureFixture[str], option: str
+) -> None:
+    code, text = said(capsys, "run", SAMPLE, f"--{option}")
+    assert code == 2
+    assert text.startswith(f"basu: --{option} is not there yet: ")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["run", "basik"], "did you mean 'basic'"),
+        (["run", "basic", "--agent", "forward"], "two agents are named"),
+        (["run", "basic", "--repetitions", "0"], "--repetitions is 0; it must be at least 1"),
+        (["run", "basic", "--step-limit", "0"], "--step-limit is 0.0 s; it must be positive"),
+        (["run", "basic", "--penalty", "singing=0.5"], "--penalty singing=0.5: write KIND=FACTOR"),
+        (["run", "basic", "--penalty", "speeding=2"], "the penalty of speeding is 2.0"),
+        (["run", "basic", "--infraction-weight", "1.5"], "must be non-negative and sum to 1"),
+        (["run", "basic", "--routes", "none.xml"], "route file 'none.xml' was not found"),
+        (["run", "basic", "--routes", "routes/linden_short.xml", "--route-id", "9"], "has no route '9'"),
+        (["score", "nowhere"], "nowhere is no folder"),
+    ],
+)
+def test_a_mistake_is_one_sentence_and_exit_code_2(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], sentence: str
+) -> None:
+    code, text = said(capsys, *arguments)
+    assert code == 2
+    assert text.startswith("basu: ")
+    assert sentence in text
+    assert len(text.splitlines()) == 1
+
+
+def test_nobody_at_the_address_gets_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as reserved:  # bound, not listening: nobody answers there
+        reserved.bind(("127.0.0.1", 0))
+        port = str(reserved.getsockname()[1])
+        code, text = said(capsys, "run", "forward", "--host", "127.0.0.1", "--port", port, "--timeout", "0.5")
+    assert code == 2
+    assert f"no simulator answers at 127.0.0.1:{port}; start one with `linden serve`, or leave out --host" in text
+
+
+def test_the_list_shows_agents_and_routes(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list"]) == 0
+    text = capsys.readouterr().out
+    for expected in ("basic", "forward", "routes/linden_leap.xml", "routes/linden_short.xml", "in Linden"):
+        assert expected in text
+
+
+def test_a_record_is_scored_again_with_other_penalties(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    invasions = [LaneInvasion(tick=3, markings=("Solid/White",))]
+    write_history(tmp_path, driven(at(10.0, 20.1), collisions=[hit(50)], lane_invasions=invasions))
+    assert main(["score", str(tmp_path)]) == 0
+    first = capsys.readouterr().out
+    assert main(["score", str(tmp_path), "--penalty", "collision_static=0.5"]) == 0
+    second = capsys.readouterr().out
+    assert "infraction         0.650" in first
+    assert "infraction         0.500" in second
+    assert "hit static.poles at 10.00 m/s" in first
+
+
+def test_a_folder_whose_config_is_damaged_gets_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_history(tmp_path, driven(at(10.0, 1.0)))
+    (tmp_path / "config.json").write_text("{}")
+    code, text = said(capsys, "score", str(tmp_path))
+    assert code == 2
+    assert "is not the config of a run" in text
+
+
+def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
+    for command in ([], ["run"], ["score"], ["list"]):
+        with pytest.raises(SystemExit) as ended:
+            main([*command, "--help"])
+        assert ended.value.code == 0
+        assert "usage: basu" in capsys.readouterr().out
