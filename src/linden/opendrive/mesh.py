@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.geometry import points_from_opendrive
+from linden.opendrive.errors import MapError
 from linden.opendrive.evaluate.pieces import F64, I64
 from linden.opendrive.evaluate.strips import edges_of, strips_of
 from linden.opendrive.evaluate.tables import Tables, tables_of
@@ -37,6 +38,7 @@ _TAGS = {
     LaneType.RAIL: SemanticTag.RAIL_TRACK,
 }
 _SMALLEST_AREA_M2 = 1e-6
+_FARTHEST_M = 2e7  # half way round the Earth
 
 
 class RoadMesh(NamedTuple):
@@ -49,12 +51,17 @@ class RoadMesh(NamedTuple):
 
 
 def road_mesh(opendrive: OpenDrive) -> RoadMesh:
-    """Return the surface of all lanes of a map, those inside junctions too."""
+    """Return the surface of all lanes of a map, those inside junctions too.
+
+    Raises:
+        MapError: a lane runs off the Earth.
+    """
     tables = tables_of(opendrive)
     if not len(tables.lanes):
         return RoadMesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.int32), np.empty(0, LANES))
     strips = strips_of(tables)
     vertices = points_from_opendrive(np.concatenate(edges_of(tables, strips)))
+    _refuse_beyond_earth(tables, strips.lane, vertices)
     quads = np.flatnonzero(strips.continues)
     speed_mps = tables.speeds.value(strips.lane[quads], strips.probe_m[quads])
     row_of_quad, lanes = _lane_table(tables, strips.lane[quads], speed_mps)
@@ -66,6 +73,19 @@ def road_mesh(opendrive: OpenDrive) -> RoadMesh:
     # inside a bend tighter than the lane is wide a strip folds over; its triangles are turned to face up again
     triangles[twice_area < 0.0] = triangles[twice_area < 0.0][:, [0, 2, 1]]
     return RoadMesh(vertices, triangles[kept].astype(np.int32), lane_of_triangle[kept].astype(np.int32), lanes)
+
+
+def _refuse_beyond_earth(tables: Tables, lane: I64, vertices: F64) -> None:
+    """Raise a MapError where polynomials or positions have run away."""
+    wrong = ~(np.abs(vertices) < _FARTHEST_M).all(axis=1)
+    if wrong.any():
+        row = tables.lanes[lane[int(np.argmax(wrong)) % len(lane)]]
+        road = tables.roads[row["road"]]
+        raise MapError(
+            f"lane {row['lane_id']} of road {road.id} runs further than {_FARTHEST_M:g} m from the map's origin; "
+            "look at its geometry, elevation and widths",
+            road.source_line,
+        )
 
 
 def _triangles(quads: I64, places: int, is_left: NDArray[np.bool_]) -> I64:

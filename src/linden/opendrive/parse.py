@@ -15,6 +15,7 @@ from linden.opendrive.reading.furniture import read_controllers
 from linden.opendrive.reading.junctions import read_junction
 from linden.opendrive.reading.roads import read_road
 
+_LONGEST_TOTAL_M = 5e6  # a text of some megabytes could otherwise ask for any amount of memory
 _CDATA = re.compile(r"^\s*<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
@@ -42,6 +43,10 @@ def _collector_paused() -> Iterator[None]:
 
 def _read(root: etree._Element) -> OpenDrive:
     roads = tuple(read_road(node) for node in root.iterchildren("road"))
+    if (total_m := sum(road.length_m for road in roads)) > _LONGEST_TOTAL_M:
+        raise MapError(
+            f"the roads are {total_m / 1000.0:,.0f} km long together; {_LONGEST_TOTAL_M / 1000.0:,.0f} are allowed"
+        )
     junctions = tuple(read_junction(node) for node in root.iterchildren("junction"))
     _refuse_repeated("road", [(road.id, road.source_line) for road in roads])
     _refuse_repeated("junction", [(junction.id, junction.source_line) for junction in junctions])

@@ -160,8 +160,9 @@ def _junction(
     for place in places:
         here = int(tables.lanes["road"][place.lane])
         rows = links.successors[place.lane]
-        while rows and int(tables.lanes["road"][rows[0]]) == here:  # the next section of the same road
-            rows = links.successors[rows[0]]
+        for _ in road.sections:  # through the later sections of the same road
+            if rows and int(tables.lanes["road"][rows[0]]) == here:
+                rows = links.successors[rows[0]]
         ahead = tables.roads[tables.lanes["road"][rows[0]]] if rows else road
         if ahead.is_in_junction:
             return ahead.junction_id

@@ -1,5 +1,7 @@
 """Claims about the drawing: well-formed, complete, in CARLA's coordinates, the same every time."""
 
+import re
+
 from lxml import etree
 
 from linden.opendrive.draw import svg
@@ -44,6 +46,11 @@ def test_everything_on_the_map_is_on_the_picture() -> None:
 def test_things_are_drawn_where_carla_has_them() -> None:
     (corners,) = [polygon.get("points", "") for polygon in groups(TEXT)["lines"]]
     assert corners == "47.80,3.50 48.20,3.50 48.20,0.00"
+
+
+def test_lanes_without_marks_are_drawn_without() -> None:
+    bare = re.sub("<roadMark [^>]*/>", "", TEXT)
+    assert "marks" not in groups(bare)
 
 
 def test_names_are_escaped() -> None:

@@ -1,16 +1,23 @@
 """Claims about reading OpenDRIVE: what is read, and what a bad text is told."""
 
+import re
 from contextlib import suppress
 
 import carla
+import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linden.opendrive.check import check
+from linden.opendrive.draw import svg
 from linden.opendrive.errors import MapError
 from linden.opendrive.georeference import read_origin
+from linden.opendrive.mesh import road_mesh
 from linden.opendrive.model import Arc, ParamPoly3
 from linden.opendrive.parse import parse
+from linden.opendrive.signals import place
+from linden.opendrive.spawn import spawn_points
 from linden.values.enums import LaneType
 from opendrive_texts import lane, line, opendrive, road, section, signal, street_through_junction
 
@@ -69,6 +76,8 @@ def test_shapes_are_read() -> None:
         ('unit="mph"', 'unit="knots"', "one of m/s, km/h, mph"),
         ('<laneSection s="0.0">', '<laneSection s="90">', "outside its road"),
         ('<lane id="1"', '<lane id="-1"', "lane -1 stands twice"),
+        ('<lane id="1"', '<lane id="2000000000"', "between -1000 and 1000"),
+        ('length="50.0"', 'length="1e6"', "at most 200000 m"),
         (' a="3.5"', ' a="inf"', "'a' of <width> is 'inf'"),
         ("</OpenDRIVE>", "", "no well-formed XML"),
         ("OpenDRIVE>", "svg>", "the outermost element is <svg>"),
@@ -100,6 +109,25 @@ def test_no_damage_to_a_text_raises_anything_but_a_map_error(at: int, cut: int, 
     data = GOOD.encode()
     with suppress(MapError):
         parse(data[:at] + put + data[at + cut :])
+
+
+ATTRIBUTES = [match.span(1) for match in re.finditer(r'="([^"]*)"', GOOD)]
+ODD = ["0", "-1", "1", "0.5", "1e6", "1e300", "-1e300", "2147483647", "-2147483648", "1e-300", "", "nan", "yes"]
+
+
+@settings(max_examples=400)
+@given(st.lists(st.tuples(st.sampled_from(ATTRIBUTES), st.sampled_from(ODD)), min_size=1, max_size=3))
+def test_whatever_is_read_can_be_used_or_is_refused_with_a_sentence(changes: list[tuple[tuple[int, int], str]]) -> None:
+    text = GOOD
+    for (start, end), value in sorted(changes, reverse=True):
+        text = text[:start] + value + text[end:]
+    with suppress(MapError), np.errstate(all="ignore"):
+        found = parse(text)
+        assert np.isfinite(road_mesh(found).vertices).all()
+        spawn_points(found)
+        place(found)
+        check(found)
+        svg(found)
 
 
 @pytest.mark.parametrize(

@@ -48,10 +48,10 @@ def _wrong(road: Road, signal: Signal, placed: PlacedSignal) -> list[tuple[Sever
     if not signal.validities:
         text = "has no <validity>; by its orientation LibCarla takes the lanes opposite to the usual reading"
         wrong.append((Severity.WARNING, "signal lanes", text))
-    lanes = {lane.id for lane in road.section_at(signal.s_m).lanes}
+    lanes = [lane.id for lane in road.section_at(signal.s_m).lanes if lane.id != 0]
     for validity in signal.validities:
         elsewhere = validity == (0, 0)  # as LibCarla has it: speaks only where a <signalReference> says so
-        if not elsewhere and not lanes & set(range(min(validity), max(validity) + 1)) - {0}:
+        if not elsewhere and not any(min(validity) <= lane_id <= max(validity) for lane_id in lanes):
             text = f"speaks to lanes {validity.from_lane} to {validity.to_lane}, of which the road has none"
             wrong.append((Severity.ERROR, "signal lanes", text))
     if (signal.is_light or signal.type in _GUARDING_TYPES) and not placed.lanes:

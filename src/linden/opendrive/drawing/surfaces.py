@@ -80,7 +80,7 @@ def _mark_lines(tables: Tables) -> list[tuple[RoadMark, Corners]]:
                     continue
                 line = (outer if lane.id else inner)[first[row] : first[row + 1]]
                 along_m = s_m[first[row] : first[row + 1]] - section.s_m
-                ends_m = [*(mark.offset_m for mark in lane.marks[1:]), section.end_m - section.s_m]
+                ends_m = [*(mark.offset_m for mark in lane.marks), section.end_m - section.s_m][1:]
                 for mark, end_m in zip(lane.marks, ends_m, strict=True):
                     if mark.type not in _UNPAINTED and end_m > mark.offset_m:
                         found.append((mark, _between(line, along_m, mark.offset_m, end_m)))

@@ -10,6 +10,7 @@ from linden.opendrive.evaluate.tables import Tables
 
 STRAIGHT_STEP_M = 10.0  # where the reference line is straight and all profiles are linear
 CURVED_STEP_M = 2.0
+SHORTEST_STEP_M = 0.25  # reached at a radius of 0.4 m, which no vehicle drives
 # A chord leaves its curve by no more than this: step = sqrt(8 · error · radius), for small angles.
 CHORD_ERROR_M = 0.02
 _SMALLEST_PIECE_M = 1e-6
@@ -91,7 +92,8 @@ def _step_m(tables: Tables, road: I64, section: I64, middle_m: F64) -> F64:
     sharpest = tables.curves.sharpest_per_m()[tables.curves.find(road, middle_m)]
     bent = _bends(tables.elevation, road, middle_m) | _bends(tables.lane_offset, road, middle_m)
     bent |= _sections_with_bent_widths(tables, int(section.max(initial=0)) + 1)[section]
-    on_curve = np.minimum(np.sqrt(8.0 * CHORD_ERROR_M / np.maximum(sharpest, 1e-12)), CURVED_STEP_M)
+    by_radius = np.sqrt(8.0 * CHORD_ERROR_M / np.maximum(sharpest, 1e-12))
+    on_curve = np.clip(by_radius, SHORTEST_STEP_M, CURVED_STEP_M)
     return np.where(sharpest > 0.0, on_curve, np.where(bent, CURVED_STEP_M, STRAIGHT_STEP_M))
 
 

@@ -9,6 +9,7 @@ from linden.opendrive.reading.attributes import (
     line_of,
     number,
     number_or,
+    reject,
     speed_mps,
     whole,
 )
@@ -18,6 +19,7 @@ from linden.values.enums import LaneType
 _LANE_TYPES = {
     name.lower().replace("_", ""): kind for name, kind in LaneType.__members__.items() if kind is not LaneType.NONE
 }
+_MOST_LANES = 1000  # on one side of a road; more can only be a mistake, and would be slow to look through
 _SIDES = ("left", "center", "right")
 
 
@@ -56,6 +58,8 @@ def _lanes_of(section: Element) -> tuple[Lane, ...]:
             continue
         for node in side.iterchildren("lane"):
             lane = _lane(node)
+            if abs(lane.id) > _MOST_LANES:
+                reject(node, "id", f"between -{_MOST_LANES} and {_MOST_LANES}")
             if lane.id in lanes:
                 raise MapError(f"lane {lane.id} stands twice in one <laneSection>", line_of(node))
             lanes[lane.id] = lane

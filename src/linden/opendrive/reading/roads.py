@@ -31,11 +31,14 @@ from linden.opendrive.reading.lanes import read_lane_offsets, read_sections
 
 # An arc of less curvature than this is a line; LibCarla asserts more (Geometry.cpp, GeometryArc).
 _STRAIGHT_PER_M = 1e-15
+_LONGEST_M = 200e3  # of one road; a hostile text could otherwise ask for any amount of memory
 
 
 def read_road(node: Element) -> Road:
     """Return one road with everything along it."""
     length_m = positive(node, "length")
+    if length_m > _LONGEST_M:
+        reject(node, "length", f"at most {_LONGEST_M:g} m")
     parts = {child.tag: child for child in node}
     lanes, link, profile = parts.get("lanes"), parts.get("link"), parts.get("elevationProfile")
     if lanes is None:
