@@ -122,9 +122,23 @@ def add_actor_force(context: Context, actor_id: U32, force: Vector3D) -> None:
     episode.bodies.add_force(episode.body(actor_id), force)
 
 
+@method("add_actor_impulse_at_location")
+def add_actor_impulse_at_location(context: Context, actor_id: U32, impulse: Vector3D, location: Vector3D) -> None:
+    """Push an actor at a point of the world, N·s."""
+    episode = context.simulation.episode
+    episode.bodies.add_impulse(episode.body(actor_id), impulse, location)
+
+
+@method("add_actor_force_at_location")
+def add_actor_force_at_location(context: Context, actor_id: U32, force: Vector3D, location: Vector3D) -> None:
+    """Push an actor at a point of the world during the next frame, N."""
+    episode = context.simulation.episode
+    episode.bodies.add_force(episode.body(actor_id), force, location)
+
+
 @method("add_actor_angular_impulse")
 def add_actor_angular_impulse(context: Context, actor_id: U32, impulse: Vector3D) -> None:
-    """Turn an actor; the official client sends degrees, as CARLA's server takes them."""
+    """Turn an actor once, N·m·s about the world's axes; the official client's ``add_torque`` calls this too."""
     episode = context.simulation.episode
     episode.bodies.add_angular_impulse(episode.body(actor_id), impulse)
 

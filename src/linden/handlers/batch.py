@@ -12,7 +12,7 @@ from linden.wire import commands as cmd
 Answer: TypeAlias = tuple[tuple[int, Any]]
 """``((1, actor id),)`` or ``((0, (message,)),)``: CARLA's Response of an actor id."""
 
-_RUN: dict[type[cmd.Command], Callable[..., object]] = {
+RUN: dict[type[cmd.Command], Callable[..., object]] = {
     cmd.DestroyActor: actors.destroy_actor,
     cmd.ApplyVehicleControl: vehicles.apply_control_to_vehicle,
     cmd.ApplyVehicleAckermannControl: vehicles.apply_ackermann_control_to_vehicle,
@@ -49,7 +49,7 @@ def _answer(context: Context, command: cmd.Command) -> Answer:
     try:
         return ((1, _run(context, command)),)
     except Refusal as refusal:
-        run = _RUN.get(type(command))
+        run = RUN.get(type(command))
         return ((0, (told(run.__name__ if run else "spawn_actor", refusal),)),)
 
 
@@ -61,7 +61,7 @@ def _run(context: Context, command: cmd.Command) -> int:
     """
     if isinstance(command, cmd.SpawnActor):
         return _spawn(context, command)
-    run = _RUN.get(type(command))
+    run = RUN.get(type(command))
     if run is None:
         raise Refusal(f"command {type(command).__name__}: CARLA has it, linden not yet")
     run(context, *command)

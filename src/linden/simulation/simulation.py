@@ -5,7 +5,7 @@ from collections.abc import Container
 
 from linden.simulation.episode import Episode
 from linden.simulation.measuring import Measurements, measure
-from linden.simulation.spawning import destroy, spawn
+from linden.simulation.spawning import destroy, refuse_idle, spawn
 from linden.simulation.step import step
 from linden.values.actors import ActorDescription
 from linden.values.episode import EpisodeSettings
@@ -96,6 +96,7 @@ class Simulation:
             Refusal: unknown blueprint, unfit attribute, no such parent, or something stands there.
         """
         blueprint = self.library.find(description.id)
+        refuse_idle(description.id)
         complete = self.library.validate(description)
         record = spawn(self.episode, blueprint, complete, pose, parent_id)
         if blueprint.has_stream:

@@ -21,6 +21,32 @@ _NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
 _OF_THE_MAP = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
 
 
+MEASURING = ("sensor.other.gnss", "sensor.other.imu", "sensor.other.collision", "sensor.other.lane_invasion")
+"""The sensors that measure; the last does so in the client."""
+
+NOT_YET = {
+    "sensor.": "this version has gnss, imu, collision and lane_invasion; what sees comes with the scene",
+    "controller.ai.walker": "walkers are led by walker.apply_control; leading themselves needs a mesh of the pavements",
+    "static.trigger.friction": "friction is that of each wheel's tire_friction (vehicle.apply_physics_control)",
+}
+"""Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
+
+
+def refuse_idle(blueprint_id: str) -> None:
+    """Refuse a blueprint that the library lists, as CARLA's does, but behind which nothing is.
+
+    Raises:
+        Refusal: CARLA has it, this server not yet.
+    """
+    if blueprint_id in MEASURING:
+        return
+    for beginning, instead in NOT_YET.items():
+        if blueprint_id.startswith(beginning):
+            raise Refusal(
+                f"Spawn failed because of invalid actor description: linden has no {blueprint_id} yet; {instead}"
+            )
+
+
 def spawn(
     episode: Episode, blueprint: Blueprint, description: ActorDescription, pose: Transform, parent_id: int
 ) -> ActorRecord:
