@@ -84,9 +84,6 @@ class BlueprintLibrary:
     def __iter__(self) -> Iterator[Blueprint]:
         return iter(self._by_id.values())
 
-    def __contains__(self, blueprint_id: str) -> bool:
-        return blueprint_id in self._by_id
-
     def find(self, blueprint_id: str) -> Blueprint:
         """Return a blueprint.
 
