@@ -4,20 +4,16 @@ import math
 
 from linden.compiled import part
 
-
-@part
-def forward(pitch_rad: float, yaw_rad: float) -> tuple[float, float, float]:
-    """Return the nose's direction in CARLA's frame (first column of ``geometry.rotation_matrix``)."""
-    return math.cos(pitch_rad) * math.cos(yaw_rad), math.cos(pitch_rad) * math.sin(yaw_rad), math.sin(pitch_rad)
+Axis = tuple[float, float, float]
 
 
 @part
-def rightward(pitch_rad: float, yaw_rad: float, roll_rad: float) -> tuple[float, float, float]:
-    """Return the direction to the right (second column)."""
-    tilt = math.sin(pitch_rad) * math.sin(roll_rad)
-    x = math.cos(yaw_rad) * tilt - math.sin(yaw_rad) * math.cos(roll_rad)
-    y = math.sin(yaw_rad) * tilt + math.cos(yaw_rad) * math.cos(roll_rad)
-    return x, y, -math.cos(pitch_rad) * math.sin(roll_rad)
+def plane_axes(pitch_rad: float, yaw_rad: float, roll_rad: float) -> tuple[Axis, Axis]:
+    """Return the directions forward and to the right: the first two columns of ``geometry.rotation_matrix``."""
+    sp, cp = math.sin(pitch_rad), math.cos(pitch_rad)
+    sy, cy = math.sin(yaw_rad), math.cos(yaw_rad)
+    sr, cr = math.sin(roll_rad), math.cos(roll_rad)
+    return (cp * cy, cp * sy, sp), (cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, -cp * sr)
 
 
 @part

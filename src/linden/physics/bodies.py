@@ -109,9 +109,14 @@ class Bodies(Cockpits):
         self.wake(slot)
 
     def set_target_velocity(self, slot: int, velocity_mps: Sequence[float]) -> None:
-        """Set the velocity of the origin, world frame; it changes from there on as forces will have it."""
+        """Set the velocity of the origin, world frame; it changes from there on as forces will have it.
+
+        A vehicle's wheels and engine then turn as if it had driven there at that speed.
+        """
         self.state["velocity"][slot] = [finite(v, -1e3, 1e3) for v in velocity_mps]
         self.state["heave_mps"][slot] = 0.0
+        if self.kind[slot] == VEHICLE:
+            self._roll_along(slot)
         self.wake(slot)
 
     def set_target_angular_velocity(self, slot: int, angular_velocity_radps: Sequence[float]) -> None:

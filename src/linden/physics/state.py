@@ -113,7 +113,7 @@ BODY = np.dtype(
         ("walker_speed", "f8"),
         ("jump", "?"),
         # from here on: the kernels' memory
-        ("heave_mps", "f8"),  # vertical speed against the ground's own
+        ("heave_mps", "f8"),  # vertical speed beside that of the motion in the plane of the road
         ("tilt_radps", "f8", 2),  # rates of pitch and roll
         ("footing", "f8", 4),  # of the ground under the wheels: height m, pitch rad, roll rad, 1 where known
         ("felt_mps2", "f8", 2),  # smoothed force over mass, forward and right: moves the load
@@ -122,6 +122,7 @@ BODY = np.dtype(
         ("shift_left_s", "f8"),
         ("was_reverse", "?"),
         ("resting", "?"),  # nothing has moved, nothing will until an input changes
+        ("still_s", "f8"),  # for how long springs and wheels have been still
         ("rest_input", "f8", 6),  # the inputs it rests under
         ("jump_pending", "?"),
         ("impulse", "f8", 3),  # N·s, once

@@ -16,6 +16,7 @@ from linden.physics.vehicle.parameters import (
     world_wheels,
     yaw_inertia_kgm2,
 )
+from linden.physics.vehicle.powertrain import RPM_PER_RADPS
 from linden.values.space import BoundingBox, Rotation, Transform, Vector3D
 from linden.values.vehicles import (
     AckermannControl,
@@ -128,6 +129,24 @@ class Cockpits(Columns):
         self.wake(slot)
         self._physics[slot] = control
         self._offsets_m[slot] = tuple(offsets_m)
+
+    def _roll_along(self, slot: int) -> None:
+        """Let the wheels roll with the body, in the lowest gear that suits, the engine with them."""
+        s, spec = self.state, self.specs[slot]
+        count = int(spec["wheel_count"])
+        yaw = float(s["rotation"][slot, 1])
+        ahead = float(s["velocity"][slot, 0] * math.cos(yaw) + s["velocity"][slot, 1] * math.sin(yaw))
+        s["wheel_omega"][slot, :count] = ahead / spec["wheel_radius_m"][:count]
+        radps = float(s["wheel_omega"][slot, :count].mean())
+        gear = int(s["target_gear"][slot])
+        if spec["autobox"] and gear > 0:
+            use = radps * spec["gear_ratio"][: spec["gear_count"]] / spec["engine_max_radps"]
+            fitting = np.flatnonzero(use <= spec["gear_up"][: spec["gear_count"]])
+            gear = int(fitting[0]) + 1 if len(fitting) else int(spec["gear_count"])
+            s["target_gear"][slot] = s["gear"][slot] = gear
+            s["shift_left_s"][slot] = 0.0
+        ratio = (0.0, *spec["gear_ratio"], -spec["gear_ratio"][0])[gear]
+        s["engine_rpm"][slot] = np.clip(radps * ratio, 0.0, spec["engine_max_radps"]) * RPM_PER_RADPS
 
     def _forget_vehicle(self, slot: int) -> None:
         self._physics.pop(slot, None)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from linden.compiled import part
 from linden.ground import Ground
-from linden.physics.axes import forward, rightward, within_turn
+from linden.physics.axes import plane_axes, within_turn
 from linden.physics.state import Body, Spec
 from linden.physics.vehicle.chassis import solve_motion
 from linden.physics.vehicle.powertrain import axle_drive, change_gear, turn_engine
@@ -26,7 +26,8 @@ from linden.physics.vehicle.wheels import (
 F64 = NDArray[np.float64]
 
 FELT_LAG_S = 0.1  # the load follows the acceleration as fast as springs and dampers let it
-_STILL = 1e-4  # m/s, rad/s: the springs have come to rest
+_STILL = 1e-4  # m/s, rad/s: springs slower than this, and for longer than they could turn round in, have come to rest
+_STILL_FOR_S = 0.2
 
 
 @part
@@ -51,7 +52,7 @@ def advance_vehicle(
     on_ground = v.support_mps2 > 0.0
     pitch = v.footing[1] if on_ground else 0.0
     roll = v.footing[2] if on_ground else 0.0
-    nose, side = forward(pitch, v.rotation[1]), rightward(pitch, v.rotation[1], roll)
+    nose, side = plane_axes(pitch, v.rotation[1], roll)
     rise = v.velocity[2] - v.heave_mps
     start[0] = velocity_x * nose[0] + velocity_y * nose[1] + rise * nose[2]
     start[1] = velocity_x * side[0] + velocity_y * side[1] + rise * side[2]
@@ -71,8 +72,9 @@ def advance_vehicle(
     v.angular_velocity[2] = speeds[2]
     find_footing(v, spec, wheels, ground)
     settle(v, spec, speeds[0], speeds[1], gravity_mps2, dt_s)
+    v.heave_mps = v.velocity[2] - speeds[0] * nose[2] - speeds[1] * side[2]
     write_tilt(v)
-    _rest_where_still(v, speeds)
+    _rest_where_still(v, speeds, dt_s)
 
 
 @part
@@ -167,12 +169,13 @@ def _goes_on_resting(v: Body) -> bool:
 
 
 @part
-def _rest_where_still(v: Body, speeds: F64) -> None:
+def _rest_where_still(v: Body, speeds: F64, dt_s: float) -> None:
     """Put a vehicle to rest that is held on the road, with springs and engine still."""
-    if speeds[0] != 0.0 or speeds[1] != 0.0 or speeds[2] != 0.0 or v.engine_rpm != 0.0 or v.throttle != 0.0:
-        return
+    held = speeds[0] == 0.0 and speeds[1] == 0.0 and speeds[2] == 0.0
+    idle = v.engine_rpm == 0.0 and v.throttle == 0.0 and v.shift_left_s == 0.0
     moving = abs(v.velocity[2]) + abs(v.tilt_radps[0]) + abs(v.tilt_radps[1])
-    if moving > _STILL or v.support_mps2 <= 0.0 or v.shift_left_s > 0.0:
+    v.still_s = v.still_s + dt_s if held and idle and moving < _STILL and v.support_mps2 > 0.0 else 0.0
+    if v.still_s < _STILL_FOR_S:
         return
     for axis in range(3):
         v.velocity[axis] = 0.0

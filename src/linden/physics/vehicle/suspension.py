@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from linden.compiled import part
 from linden.ground import Ground, surface_under
-from linden.physics.axes import forward, rightward
 from linden.physics.state import Body, Spec
 
 F64 = NDArray[np.float64]
@@ -60,9 +59,8 @@ def find_footing(v: Body, spec: Spec, wheels: F64, ground: Ground) -> None:
 @part
 def settle(v: Body, spec: Spec, speed_x_mps: float, speed_y_mps: float, gravity_mps2: float, dt_s: float) -> None:
     """Advance height, pitch and roll towards the footing, the vehicle moving at these speeds forward and right."""
-    pitch, roll, yaw = v.footing[1], v.footing[2], v.rotation[1]
-    nose, side = forward(pitch, yaw), rightward(pitch, yaw, roll)
-    ground_mps = nose[2] * speed_x_mps + side[2] * speed_y_mps
+    rise, level = math.sin(v.footing[1]), math.cos(v.footing[1])
+    ground_mps = rise * speed_x_mps - level * math.sin(v.footing[2]) * speed_y_mps
     fall = gravity_mps2 if v.gravity else 0.0
     stiff = 1.0 + 2.0 * DAMPING * BOUNCE_RADPS * dt_s + (BOUNCE_RADPS * dt_s) ** 2
     above = v.position[2] - v.footing[0]
@@ -76,23 +74,16 @@ def settle(v: Body, spec: Spec, speed_x_mps: float, speed_y_mps: float, gravity_
         v.support_mps2 = 0.0
     else:
         v.position[2] += rate * dt_s
-        v.support_mps2 = support * _upright(pitch, roll)
+        v.support_mps2 = support * level * math.cos(v.footing[2])  # along the ground's normal
         if v.position[2] < v.footing[0] - DEEPEST_M:
             v.position[2] = v.footing[0] - DEEPEST_M
             rate = max(rate, ground_mps)
     v.velocity[2] = rate
-    v.heave_mps = rate - ground_mps
     if v.support_mps2 > 0.0:
         _lean(v, spec, stiff, dt_s)
     else:
         v.rotation[0] += v.tilt_radps[0] * dt_s
         v.rotation[2] += v.tilt_radps[1] * dt_s
-
-
-@part
-def _upright(pitch_rad: float, roll_rad: float) -> float:
-    """Return how upright the ground is: the vertical part of its normal."""
-    return math.cos(pitch_rad) * math.cos(roll_rad)
 
 
 @part

@@ -68,8 +68,10 @@ def prepare_wheels(v: Body, spec: Spec, wheels: F64, gravity_mps2: float) -> Non
         wheels[CORNERING, k] = cornering_stiffness(
             spec.cornering_per_rad[k], spec.cornering_full_load[k], load, rest_load
         )
-        wheels[COS, k] = math.cos(v.wheel_steer[k])
-        wheels[SIN, k] = math.sin(v.wheel_steer[k])
+        if v.wheel_steer[k] == 0.0:
+            wheels[COS, k], wheels[SIN, k] = 1.0, 0.0
+        else:
+            wheels[COS, k], wheels[SIN, k] = math.cos(v.wheel_steer[k]), math.sin(v.wheel_steer[k])
         wheels[ARM_X, k] = spec.wheel_x_m[k] - v.centre_of_mass[0]
         wheels[ARM_Y, k] = spec.wheel_y_m[k] - v.centre_of_mass[1]
         wheels[BRAKE, k] = (

@@ -1,0 +1,287 @@
+"""Driving against the closed forms of the textbooks."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from fleet import BOX, FLAT, NOTHING, OFFSETS, RATIOS, TORQUE, G, at, one, run, sedan, slick, slope, speed_mps, wheels
+from linden.physics.bodies import Bodies
+from linden.physics.step import advance
+from linden.physics.vehicle.parameters import WHEEL_MASS_KG
+from linden.physics.vehicle.wheels import ROLLING_RESISTANCE
+from linden.values.space import Vector2D, Vector3D
+from linden.values.vehicles import AckermannControl, Gear, VehicleControl
+from naive.physics import on_curve
+
+NEUTRAL = VehicleControl(manual_gear_shift=True, gear=0)
+MASS_KG = 1696.0
+WITH_WHEELS_KG = MASS_KG + 4 * 0.5 * WHEEL_MASS_KG  # a disc of mass m that rolls resists like m/2 more
+DRAG_KGPM = 0.5 * 1.225 * 0.3 * 4.0 * BOX.extent.y * BOX.extent.z
+WHEELBASE_M, TRACK_M = 2.87, 1.57
+
+
+def launched(v_mps: float, control: VehicleControl = NEUTRAL, **changes: object) -> tuple[Bodies, int]:
+    bodies, car = one(slick(**changes))
+    bodies.set_control(car, control)
+    run(bodies, 0.05)
+    bodies.set_target_velocity(car, (v_mps, 0.0, 0.0))
+    return bodies, car
+
+
+def test_coasting_slows_by_drag_and_rolling_resistance() -> None:
+    bodies, car = launched(30.0, drag_coefficient=0.3)
+    run(bodies, 20.0)
+    a, b = ROLLING_RESISTANCE * MASS_KG * G / WITH_WHEELS_KG, DRAG_KGPM / WITH_WHEELS_KG
+    expected = math.sqrt(a / b) * math.tan(math.atan(30.0 * math.sqrt(b / a)) - 20.0 * math.sqrt(a * b))
+    assert bodies.velocity[car, 0] == pytest.approx(expected, rel=0.005)
+
+
+@pytest.mark.parametrize(("v_mps", "friction"), [(10.0, 0.8), (20.0, 0.8), (30.0, 0.4)])
+def test_braking_distance_is_v_squared_over_two_mu_g(v_mps: float, friction: float) -> None:
+    locking = wheels(damping_rate=0.0, tire_friction=friction, max_brake_torque=1e5)
+    bodies, car = launched(v_mps, VehicleControl(manual_gear_shift=True, brake=1.0), wheels=locking)
+    start = float(bodies.position[car, 0])
+    run(bodies, 12.0)
+    assert speed_mps(bodies, car) == 0.0
+    assert bodies.position[car, 0] - start == pytest.approx(v_mps**2 / (2.0 * friction * G), rel=0.03)
+
+
+def test_brakes_slow_by_their_torque_while_the_tyres_hold() -> None:
+    bodies, car = launched(30.0, VehicleControl(manual_gear_shift=True, brake=0.5))
+    run(bodies, 0.5)
+    before = float(bodies.velocity[car, 0])
+    run(bodies, 1.0)
+    braking_n = 4 * 400.0 / 0.355 + ROLLING_RESISTANCE * MASS_KG * G
+    assert before - bodies.velocity[car, 0] == pytest.approx(braking_n / WITH_WHEELS_KG, rel=0.01)
+
+
+@pytest.mark.parametrize("dt_s", [0.01, 0.05, 0.1])
+@pytest.mark.parametrize(("front", "rear"), [(20.0, 20.0), (12.0, 20.0)])
+def test_the_steady_turn_has_the_radius_of_the_understeer_gradient(front: float, rear: float, dt_s: float) -> None:
+    # Rajamani, 2nd ed., eq. 3.15: steering angle = L / R + K a, K = m_front / C_front - m_rear / C_rear
+    grip = [
+        wheel._replace(tire_friction=30.0, lat_stiff_value=front if k < 2 else rear)
+        for k, wheel in enumerate(wheels(damping_rate=0.0))
+    ]
+    inner = math.radians(3.0)
+    bodies, car = one(slick(wheels=tuple(grip), steering_curve=(Vector2D(0.0, 1.0),)))
+    bodies.set_control(car, NEUTRAL._replace(steer=3.0 / 70.0))
+    run(bodies, 0.1)
+    bodies.set_target_velocity(car, (12.0, 0.0, 0.0))
+    run(bodies, 3.0, dt_s)
+    v, turn = speed_mps(bodies, car), float(bodies.angular_velocity[car, 2])
+    middle = math.atan(1.0 / (1.0 / math.tan(inner) + TRACK_M / 2.0 / WHEELBASE_M))
+    at_rest_load = 1.0 - 1.0 / 3.0 + 1.0 / 27.0  # of the stiffness: the load curve at a third of its end
+    gradient = (1.0 / front - 1.0 / rear) / (G * at_rest_load)
+    assert turn > 0.0  # steer is positive to the right, and so is yaw
+    assert v / turn == pytest.approx((WHEELBASE_M + gradient * v * v) / math.tan(middle), rel=0.03)
+
+
+def test_free_fall_is_half_g_t_squared() -> None:
+    bodies, car = one(pose=at(z=50.0))
+    run(bodies, 2.0)
+    assert bodies.position[car, 2] == pytest.approx(50.0 - 0.5 * G * 4.0, abs=1e-9)
+    assert bodies.velocity[car, 2] == pytest.approx(-G * 2.0)
+
+
+def test_a_dropped_car_lands_and_stands_still() -> None:
+    bodies, car = one(pose=at(z=1.0))
+    run(bodies, 5.0)
+    assert bodies.position[car] == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
+    assert not bodies.velocity[car].any()
+    assert bodies.wheel_load[car].sum() == pytest.approx(MASS_KG * G, rel=1e-3)
+
+
+@pytest.mark.parametrize("rise", [0.05, -0.1, 0.3])
+@pytest.mark.parametrize("yaw", [0.0, 90.0, 30.0])
+def test_brakes_hold_a_car_on_a_slope_without_creeping(rise: float, yaw: float) -> None:
+    ground = slope(rise)
+    bodies, car = one(pose=at(yaw=yaw, z=0.3))
+    bodies.set_control(car, VehicleControl(brake=1.0))
+    run(bodies, 4.0, ground=ground)
+    stood = bodies.position[car].copy()
+    run(bodies, 20.0, ground=ground)
+    assert (bodies.position[car] == stood).all()
+    assert not bodies.velocity[car].any()
+
+
+def test_without_brakes_a_car_rolls_down_by_gravity() -> None:
+    ground = slope(-0.1)
+    bodies, car = one(slick(), at(z=0.0))
+    bodies.set_control(car, NEUTRAL)
+    run(bodies, 1.0, ground=ground)
+    before = speed_mps(bodies, car)
+    run(bodies, 4.0, ground=ground)
+    tilt = math.atan(0.1)
+    pulled = (math.sin(tilt) - ROLLING_RESISTANCE * math.cos(tilt)) * MASS_KG * G / WITH_WHEELS_KG
+    assert speed_mps(bodies, car) - before == pytest.approx(4.0 * pulled, rel=0.01)
+    assert bodies.velocity[car, 2] / bodies.velocity[car, 0] == pytest.approx(-0.1, rel=1e-3)
+    assert bodies.rotation[car, 0] == pytest.approx(-tilt, abs=0.003)
+
+
+def test_top_speed_is_where_the_engine_balances_what_holds_the_car_back() -> None:
+    bodies, car = one(sedan(forward_gears=(Gear(1.0),), final_ratio=2.5))
+    bodies.set_control(car, VehicleControl(throttle=1.0))
+    run(bodies, 120.0, 0.05)
+    v, radius = speed_mps(bodies, car), 0.355
+    radps = float(bodies.engine_rpm[car]) * math.pi / 30.0
+    engine_n = (on_curve(float(bodies.engine_rpm[car]), TORQUE) - 0.05 * radps) * 2.5 / radius
+    held_n = DRAG_KGPM * v * v + ROLLING_RESISTANCE * MASS_KG * G + 4 * 0.25 * v / radius**2
+    assert abs(bodies.acceleration[car, 0]) < 0.01
+    assert engine_n == pytest.approx(held_n, rel=0.01)
+    assert radps > v / radius * 2.5  # the clutch slips by torque over its strength
+
+
+def test_the_automatic_goes_through_its_gears_with_a_pause_in_each_change() -> None:
+    bodies, car = one()
+    bodies.set_control(car, VehicleControl(throttle=1.0))
+    gears = []
+    for _ in range(1500):
+        run(bodies, 0.01)
+        gears.append(int(bodies.gear[car]))
+    visited = [gear for gear, _ in itertools.groupby(gears)]
+    assert visited[:7] == [1, 0, 2, 0, 3, 0, 4]
+    first_change = [gear for gear, _ in zip(gears, itertools.count(), strict=False)].index(0)
+    assert gears[first_change : first_change + 60].count(0) == pytest.approx(50, abs=1)
+    assert max(visited) == len(RATIOS)
+
+
+def test_the_automatic_does_not_hunt_between_two_gears() -> None:
+    hunting = tuple(Gear(ratio, 0.5, 0.65) for ratio in RATIOS)  # a change up lands below the limit of changing down
+    bodies, car = one(sedan(forward_gears=hunting))
+    bodies.set_control(car, VehicleControl(throttle=0.7))
+    gears = []
+    for _ in range(2000):
+        run(bodies, 0.01)
+        gears.append(int(bodies.gear[car]))
+    engaged = [gear for gear, _ in itertools.groupby(gear for gear in gears if gear)]
+    assert engaged == sorted(set(engaged))
+
+
+def test_manual_gears_and_reverse_engage_at_once() -> None:
+    bodies, car = one()
+    bodies.set_control(car, VehicleControl(manual_gear_shift=True, gear=3))
+    run(bodies, 0.01)
+    assert bodies.control(car).gear == 3
+    bodies.set_control(car, VehicleControl(reverse=True, throttle=0.5))
+    run(bodies, 3.0)
+    assert bodies.control(car).gear == -1
+    assert bodies.velocity[car, 0] < -1.0
+
+
+def test_engine_braking_slows_more_in_a_low_gear() -> None:
+    slowed = []
+    for gear in (2, 5):
+        bodies, car = launched(
+            15.0, VehicleControl(manual_gear_shift=True, gear=gear), damping_rate_zero_throttle_clutch_engaged=2.0
+        )
+        run(bodies, 2.0)
+        slowed.append(15.0 - speed_mps(bodies, car))
+    assert slowed[0] > 1.5 * slowed[1] > 0.5
+
+
+def test_load_moves_forward_in_braking_and_outward_in_a_bend() -> None:
+    bodies, car = launched(20.0, VehicleControl(manual_gear_shift=True, brake=0.6))
+    run(bodies, 0.6)
+    loads = bodies.wheel_load[car]
+    a = -float(bodies.acceleration[car, 0])
+    height_m = BOX.location.z - 0.3
+    assert loads[:2].sum() - loads[2:].sum() == pytest.approx(2.0 * MASS_KG * a * height_m / WHEELBASE_M, rel=0.05)
+    bodies, car = launched(15.0, NEUTRAL._replace(steer=0.1))
+    run(bodies, 1.0)
+    loads = bodies.wheel_load[car]
+    assert loads[0] + loads[2] > 1.1 * (loads[1] + loads[3])  # a right turn loads the left
+    assert bodies.rotation[car, 2] < 0.0  # and the right side rises
+
+
+def test_the_friction_circle_is_never_left() -> None:
+    bodies, car = one(sedan(wheels=wheels(tire_friction=0.6, max_brake_torque=4000.0)))
+    rng = np.random.default_rng(7)
+    for _ in range(60):
+        throttle, brake = rng.uniform(size=2)
+        bodies.set_control(car, VehicleControl(throttle, rng.uniform(-1.0, 1.0), brake * (rng.random() < 0.4)))
+        run(bodies, 0.2)
+        force = np.hypot(bodies.wheel_long_force[car], bodies.wheel_lat_force[car])
+        assert (force <= 0.6 * bodies.wheel_load[car] * (1.0 + 1e-2) + 1.0).all()
+
+
+def test_steering_weakens_with_speed_by_the_steering_curve() -> None:
+    for v_mps, fraction in ((0.0, 1.0), (60.0 / 3.6, 0.8), (200.0 / 3.6, 0.7)):
+        bodies, car = one()
+        bodies.set_control(car, NEUTRAL._replace(steer=-0.1))
+        bodies.set_target_velocity(car, (v_mps, 0.0, 0.0))
+        run(bodies, 0.01)
+        assert bodies.wheel_steer_deg(car, 0) == pytest.approx(-7.0 * fraction, rel=1e-3)  # the inner wheel
+        assert -7.0 * fraction < bodies.wheel_steer_deg(car, 1) < 0.0
+
+
+def test_the_hand_brake_locks_the_rear_wheels_only() -> None:
+    bodies, car = launched(
+        15.0, VehicleControl(manual_gear_shift=True, hand_brake=True), wheels=wheels(tire_friction=0.9)
+    )
+    run(bodies, 0.5)
+    assert (bodies.wheel_omega[car, :2] > 20.0).all()
+    assert (bodies.wheel_omega[car, 2:] == 0.0).all()
+
+
+def test_ackermann_control_reaches_its_speed_and_angle() -> None:
+    bodies, car = one()
+    bodies.set_ackermann(car, AckermannControl(steer=0.05, speed=8.0))
+    run(bodies, 40.0, 0.05)
+    assert speed_mps(bodies, car) == pytest.approx(8.0, rel=0.1)
+    assert bodies.control(car).steer == pytest.approx(0.05 / math.radians(70.0))
+    bodies.set_ackermann(car, AckermannControl(speed=0.0))
+    run(bodies, 30.0, 0.05)
+    assert speed_mps(bodies, car) == 0.0
+    assert bodies.control(car).brake == 1.0
+
+
+def test_constant_velocity_is_held_and_can_be_steered() -> None:
+    bodies, car = one(pose=at(yaw=90.0))
+    bodies.enable_constant_velocity(car, (6.0, 0.0, 0.0))
+    run(bodies, 1.0)
+    assert bodies.velocity[car, :2] == pytest.approx((0.0, 6.0), abs=1e-6)
+    bodies.set_control(car, VehicleControl(steer=0.2))
+    run(bodies, 1.0)
+    assert bodies.angular_velocity[car, 2] > 0.1
+    bodies.disable_constant_velocity(car)
+    bodies.set_control(car, VehicleControl(brake=1.0))
+    run(bodies, 5.0)
+    assert speed_mps(bodies, car) == 0.0
+
+
+def test_a_two_wheeler_stays_up_and_leans_into_the_bend() -> None:
+    two = (wheels()[0]._replace(max_steer_angle=40.0), wheels()[2])
+    bodies = Bodies()
+    offsets = (Vector3D(0.7, 0.0, 0.0), Vector3D(-0.7, 0.0, 0.0))
+    bike = bodies.add_vehicle(sedan(mass=280.0, wheels=two, moi=0.2, clutch_strength=2.0), at(), BOX, offsets)
+    bodies.set_control(bike, VehicleControl(throttle=0.6, steer=0.05))
+    run(bodies, 4.0)
+    felt = speed_mps(bodies, bike) * float(bodies.angular_velocity[bike, 2])
+    assert felt > 0.5
+    assert bodies.rotation[bike, 2] == pytest.approx(math.atan(felt / G), rel=0.2)
+
+
+def test_a_standing_car_wakes_for_throttle_and_for_a_push() -> None:
+    bodies, car = one()
+    run(bodies, 2.0)
+    assert bodies.state["resting"][car]
+    bodies.add_impulse(car, (MASS_KG * 2.0, 0.0, 0.0))
+    advance(bodies, FLAT, NOTHING, 0.01)
+    assert bodies.velocity[car, 0] == pytest.approx(2.0, rel=0.1)
+    run(bodies, 5.0)
+    bodies.set_control(car, VehicleControl(throttle=0.5))
+    run(bodies, 1.0)
+    assert bodies.velocity[car, 0] > 0.5
+
+
+def test_the_wheels_positions_are_kept_in_the_world_in_centimetres() -> None:
+    bodies, car = one(pose=at(x=10.0, y=20.0, yaw=90.0))
+    echoed = bodies.physics_control(car)
+    assert echoed.wheels[0].position == pytest.approx((1000.0 + 78.5, 2000.0 + 143.5, 0.0), abs=1e-6)
+    bodies.set_physics_control(car, echoed._replace(mass=2000.0))
+    assert bodies.mass_kg[car] == 2000.0
+    again = bodies.add_vehicle(echoed, at(x=10.0, y=20.0, yaw=90.0), BOX)
+    assert bodies.specs[again]["wheel_x_m"] == pytest.approx([offset.x for offset in OFFSETS])
