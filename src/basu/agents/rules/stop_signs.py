@@ -50,12 +50,12 @@ class StopSign:
 
     def step(self, ego: Ego, front_s_m: float, others: Sequence[Other]) -> Restriction | None:
         """What the sign asks for now; None once it is done with."""
+        if self.phase is Phase.APPROACHING and front_s_m > self.line_s_m + BEYOND_M:
+            self.phase = Phase.PASSED
         if self.phase is Phase.APPROACHING and is_resting_at(self.line_s_m, front_s_m, ego.speed_mps):
             self.phase = Phase.WAITING
             self._rest_since_s = ego.time_s
             self._before_us = waiting(self._zone, ego, others)
-        if self.phase is Phase.APPROACHING and front_s_m > self.line_s_m + BEYOND_M:
-            self.phase = Phase.PASSED
         if self.phase is Phase.WAITING and self._may_go(ego, others):
             self.phase = Phase.PASSED
         return None if self.phase is Phase.PASSED else hold_at(self.line_s_m, front_s_m, "stop sign")

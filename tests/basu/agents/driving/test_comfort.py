@@ -33,11 +33,8 @@ def test_the_distance_is_that_of_the_manoeuvre_driven(speed_mps: float, accel_mp
     if speed_mps < target_mps:
         return  # already slower, and only the acceleration has to be let go: not a slowing
     expected_m = driven_m(speed_mps, accel_mps2, target_mps, LIMITS)
-    assert slowing_distance_m(speed_mps, accel_mps2, target_mps, LIMITS) == pytest.approx(
-        expected_m,
-        abs=0.1,
-        rel=0.02,  # the steps end up to 0.04 s early
-    )
+    off_m = abs(slowing_distance_m(speed_mps, accel_mps2, target_mps, LIMITS) - expected_m)
+    assert off_m <= 0.02 + 0.03 * speed_mps + 0.005 * expected_m  # the small steps end up to 0.03 s early
 
 
 def test_a_long_stop_takes_the_textbook_distance() -> None:
