@@ -19,6 +19,7 @@ FIRST_JUNCTION_ID = 1_000_000  # above all road ids: LibCarla takes a link to an
 FIRST_CONTROLLER_ID = 2_000_000
 CROSSWALK_BEFORE_STOP_M = 8.0  # passengers cross behind the shuttle
 ONE_CROSSWALK_WITHIN_M = 30.0  # of opposite stops
+MADE_UP = "made up: the street goes on outside of the map"
 SCHOOL_CROSSING_WITHIN_M = 150.0
 
 
@@ -77,12 +78,12 @@ class _Assembly:
 
     def result(self) -> Built:
         crossings = self._school_crossings()
+        self._level(tuple(legs for nodes, legs in self.network.junctions if not self._is_bend(nodes, legs)))
         for nodes, legs in self.network.junctions:
-            found = [one for one in (self.network.nodes[node].intersection for node in nodes) if one is not None]
-            if _is_bend(found, legs):
+            if self._is_bend(nodes, legs):
                 self._add_bend((legs[0], legs[1]))
             else:
-                self._add_junction(nodes, legs, found, crossings)
+                self._add_junction(nodes, legs, crossings)
         self._add_stop_crosswalks()
         street_roads = tuple(self._street_road(edge) for edge in range(len(self.network.edges)))
         every = [road for road in street_roads if road is not None]
@@ -100,6 +101,22 @@ class _Assembly:
         )
         return Built(self.facts, self.network, street_roads, tuple(self.ways), document)
 
+    def _intersections(self, nodes: tuple[int, ...]) -> list[Intersection]:
+        return [one for one in (self.network.nodes[node].intersection for node in nodes) if one is not None]
+
+    def _is_bend(self, nodes: tuple[int, ...], legs: tuple[Leg, ...]) -> bool:
+        """Return whether two roads merely go on in each other: as many lanes each way, and nothing to wait for."""
+        if len(legs) != 2 or any(one.control is not Control.NONE for one in self._intersections(nodes)):
+            return False
+        come, go = legs[0].view, legs[1].view
+        return all(len(come.driving(right=side)) == len(go.driving(right=not side)) for side in (False, True))
+
+    def _level(self, junctions_legs: tuple[tuple[Leg, ...], ...]) -> None:
+        roads_m = [None if road is None else length(road) for road in self.network.roads]
+        levels = roads.levels(self.facts.ground, junctions_legs, roads_m)
+        for legs, height_m in zip(junctions_legs, levels, strict=True):
+            self.heights_m.update({leg.end: height_m for leg in legs})
+
     def _road_m(self, leg: Leg) -> float:
         road = self.network.roads[leg.end.edge]
         assert road is not None, "a leg is the end of a road"
@@ -111,20 +128,18 @@ class _Assembly:
         self.ways.append(Way(record, legs[0].end, legs[1].end))
         self.touches[legs[0].end], self.touches[legs[1].end] = roads.touches_of_bend(record)
 
-    def _add_junction(
-        self, nodes: tuple[int, ...], legs: tuple[Leg, ...], found: list[Intersection], crossings: frozenset[int]
-    ) -> None:
+    def _add_junction(self, nodes: tuple[int, ...], legs: tuple[Leg, ...], crossings: frozenset[int]) -> None:
+        found = self._intersections(nodes)
         number = FIRST_JUNCTION_ID + len(self.junctions)
-        height_m = round(math.fsum(roads.height(self.facts.ground, leg.pose) for leg in legs) / len(legs), 3)
+        height_m = self.heights_m[legs[0].end]
         for leg in legs:
-            self.heights_m[leg.end] = height_m
             self.touches[leg.end] = roads.Touch(Link("junction", number), {})
         rules = [controls.control_of(found, self.network.nodes[leg.node].intersection) for leg in legs]
         is_roundabout = Control.ROUNDABOUT in rules
         centre = self.network.nodes[nodes[0]].point
         if is_roundabout and len(nodes) > 1:
             raise UserError(f"intersection {found[0].id}: a roundabout needs more room to the next junction")
-        turns = roundabouts.turns(legs, centre) if is_roundabout else junctions.turns(legs)
+        turns = _turns(legs, centre, is_roundabout=is_roundabout)
         connections, turn_ids = [], []
         for turn in turns:
             record = junctions.turn_road(next(self.way_ids), number, turn, self._ids(turn.come, turn.go), height_m)
@@ -132,24 +147,25 @@ class _Assembly:
             connections.append(junctions.connection(record))
             turn_ids.append(record.id)
         driven = junctions.surface(turns)
+        kerb = roundabouts.circle_kerb(legs[0], centre) if len(legs) == 1 else None
         for come, go in zip(legs, (*legs[1:], legs[0]), strict=True):
             record = junctions.corner_road(
-                next(self.way_ids), number, (come, go), self._ids(come, go), height_m, driven
+                next(self.way_ids), number, (come, go), self._ids(come, go), height_m, driven, kerb
             )
             self.corners.append(record)
             connections.append(junctions.connection(record))
         ranks = self._add_controls(legs, rules, found, walked=not crossings.isdisjoint(nodes))
-        if is_roundabout:
+        if is_roundabout or len(legs) == 1:
             self._add_island(legs[0], centre, found)
             self.corners.append(roundabouts.island(next(self.way_ids), centre, height_m))
         self.junctions.append(
             JunctionRecord(
                 id=number,
-                name=" / ".join(one.name for one in found) or f"{legs[0].street.name} & {legs[1].street.name}",
+                name=" / ".join(one.name for one in found) or " & ".join(leg.street.name for leg in legs),
                 connections=tuple(connections),
                 priorities=_priorities(turns, turn_ids, ranks),
                 controllers=self._add_controllers(legs) if Control.SIGNAL in rules else (),
-                notes=_junction_notes(found, rules),
+                notes=_junction_notes(found, rules) if len(legs) > 1 else (("turning_circle", MADE_UP),),
             )
         )
 
@@ -208,7 +224,13 @@ class _Assembly:
         ]
         outline = tuple(seen_from(leg.pose, corner) for corner in corners)
         self.objects[leg.end.edge].append(
-            controls.island(next(self.object_ids), leg, self._road_m(leg), outline, found[0].control_confidence)
+            controls.island(
+                next(self.object_ids),
+                leg,
+                self._road_m(leg),
+                outline,
+                found[0].control_confidence if found else MADE_UP,
+            )
         )
 
     def _school_crossings(self) -> frozenset[int]:
@@ -254,12 +276,10 @@ class _Assembly:
         return record._replace(signals=tuple(self.signals[edge]), objects=tuple(self.objects[edge]))
 
 
-def _is_bend(found: list[Intersection], legs: tuple[Leg, ...]) -> bool:
-    """Return whether two roads merely go on in each other: as many lanes each way, and nothing to wait for."""
-    if len(legs) != 2 or any(one.control is not Control.NONE for one in found):
-        return False
-    come, go = legs[0].view, legs[1].view
-    return all(len(come.driving(right=side)) == len(go.driving(right=not side)) for side in (False, True))
+def _turns(legs: tuple[Leg, ...], centre: Point, *, is_roundabout: bool) -> tuple[junctions.Turn, ...]:
+    if len(legs) == 1:
+        return roundabouts.turning_circle(legs[0], centre)
+    return roundabouts.turns(legs, centre) if is_roundabout else junctions.turns(legs)
 
 
 def _priorities(

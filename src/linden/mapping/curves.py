@@ -140,14 +140,15 @@ def rounded(points: Sequence[Point], radius_m: float, ends_kept_m: float) -> Pat
     return tuple(path)
 
 
-def joined(begin: Pose, end: Pose) -> Path:
+def joined(begin: Pose, end: Pose, share: float = 1.0) -> Path:
     """Return a smooth path from one pose to another: line and arc where a single turn fits, else two arcs.
 
-    Of the two the one with the larger smallest radius is taken. The end must not lie right behind the beginning.
+    Of the two the one with the larger smallest radius is taken; a single turn uses a ``share`` of the room. The
+    end must not lie right behind the beginning.
     """
-    single = _one_turn(begin, end)
+    single = _one_turn(begin, end, share)
     double = _two_arcs(begin, end)
-    found = single if single is not None and sharpest(single) <= sharpest(double) + 1e-9 else double
+    found = single if single is not None and sharpest(single) * share <= sharpest(double) + 1e-9 else double
     return tuple(_chord(piece) if abs(piece.curvature_per_m) < STRAIGHT_PER_M else piece for piece in found)
 
 
@@ -163,7 +164,7 @@ def _chord(piece: Piece) -> Piece:
     return Piece(piece.start._replace(heading_rad=math.atan2(dy, dx)), math.hypot(dx, dy), 0.0)
 
 
-def _one_turn(begin: Pose, end: Pose) -> Path | None:
+def _one_turn(begin: Pose, end: Pose, share: float) -> Path | None:
     """Return line, arc, line where the tangents of both poses meet between them; None where they do not."""
     forward_m, left_m = seen_from(begin, (end.x_m, end.y_m))
     turn_rad = wrapped(end.heading_rad - begin.heading_rad)
@@ -173,7 +174,7 @@ def _one_turn(begin: Pose, end: Pose) -> Path | None:
     before_m = forward_m - after_m * math.cos(turn_rad)
     if not (1e-3 < before_m < 1e4 and 1e-3 < after_m < 1e4):
         return None
-    tangent_m = min(before_m, after_m)
+    tangent_m = min(before_m, after_m) * share
     radius_m = tangent_m / math.tan(abs(turn_rad) / 2)
     pieces = [Piece(begin, before_m - tangent_m, 0.0)]
     pieces.append(

@@ -94,12 +94,13 @@ class Ground(NamedTuple):
 
 
 class Facts(NamedTuple):
-    """All that a map is built from."""
+    """All that a map is built from. ``turning_circles``: whether traffic can turn where a street leaves the map."""
 
     name: str
     longitude_deg: float
     latitude_deg: float
     ground: Ground
+    turning_circles: bool
     streets: tuple[Street, ...]
     intersections: tuple[Intersection, ...]
     stops: tuple[Stop, ...]
@@ -152,6 +153,7 @@ def read(document: object) -> Facts:
             plane.get("rise_east", 0.0),
             str(plane.get("confidence", "unknown")),
         ),
+        turning_circles=bool(metadata.get("turning_circles", False)),
         streets=tuple(_street(feature, metres(feature.lonlats())) for feature in streets),
         intersections=tuple(
             _intersection(feature, metres(feature.lonlats())[0], names)

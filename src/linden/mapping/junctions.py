@@ -1,15 +1,19 @@
 """What happens inside a junction: the paths of all allowed turns, the kerbs round its corners, who goes first."""
 
 import math
+from itertools import pairwise
 from typing import NamedTuple
 
-from shapely import LineString, MultiPolygon, Point, Polygon, make_valid, unary_union
+from shapely import LineString, MultiPolygon, Point, Polygon, unary_union
 
 from linden.mapping.curves import Path, Pose, joined, length, moved, pose_at, sampled, turned_back, wrapped
 from linden.mapping.document import Connection, Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
 from linden.mapping.network import Leg
 from linden.mapping.roads import blended, contact, strips
+from linden.mapping.section import KERB_M
 
+SHARES_OF_ROOM = (1.0, 0.9, 0.8, 0.7)  # for the arc of a turn; a tighter one keeps further off the kerb
+KERB_TOUCHED_M2 = 0.005
 SHOULDER_STEP_M = 2.0  # between the widths given for the paved rest of a corner
 SHOULDER_REACH_M = 15.0
 STRAIGHT_RAD = math.radians(35)
@@ -29,7 +33,15 @@ class Turn(NamedTuple):
 
 def turns(legs: tuple[Leg, ...]) -> tuple[Turn, ...]:
     """Return a path for each way a lane may go: no turning back, and no lane left without a way on or a way in."""
-    return tuple(_direct(legs[come], lane_in, legs[go], lane_out) for come, lane_in, go, lane_out in lane_pairs(legs))
+    found = []
+    for come, lane_in, go, lane_out in lane_pairs(legs):
+        ways = (_direct(legs[come], lane_in, legs[go], lane_out, share) for share in SHARES_OF_ROOM)
+        turn = next(ways)
+        if go == (come + 1) % len(legs):  # nobody turns further to the right: the kerb is beside this way
+            kerb = _kerb_strip(corner_kerb(legs[come], legs[go]))
+            turn = next((way for way in (turn, *ways) if not _touches(way, kerb)), turn)
+        found.append(turn)
+    return tuple(found)
 
 
 def lane_pairs(legs: tuple[Leg, ...]) -> list[tuple[int, int, int, int]]:
@@ -76,9 +88,15 @@ def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int],
     )
 
 
+def corner_kerb(come: Leg, go: Leg) -> Path:
+    """Return the kerb's face from the right side of one leg to the next leg counter-clockwise."""
+    begin = moved(come.pose, left_m=come.view.kerb_m(right=True))
+    return joined(begin, turned_back(moved(go.pose, left_m=go.view.kerb_m(right=False))))
+
+
 def surface(ways: tuple[Turn, ...]) -> Polygon | MultiPolygon:
     """Return the ground that the lanes of a junction's turns cover."""
-    found = unary_union([_covered(turn) for turn in ways])
+    found = unary_union([piece for turn in ways for piece in _pieces_covered(turn)])
     assert isinstance(found, (Polygon, MultiPolygon)), "lanes cover an area"
     return found
 
@@ -90,15 +108,15 @@ def corner_road(
     road_ids: tuple[int, int],
     height_m: float,
     driven: Polygon | MultiPolygon,
+    kerb: Path | None = None,
 ) -> RoadRecord:
     """Return kerb, verge and sidewalk from the right side of one leg to the next leg counter-clockwise.
 
-    What lies between the kerb and the ``driven`` surface is paved too: a shoulder on the left of the kerb line.
+    What lies between the kerb and the ``driven`` surface is paved too: a shoulder on the left of the kerb line, which
+    may be given where it is not the shortest.
     """
     come, go = legs
-    begin = moved(come.pose, left_m=come.view.kerb_m(right=True))
-    end = turned_back(moved(go.pose, left_m=go.view.kerb_m(right=False)))
-    path = joined(begin, end)
+    path = kerb or corner_kerb(come, go)
     found = blended(come.view.raised(right=True), go.view.raised(right=False))
     return RoadRecord(
         id=number,
@@ -155,28 +173,38 @@ def conflicting(one: Turn, other: Turn) -> bool:
     return bool(_middle_line(one).intersects(_middle_line(other)))
 
 
-def _covered(turn: Turn) -> Polygon | MultiPolygon:
-    """Return the ground under a turn's lane."""
+def _pieces_covered(turn: Turn) -> list[Polygon]:
+    """Return the ground under a turn's lane, metre by metre (as one outline it could cross itself)."""
     total_m = length(turn.path)
-    count = math.ceil(total_m / 0.5)
-    left, right = [], []
+    count = math.ceil(total_m)
+    sides = []
     for i in range(count + 1):
-        s_m = total_m * i / count
-        pose, half_m = pose_at(turn.path, s_m), value(turn.widths, s_m) / 2
-        left.append(moved(pose, left_m=half_m)[:2])
-        right.append(moved(pose, left_m=-half_m)[:2])
-    found = make_valid(Polygon([*left, *reversed(right)]))
-    assert isinstance(found, (Polygon, MultiPolygon)), "a lane covers an area"
-    return found
+        pose, half_m = pose_at(turn.path, total_m * i / count), value(turn.widths, total_m * i / count) / 2
+        sides.append((moved(pose, left_m=half_m)[:2], moved(pose, left_m=-half_m)[:2]))
+    return [
+        Polygon([left, right, right_after, left_after]) for (left, right), (left_after, right_after) in pairwise(sides)
+    ]
 
 
 def _middle_line(turn: Turn) -> LineString:
     return LineString([(pose.x_m, pose.y_m) for pose in sampled(turn.path, 2.0)])
 
 
-def _direct(come: Leg, lane_in: int, go: Leg, lane_out: int) -> Turn:
+def _kerb_strip(kerb: Path) -> Polygon:
+    """Return the ground of the kerbstones on the right of a kerb line."""
+    face, back = ([pose[:2] for pose in sampled(kerb, 0.25, left_m=-m)] for m in (0.01, KERB_M))
+    return Polygon([*face, *reversed(back)]).buffer(0.0)
+
+
+def _touches(turn: Turn, kerb: Polygon) -> bool:
+    """Return whether the lane of a turn lies on the kerb."""
+    shared_m2 = sum(piece.intersection(kerb).area for piece in _pieces_covered(turn) if piece.intersects(kerb))
+    return bool(shared_m2 > KERB_TOUCHED_M2)
+
+
+def _direct(come: Leg, lane_in: int, go: Leg, lane_out: int, share: float) -> Turn:
     """Return the shortest smooth way between two lanes, its width changing evenly."""
-    path = joined(pose_in(come, lane_in), pose_out(go, lane_out))
+    path = joined(pose_in(come, lane_in), pose_out(go, lane_out), share)
     widths_m = come.view.lane(lane_in).width_m, go.view.lane(lane_out).width_m
     return Turn(come, lane_in, go, lane_out, path, (eased(0.0, length(path), widths_m),))
 

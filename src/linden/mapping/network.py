@@ -80,6 +80,7 @@ def build(facts: Facts) -> Network:
     tightness = [0] * len(nodes)
     while True:
         legs = [_legs(group, nodes, edges, CORNER_RADII_M[max(tightness[node] for node in group)]) for group in groups]
+        legs = [group if len(group) > 1 or facts.turning_circles else [] for group in legs]
         setbacks = {leg.end: leg.setback_m for group in legs for leg in group}
         home = {node: number for number, group in enumerate(groups) for node in group if len(group) > 1}
         roads = tuple(_road(number, edge, setbacks, home) for number, edge in enumerate(edges))
@@ -97,7 +98,7 @@ def build(facts: Facts) -> Network:
             groups = _merged(groups, too_short)
             for node in (node for group in groups if len(group) > 1 for node in group):
                 tightness[node] = 0
-    junctions = tuple((tuple(group), tuple(found)) for group, found in zip(groups, legs, strict=True) if len(found) > 1)
+    junctions = tuple((tuple(group), tuple(found)) for group, found in zip(groups, legs, strict=True) if found)
     return Network(nodes, edges, roads, junctions)
 
 
@@ -171,8 +172,8 @@ def _legs(group: list[int], nodes: tuple[Node, ...], edges: tuple[Edge, ...], ra
         if inside.issuperset(edge.nodes) and len(group) > 1:
             continue
         uncut += [_uncut(End(number, at_end), edge) for at_end in (False, True) if edge.nodes[at_end] in inside]
-    if len(uncut) < 2:
-        return []
+    if len(uncut) == 1:
+        return _turning_circle(uncut[0], edges[uncut[0].end.edge])
     centre = _centre([nodes[node].point for node in group])
     uncut.sort(key=lambda leg: _bearing(centre, pose_at(_outward(edges[leg.end.edge].path, leg.end), 30.0)))
     least_m = _least_setback(group, nodes, uncut)
@@ -188,6 +189,14 @@ def _legs(group: list[int], nodes: tuple[Node, ...], edges: tuple[Edge, ...], ra
         )
         for leg, cut in zip(uncut, (min(cut, LONGEST_SETBACK_M) for cut in cut_m), strict=True)
     ]
+
+
+def _turning_circle(leg: Leg, edge: Edge) -> list[Leg]:
+    """Return the only leg of a street's end, cut back for a turning circle; none without need or room for it."""
+    if edge.street.oneway or length(edge.path) < 4 * ROUNDABOUT_SETBACK_M:
+        return []
+    pose = turned_back(pose_at(_outward(edge.path, leg.end), ROUNDABOUT_SETBACK_M))
+    return [leg._replace(setback_m=ROUNDABOUT_SETBACK_M, pose=pose)]
 
 
 def _uncut(end: End, edge: Edge) -> Leg:

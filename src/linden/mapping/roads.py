@@ -1,6 +1,7 @@
 """Roads between junctions as OpenDRIVE records: lanes and their marks, height, and the bends where two roads meet."""
 
 import math
+from collections.abc import Sequence
 from itertools import zip_longest
 from typing import NamedTuple
 
@@ -11,6 +12,8 @@ from linden.mapping.network import End, Leg
 from linden.mapping.section import KERB_HEIGHT_M, PAVED, RAISED, Lane, Section
 
 RAMP_M = 30.0  # a junction is level; over this length a road finds back to the plane of the ground
+STEEPEST = 0.012  # mean rise of a road between level junctions; its middle is half as steep again
+LEVELLING_ROUNDS = 100
 KNOT_M = 60.0  # between points where the height is given
 KINDS = ("driving", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
 
@@ -64,6 +67,28 @@ def elevation(ground: Ground, path: Path, ends_m: tuple[float | None, float | No
         eased(s, after - s, (z, z_after), (g, g_after))
         for s, after, (z, g), (z_after, g_after) in zip(knots, knots[1:], points, points[1:], strict=False)
     )
+
+
+def levels(ground: Ground, junctions: Sequence[tuple[Leg, ...]], roads_m: Sequence[float | None]) -> tuple[float, ...]:
+    """Return each junction's height: the ground's under its legs, but no road between two of them too steep.
+
+    Where a road would rise by more than ``STEEPEST`` on the whole, both its junctions give way by half the rest; a
+    few rounds of that settle. ``roads_m``: length of each edge's road, None inside junctions.
+    """
+    found = [math.fsum(height(ground, leg.pose) for leg in legs) / len(legs) for legs in junctions]
+    at = {leg.end: number for number, legs in enumerate(junctions) for leg in legs}
+    links = [
+        (at[begin], at[end], road_m)
+        for begin, end, road_m in ((End(i, at_end=False), End(i, at_end=True), m) for i, m in enumerate(roads_m))
+        if road_m is not None and begin in at and end in at
+    ]
+    for _ in range(LEVELLING_ROUNDS):
+        for a, b, road_m in links:
+            rise_m = found[b] - found[a]
+            rest_m = math.copysign(max(abs(rise_m) - STEEPEST * road_m, 0.0), rise_m) / 2
+            found[a] += rest_m
+            found[b] -= rest_m
+    return tuple(round(height_m, 3) for height_m in found)
 
 
 def street_road(number: int, street: Street, section: Section, path: Path, heights: tuple[Cubic, ...]) -> RoadRecord:

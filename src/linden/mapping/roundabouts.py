@@ -4,11 +4,12 @@ Every way is one connecting road: a right-hand bend in, an arc round the island,
 lane is where these roads lie on each other; ``docs/decisions/0105-roundabouts.md`` says why it is not a ring of roads.
 """
 
+import itertools
 import math
 from typing import NamedTuple
 
 from linden.errors import UserError
-from linden.mapping.curves import Path, Piece, Point, Pose, along, joined, length, moved, seen_from
+from linden.mapping.curves import Path, Piece, Point, Pose, along, joined, length, moved, seen_from, turned_back
 from linden.mapping.document import Cubic, LaneRecord, Mark, RoadRecord, eased
 from linden.mapping.junctions import Turn, lane_pairs, pose_in, pose_out
 from linden.mapping.network import Leg
@@ -17,6 +18,9 @@ from linden.mapping.section import KERB_HEIGHT_M, KERB_M
 ISLAND_RADIUS_M = 4.3
 LANE_M = 4.6
 """Island and lane give an inscribed circle of 17.8 m; FHWA-SA-10-007 has 13.5 to 27 m for mini-roundabouts."""
+
+KERB_RADII_M = (5.0, ISLAND_RADIUS_M + LANE_M + 0.3)
+"""Of the kerb about a turning circle: of its bends, and of the circle."""
 
 RING_RADIUS_M = ISLAND_RADIUS_M + LANE_M / 2
 BEND_RADIUS_M = 7.5
@@ -39,6 +43,23 @@ def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
         path, widths = _way(begin, end, centre, widths_m)
         found.append(Turn(legs[come], lane_in, legs[go], lane_out, path, widths))
     return tuple(found)
+
+
+def turning_circle(leg: Leg, centre: Point) -> tuple[Turn, ...]:
+    """Return the ways by which those who come to the end of a street go back on it: each lane into its opposite."""
+    found = []
+    for lane_in, lane_out in zip(leg.view.driving(right=True), leg.view.driving(right=False), strict=False):
+        widths_m = leg.view.lane(lane_in).width_m, leg.view.lane(lane_out).width_m
+        path, widths = _way(pose_in(leg, lane_in), pose_out(leg, lane_out), centre, widths_m)
+        found.append(Turn(leg, lane_in, leg, lane_out, path, widths))
+    return tuple(found)
+
+
+def circle_kerb(leg: Leg, centre: Point) -> Path:
+    """Return the kerb line round a turning circle, from the right side of its street to the left."""
+    begin = moved(leg.pose, left_m=leg.view.kerb_m(right=True))
+    end = turned_back(moved(leg.pose, left_m=leg.view.kerb_m(right=False)))
+    return tuple(piece for piece in _round(begin, end, centre, KERB_RADII_M) if piece.length_m > 1e-4)
 
 
 def island(number: int, centre: Point, height_m: float) -> RoadRecord:
@@ -69,42 +90,50 @@ def island(number: int, centre: Point, height_m: float) -> RoadRecord:
 
 def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -> tuple[Path, tuple[Cubic, ...]]:
     """Return the path of the lane's middle, and the lane's width along it."""
-    entry = _approach(seen_from(begin, centre))
-    ahead_m, left_m = seen_from(end, centre)
-    leave = _approach((-ahead_m, left_m))
-    on_ring_rad = (end.heading_rad - begin.heading_rad + entry.turn_rad + leave.turn_rad) % math.tau
-    if on_ring_rad > math.tau - math.radians(60):
+    pieces = _round(begin, end, centre, (BEND_RADIUS_M, RING_RADIUS_M))
+    if pieces[2].length_m > RING_RADIUS_M * math.radians(300):
         path = joined(begin, end)
         return path, (eased(0.0, length(path), widths_m),)
+    lengths_m = [piece.length_m for piece in pieces]
+    ends_m = list(itertools.accumulate(lengths_m))
+    widths = (
+        Cubic(0.0, widths_m[0]),
+        eased(ends_m[0], lengths_m[1], (widths_m[0], LANE_M)),
+        Cubic(ends_m[1], LANE_M),
+        eased(ends_m[2], lengths_m[3], (LANE_M, widths_m[1])),
+        Cubic(ends_m[3], widths_m[1]),
+    )
+    return tuple(piece for piece in pieces if piece.length_m > 1e-4), widths
+
+
+def _round(begin: Pose, end: Pose, centre: Point, radii_m: tuple[float, float]) -> tuple[Piece, ...]:
+    """Return straight, bend, ring, bend, straight; ``radii_m`` of the bends and of the ring."""
+    entry = _approach(seen_from(begin, centre), radii_m)
+    ahead_m, left_m = seen_from(end, centre)
+    leave = _approach((-ahead_m, left_m), radii_m)
+    on_ring_rad = (end.heading_rad - begin.heading_rad + entry.turn_rad + leave.turn_rad) % math.tau
     pieces = [Piece(begin, entry.straight_m, 0.0)]
     at = moved(begin, forward_m=entry.straight_m)
     for turn_rad, radius_m in (
-        (-entry.turn_rad, BEND_RADIUS_M),
-        (on_ring_rad, RING_RADIUS_M),
-        (-leave.turn_rad, BEND_RADIUS_M),
+        (-entry.turn_rad, radii_m[0]),
+        (on_ring_rad, radii_m[1]),
+        (-leave.turn_rad, radii_m[0]),
     ):
         piece = Piece(at, abs(turn_rad) * radius_m, math.copysign(1 / radius_m, turn_rad))
         pieces.append(piece)
         at = along(piece, piece.length_m)
     pieces.append(Piece(at, leave.straight_m, 0.0))
-    lengths_m = [piece.length_m for piece in pieces]
-    bounds_m = lengths_m[0] + lengths_m[1], lengths_m[0] + lengths_m[1] + lengths_m[2]
-    widths = (
-        eased(0.0, bounds_m[0], (widths_m[0], LANE_M)),
-        Cubic(bounds_m[0], LANE_M),
-        eased(bounds_m[1], lengths_m[3] + lengths_m[4], (LANE_M, widths_m[1])),
-    )
-    return tuple(piece for piece in pieces if piece.length_m > 1e-4), widths
+    return tuple(pieces)
 
 
-def _approach(centre: Point) -> _Approach:
+def _approach(centre: Point, radii_m: tuple[float, float]) -> _Approach:
     """Return the way in for a centre so far ahead and to the left: the bend touches the ring's middle from outside.
 
-    The bend's centre is ``BEND_RADIUS_M`` to the right; its distance to the island's centre is the sum of the radii.
+    The bend's centre is its radius to the right; its distance to the island's centre is the sum of the radii.
     """
     ahead_m, left_m = centre
-    apart_m = BEND_RADIUS_M + RING_RADIUS_M
-    beside_m = left_m + BEND_RADIUS_M
+    apart_m = sum(radii_m)
+    beside_m = left_m + radii_m[0]
     before_m = math.sqrt(max(apart_m**2 - beside_m**2, 0.0))
     if before_m == 0.0 or ahead_m < before_m:
         raise UserError(

@@ -51,8 +51,9 @@ def crossing(control: str = "none", **changes: object) -> list[Town]:
     ]
 
 
-def collection(features: list[Town]) -> Town:
-    return {"type": "FeatureCollection", "metadata": {"name": "Town", "origin": list(ORIGIN)}, "features": features}
+def collection(features: list[Town], **metadata: object) -> Town:
+    known = {"name": "Town", "origin": list(ORIGIN), **metadata}
+    return {"type": "FeatureCollection", "metadata": known, "features": features}
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """Curves of lines and arcs meet their ends with the headings asked for."""
 
 import math
+from itertools import pairwise
 
 import pytest
 from hypothesis import assume, given
@@ -30,7 +31,7 @@ poses = st.builds(Pose, metres, metres, headings)
 def gaps(path: Path) -> list[tuple[float, float]]:
     """Distance and change of heading between the end of each piece and the start of the next."""
     found = []
-    for piece, after in zip(path, path[1:], strict=False):
+    for piece, after in pairwise(path):
         end = along(piece, piece.length_m)
         turn_rad = abs(wrapped(end.heading_rad - after.start.heading_rad))
         found.append((math.dist(end[:2], after.start[:2]), turn_rad))
@@ -86,10 +87,10 @@ def test_a_corner_between_short_sides_gets_the_radius_that_fits() -> None:
 
 @given(st.lists(st.tuples(metres, metres), min_size=2, max_size=6, unique=True), st.floats(1, 50))
 def test_rounding_never_leaves_a_gap(points: list[tuple[float, float]], radius_m: float) -> None:
-    sides = list(zip(points, points[1:], strict=False))
+    sides = list(pairwise(points))
     assume(all(math.dist(a, b) > 5.0 for a, b in sides))
     turns = [math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in sides]
-    assume(all(abs(wrapped(b - a)) < 3.0 for a, b in zip(turns, turns[1:], strict=False)))
+    assume(all(abs(wrapped(b - a)) < 3.0 for a, b in pairwise(turns)))
     path = rounded(points, radius_m, ends_kept_m=10.0)
     assert all(gap_m < 1e-3 and kink_rad < 1e-6 for gap_m, kink_rad in gaps(path))
 

@@ -7,10 +7,12 @@ from typing import Any
 import pytest
 
 from linden.errors import UserError
+from linden.mapping.build import assembled
 from linden.mapping.curves import along, length, pose_at, sampled, wrapped
 from linden.mapping.document import value
+from linden.mapping.facts import read
 from linden.mapping.junctions import Turn
-from linden.mapping.network import build
+from linden.mapping.network import ROUNDABOUT_SETBACK_M, build
 from linden.mapping.roundabouts import BEND_RADIUS_M, ISLAND_RADIUS_M, LANE_M, RING_RADIUS_M, turns
 
 
@@ -75,6 +77,27 @@ def test_entries_yield_and_the_island_stands_in_the_middle(built_of: Any, sketch
     (island,) = [road for road in built.document.roads if road.name == "roundabout island"]
     assert all(math.hypot(*piece.start[:2]) == pytest.approx(ISLAND_RADIUS_M) for piece in island.path)
     assert dict(built.document.junctions[0].notes)["roundabout"] == "mini"
+
+
+def test_who_comes_to_the_end_of_a_street_turns_round_a_circle(sketch: Any) -> None:
+    features = [sketch.street("main", (0.0, 0.0), (200.0, 0.0), lanes=4, width_m=13.4, parking="none")]
+    built = assembled(read(sketch.collection(features, turning_circles=True)))
+    assert [junction.name for junction in built.document.junctions] == ["main Street"] * 2
+    assert [len(junction.connections) for junction in built.document.junctions] == [3, 3]  # two lanes and the kerb
+    (road,) = [road for road in built.roads if road is not None]
+    for way in built.ways:
+        assert way.come == way.go
+        assert way.record.predecessor == way.record.successor
+        turned_rad = sum(piece.length_m * piece.curvature_per_m for piece in way.record.path)
+        assert turned_rad == pytest.approx(math.pi, abs=1e-6)
+        (lane,) = way.record.right
+        assert (lane.predecessor, lane.successor) in {(-1, 1), (-2, 2), (1, -1), (2, -2)}
+    assert length(road.path) == pytest.approx(200.0 - 2 * ROUNDABOUT_SETBACK_M, abs=0.2)
+
+
+def test_streets_end_openly_where_no_circles_are_asked_for(built_of: Any, sketch: Any) -> None:
+    built = built_of([sketch.street("main", (0.0, 0.0), (200.0, 0.0))])
+    assert built.document.junctions == ()
 
 
 def test_a_roundabout_too_close_to_a_junction_is_refused(built_of: Any, sketch: Any) -> None:
