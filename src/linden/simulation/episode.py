@@ -58,7 +58,10 @@ class Episode:
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
         self.light_ids = self._add_traffic()
-        self._light_rows = np.array([self.actors.row(light_id) for light_id in self.light_ids], np.int64)
+        first_light = self.actors.row(self.light_ids[0]) if self.light_ids else 0
+        self._light_rows = slice(
+            first_light, first_light + len(self.light_ids)
+        )  # they come one after the other, to stay
         self._light_actor_id = np.array(self.light_ids, np.int32)
         self._limit_of_lane_kmh = world_map.lanes["speed_limit_mps"] * _MPS_TO_KMH
         self.contacts: NDArray[np.void] = np.zeros(0, CONTACT)
@@ -67,7 +70,7 @@ class Episode:
         self._seen_version = -1
 
     def _add_fixture(
-        self, type_id: str, kind: Kind, pose: Transform, box: BoundingBox, tags: bytes = b"", sign_id: str = ""
+        self, type_id: str, kind: Kind, pose: Transform, box: BoundingBox, tags: bytes = b""
     ) -> ActorRecord:
         record = ActorRecord(
             id=self.actors.next_id(),
@@ -75,7 +78,6 @@ class Episode:
             kind=kind,
             box=box,
             semantic_tags=tags,
-            sign_id=sign_id,
         )
         self.actors.add(record, pose)
         return record
@@ -88,7 +90,7 @@ class Episode:
             kind, layout = (
                 (Kind.TRAFFIC_LIGHT, TRAFFIC_LIGHT_ROW) if is_light else (Kind.TRAFFIC_SIGN, TRAFFIC_SIGN_ROW)
             )
-            record = self._add_fixture(item.type_id, kind, item.transform, item.box, item.semantic_tags, item.sign_id)
+            record = self._add_fixture(item.type_id, kind, item.transform, item.box, item.semantic_tags)
             row = self.actors.rows.view(layout)[self.actors.row(record.id)]
             row["sign_id"] = item.sign_id.encode()[:32]
             if is_light:
@@ -180,9 +182,7 @@ class Episode:
         )  # fmt: skip
         actors.rows.view(_MOTION)["motion"][:count] = self._motion[:count]
         if self.light_ids:
-            lights = actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows]
-            self.traffic.write(lights)
-            actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows] = lights
+            self.traffic.write(actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows])
         if len(self._vehicle_slots):
             self._observe_vehicles()
         if len(self._walker_slots):

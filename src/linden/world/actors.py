@@ -36,9 +36,7 @@ class ActorRecord:
     parent_id: int = 0
     slot: int = NO_BODY
     stream_id: int = 0
-    sign_id: str = ""
     light_state: int = 0
-    dead: bool = False
 
 
 class ActorTable:
