@@ -145,8 +145,11 @@ def run_agent(arguments: argparse.Namespace) -> int:
     scoring = adjusted(Scoring(), arguments)
     from basu.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
 
-    signal.signal(signal.SIGTERM, _terminated)  # ends a run as Ctrl-C does: what was measured is written
-    return run(options, scoring)
+    before = signal.signal(signal.SIGTERM, _terminated)  # ends a run as Ctrl-C does: what was measured is written
+    try:
+        return run(options, scoring)
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def score_run(arguments: argparse.Namespace) -> int:

@@ -3,6 +3,8 @@
 import json
 import os
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -114,8 +116,9 @@ def test_an_agent_that_fails_has_its_own_status_and_what_was_measured(
     assert result["scores"]["path_following"] > 0.0
 
 
-def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path) -> None:
-    code, result = run(doing(tmp_path, "os.kill(os.getpid(), signal.SIGINT)"))
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path, name: str) -> None:
+    code, result = run(doing(tmp_path, f"os.kill(os.getpid(), signal.{name})"))
     assert (code, result["status"]) == (130, "Interrupted")
     assert result["scores"] is not None
 
@@ -154,6 +157,24 @@ def test_a_simulator_of_our_own_is_gone_afterwards(tmp_path: Path, route_file: P
     assert main(["run", str(agent), "--routes", str(route_file), "--output", str(tmp_path / "runs")]) == 1
     children = [process.name() for process in psutil.Process(os.getpid()).children(recursive=True)]
     assert "linden" not in children
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="parents that are killed take their children along on Linux only")
+def test_a_simulator_of_our_own_does_not_outlive_a_killed_benchmark(tmp_path: Path, route_file: Path) -> None:
+    note = tmp_path / "children"
+    deed = (
+        "import psutil; children = psutil.Process().children(); "
+        f"open({str(note)!r}, 'w').write(' '.join(str(child.pid) for child in children)); "
+        "os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    arguments = ["run", str(doing(tmp_path, deed)), "--routes", str(route_file), "--output", str(tmp_path / "runs")]
+    program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"
+    killed = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
+    assert killed.returncode == -9
+    servers = [int(number) for number in note.read_text().split()]
+    assert servers
+    gone, alive = psutil.wait_procs([psutil.Process(pid) for pid in servers if psutil.pid_exists(pid)], timeout=20)
+    assert not alive, f"{len(gone)} ended, {alive} live on"
 
 
 def test_repetitions_leave_a_folder_each(run: Runner, tmp_path: Path) -> None:
