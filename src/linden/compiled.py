@@ -15,7 +15,10 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def kernel(function: Function) -> Function:
-    """Compile ``function`` with numba at its first call; its Python form stays at ``.py_func``."""
+    """Compile ``function`` with numba at its first call; its Python form stays at ``.py_func``.
+
+    For functions that call kernels of their own module only (of others, see :func:`part`).
+    """
     return cast("Function", numba.njit(cache=True, error_model="numpy")(function))
 
 
@@ -29,7 +32,7 @@ def part(function: Function) -> Function:
 
 
 def fingerprint(*sources: Path) -> int:
-    """Return 62 bits that change with the text of any of the files; a kernel that closes over it is renewed with them."""
+    """Return 62 bits that change with the text of any file given; a kernel that closes over them is renewed with it."""
     digest = hashlib.sha256()
     for source in sorted(sources):
         digest.update(source.read_bytes())

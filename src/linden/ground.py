@@ -154,7 +154,7 @@ def _terrain(corners_m: F64, planes: F64, low_m: F64, high_m: F64) -> tuple[F64,
     columns, rows = (np.ceil(size / spacing_m) + 1.0).astype(np.int64)
     heights = np.full((int(rows), int(columns)), np.inf)
     _seed_terrain(heights, corners_m, planes, frame)
-    _spread_terrain(heights, _SMOOTHINGS)
+    _spread_terrain(heights)
     return heights, frame
 
 
@@ -185,7 +185,7 @@ def _seed_terrain(heights_m: F64, corners_m: F64, planes: F64, frame: F64) -> No
 
 
 @kernel
-def _spread_terrain(heights_m: F64, smoothings: int) -> None:
+def _spread_terrain(heights_m: F64) -> None:
     """Fill the empty (inf) nodes from the nearest filled one, then smooth what was empty; in place.
 
     Nearest: Danielsson 1980, "Euclidean distance mapping", the sequential four-neighbour transform.
@@ -207,7 +207,7 @@ def _spread_terrain(heights_m: F64, smoothings: int) -> None:
                 else:
                     column = 2 * columns - 1 - j
                     _take_nearer(heights_m, away, dx, dy, row, column, row, column + 1)
-    for _ in range(smoothings):
+    for _ in range(_SMOOTHINGS):
         for row in range(1, rows - 1):
             for column in range(1, columns - 1):
                 if empty[row, column]:
@@ -251,8 +251,7 @@ def surface_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[fl
     """
     frame = ground.bin_frame
     column = _bin_of(x, frame[0], frame[2], frame[3])
-    row = _bin_of(y, frame[1], frame[2], frame[4])
-    b = row * int(frame[3]) + column
+    b = _bin_of(y, frame[1], frame[2], frame[4]) * int(frame[3]) + column
     best_z, best = -math.inf, -1
     for k in range(ground.bin_start[b], ground.bin_start[b + 1]):
         t = ground.bin_items[k]

@@ -2,12 +2,12 @@
 
 import math
 
-from linden.compiled import part
+from linden.compiled import kernel
 
 Axis = tuple[float, float, float]
 
 
-@part
+@kernel
 def plane_axes(pitch_rad: float, yaw_rad: float, roll_rad: float) -> tuple[Axis, Axis]:
     """Return the directions forward and to the right: the first two columns of ``geometry.rotation_matrix``."""
     sp, cp = math.sin(pitch_rad), math.cos(pitch_rad)
@@ -16,7 +16,7 @@ def plane_axes(pitch_rad: float, yaw_rad: float, roll_rad: float) -> tuple[Axis,
     return (cp * cy, cp * sy, sp), (cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, -cp * sr)
 
 
-@part
+@kernel
 def within_turn(angle_rad: float) -> float:
     """Return the angle as one in [-pi, pi)."""
     if -math.pi <= angle_rad < math.pi:

@@ -218,7 +218,7 @@ def test_a_static_that_is_no_number_is_refused() -> None:
 def test_contacts_are_listed_by_pair_statics_first() -> None:
     bodies = Bodies()
     for k in range(6):
-        bodies.add_vehicle(sedan(), at(x=5.2 * k), BOX, OFFSETS)
+        bodies.add_vehicle(sedan(), at(x=5.0 * k), BOX, OFFSETS)
         bodies.set_target_velocity(k, (3.0 if k % 2 == 0 else -3.0, 0.0, 0.0))
     bodies.set_target_velocity(0, (-3.0, 0.0, 0.0))
     rows = advance(bodies, FLAT, wall(-2.8), 0.05, 5)

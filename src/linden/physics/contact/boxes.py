@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
+from linden.compiled import kernel, part
 
 F64 = NDArray[np.float64]
 
@@ -13,7 +13,7 @@ X, Y, COS, SIN, HALF_X, HALF_Y, LOW, HIGH = range(8)
 """A box as eight numbers: centre, cosine and sine of its yaw, half sizes, lowest and highest z; m."""
 
 
-@part
+@kernel
 def overlap(a: F64, b: F64) -> tuple[float, float, float, float, float]:
     """Return depth (0 where apart), unit normal from ``b`` to ``a`` (x, y) and contact point (x, y); m.
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
+from linden.compiled import kernel, part
 from linden.physics.contact.statics import Statics
 from linden.physics.state import Body, Rows
 
@@ -42,7 +42,7 @@ def box_centre(v: Body) -> tuple[float, float]:
     return x, v.position[1] + sine * v.box_centre[0] + cosine * v.box_centre[1]
 
 
-@part
+@kernel
 def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
     """Return (P, 2) of first body and second body, or -1 - n for the n-th static; ordered, each pair once.
 

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
+from linden.compiled import kernel, part
 from linden.physics.state import Body, Spec
 from linden.physics.vehicle.tyre import secant_stiffness
 from linden.physics.vehicle.wheels import (
@@ -177,7 +177,7 @@ def _solve_linear(
     _solve_symmetric(xx, xy, xt, yy, yt, tt, x, y, t, speeds)
 
 
-@part
+@kernel
 def _solve_symmetric(
     xx: float, xy: float, xt: float, yy: float, yt: float, tt: float, x: float, y: float, t: float, out: F64
 ) -> None:

@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
+from linden.compiled import kernel, part
 from linden.physics.state import Body, Spec
 
 F64 = NDArray[np.float64]
@@ -18,7 +18,7 @@ RPM_PER_RADPS = 30.0 / math.pi
 _UNDO_MARGIN = 0.95  # a change down is made only where the speed after it stays this far below that of changing up
 
 
-@part
+@kernel
 def on_curve(x: float, xs: F64, ys: F64, count: int) -> float:
     """Return the value at ``x`` of a polyline of ``count`` points; its ends go on level."""
     if x <= xs[0]:

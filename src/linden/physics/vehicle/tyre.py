@@ -2,13 +2,13 @@
 
 import math
 
-from linden.compiled import part
+from linden.compiled import kernel, part
 
 SLOWEST_REFERENCE_MPS = 0.5
 """Slip is sliding over travelling speed; below this the latter is held, else a standing wheel would slip infinitely."""
 
 
-@part
+@kernel
 def brush_force(use: float) -> float:
     """Return the fraction of the friction limit that a brush tyre transmits.
 
@@ -26,7 +26,7 @@ def _length(x: float, y: float) -> float:
     return math.sqrt(x * x + y * y)
 
 
-@part
+@kernel
 def cornering_stiffness(per_rad: float, full_load: float, load_n: float, rest_load_n: float) -> float:
     """Return N/rad: grows with the load and levels off at ``full_load`` times that at rest.
 
@@ -38,7 +38,7 @@ def cornering_stiffness(per_rad: float, full_load: float, load_n: float, rest_lo
     return rest_load_n * per_rad * brush_force(3.0 * load_n / rest_load_n / full_load)
 
 
-@part
+@kernel
 def secant_stiffness(
     slide_x_mps: float, slide_y_mps: float, travel_mps: float, slip_n: float, cornering_n: float, limit_n: float
 ) -> tuple[float, float]:
