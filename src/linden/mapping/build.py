@@ -165,7 +165,7 @@ class _Assembly:
                 connections=tuple(connections),
                 priorities=_priorities(turns, turn_ids, ranks),
                 controllers=self._add_controllers(legs) if Control.SIGNAL in rules else (),
-                notes=_junction_notes(found, rules) if len(legs) > 1 else (("turning_circle", MADE_UP),),
+                notes=controls.junction_notes(found, rules) if len(legs) > 1 else (("turning_circle", MADE_UP),),
             )
         )
 
@@ -290,23 +290,3 @@ def _priorities(
     high = [(turn, number) for turn, number in pairs if ranks[turn.come.end] == 0]
     low = [(turn, number) for turn, number in zip(turns, ids, strict=True) if ranks[turn.come.end] == 1]
     return tuple((a, b) for one, a in high for other, b in low if junctions.conflicting(one, other))
-
-
-def _junction_notes(found: list[Intersection], rules: list[Control]) -> tuple[tuple[str, str], ...]:
-    """Return what a reader of the file may want to know: where it comes from, how sure it is, what governs it."""
-    order = list(Control)
-    control = min(rules, key=order.index)
-    notes = [("control", control.value)]
-    for one in found:
-        notes += [
-            ("intersection", one.id),
-            ("confidence", one.confidence),
-            ("control_confidence", one.control_confidence),
-        ]
-    if control is Control.ROUNDABOUT:
-        notes += [
-            ("roundabout", "mini"),
-            ("island_radius_m", str(roundabouts.ISLAND_RADIUS_M)),
-            ("lane_width_m", str(roundabouts.LANE_M)),
-        ]
-    return tuple(notes)

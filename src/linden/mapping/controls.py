@@ -1,7 +1,6 @@
 """What tells drivers at a junction what to do: signs, lights, stop lines, crosswalks; and where they stand."""
 
-from typing import NamedTuple
-
+from linden.mapping import roundabouts
 from linden.mapping.curves import wrapped
 from linden.mapping.document import Object, Signal
 from linden.mapping.facts import Control, Intersection
@@ -16,13 +15,6 @@ LINE_TO_CROSSWALK_M = 1.4  # to the line's middle; MUTCD 3B.16 asks for 4 ft of 
 LINE_WIDTH_M = 0.4  # MUTCD 3B.16: 12 to 24 in
 POST_TO_KERB_M = 0.6  # MUTCD 2A.19: 2 ft from the kerb's face
 ROOM_FOR_CROSSWALK_M = 14.0  # a road that is shorter gets none
-
-
-class Furniture(NamedTuple):
-    """What stands on the roads of a junction: by leg, the signals and the objects of that leg's road."""
-
-    signals: tuple[tuple[Signal, ...], ...]
-    objects: tuple[tuple[Object, ...], ...]
 
 
 def control_of(intersections: list[Intersection], intersection: Intersection | None) -> Control:
@@ -129,6 +121,26 @@ def phases(legs: list[Leg]) -> list[list[int]]:
         else:
             groups.append([number])
     return groups
+
+
+def junction_notes(found: list[Intersection], rules: list[Control]) -> tuple[tuple[str, str], ...]:
+    """Return what a reader of the file may want to know: where it comes from, how sure it is, what governs it."""
+    order = list(Control)
+    control = min(rules, key=order.index)
+    notes = [("control", control.value)]
+    for one in found:
+        notes += [
+            ("intersection", one.id),
+            ("confidence", one.confidence),
+            ("control_confidence", one.control_confidence),
+        ]
+    if control is Control.ROUNDABOUT:
+        notes += [
+            ("roundabout", "mini"),
+            ("island_radius_m", str(roundabouts.ISLAND_RADIUS_M)),
+            ("lane_width_m", str(roundabouts.LANE_M)),
+        ]
+    return tuple(notes)
 
 
 def _across(

@@ -1,7 +1,7 @@
 """Mini-roundabouts: ways round a central island, counter-clockwise, from each entry to each exit.
 
 Every way is one connecting road: a right-hand bend in, an arc round the island, a right-hand bend out. The circulating
-lane is where these roads lie on each other; ``docs/decisions/0105-roundabouts.md`` says why it is not a ring of roads.
+lane is where these roads lie on each other; ``docs/decisions/0011-roundabouts.md`` says why it is not a ring of roads.
 """
 
 import itertools

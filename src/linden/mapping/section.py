@@ -1,6 +1,6 @@
 """What lies across a street: lanes from the axis outward, on both sides, and where the axis runs.
 
-Widths are authored between the kerbs; ``docs/decisions/0103-cross-sections.md`` says how they are shared out.
+Widths are authored between the kerbs; ``docs/decisions/0010-cross-sections.md`` says how they are shared out.
 """
 
 from typing import NamedTuple
