@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 READY = re.compile(r"ready, rpc port (\d+)")
 START_LIMIT_S = 600.0  # a first start compiles kernels, on a machine that may be busy with other things
 END_LIMIT_S = 10.0
+LAST_WORDS_S = 2.0  # for the pipes of an ended server to run empty
 LAST_LINES = 20  # of a server's log, kept to explain its end
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
 
@@ -55,8 +56,12 @@ class OwnServer:
         self._port: int | None = None
         self._spoke = threading.Event()
         self._log: deque[str] = deque(maxlen=LAST_LINES)
-        for stream in (self._process.stdout, self._process.stderr):
-            threading.Thread(target=self._read, args=(stream,), name="basu-server-log", daemon=True).start()
+        self._readers = [
+            threading.Thread(target=self._read, args=(stream,), name="basu-server-log", daemon=True)
+            for stream in (self._process.stdout, self._process.stderr)
+        ]
+        for reader in self._readers:
+            reader.start()
         try:
             self.port = self._wait_until_ready()
         except BaseException:
@@ -68,6 +73,8 @@ class OwnServer:
         code = self._process.poll()
         if code is None:
             return None
+        for reader in self._readers:
+            reader.join(LAST_WORDS_S)
         last = f": {self._log[-1]}" if self._log else ""
         return f"the simulator ended by itself (exit status {code}){last}"
 

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import carla
 import psutil
 import pytest
 
@@ -121,6 +122,32 @@ def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path
     code, result = run(doing(tmp_path, f"os.kill(os.getpid(), signal.{name})"))
     assert (code, result["status"]) == (130, "Interrupted")
     assert result["scores"] is not None
+
+
+def test_the_example_agent_arrives(run: Runner) -> None:
+    code, result = run(SAMPLE.with_name("gentle_agent.py"))
+    assert (code, result["status"]) == (0, "Completed")
+    assert result["scores"]["driving"] > 0.95
+
+
+def test_somebody_elses_simulator_is_left_as_it_was(run: Runner, tmp_path: Path, simulator: RunningServer) -> None:
+    client = carla.Client("127.0.0.1", simulator.port)
+    world = client.get_world()
+    before = world.get_settings()
+    run(doing(tmp_path, "return None", "config/sensors.json"))
+    after = world.get_settings()
+    assert (after.synchronous_mode, after.fixed_delta_seconds) == (before.synchronous_mode, before.fixed_delta_seconds)
+    world.wait_for_tick(10.0)
+    left = [actor.type_id for actor in world.get_actors() if actor.type_id.startswith(("vehicle.", "sensor."))]
+    assert left == []
+
+
+def test_a_sensor_that_the_simulator_cannot_serve_gets_a_sentence(run: Runner, tmp_path: Path) -> None:
+    (tmp_path / "eyes.json").write_text('[{"type": "sensor.camera.rgb", "id": "EYE"}]')
+    code, result = run(doing(tmp_path, "return None", str(tmp_path / "eyes.json")))
+    assert (code, result["status"]) == (2, "SetupFailed")
+    assert "sensor 'EYE' (sensor.camera.rgb) of" in result["message"]
+    assert "cannot be served by this simulator" in result["message"]
 
 
 @pytest.mark.slow
