@@ -15,7 +15,7 @@ from linden.mapping.section import Section, View, of_street, view
 
 BEND_RADIUS_M = {"arterial": 60.0, "collector": 40.0, "local": 20.0, "service": 12.0}
 CORNER_RADII_M = (6.0, 4.5, 3.5)
-"""Kerbs at street corners, the tighter ones where junctions stand close; NACTO, "Corner Radii", has 3 to 7.5 m."""
+"""Of kerbs at street corners, the tighter ones where junctions stand close; estimated: nobody measured them."""
 
 SHORTEST_ROAD_M = 5.0  # between two junctions; below that they are one
 SHORTEST_SETBACK_M = 6.0

@@ -17,14 +17,14 @@ from linden.mapping.section import KERB_HEIGHT_M, KERB_M
 
 ISLAND_RADIUS_M = 4.3
 LANE_M = 4.6
-"""Island and lane give an inscribed circle of 17.8 m; FHWA-SA-10-007 has 13.5 to 27 m for mini-roundabouts."""
+"""Island and lane give an inscribed circle of 17.8 m; mini-roundabouts have 15 to 27 m (FHWA, Public Roads 11/2012)."""
 
 KERB_RADII_M = (5.0, ISLAND_RADIUS_M + LANE_M + 0.3)
 """Of the kerb about a turning circle: of its bends, and of the circle."""
 
 RING_RADIUS_M = ISLAND_RADIUS_M + LANE_M / 2
 BEND_RADIUS_M = 7.5
-"""Of the middle of the lane in the bends in and out; FHWA-SA-10-007 asks for entries that slow down to 25 km/h."""
+"""Of the middle of the lane in the bends in and out: at 1 m/s² sideways, 10 km/h."""
 
 
 class _Approach(NamedTuple):

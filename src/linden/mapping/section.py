@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 from linden.mapping.facts import Street
 
-PARKING_M = 2.1  # 7 ft; Columbus and NACTO park cars in 7 to 8 ft
+PARKING_M = 2.1  # 7 ft
 NARROWEST_LANE_M = 2.85  # a 2.0 m shuttle and 0.4 m on either side
 KERB_M = 0.15
 VERGE_M = 1.2
-SIDEWALK_M = 1.5  # 5 ft, the narrowest on which two wheelchairs pass (PROWAG R302.3)
+SIDEWALK_M = 1.5  # 5 ft, on which two wheelchairs pass
 KERB_HEIGHT_M = 0.15
 PAVED = frozenset({"driving", "parking", "shoulder"})
 RAISED = frozenset({"border", "none", "sidewalk"})
