@@ -37,7 +37,8 @@ def rotation_of(matrix: Matrix) -> Rotation:
     """Return the rotation of a (3, 3) matrix of :func:`rotation_matrix`; yaw 0 where the nose points straight up."""
     pitch = math.asin(max(-1.0, min(1.0, float(matrix[2, 0]))))
     if abs(matrix[2, 0]) > 1.0 - 1e-12:
-        return Rotation(math.degrees(pitch), 0.0, math.degrees(math.atan2(-matrix[0, 1], matrix[1, 1])))
+        roll = math.atan2(math.copysign(1.0, matrix[2, 0]) * matrix[0, 1], matrix[1, 1])
+        return Rotation(math.degrees(pitch), 0.0, math.degrees(roll))
     yaw = math.atan2(matrix[1, 0], matrix[0, 0])
     roll = math.atan2(-matrix[2, 1], matrix[2, 2])
     return Rotation(math.degrees(pitch), math.degrees(yaw), math.degrees(roll))
@@ -58,4 +59,5 @@ def from_opendrive(x_m: float, y_m: float, z_m: float, heading_rad: float) -> Tr
 
 def points_from_opendrive(points_m: Matrix) -> Matrix:
     """Return points (N, 3) of OpenDRIVE's frame in CARLA's."""
-    return points_m * np.array([1.0, -1.0, 1.0])
+    mirrored: Matrix = points_m * np.array([1.0, -1.0, 1.0])
+    return mirrored

@@ -31,7 +31,7 @@ def test_the_library_holds_carlas_vehicles_and_the_shuttle(blueprints) -> None:
 
 def test_spawning_where_something_stands_is_refused_in_carlas_words(world, blueprints, car, point) -> None:
     with pytest.raises(
-        RuntimeError, match="^Spawn failed because of collision at spawn position.*actor [0-9]+"
+        RuntimeError, match=r"^Spawn failed because of collision at spawn position.*actor [0-9]+"
     ) as info:
         world.spawn_actor(blueprints.find("vehicle.audi.tt"), point)
     assert "nearest free spawn point" in str(info.value)

@@ -46,7 +46,7 @@ def _follow(parent: F64, relative: F64, pose: F64) -> None:  # pragma: no cover 
     pose[3] = math.degrees(math.asin(sine))
     if abs(sine) > 1.0 - 1e-12:  # straight up or down: yaw and roll turn about one axis, so all of it is roll
         pose[4] = 0.0
-        pose[5] = math.degrees(math.atan2(-turn[0, 1], turn[1, 1]))
+        pose[5] = math.degrees(math.atan2(math.copysign(1.0, sine) * turn[0, 1], turn[1, 1]))
     else:
         pose[4] = math.degrees(math.atan2(turn[1, 0], turn[0, 0]))
         pose[5] = math.degrees(math.atan2(-turn[2, 1], turn[2, 2]))

@@ -36,6 +36,14 @@ def test_a_child_stands_where_composition_puts_it(parent: Transform, relative: T
     np.testing.assert_allclose(rotation_matrix(Rotation(*pose[1, 3:])), rotation_matrix(expected.rotation), atol=1e-6)
 
 
+def test_a_child_that_looks_straight_down_keeps_its_turn() -> None:
+    pose = np.array([[0.0, 0.0, 0.0, 0.0, 30.0, 0.0], [0.0] * 6])
+    relative = np.array([[0.0] * 6, [0.0, 0.0, 0.0, -90.0, 0.0, 20.0]])
+    gather(pose, relative, [-1, 0], [-1, -1], no_bodies())
+    expected = rotation_matrix(Rotation(0.0, 30.0, 0.0)) @ rotation_matrix(Rotation(-90.0, 0.0, 20.0))
+    np.testing.assert_allclose(rotation_matrix(Rotation(*pose[1, 3:])), expected, atol=1e-6)
+
+
 def test_a_child_of_a_child_follows_both() -> None:
     pose = np.array([[1.0, 2.0, 3.0, 0.0, 90.0, 0.0], [0.0] * 6, [0.0] * 6])
     relative = np.array([[0.0] * 6, [1.0, 0.0, 0.0, 0.0, 90.0, 0.0], [1.0, 0.0, 0.5, 0.0, 0.0, 0.0]])
