@@ -7,8 +7,6 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-import linden.compiled
-import linden.ground
 from linden.compiled import fingerprint, kernel, part
 from linden.ground import Ground
 from linden.physics.contact.impulses import JX, JZ, PX, PZ, TOUCHED, part_bodies
@@ -121,8 +119,9 @@ def _build(sources: int) -> _Advance:
     return kernel(advance)
 
 
-_SOURCES = [*Path(__file__).parent.rglob("*.py"), Path(linden.ground.__file__), Path(linden.compiled.__file__)]
-_advance = _build(fingerprint(*_SOURCES))
+_HERE = Path(__file__).parent
+_WITH_KERNELS = [path for path in _HERE.rglob("*.py") if b"linden.compiled" in path.read_bytes()]
+_advance = _build(fingerprint(*_WITH_KERNELS, _HERE / "state.py", _HERE.parent / "ground.py"))
 
 
 def advance(
