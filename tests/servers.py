@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 READY = re.compile(r"linden: ready, rpc port (\d+), streaming port (\d+)")
-START_LIMIT_S = 120.0
+START_LIMIT_S = 280.0
 """The first start on a machine compiles the kernels."""
 
 
