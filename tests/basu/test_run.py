@@ -34,6 +34,27 @@ class TestAgent(AutonomousAgent):
     def config(self):
         return {{"vehicle": "vehicle.tesla.model3", "sensors": {sensors!r}}}
 """
+RAMMER = """
+class Rammer(AutonomousAgent):
+    def setup(self):
+        blueprint = self.world.get_blueprint_library().find("vehicle.audi.a2")
+        pose = self.route.waypoints[15].transform
+        pose.location.z += 0.3
+        self.parked = self.world.spawn_actor(blueprint, pose)
+        self.steps = 0
+
+    def run_step(self, sensor_data):
+        self.steps += 1
+        if self.steps > 120:
+            raise ValueError("enough")
+        return carla.VehicleControl(throttle=0.7)
+
+    def config(self):
+        return {"vehicle": "vehicle.tesla.model3"}
+
+    def destroy(self):
+        self.parked.destroy()
+"""
 RESULT_FILES = {"config.json", "history.parquet", "path.png", "result.json", "route.json"}
 Runner = Callable[..., tuple[int, dict[str, Any]]]
 
@@ -241,3 +262,18 @@ def test_a_route_that_cannot_be_driven_gets_a_sentence(
     error = capsys.readouterr().err
     assert "Traceback" not in error
     assert any(re.search(sentence, line) for line in error.splitlines())
+
+
+def test_hitting_a_parked_car_is_told_with_the_party_the_place_and_the_speed(run: Runner, tmp_path: Path) -> None:
+    path = tmp_path / "rammer.py"
+    path.write_text(RAMMER)
+    _, result = run(path)
+    (collision,) = (found for found in result["infractions"] if found["kind"] == "collision_vehicle")
+    assert collision["other"].startswith("vehicle.audi.a2 (actor ")
+    assert collision["speed_mps"] > 2.0
+    assert 8.0 < collision["route_s_m"] < 16.0  # 15 m from middle to middle, less half of both cars
+    history = read_history(tmp_path / "runs" / "latest")
+    assert set(history.facts.actor_types.values()) == {"vehicle.audi.a2"}
+    assert history.others["tick"].tolist() == list(range(len(history.frames)))
+    first = history.others[0]
+    assert float(first["x_m"] - history.frames["x_m"][0]) == pytest.approx(-15.0, abs=0.5)
