@@ -48,7 +48,7 @@ class BasicAgent(AutonomousAgent):
             return carla.VehicleControl(brake=HOLD_BRAKE)  # not in the world before its first tick
         if self.driver is None or self.facts is None:
             self.driver, self.facts = self._get_in(own.get_transform())
-        ego = see_ego(snapshot, own)
+        ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
         command = self.driver.step(ego, self._perception.others(snapshot, ego), self._lights.shows)
         return _control(command, self.facts, ego.speed_mps)
 

@@ -82,12 +82,12 @@ def _other(actor: carla.ActorSnapshot, pose: carla.Transform, shape: _Shape) -> 
     )
 
 
-def see_ego(snapshot: carla.WorldSnapshot, own: carla.ActorSnapshot) -> Ego:
-    """The driven vehicle of a snapshot."""
+def see_ego(snapshot: carla.WorldSnapshot, own: carla.ActorSnapshot, gear: int) -> Ego:
+    """The driven vehicle of a snapshot, which does not tell its gear."""
     pose, velocity = own.get_transform(), own.get_velocity()
     yaw_rad = math.radians(pose.rotation.yaw)
     speed_mps = velocity.x * math.cos(yaw_rad) + velocity.y * math.sin(yaw_rad)
-    return Ego(snapshot.timestamp.elapsed_seconds, pose.location.x, pose.location.y, yaw_rad, speed_mps)
+    return Ego(snapshot.timestamp.elapsed_seconds, pose.location.x, pose.location.y, yaw_rad, speed_mps, gear)
 
 
 class Lights:

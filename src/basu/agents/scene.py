@@ -28,6 +28,7 @@ class Ego(NamedTuple):
     y_m: float
     yaw_rad: float
     speed_mps: float  # along its own axis, negative when rolling backwards
+    gear: int = 1  # 0 while the gearbox shifts
 
 
 class Kind(enum.Enum):

@@ -130,7 +130,7 @@ class Driver:
     def _press(self, ego: Ego, accel_mps2: float) -> Pedals:
         """The feet follow the planner."""
         planner = self.planner
-        return self._pedals.step(ego.speed_mps, planner.speed_mps, accel_mps2, holding=planner.holding)
+        return self._pedals.step(ego.speed_mps, planner.speed_mps, accel_mps2, holding=planner.holding, gear=ego.gear)
 
     def _ruled(
         self, ego: Ego, place: Place, others: Sequence[Other], shows: Callable[[str], Light]

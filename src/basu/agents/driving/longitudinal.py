@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 FOLLOW_1PS = 1.5  # how fast a lag behind the reference speed is made up
 LEARN = 0.15  # share of a step's surprise that the estimate of the disturbance takes up
-MAX_DISTURBANCE_MPS2 = 4.0
+MAX_DISTURBANCE_MPS2 = 12.0  # an engine in first gear brakes as hard as that at small throttle
 HOLD_BRAKE = 0.6  # when standing
 HOLD_STEP = 0.04  # it is pressed down this much more a step …
 ROLLING_STEP = 0.01  # … and this much while the wheels still turn a little, so that the stop is not felt
@@ -51,9 +51,14 @@ class PedalControl:
         self.disturbance_mps2 = 0.0
         self.last = Pedals(0.0, HOLD_BRAKE)
         self.last_speed_mps = 0.0
+        self._gear = 1
+        self._of_gear: dict[int, float] = {}
 
-    def step(self, speed_mps: float, reference_mps: float, reference_mps2: float, *, holding: bool) -> Pedals:
+    def step(
+        self, speed_mps: float, reference_mps: float, reference_mps2: float, *, holding: bool, gear: int = 1
+    ) -> Pedals:
         """Pedals until the next step, from the speed measured now and the reference for the end of this step."""
+        self._shift(gear)
         self._learn(speed_mps)
         if holding:
             pressed = self.last.brake if self.last.throttle == 0.0 else 0.0
@@ -63,16 +68,27 @@ class PedalControl:
         lag_mps = reference_mps - reference_mps2 * self.dt_s - speed_mps
         demand_mps2 = reference_mps2 + FOLLOW_1PS * lag_mps - self.disturbance_mps2
         gain_mps2 = max(self.model.throttle_mps2(speed_mps), 0.1)
-        if demand_mps2 >= 0.0:
+        if demand_mps2 >= 0.0 and gear == 0:
+            self.last = Pedals(0.0, 0.0)  # nothing pulls while it shifts, and everything at once afterwards
+        elif demand_mps2 >= 0.0:
             self.last = Pedals(min(demand_mps2 / gain_mps2, 1.0), 0.0)
         else:
             self.last = Pedals(0.0, min(-demand_mps2 / self.model.full_brake_mps2, 1.0))
         return self.last
 
+    def _shift(self, gear: int) -> None:
+        """Each gear has a disturbance of its own, for most of it is what the engine brakes."""
+        if gear == self._gear:
+            return
+        if self._gear != 0:
+            self._of_gear[self._gear] = self.disturbance_mps2
+        self.disturbance_mps2 = self._of_gear.get(gear, self.disturbance_mps2 / 3.0) if gear != 0 else 0.0
+        self._gear = gear
+
     def _learn(self, speed_mps: float) -> None:
         """Take up part of the difference between what the last pedals should have done and what they did."""
         before_mps, self.last_speed_mps = self.last_speed_mps, speed_mps
-        if min(speed_mps, before_mps) < STUCK_MPS:
+        if min(speed_mps, before_mps) < STUCK_MPS or self._gear == 0:
             return
         done_mps2 = (speed_mps - before_mps) / self.dt_s
         expected_mps2 = (

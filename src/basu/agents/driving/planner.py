@@ -26,7 +26,7 @@ ESCALATE_M = 0.3  # missing a mark by less than this in comfort is better than f
 ARRIVED_M = 0.8  # standing this near before a mark, one stays rather than creep up to it
 STANDING_MPS = 0.005
 OVERSPEED_MPS = 0.15  # this much above the limit nothing is done about it
-RESYNC_MPS = 0.6  # the reference farther than this from the vehicle starts again from the vehicle
+STRAY_MPS = 0.6  # the reference is never farther than this from the vehicle's own speed
 
 
 class Planner:
@@ -47,8 +47,7 @@ class Planner:
             limit_mps: the greatest speed here.
             restrictions: what has to be slowed down for ahead.
         """
-        if abs(self.speed_mps - measured_mps) > RESYNC_MPS:
-            self.speed_mps = max(0.0, measured_mps)
+        self.speed_mps = max(0.0, min(max(self.speed_mps, measured_mps - STRAY_MPS), measured_mps + STRAY_MPS))
         restrictions = tuple(restrictions)
         if self.speed_mps < STANDING_MPS and any(_is_arrival(r) for r in restrictions):
             self._stand(next(r.reason for r in restrictions if _is_arrival(r)))

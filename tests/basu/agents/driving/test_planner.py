@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu.agents.driving.planner import COMFORT, FIRM, FULL_MPS2, HARD, Planner
+from basu.agents.driving.planner import COMFORT, FIRM, FULL_MPS2, HARD, STRAY_MPS, Planner
 from basu.agents.scene import Restriction, Urgency
 
 DT_S = 0.05
@@ -82,7 +82,7 @@ def test_the_reason_names_what_is_braked_for() -> None:
     assert planner.reason == "walker ahead"
 
 
-def test_after_a_push_the_reference_starts_again_from_the_vehicle() -> None:
+def test_after_a_push_the_reference_is_near_the_vehicle_again() -> None:
     planner = Planner(DT_S)
     planner.step(5.0, 6.7, [])
-    assert planner.speed_mps == pytest.approx(5.0, abs=0.1)
+    assert planner.speed_mps == pytest.approx(5.0, abs=STRAY_MPS + 0.1)
