@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-import platform
 import random
 import sys
 import traceback
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from datetime import datetime, timezone
-from importlib.metadata import version
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-import basu
 from basu.drive import drive
 from basu.errors import UserError
-from basu.history.files import write_history
 from basu.managers.agent_loader import load_agent
 from basu.managers.agents_manager import AgentsManager
 from basu.managers.base_manager import Run
@@ -26,10 +22,8 @@ from basu.managers.sensors_manager import SensorsManager
 from basu.options import STEP_S
 from basu.outcome import Status
 from basu.progress_bar import ProgressBar
-from basu.report import picture
-from basu.report.console import table
-from basu.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, make_folder, point_latest, write_json
-from basu.report.result import result
+from basu.remains import leave, run_config
+from basu.report.folder import make_folder
 from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription, read_routes
 from basu.simulator import OwnServer, asking, connect, ticked_by_us, weather_called, world_of
@@ -42,12 +36,10 @@ if TYPE_CHECKING:
 
     import carla
 
-    from basu.drive import Driven
     from basu.managers.agent_loader import LoadedAgent
     from basu.metrics.score import Scoring
     from basu.options import RunOptions
     from basu.outcome import Outcome
-    from basu.routing.lane_graph import LaneGraph
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,34 +148,26 @@ def _one(
 ) -> Outcome:
     """One run from an empty road to its folder."""
     started = datetime.now(timezone.utc)
-    config = agents.config
-    with asking(f"loading {description.town}"):
-        if repetition and simulator.own:
-            simulator.client.reload_world(reset_settings=False)
-        world = world_of(simulator.client, description.town)
-        carla_map = world.get_map()
+    world = _world(simulator, description.town, fresh=repetition > 0)
+    carla_map = world.get_map()
     lanes = lane_graph.build(carla_map)
-    own_points = agents.own_route()
-    if own_points is not None:
-        description = RouteDescription(
-            id=f"{description.id}-own", town=description.town, points=own_points, stops=(), source=prepared.loaded.name
-        )
+    description = _agents_own(agents, description) or description
     route = plan(carla_map, description, lanes)
     sensors = SensorsManager(prepared.sensor_file)
     with (
         asking("getting the vehicle ready"),
         ticked_by_us(world, STEP_S),
-        vehicle_at_start(world, route, config.vehicle) as vehicle,
+        vehicle_at_start(world, route, agents.config.vehicle) as vehicle,
         ProgressBar(route.length_m, STEP_S) as bar,
     ):
-        world.set_weather(weather_called(config.weather))
+        world.set_weather(weather_called(agents.config.weather))
         this_run = Run(
             client=simulator.client,
             world=world,
             carla_map=carla_map,
             vehicle=vehicle,
             route=route,
-            config=config,
+            config=agents.config,
             step_s=STEP_S,
             seed=options.seed,
             timeout_s=options.timeout_s,
@@ -192,81 +176,32 @@ def _one(
     if options.debug and driven.agent_error is not None:
         traceback.print_exception(driven.agent_error)
     label = _label(description, prepared)
-    folder = make_folder(options.output, started.astimezone(), prepared.loaded.name, label)
-    _leave(folder, driven, scoring, lanes, _config(options, scoring, prepared, agents, description, simulator, started))
+    config = run_config(options, scoring, prepared.loaded, agents.config, description, simulator.own, started)
+    leave(
+        make_folder(options.output, started.astimezone(), prepared.loaded.name, label), driven, scoring, lanes, config
+    )
     if driven.bug is not None:
         raise driven.bug
     return driven.outcome
+
+
+def _world(simulator: Simulator, town: str, *, fresh: bool) -> carla.World:
+    """The world with ``town`` in it; begun anew between runs in a simulator of our own."""
+    with asking(f"loading {town}"):
+        if fresh and simulator.own:
+            simulator.client.reload_world(reset_settings=False)
+        return world_of(simulator.client, town)
+
+
+def _agents_own(agents: AgentsManager, given: RouteDescription) -> RouteDescription | None:
+    """The agent's own plan in the town of the route it was given, where it has one."""
+    points = agents.own_route()
+    if points is None:
+        return None
+    return RouteDescription(id=f"{given.id}-own", town=given.town, points=points, stops=(), source=given.source)
 
 
 def _label(description: RouteDescription, prepared: Plan) -> str:
     """What a route is called in a folder's name: its file, and its id where the file has several."""
     stem = PurePath(description.source).stem
     return stem if len(prepared.routes) == 1 else f"{stem}-{description.id}"
-
-
-def _config(
-    options: RunOptions,
-    scoring: Scoring,
-    prepared: Plan,
-    agents: AgentsManager,
-    description: RouteDescription,
-    simulator: Simulator,
-    started: datetime,
-) -> dict[str, Any]:
-    """What is needed to run it again."""
-    again = ["basu", "run", options.agent, "--route-id", description.id, "--seed", str(options.seed)]
-    return {
-        "started": started.isoformat(timespec="seconds"),
-        "command": again if options.routes is None else [*again, "--routes", options.routes],
-        "agent": {"name": prepared.loaded.name, "class": prepared.loaded.agent_class.__name__, "file": options.agent},
-        "agent_config": asdict(agents.config),
-        "route": description.id,
-        "town": description.town,
-        "seed": options.seed,
-        "step_s": STEP_S,
-        "step_limit_s": options.step_limit_s,
-        "own_simulator": simulator.own,
-        "scoring": {
-            "penalties": {kind.value: penalty for kind, penalty in scoring.penalties.items()},
-            "infraction_weight": scoring.infraction_weight,
-            "path_following_weight": scoring.path_following_weight,
-        },
-        "versions": {
-            "basu": basu.__version__,
-            "carla": version("carla"),
-            "numpy": np.__version__,
-            "python": platform.python_version(),
-        },
-    }
-
-
-def _leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, config: dict[str, Any]) -> None:
-    """Write the folder of a run and show its table."""
-    history = driven.history
-    ticks = 0 if history is None else len(history.frames)
-    meta = {
-        "simulated_s": ticks * STEP_S,
-        "wall_s": round(driven.wall_s, 3),
-        "ticks": ticks,
-        "step_s": STEP_S,
-        "first_server_frame": driven.first_frame,
-        "started": config["started"],
-        "seed": config["seed"],
-        "agent": config["agent"],
-        "vehicle": config["agent_config"]["vehicle"],
-        "weather": config["agent_config"]["weather"],
-        "route": config["route"],
-        "town": config["town"],
-        "versions": config["versions"],
-    }
-    document = result(driven.outcome, history, scoring, meta)
-    print(table(document))
-    write_json(folder / CONFIG_FILE, config)
-    write_json(folder / RESULT_FILE, document)
-    if history is not None:
-        write_history(folder, history)
-        title = f"{config['agent']['name']} on route {config['route']} of {config['town']}: {document['status']}"
-        picture.draw(folder / PICTURE_FILE, history, lanes.streets(), title)
-    point_latest(folder)
-    print(f"result folder     {folder}")

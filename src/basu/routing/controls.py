@@ -46,12 +46,10 @@ def controls_on(
     for first, end in zip([0, *changes.tolist()], [*changes.tolist(), len(road_id)], strict=True):
         lane = int(lane_id[first])
         for landmark in by_road.get(int(road_id[first]), ()):
-            if not any(min(pair) <= lane <= max(pair) for pair in landmark.get_lane_validities()):
+            at = _nearest(landmark, lane, road_s_m[first:end])
+            if at is None:
                 continue
-            stretch_m = road_s_m[first:end]
-            if not stretch_m.min() - PASS_SLACK_M <= landmark.s <= stretch_m.max() + PASS_SLACK_M:
-                continue
-            at = first + int(np.argmin(np.abs(stretch_m - landmark.s)))
+            at += first
             ahead_m = (landmark.s - float(road_s_m[at])) * (1.0 if lane < 0 else -1.0)
             found.append(
                 Control(
@@ -65,3 +63,12 @@ def controls_on(
                 )
             )
     return tuple(sorted(found, key=lambda control: (control.s_m, control.landmark_id)))
+
+
+def _nearest(landmark: carla.Landmark, lane: int, stretch_m: NDArray[np.float64]) -> int | None:
+    """The point of a stretch on the landmark's road that is nearest to its line; None where it does not govern it."""
+    if not any(min(pair) <= lane <= max(pair) for pair in landmark.get_lane_validities()):
+        return None
+    if not stretch_m.min() - PASS_SLACK_M <= landmark.s <= stretch_m.max() + PASS_SLACK_M:
+        return None
+    return int(np.argmin(np.abs(stretch_m - landmark.s)))
