@@ -1,7 +1,8 @@
 """Comfort: acceleration and jerk as passengers feel them. Reported, not scored.
 
 The comfort limits of normal driving here are 1.0 m/s² and 1.0 m/s³. Accelerations come from the recorded velocities,
-along and across the vehicle, over a window of 0.5 s: what a standing passenger has to answer, not a wheel's rattle.
+along and across the vehicle, over a window of 0.5 s: what a standing passenger has to answer, not a wheel's
+rattle. The jerk is the change of that smoothed acceleration, smoothed over the same window once more.
 """
 
 from __future__ import annotations
