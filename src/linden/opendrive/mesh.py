@@ -14,20 +14,10 @@ from linden.opendrive.errors import MapError
 from linden.opendrive.evaluate.pieces import F64, I64
 from linden.opendrive.evaluate.strips import edges_of, strips_of
 from linden.opendrive.evaluate.tables import Tables, tables_of
+from linden.opendrive.lane_table import LANES
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import LaneType, SemanticTag
 
-LANES = np.dtype(
-    [
-        ("road_id", "i4"),
-        ("section", "i4"),
-        ("lane_id", "i4"),
-        ("junction", "i4"),  # -1 outside of junctions
-        ("type_bits", "u4"),  # values.enums.LaneType
-        ("speed_limit_mps", "f8"),  # nan where the map says nothing
-        ("tag", "u1"),  # values.enums.SemanticTag
-    ]
-)
 _TAGS = {
     LaneType.SIDEWALK: SemanticTag.SIDEWALKS,
     LaneType.BORDER: SemanticTag.SIDEWALKS,  # the kerb belongs to the pavement, as in CARLA's towns

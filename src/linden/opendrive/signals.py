@@ -1,52 +1,18 @@
 """Signals as the actors of a simulation need them: where they stand, whom they concern, where they take effect."""
 
 from collections import defaultdict
-from typing import NamedTuple
 
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.furniture import Signal, SignalReference, Validity
 from linden.opendrive.landmarks import landmark_transforms
 from linden.opendrive.links import LaneLinks, lane_links
 from linden.opendrive.model import NO_JUNCTION, OpenDrive, Road
+from linden.opendrive.placed import AffectedLane, PlacedSignal
 from linden.opendrive.triggers import LanePlace, trigger_boxes
 from linden.values.enums import LaneType
-from linden.values.space import BoundingBox, Rotation, Transform
+from linden.values.space import Rotation, Transform
 
 _MODEL_YAW_DEG = 90.0  # CARLA's light and sign models are turned by this against their signal
-
-
-class AffectedLane(NamedTuple):
-    """A driving lane that a signal speaks to, and the s at which it does."""
-
-    road_id: int
-    lane_id: int
-    s_m: float
-
-
-class PlacedSignal(NamedTuple):
-    """A signal in CARLA's frame.
-
-    ``landmark`` is the pose the client computes; the actor stands at ``transform``: the same place, upright, turned by
-    90 degrees as CARLA's models are. ``trigger_volumes`` are local to ``transform``, one for each approach, x across
-    the lanes, empty where the signal concerns no driving lane. ``junction_id`` is the junction guarded, else -1.
-    """
-
-    signal_id: str
-    type: str
-    subtype: str
-    value: float | None
-    unit: str
-    name: str
-    is_dynamic: bool
-    is_light: bool
-    road_id: int
-    s_m: float
-    landmark: Transform
-    transform: Transform
-    controllers: tuple[str, ...]
-    junction_id: int
-    lanes: tuple[AffectedLane, ...]
-    trigger_volumes: tuple[BoundingBox, ...]
 
 
 def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:

@@ -8,7 +8,7 @@ from linden.physics.step import CONTACT
 from linden.sensors.instrument import Instrument
 from linden.simulation import rows
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
-from linden.simulation.scenery import signal_posts
+from linden.simulation.scenery import scenery_of
 from linden.traffic.lights import Traffic
 from linden.values.actors import ActorDescription
 from linden.values.enums import TrafficLightState
@@ -52,8 +52,8 @@ class Episode:
         self.elapsed_s = 0.0
         self.actors = ActorTable()
         self.bodies = Bodies()
-        self.traffic = Traffic(world_map.opendrive)
-        self.statics = signal_posts(self.traffic.actors, world_map.ground)
+        signals, self.statics = scenery_of(world_map)
+        self.traffic = Traffic(signals)
         self.weather = WeatherParameters()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id

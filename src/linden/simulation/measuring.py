@@ -33,7 +33,7 @@ def measure(episode: Episode, listened: Container[int]) -> Measurements:
             now_s=episode.elapsed_s,
             pose=episode.actors.transform(sensor_id),
             angular_velocity_radps=_turning(episode, sensor),
-            origin_deg=episode.map.opendrive.geo_origin,
+            origin_deg=episode.map.geo_origin_deg,
             gravity_mps2=episode.imu_gravity_mps2,
         )
         reading, after = observe(instrument, moment, wanted=sensor.stream_id in listened)

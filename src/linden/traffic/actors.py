@@ -1,15 +1,16 @@
 """Traffic lights and signs as actors of the world: made from the map's signals, never spawned."""
 
 from collections import defaultdict
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from linden.geometry import compose
-from linden.opendrive.furniture import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE
-from linden.opendrive.model import OpenDrive
-from linden.opendrive.signals import PlacedSignal, place
+from linden.opendrive.furniture import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE, Controller
+from linden.opendrive.placed import PlacedSignal
 from linden.traffic.cycle import RED_OF_A_SINGLE_LIGHT_S, TIMES_S, LightPlan, plan
+from linden.traffic.triggers import TriggerGrid, trigger_grid
 from linden.values.enums import SemanticTag, TrafficLightState
 from linden.values.space import BoundingBox, Transform
 from linden.world.blueprints import DOT
@@ -37,16 +38,32 @@ class TrafficActor(NamedTuple):
     light: int = NO_LIGHT
 
 
-def traffic_actors(opendrive: OpenDrive) -> tuple[tuple[TrafficActor, ...], LightPlan]:
-    """Return the map's lights, then its signs, each in the order of the file, and which lights change together."""
-    placed = place(opendrive)
-    lights = [signal for signal in placed if signal.is_light]
-    signs = [signal for signal in placed if not signal.is_light and signal.name != PAINTED]
-    actors = [_actor(signal, light) for light, signal in enumerate(lights)]
-    return (*actors, *(_actor(signal, NO_LIGHT) for signal in signs)), _plan(opendrive, lights)
+class Signals(NamedTuple):
+    """What the signals of a map come to; nothing in it ever changes, so every episode on the map begins with the same.
+
+    Attributes:
+        actors: every light, then every sign, each in the order of the map.
+        plan: which lights change together.
+        grid: where a vehicle is under which light.
+    """
+
+    actors: tuple[TrafficActor, ...]
+    plan: LightPlan
+    grid: TriggerGrid
+
+    @staticmethod
+    def of(placed: Sequence[PlacedSignal], controllers: Sequence[Controller]) -> "Signals":
+        """Make the actors of a map's signals; ``controllers`` stand in the order of the file."""
+        lights = [signal for signal in placed if signal.is_light]
+        signs = [signal for signal in placed if not signal.is_light and signal.name != PAINTED]
+        actors = (
+            *(_actor(signal, light) for light, signal in enumerate(lights)),
+            *(_actor(signal, NO_LIGHT) for signal in signs),
+        )
+        return Signals(actors, _plan(lights, controllers), trigger_grid(_world_volumes(actors)))
 
 
-def world_volumes(actors: tuple[TrafficActor, ...]) -> list[tuple[int, BoundingBox]]:
+def _world_volumes(actors: tuple[TrafficActor, ...]) -> list[tuple[int, BoundingBox]]:
     """Return the volumes of all lights as boxes in the world, each with the number of its light."""
     return [
         (actor.light, _in_world(actor.transform, volume))
@@ -83,12 +100,12 @@ def _type_id(signal: PlacedSignal) -> str:
     return {STOP_SIGN_TYPE: "traffic.stop", YIELD_SIGN_TYPE: "traffic.yield"}.get(signal.type, "traffic.unknown")
 
 
-def _plan(opendrive: OpenDrive, lights: list[PlacedSignal]) -> LightPlan:
+def _plan(lights: list[PlacedSignal], controllers: Sequence[Controller]) -> LightPlan:
     """Group the lights as CARLA's TrafficLightManager does: by their first controller, and controllers by junction.
 
     Controllers take turns in their ``sequence``, then as they stand in the file. A light without controller is alone.
     """
-    rank = {item.id: (item.sequence, order) for order, item in enumerate(opendrive.controllers)}
+    rank = {item.id: (item.sequence, order) for order, item in enumerate(controllers)}
     members: dict[str, list[int]] = defaultdict(list)
     junction: dict[str, str] = {}
     for light, signal in enumerate(lights):

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.errors import Refusal
-from linden.opendrive.model import OpenDrive
 from linden.traffic import cycle
-from linden.traffic.actors import NO_LIGHT, TrafficActor, traffic_actors, world_volumes
-from linden.traffic.triggers import F64, I32, owners_over, trigger_grid
+from linden.traffic.actors import NO_LIGHT, Signals
+from linden.traffic.triggers import F64, I32, owners_over
 from linden.values.enums import TrafficLightState
 
 TIMED = (TrafficLightState.RED, TrafficLightState.YELLOW, TrafficLightState.GREEN)
@@ -24,14 +23,12 @@ class Traffic:
         state: how the lights stand; replaced whole.
     """
 
-    def __init__(self, opendrive: OpenDrive) -> None:
-        """Make the actors of a map's signals and begin their cycles."""
-        self.actors: tuple[TrafficActor, ...]
-        self.actors, self._plan = traffic_actors(opendrive)
+    def __init__(self, signals: Signals) -> None:
+        """Begin the cycles of a map's lights."""
+        self.actors, self._plan, self._grid = signals
         self.lights = range(sum(actor.light != NO_LIGHT for actor in self.actors))
         self.state = cycle.initial(self._plan)
         self._shown: cycle.LightState | None = None
-        self._grid = trigger_grid(world_volumes(self.actors))
         self._compile()
 
     def step(self, dt_s: float) -> None:

@@ -1,19 +1,11 @@
 """The maps a server offers: found by name, made ready once, and kept for the next load."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
 from linden.errors import Refusal, UserError
-from linden.ground import Ground
-from linden.opendrive.mesh import road_mesh
-from linden.opendrive.model import OpenDrive
-from linden.opendrive.parse import parse
-from linden.opendrive.spawn import spawn_points
-from linden.values.space import Transform
+from linden.world.map_facts import MapFacts, derive
 
 HOME_MAP = "Linden"
 GENERATED_MAP = "OpenDriveMap"
@@ -25,53 +17,32 @@ _FOLDERS = ("/Game/Carla/Maps/", "Carla/Maps/")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LoadedMap:
+class LoadedMap(MapFacts):
     """A map made ready to be driven on.
 
     Attributes:
         name: without a folder.
-        lane_of_triangle: (T,) which lane each triangle of the ground belongs to.
-        lanes: (L,) the lanes as ``opendrive.mesh`` tabulates them.
+        text: the OpenDRIVE text, word for word as it was read.
     """
 
     name: str
     text: str
-    opendrive: OpenDrive
-    ground: Ground
-    lane_of_triangle: NDArray[np.int32]
-    lanes: NDArray[np.void]
-    spawn_points: tuple[Transform, ...]
 
     @property
     def full_name(self) -> str:
         """The name as the client knows it."""
         return _FOLDERS[1] + self.name
 
-    @classmethod
-    def from_text(cls, name: str, text: str) -> "LoadedMap":
-        """Make a map ready.
-
-        Raises:
-            MapError: the text is no OpenDRIVE that can be used.
-        """
-        opendrive = parse(text)
-        mesh = road_mesh(opendrive)
-        return cls(
-            name=name,
-            text=text,
-            opendrive=opendrive,
-            ground=Ground.from_triangles(mesh.vertices, mesh.triangles),
-            lane_of_triangle=mesh.lane_of_triangle,
-            lanes=mesh.lanes,
-            spawn_points=spawn_points(opendrive),
-        )
-
 
 class MapLibrary:
     """The packaged maps, those of the folders a user named, and what clients sent."""
 
-    def __init__(self, folders: Iterable[Path] = ()) -> None:
+    def __init__(self, folders: Iterable[Path] = (), facts_of: Callable[[str], MapFacts] = derive) -> None:
         """Look for maps; the files are read when they are loaded.
+
+        Args:
+            folders: where to look, beside the packaged maps.
+            facts_of: gives the facts of an OpenDRIVE text, anew or out of a cache.
 
         Raises:
             UserError: a folder does not exist or holds no map.
@@ -83,6 +54,7 @@ class MapLibrary:
                 problem = "holds no .xodr file" if folder.is_dir() else "is not a folder"
                 raise UserError(f"--maps {folder} {problem}; name a folder of OpenDRIVE maps")
             self._files.update({file.stem: file for file in found})
+        self._facts_of = facts_of
         self._loaded: dict[str, LoadedMap] = {}
 
     def names(self) -> list[str]:
@@ -101,7 +73,7 @@ class MapLibrary:
                 raise Refusal(f"Map '{name}' not found; this server has: {', '.join(sorted(self._files))}")
             try:
                 text = self._files[bare].read_text("utf-8")
-                self._loaded[bare] = LoadedMap.from_text(bare, text)
+                self._loaded[bare] = self._make_ready(bare, text)
             except (OSError, UnicodeDecodeError, UserError) as error:
                 raise Refusal(f"Map '{name}' cannot be read: {error}") from error
         return self._loaded[bare]
@@ -113,7 +85,10 @@ class MapLibrary:
             Refusal: the text is no OpenDRIVE that can be used.
         """
         try:
-            self._loaded[GENERATED_MAP] = LoadedMap.from_text(GENERATED_MAP, text)
+            self._loaded[GENERATED_MAP] = self._make_ready(GENERATED_MAP, text)
         except UserError as error:
             raise Refusal(f"the OpenDRIVE text cannot be used: {error}") from error
         return self._loaded[GENERATED_MAP]
+
+    def _make_ready(self, name: str, text: str) -> LoadedMap:
+        return LoadedMap(name=name, text=text, **vars(self._facts_of(text)))

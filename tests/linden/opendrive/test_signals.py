@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linden.opendrive.parse import parse
-from linden.opendrive.signals import PlacedSignal, place
+from linden.opendrive.placed import PlacedSignal
+from linden.opendrive.signals import place
 from opendrive_texts import lane, line, opendrive, road, section, signal, street_through_junction
 
 LINDEN = (resources.files("linden") / "data" / "Linden.xodr").read_text()

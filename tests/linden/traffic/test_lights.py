@@ -7,6 +7,8 @@ import pytest
 
 from linden.errors import Refusal
 from linden.opendrive.parse import parse
+from linden.opendrive.signals import place as place_signals
+from linden.traffic.actors import Signals
 from linden.traffic.lights import Traffic
 from linden.values.enums import SemanticTag, TrafficLightState
 from linden.values.snapshot import TRAFFIC_LIGHT_ROW
@@ -60,7 +62,8 @@ def crossing(*signals_of_arms: str) -> Traffic:
     <control signalId="south"/></controller><controller id="9" name="along" sequence="1"><control signalId="east"/>
     <control signalId="west"/></controller><junction id="100" name="">{links}<controller id="8" type="0"/>
     <controller id="9" type="0"/></junction></OpenDRIVE>"""
-    return Traffic(parse(text))
+    opendrive = parse(text)
+    return Traffic(Signals.of(place_signals(opendrive), opendrive.controllers))
 
 
 LIGHT = "1000001"

@@ -21,7 +21,8 @@ from linden.opendrive.furniture import (
 )
 from linden.opendrive.landmarks import landmark_transforms, unmoved_transforms
 from linden.opendrive.model import OpenDrive, Road
-from linden.opendrive.signals import PlacedSignal, place
+from linden.opendrive.placed import PlacedSignal
+from linden.opendrive.signals import place
 
 _GUARDING_TYPES = {STOP_SIGN_TYPE, YIELD_SIGN_TYPE}
 

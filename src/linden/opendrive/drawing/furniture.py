@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from linden.opendrive.drawing.ink import GREEN, INK, PAINT, RED, SPAWN, YELLOW, group, points
 from linden.opendrive.evaluate.tables import Tables
 from linden.opendrive.furniture import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE, RoadObject
-from linden.opendrive.signals import PlacedSignal
+from linden.opendrive.placed import PlacedSignal
 from linden.values.space import Transform
 
 _SIGN_M = 1.1  # half a sign's size on the picture; true ones would be specks

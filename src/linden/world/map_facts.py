@@ -1,0 +1,59 @@
+"""What a simulation needs to know of a map, and how it is derived from the OpenDRIVE text."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.ground import Ground
+from linden.opendrive.furniture import Controller
+from linden.opendrive.placed import PlacedSignal
+from linden.values.space import Transform
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MapFacts:
+    """All that is derived from a map. Nobody changes it: every episode on the map has the same.
+
+    Attributes:
+        ground: the height under any point.
+        lane_of_triangle: (T,) row in ``lanes`` of each triangle of the ground.
+        lanes: (L,) of ``opendrive.lane_table.LANES``.
+        spawn_points: recommended ones.
+        signals: lights and signs, in the order of the map.
+        controllers: what switches lights together, in the order of the map.
+        geo_origin_deg: latitude and longitude of the map's origin.
+    """
+
+    ground: Ground
+    lane_of_triangle: NDArray[np.int32]
+    lanes: NDArray[np.void]
+    spawn_points: tuple[Transform, ...]
+    signals: tuple[PlacedSignal, ...]
+    controllers: tuple[Controller, ...]
+    geo_origin_deg: tuple[float, float]
+
+
+def derive(text: str) -> MapFacts:
+    """Derive everything from an OpenDRIVE text; about a second for a town.
+
+    Raises:
+        MapError: the text is no OpenDRIVE that can be used.
+    """
+    # here, not above: with a map out of the cache a start does not pay for them
+    from linden.opendrive.mesh import road_mesh  # noqa: PLC0415 - see above
+    from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
+    from linden.opendrive.signals import place  # noqa: PLC0415 - see above
+    from linden.opendrive.spawn import spawn_points  # noqa: PLC0415 - see above
+
+    opendrive = parse(text)
+    mesh = road_mesh(opendrive)
+    return MapFacts(
+        ground=Ground.from_triangles(mesh.vertices, mesh.triangles),
+        lane_of_triangle=mesh.lane_of_triangle,
+        lanes=mesh.lanes,
+        spawn_points=spawn_points(opendrive),
+        signals=place(opendrive),
+        controllers=opendrive.controllers,
+        geo_origin_deg=opendrive.geo_origin,
+    )
