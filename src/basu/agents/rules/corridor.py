@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from basu.agents.driving.path import Path, Place
@@ -39,6 +41,13 @@ class Strip:
         end = path.index_at(place.s_m + AHEAD_M) + 1
         self._points_m = path.points_m[self._first : end]
         self._path = path
+
+    def away_m(self, others: Sequence[Other]) -> list[float]:
+        """How far each body's centre is from the strip's middle line."""
+        centres_m = np.array([(other.x_m, other.y_m) for other in others])
+        gaps = centres_m[:, None, :] - self._points_m[None, :, :]  # (N, W, 2)
+        distances: list[float] = np.sqrt(np.einsum("nwd,nwd->nw", gaps, gaps).min(axis=1)).tolist()
+        return distances
 
     def footprint(self, other: Other, after_s: float = 0.0) -> Footprint | None:
         """The extent of a body now, or after driving straight on for a while; None where it is off the strip's ends."""

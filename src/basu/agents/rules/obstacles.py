@@ -69,7 +69,9 @@ class Obstacles:
         )
         found: list[Restriction] = []
         waited_for: list[int] = []
-        for other in near:
+        for other, away_m in zip(near, sight.strip.away_m(near), strict=True):
+            if away_m > _reach_m(other) + sight.half_width_m:
+                continue
             now = sight.strip.footprint(other)
             if now is not None and now.overlaps(sight.half_width_m):
                 found.extend(_in_the_way(sight, now, other))
@@ -126,6 +128,12 @@ def _in_the_way(sight: Sight, now: Footprint, other: Other) -> Iterable[Restrict
         f"{other.kind.value} ahead",
         STANDOFF_M - CONTACT_M + drives_on_at_least_m - drives_on_m,
     )
+
+
+def _reach_m(other: Other) -> float:
+    """How far from its centre a body is felt: its own size, and where it gets within the time that is looked ahead."""
+    times_s = WALKER_TIMES_S if other.kind is Kind.WALKER else VEHICLE_TIMES_S
+    return other.half_length_m + other.half_width_m + other.speed_mps * times_s[-1]
 
 
 def _soonest_s(distance_m: float, speed_mps: float) -> float:
