@@ -9,7 +9,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar, cast
 
+import llvmlite.binding
 import numba
+import numpy as np
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -37,3 +39,9 @@ def fingerprint(*sources: Path) -> int:
     for source in sorted(sources):
         digest.update(source.read_bytes())
     return int.from_bytes(digest.digest()[:8], "little") >> 2
+
+
+def machine() -> str:
+    """Return what else decides the last bits of a computed number: the versions of what computes, and the processor."""
+    processor = f"{llvmlite.binding.get_host_cpu_name()} {llvmlite.binding.get_host_cpu_features().flatten()}"
+    return f"numpy {np.__version__}, numba {numba.__version__}, {processor}"

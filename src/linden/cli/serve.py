@@ -65,11 +65,12 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
+    from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
     from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
 
     registry.load_handlers()
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
-    maps = MapLibrary(arguments.maps)
+    maps = MapLibrary(arguments.maps, MapCache.of_user().facts_of)
     try:
         world_map = maps.load(arguments.map)
     except Refusal as refusal:
