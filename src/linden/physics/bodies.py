@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.physics.columns import finite
+from linden.physics.columns import finite, twice
 from linden.physics.state import BODY, PROP, VEHICLE, WALKER
 from linden.physics.vehicle.cockpit import Cockpits
 from linden.physics.vehicle.parameters import check, default_wheel_offsets, local_wheels, yaw_inertia_kgm2
@@ -31,8 +31,7 @@ class Bodies(Cockpits):
         free = np.flatnonzero(~self.alive[: self.count])
         slot = int(free[0]) if len(free) else self.count
         if slot == len(self.alive):
-            self.state = np.concatenate([self.state, np.zeros_like(self.state)])
-            self.specs = np.concatenate([self.specs, np.zeros_like(self.specs)])
+            self.state, self.specs = twice(self.state), twice(self.specs)
         self.count = max(self.count, slot + 1)
         self.state[slot] = np.zeros((), BODY)
         s = self.state
