@@ -63,7 +63,8 @@ class Episode:
             first_light, first_light + len(self.light_ids)
         )  # they come one after the other, to stay
         self._light_actor_id = np.array(self.light_ids, np.int32)
-        self._limit_of_lane_kmh = world_map.lanes["speed_limit_mps"] * _MPS_TO_KMH
+        lanes = world_map.lanes  # those in a junction lie over one another: there the limit of the way in goes on
+        self._limit_of_lane_kmh = np.where(lanes["junction"] < 0, lanes["speed_limit_mps"] * _MPS_TO_KMH, np.nan)
         self.contacts: NDArray[np.void] = np.zeros(0, CONTACT)
         self.instruments: dict[int, Instrument] = {}
         self._speed_limit_kmh: dict[int, float] = {}

@@ -94,7 +94,7 @@ def model(facts: dict[str, Any], kind: dict[str, Any]) -> VehicleModel:
         gear_switch_time=kind["gear_switch_s"],
         clutch_strength=kind["clutch_strength"],
         final_ratio=kind["final_ratio"],
-        forward_gears=tuple(Gear(ratio) for ratio in kind["gears"]),
+        forward_gears=tuple(Gear(*gear) for gear in kind["gears"]),
         mass=float(facts["mass_kg"]),
         drag_coefficient=kind["drag"],
         center_of_mass=Vector3D(*kind["centre_of_mass_m"]),

@@ -38,6 +38,9 @@ class Fleet:
     def speeds_mps(self) -> dict[str, float]:
         return {name: float(np.linalg.norm(self.bodies.velocity[slot])) for name, slot in self.slots.items()}
 
+    def gears(self) -> dict[str, int]:
+        return {name: int(self.bodies.gear[slot]) for name, slot in self.slots.items()}
+
 
 def base_type(name: str) -> str:
     return next(a.value for a in LIBRARY.find(name).definition.attributes if a.id == "base_type")
@@ -80,3 +83,18 @@ def test_nobody_pedals_faster_than_thirty(drive: dict[str, dict[str, float]]) ->
     bicycles = [speed for name, speed in drive["in the end"].items() if base_type(name) == "bicycle"]
     assert len(bicycles) == 3
     assert all(18.0 < 3.6 * speed_mps < 30.0 for speed_mps in bicycles)
+
+
+def test_no_gearbox_hunts_at_a_steady_throttle() -> None:
+    fleet = Fleet()
+    changes = dict.fromkeys(fleet.slots, 0)
+    for throttle in (0.4, 0.7):
+        fleet.drive(20.0, VehicleControl(throttle=throttle))
+        before = fleet.gears()
+        for _ in range(200):
+            fleet.drive(0.05, VehicleControl(throttle=throttle))
+            now = fleet.gears()
+            for name in changes:
+                changes[name] += now[name] != before[name]
+            before = now
+    assert {name: count for name, count in changes.items() if count > 6} == {}  # in 20 s

@@ -115,6 +115,8 @@ def test_the_lincoln_drives_as_it_was_recorded() -> None:
     physics, offsets = lincoln.vehicle
     assert (physics.mass, physics.max_rpm, physics.final_ratio, physics.moi) == (1696.0, 6500.0, 3.21, 1.0)
     assert [gear.ratio for gear in physics.forward_gears] == [4.584, 2.964, 1.912, 1.446, 1.0, 0.746]
+    assert [gear.up_ratio for gear in physics.forward_gears] == [0.54, 0.5, 0.46, 0.46, 0.46, 0.46]
+    assert {gear.down_ratio for gear in physics.forward_gears} == {0.23}
     assert physics.torque_curve[3] == (3000.0, 695.0)
     assert [wheel.max_handbrake_torque for wheel in physics.wheels] == [0.0, 0.0, 1600.0, 1600.0]
     assert [wheel.max_steer_angle for wheel in physics.wheels] == [70.0, 70.0, 0.0, 0.0]
