@@ -1,11 +1,16 @@
 """The command ``linden``: ``serve`` runs the server, ``map`` makes, checks and draws maps."""
 
 import argparse
+import os
+import select
 import sys
 from collections.abc import Callable, Sequence
 
 from linden import CARLA_VERSION, __version__
 from linden.errors import UserError
+
+NOBODY_READS = 141
+"""Exit code of a program whose output nobody reads any more, as the shell counts it: 128 and the number of SIGPIPE."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -27,7 +32,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = parser().parse_args(argv)
     command: Callable[[argparse.Namespace], int] = arguments.command
     try:
-        return command(arguments)
+        code = command(arguments)
+        sys.stdout.flush()
     except UserError as error:
         print(f"linden: {error}", file=sys.stderr)  # noqa: T201 - what a command says to its user
         return 2
+    except BrokenPipeError:
+        if _output_is_read():
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for what is left to be written at the exit
+        return NOBODY_READS
+    return code
+
+
+def _output_is_read() -> bool:
+    """Tell whether somebody still reads what we print: ``linden map check FILE | head`` stops reading early."""
+    ends = select.poll()
+    ends.register(sys.stdout.fileno(), 0)  # an end that has gone is told without being asked for
+    return not ends.poll(0)

@@ -1,7 +1,9 @@
 """``linden serve``: open the ports, load the map, make the kernels ready, serve until told to stop."""
 
 import argparse
+import gc
 import logging
+import os
 import signal
 import sys
 from collections.abc import Iterator
@@ -49,8 +51,10 @@ def run(arguments: argparse.Namespace) -> int:
     """
     logging.basicConfig(level=logging.WARNING, stream=sys.stderr, format="linden: %(levelname)s: %(message)s")
     logging.getLogger("linden").setLevel(arguments.log_level.upper())  # the compiler's own log is nobody's business
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start one a core, and they spin; we are one thread
     with _ending_cleanly():
-        server = _make_server(arguments)
+        with _collector_paused():
+            server = _make_server(arguments)
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, lambda _number, _frame: server.stop())
         server.run()
@@ -71,16 +75,27 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     registry.load_handlers()
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
     maps = MapLibrary(arguments.maps, MapCache.of_user().facts_of)
-    try:
-        world_map = maps.load(arguments.map)
-    except Refusal as refusal:
-        raise UserError(f"--map: {refusal}") from refusal
-    with _told_of_compiling():  # all of them now, so that a client's first tick takes no longer than the others
+    with _told_of_compiling():  # all kernels now, so that a client's first tick takes no longer than the others
+        try:
+            world_map = maps.load(arguments.map)
+        except Refusal as refusal:
+            raise UserError(f"--map: {refusal}") from refusal
         warm_up()
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
     server = Server(simulation, maps, frames, ports)
     _say(f"linden: ready, rpc port {port_of(ports.rpc)}, streaming port {port_of(ports.streaming)}")
     return server
+
+
+@contextmanager
+def _collector_paused() -> Iterator[None]:
+    """Look for no garbage among what a start makes, nor ever afterwards: nearly all of it stays."""
+    gc.disable()
+    try:
+        yield
+        gc.freeze()
+    finally:
+        gc.enable()
 
 
 @contextmanager
