@@ -11,7 +11,7 @@ from linden.opendrive.placed import PlacedSignal
 from linden.values.space import Transform
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class MapFacts:
     """All that is derived from a map. Nobody changes it: every episode on the map has the same.
 

@@ -16,7 +16,7 @@ _FOLDERS = ("/Game/Carla/Maps/", "Carla/Maps/")
 """How CARLA writes a map's name: the first when it lists them, the second in the map's info."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LoadedMap(MapFacts):
     """A map made ready to be driven on.
 

@@ -1,10 +1,13 @@
 """Claims about `linden map`: what it prints, what it writes, and how it ends."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
-from linden.cli import main
+from linden.cli import NOBODY_READS, main
 from opendrive_texts import street_through_junction
 
 
@@ -77,3 +80,19 @@ def test_streets_that_are_no_geojson_are_told(tmp_path: Path, capsys: pytest.Cap
     streets.write_text("{")
     assert main(["map", "build", str(streets), "-o", str(tmp_path / "map.xodr")]) == 2
     assert "is no GeoJSON" in capsys.readouterr().err
+
+
+def test_output_that_nobody_reads_ends_it_quietly(good_map: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    try:
+        ended = subprocess.run(
+            [sys.executable, "-m", "linden.cli", "map", "info", str(good_map)],
+            stdout=writer,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    finally:
+        os.close(writer)
+    assert (ended.returncode, ended.stderr) == (NOBODY_READS, "")

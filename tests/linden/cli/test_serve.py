@@ -30,6 +30,13 @@ def test_an_idle_server_is_light() -> None:
         assert (after.user + after.system - before.user - before.system) / 3.0 < 0.2
 
 
+def test_the_first_start_keeps_what_it_derived_of_the_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    with running_server() as server:
+        assert len(list((tmp_path / "linden" / "maps").glob("*.npz"))) == 1
+        assert server.log() == ""
+
+
 def test_it_listens_on_loopback_only() -> None:
     with running_server() as server:
         listening = [

@@ -1,0 +1,48 @@
+"""What stands on a map: made once a map, the same for every episode on it, and begun anew by each."""
+
+import numpy as np
+import pytest
+
+from linden.simulation import Simulation
+from linden.simulation.scenery import POST_HALF_WIDTH_M, POST_HEIGHT_M, scenery_of
+from linden.values.enums import SemanticTag, TrafficLightState
+from linden.world.map_facts import derive
+from linden.world.maps import LoadedMap
+from opendrive_texts import signal, street_through_junction
+
+PAVEMENT_M = 0.15
+STREET = street_through_junction(signals=signal("7", 30.0, -5.0, "1000001") + signal("8", 10.0, -5.0, "274"))
+
+
+@pytest.fixture
+def street() -> LoadedMap:
+    return LoadedMap(name="street", text=STREET, **vars(derive(STREET)))
+
+
+def test_every_light_and_sign_stands_on_a_post(street: LoadedMap) -> None:
+    signals, statics = scenery_of(street)
+    assert [actor.sign_id for actor in signals.actors] == ["7", "8"]
+    np.testing.assert_allclose(statics.centre[:, :2], [actor.transform.location[:2] for actor in signals.actors])
+    np.testing.assert_allclose(statics.centre[:, 2], PAVEMENT_M + 0.5 * POST_HEIGHT_M)
+    np.testing.assert_allclose(statics.half, [[POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M]] * 2)
+    assert statics.tag.tolist() == [SemanticTag.POLES] * 2
+
+
+def test_a_map_loaded_again_has_the_same_scenery_and_lights_that_begin_anew(street: LoadedMap) -> None:
+    simulation = Simulation(street)
+    first, rows = simulation.episode, simulation.episode.actors.rows.tobytes()
+    first.traffic.set_colour(0, TrafficLightState.OFF)
+    first.traffic.set_time(0, TrafficLightState.GREEN, 99.0)
+    first.traffic.freeze_all(frozen=True)
+    simulation.step(0.05)
+    assert first.actors.rows.tobytes() != rows
+    simulation.load(street, reset_settings=True)
+    assert simulation.episode.traffic.actors is first.traffic.actors
+    assert simulation.episode.statics is first.statics
+    assert simulation.episode.actors.rows.tobytes() == rows
+
+
+def test_each_map_has_its_own(street: LoadedMap) -> None:
+    text = street_through_junction()
+    assert scenery_of(LoadedMap(name="bare", text=text, **vars(derive(text)))).signals.actors == ()
+    assert len(scenery_of(street).signals.actors) == 2
