@@ -3,6 +3,7 @@
 import math
 from typing import Any, Generic, TypeVar, overload
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -31,8 +32,9 @@ class Column(Generic[Scalar]):
 
 
 def empty_rows(count: int, layout: np.dtype[np.void]) -> Rows:
-    """Return zeroed rows whose fields are attributes too, so that kernels also run as plain Python (for coverage)."""
-    return np.zeros(count, layout).view(np.recarray)
+    """Return zeroed rows; with the compiler off (for coverage) their fields are attributes, as kernels spell them."""
+    rows = np.zeros(count, layout)
+    return rows.view(np.recarray) if numba.config.DISABLE_JIT else rows  # type: ignore[attr-defined] # set by numba at import
 
 
 def twice(rows: Rows) -> Rows:

@@ -26,6 +26,8 @@ STANDARD_GRAVITY_MPS2 = 9.81
 """What CARLA's IMU adds unless told otherwise."""
 
 _MPS_TO_KMH = 3.6
+_NO_LIGHT = int(TrafficLightState.GREEN)
+"""The colour of a vehicle under no light; a plain number, for a kernel takes long to recognise an enum."""
 _MOTION = np.dtype(
     {"names": ["motion"], "formats": [("<f4", (15,))], "offsets": [MOTION_OFFSET], "itemsize": ROW.itemsize}
 )
@@ -228,5 +230,5 @@ class Episode:
         light = self.traffic.over(bodies.position, bodies.rotation, bodies.box_centre, bodies.half_extent, slots)
         rows.write_surroundings(
             self._row_bytes, self._vehicle_rows, self._limits_kmh, light, self.traffic.state.colour,
-            self._light_actor_id, TrafficLightState.GREEN,
+            self._light_actor_id, _NO_LIGHT,
         )  # fmt: skip

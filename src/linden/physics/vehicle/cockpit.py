@@ -56,19 +56,16 @@ class Cockpits(Columns):
         s["gear_command"][slot] = max(-1, min(99, int(control.gear)))
         s["ackermann_on"][slot] = False
 
-    def set_controls(self, slots: NDArray[np.integer], pedals: F64, levers: NDArray[np.bool_], gears: F64) -> None:
-        """Set many at once: ``pedals`` (K, 3) throttle, steer, brake; ``levers`` (K, 3) hand brake, reverse, manual."""
+    def set_controls(self, slots: NDArray[np.integer], controls: F64) -> None:
+        """Set many at once: ``controls`` (K, 7) in the order of VehicleControl's fields; the last of a slot holds."""
         s = self.state
-        clean = np.nan_to_num(pedals, nan=0.0)
+        clean = np.nan_to_num(controls, nan=0.0)
         s["throttle"][slots] = np.clip(clean[:, 0], 0.0, 1.0)
         s["steer"][slots] = np.clip(clean[:, 1], -1.0, 1.0)
         s["brake"][slots] = np.clip(clean[:, 2], 0.0, 1.0)
-        s["hand_brake"][slots], s["reverse"][slots], s["manual_gear_shift"][slots] = (
-            levers[:, 0],
-            levers[:, 1],
-            levers[:, 2],
-        )
-        s["gear_command"][slots] = np.clip(gears, -1, 99)
+        for column, name in enumerate(("hand_brake", "reverse", "manual_gear_shift"), start=3):
+            s[name][slots] = clean[:, column] != 0.0
+        s["gear_command"][slots] = np.clip(clean[:, 6], -1, 99)
         s["ackermann_on"][slots] = False
 
     def control(self, slot: int) -> VehicleControl:
