@@ -4,6 +4,7 @@ On the wire a command is ``[[index, body]]``: a struct of one member around the 
 that of the template's name in the official client's own symbols (which has ApplyLocation before ConsoleCommand).
 """
 
+from math import hypot
 from typing import Annotated, Any, NamedTuple, TypeAlias, cast
 
 from linden.values.actors import ActorDescription
@@ -216,10 +217,32 @@ def decode_commands(raw: object) -> tuple[Command, ...]:
     commands: list[Command] = []
     try:
         for item in raw:
-            commands.append(_decode_command(item))  # noqa: PERF401 - the length says which one failed
+            commands.append(_plain_control(item) or _decode_command(item))  # noqa: PERF401 - the length says which failed
     except WireTypeError as error:
         raise error.inside(f"[{len(commands)}]") from None
     return tuple(commands)
+
+
+def _plain_control(item: Any) -> ApplyVehicleControl | None:  # noqa: ANN401 - whatever msgpack found
+    """Return the command that a traffic script sends for every vehicle in every tick; None where anything is unusual.
+
+    The short way of :func:`_decode_command`: all types are the very ones the client sends, and no number is too large
+    (none is larger than the root of the sum of their squares, which is NaN where one of them is).
+    """
+    try:
+        (((index, (actor_id, control)),),) = (item,)
+        fits = (
+            type(index) is int
+            and index == _CONTROL
+            and type(actor_id) is int
+            and 0 <= actor_id <= _LARGEST_ID
+            and type(control) is list
+            and tuple(map(type, control)) == _CONTROL_TYPES
+            and hypot(*control) <= _LARGEST_PLAIN
+        )
+    except (TypeError, ValueError):
+        return None
+    return ApplyVehicleControl(actor_id, VehicleControl._make(control)) if fits else None
 
 
 def _decode_command(item: Any) -> Command:  # noqa: ANN401 - whatever msgpack found
@@ -234,6 +257,10 @@ def _decode_command(item: Any) -> Command:  # noqa: ANN401 - whatever msgpack fo
         raise error.inside(f" ({COMMANDS[index].__name__})") from None
 
 
+_CONTROL = COMMANDS.index(ApplyVehicleControl)
+_CONTROL_TYPES = tuple(VehicleControl.__annotations__[name] for name in VehicleControl._fields)
+_LARGEST_ID = 2**32 - 1
+_LARGEST_PLAIN = 2**31 - 1  # pedals, wheel and gear are far below
 _DECODERS: tuple[Decoder, ...] = tuple(struct_decoder(command) for command in COMMANDS)
 
 

@@ -1,5 +1,6 @@
 """Claims about batches, the first of them against the official client's own commands."""
 
+import math
 from typing import Any
 
 import msgpack
@@ -79,3 +80,32 @@ def test_a_command_that_does_not_fit_is_named_with_its_place(batch: Any, sentenc
 def test_answers_have_the_wrapping_of_a_value() -> None:
     answers = [commands.done(7), commands.failed("no")]
     assert msgpack.unpackb(msgpack.packb(answers)) == [[[1, 7]], [[0, ["no"]]]]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        [[2, [7, [0.5, 0.1, 0.0, False, False, False, 0]]]],
+        [[2, [7, [0.5, 0.1, 0, False, False, False, 0]]]],  # an integer where a number is meant
+        [[2, [7, [0.5]]]],  # the rest keeps its defaults
+    ],
+)
+def test_the_short_way_of_a_control_decodes_what_the_long_way_does(command: list) -> None:
+    assert decode_commands([command]) == (commands._decode_command(command),)
+
+
+@pytest.mark.parametrize(
+    "broken",
+    [
+        [[2, [7, [True, 0.1, 0.0, False, False, False, 0]]]],
+        [[2, [-1, [0.5, 0.1, 0.0, False, False, False, 0]]]],
+        [[2, [7, [math.nan, 0.1, 0.0, False, False, False, 0]]]],
+        [[2, [7, [0.5, 0.1, 0.0, False, False, False, 2**40]]]],
+        [[2, [7, "throttle"]]],
+        "no command",
+        None,
+    ],
+)
+def test_the_short_way_lets_nothing_through_that_the_long_way_refuses(broken: object) -> None:
+    with pytest.raises(WireTypeError):
+        decode_commands([broken])
