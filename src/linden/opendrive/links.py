@@ -1,10 +1,10 @@
 """Which lane leads into which, in the direction of travel, as LibCarla joins them (MapBuilder.cpp, GetLaneNext)."""
 
 from collections import defaultdict
-from functools import lru_cache
 from typing import NamedTuple
 
 from linden.opendrive.evaluate.tables import Tables, tables_of
+from linden.opendrive.kept import kept
 from linden.opendrive.model import Lane, OpenDrive, Road
 
 _Rows = tuple[int, ...]
@@ -22,7 +22,7 @@ def is_forward(road: Road, lane_id: int) -> bool:
     return (lane_id < 0) == road.is_right_hand
 
 
-@lru_cache(maxsize=4)
+@kept
 def lane_links(opendrive: OpenDrive) -> LaneLinks:
     """Join the lanes of a map. A link to something that does not exist leads nowhere."""
     tables = tables_of(opendrive)

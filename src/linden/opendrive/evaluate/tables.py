@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from linden.opendrive.evaluate.curves import Curves, curves_of
 from linden.opendrive.evaluate.pieces import F64, I64, Pieces, pieces_of
+from linden.opendrive.kept import kept
 from linden.opendrive.model import Cubic, Lane, LaneSection, OpenDrive, Road
 
 LANE = np.dtype(
@@ -97,9 +98,9 @@ class Tables:
         return {key: row for row, key in enumerate(zip(*columns, strict=True))}
 
 
-@lru_cache(maxsize=4)
+@kept
 def tables_of(opendrive: OpenDrive) -> Tables:
-    """Return the arrays of a map; kept for the last few maps, which are values and do not change."""
+    """Return the arrays of a map."""
     roads = opendrive.roads
     lengths_m = [road.length_m for road in roads]
     cells = [

@@ -1,0 +1,36 @@
+"""What is derived from a map is computed once, and goes with the map."""
+
+import gc
+import weakref
+
+from linden.opendrive.evaluate.tables import tables_of
+from linden.opendrive.kept import kept
+from linden.opendrive.links import lane_links
+from linden.opendrive.model import OpenDrive
+from linden.opendrive.parse import parse
+from opendrive_texts import street_through_junction
+
+
+def test_it_is_computed_once_for_each_map() -> None:
+    seen = []
+
+    @kept
+    def name_of(opendrive: OpenDrive) -> str:
+        seen.append(opendrive)
+        return opendrive.name
+
+    first, second = parse(street_through_junction()), parse(street_through_junction())
+    assert [name_of(first), name_of(second), name_of(first), name_of(second)] == ["Test"] * 4
+    assert seen == [first, second]
+
+
+def test_a_map_that_nobody_holds_goes_at_once_with_all_that_was_derived_from_it() -> None:
+    opendrive = parse(street_through_junction())
+    gone = [weakref.ref(thing) for thing in (opendrive, tables_of(opendrive))]
+    lane_links(opendrive)
+    gc.disable()  # so that nothing waits for the collector
+    try:
+        del opendrive
+        assert [reference() for reference in gone] == [None, None]
+    finally:
+        gc.enable()
