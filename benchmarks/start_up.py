@@ -1,0 +1,107 @@
+"""How long a server takes until it is ready, what it holds when idle, and how far that is from the limit.
+
+    python benchmarks/start_up.py [--runs 5]
+
+Every figure is a median over the runs. The limits are processes that simulate nothing: one that only imports numpy and
+numba, and one in which numba is ready for its first kernel as well. The kernels' own cache is filled beforehand; cold
+and warm speak of what is kept of the map. A reload is timed where the client waits for it, ten times a run.
+"""
+
+import argparse
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import carla
+import psutil
+
+IMPORTS = "import numpy, numba\n"
+KERNELS = """from numba.core.registry import cpu_target
+cpu_target.typing_context.refresh()
+cpu_target.target_context.refresh()
+"""
+SAYS_READY = "print('ready', flush=True)\ninput()"
+SERVE = ["-m", "linden.cli", "serve", "--sync", "--port", "0"]
+
+
+class Figures(NamedTuple):
+    wall_s: float
+    cpu_s: float
+    memory_mib: float
+
+
+@contextmanager
+def started(arguments: list[str], cache: Path) -> Iterator[tuple[psutil.Process, str, Figures]]:
+    """Yield a Python process that has said that it is ready, its line, and what it took until then."""
+    begin = time.perf_counter()
+    with subprocess.Popen(
+        [sys.executable, *arguments],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "XDG_CACHE_HOME": str(cache)},
+    ) as child:
+        line = next((line for line in child.stdout if "ready" in line), None)
+        wall_s = time.perf_counter() - begin
+        if line is None:
+            raise SystemExit("the process ended before it was ready")
+        process = psutil.Process(child.pid)
+        times = process.cpu_times()
+        yield process, line, Figures(wall_s, times.user + times.system, process.memory_info().rss / 2**20)
+        child.terminate()
+
+
+def start(arguments: list[str], cache: Path) -> Figures:
+    with started(arguments, cache) as (_, _, figures):
+        return figures
+
+
+def reloads(cache: Path, runs: int) -> list[Figures]:
+    """Load the same map again and again."""
+    with started(SERVE, cache) as (process, line, _):
+        client = carla.Client("127.0.0.1", int(line.split("rpc port ")[1].split(",")[0]))
+        client.set_timeout(20.0)
+        client.get_world()
+        walls_s, before = [], sum(process.cpu_times()[:2])
+        for _ in range(runs):
+            begin = time.perf_counter()
+            client.reload_world(reset_settings=False)
+            walls_s.append(time.perf_counter() - begin)
+        cpu_s = (sum(process.cpu_times()[:2]) - before) / runs  # of all, for the system counts in steps of 0.01 s
+        return [Figures(wall_s, cpu_s, process.memory_info().rss / 2**20) for wall_s in walls_s]
+
+
+def cold_start() -> Figures:
+    with tempfile.TemporaryDirectory() as folder:
+        return start(SERVE, Path(folder))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--runs", type=int, default=5)
+    runs = range(parser.parse_args().runs)
+    with tempfile.TemporaryDirectory() as folder:
+        cache = Path(folder)
+        start(SERVE, cache)  # fills the map's cache, and the kernels' where it is empty
+        rows = {
+            "limit: numpy, numba": [start(["-c", IMPORTS + SAYS_READY], cache) for _ in runs],
+            "limit: ready for kernels": [start(["-c", IMPORTS + KERNELS + SAYS_READY], cache) for _ in runs],
+            "start, map cold": [cold_start() for _ in runs],
+            "start, map warm": [start(SERVE, cache) for _ in runs],
+            "reload_world": reloads(cache, 10 * len(runs)),
+        }
+    print(f"{'':26}wall s   CPU s  resident MiB")
+    for name, figures in rows.items():
+        wall_s, cpu_s, memory_mib = map(statistics.median, zip(*figures, strict=True))
+        print(f"{name:26}{wall_s:6.3f}  {cpu_s:6.3f}  {memory_mib:12.0f}")
+
+
+if __name__ == "__main__":
+    main()
