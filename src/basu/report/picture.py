@@ -67,11 +67,18 @@ def _paths(axes: Axes, history: History) -> None:
 def _marks(axes: Axes, history: History) -> None:
     """Service stops by name, infractions by kind."""
     stops = history.facts.route.stops
+    west_m, east_m = history.facts.route.points_m[:, 0].min(), history.facts.route.points_m[:, 0].max()
     for number, stop in enumerate(stops):
         near = sum(math.hypot(stop.x_m - s.x_m, stop.y_m - s.y_m) < CROWDED_M for s in stops[:number])
         axes.plot(stop.x_m, stop.y_m, marker="D", color=PLANNED, markersize=6, zorder=4)
+        is_east = stop.x_m > west_m + 0.7 * (east_m - west_m)  # a name there would leave the picture
         axes.annotate(
-            stop.name, (stop.x_m, stop.y_m), xytext=(6, 6 - 16 * near), textcoords="offset points", fontsize=7
+            stop.name,
+            (stop.x_m, stop.y_m),
+            xytext=(-6 if is_east else 6, 6 - 16 * near),
+            ha="right" if is_east else "left",
+            textcoords="offset points",
+            fontsize=7,
         )
     for number, found in enumerate(infractions(history)):
         axes.plot(
