@@ -25,6 +25,8 @@ format:  ## mend what can be mended by itself
 
 bench:  ## the figures of benchmarks/README.md, anew
 	@scripts/setup dev
+	$(BIN)/python benchmarks/start_up.py
+	$(BIN)/python benchmarks/stages.py
 	$(BIN)/python benchmarks/ticks.py
 
 docs:  ## the generated pages
