@@ -143,3 +143,23 @@ def test_the_spectator_goes_where_it_is_sent(world) -> None:
 def test_weather_is_kept_as_it_was_set(world) -> None:
     world.set_weather(carla.WeatherParameters.HardRainNoon)
     assert world.get_weather() == carla.WeatherParameters.HardRainNoon
+
+
+def test_a_walker_led_by_a_crowd_stands_on_the_surface_it_is_put_on(client, world, blueprints, point) -> None:
+    walker = world.spawn_actor(blueprints.find("walker.pedestrian.0001"), point)
+    surface = world.get_map().get_waypoint(point.location).transform
+    surface.rotation.yaw = 30.0
+    state = carla.command.ApplyWalkerState(walker.id, surface, 1.3)
+    assert not client.apply_batch_sync([state], True)[0].has_error()
+    seen = walker.get_transform()
+    assert seen.location.z - surface.location.z == pytest.approx(walker.bounding_box.extent.z, abs=0.05)
+    assert walker.get_control().speed == pytest.approx(1.3)
+    assert walker.get_control().direction.y == pytest.approx(0.5, abs=1e-3)  # the sine of its heading
+
+
+def test_a_push_from_the_side_moves_a_vehicle_sideways(world, car) -> None:
+    begin = car.get_transform()
+    side = begin.get_right_vector() * (car.get_physics_control().mass * 3.0)
+    car.add_impulse(carla.Vector3D(side.x, side.y, 0.0))
+    world.tick()
+    assert car.get_velocity().dot(begin.get_right_vector()) > 0.5
