@@ -164,7 +164,7 @@ def _seed_terrain(heights_m: F64, corners_m: F64, planes: F64, frame: F64) -> No
     rows, columns = heights_m.shape
     inside = np.zeros((rows, columns), np.bool_)
     for t in range(len(corners_m)):
-        c, p = corners_m[t], planes[t]
+        c = corners_m[t]
         first_column = math.ceil((min(c[0, 0], c[1, 0], c[2, 0]) - frame[0]) * frame[2])
         last_column = math.floor((max(c[0, 0], c[1, 0], c[2, 0]) - frame[0]) * frame[2])
         first_row = math.ceil((min(c[0, 1], c[1, 1], c[2, 1]) - frame[1]) * frame[2])
@@ -172,8 +172,8 @@ def _seed_terrain(heights_m: F64, corners_m: F64, planes: F64, frame: F64) -> No
         for row in range(first_row, last_row + 1):
             for column in range(first_column, last_column + 1):
                 x, y = frame[0] + column / frame[2], frame[1] + row / frame[2]
-                if _is_inside(p, x, y):
-                    z = p[6] + p[7] * (x - p[0]) + p[8] * (y - p[1])
+                z = _height_on(planes, t, x, y)
+                if z > -math.inf:
                     heights_m[row, column] = min(z, heights_m[row, column])
                     inside[row, column] = True
     for t in range(len(corners_m)):
@@ -235,12 +235,17 @@ def _take_nearer(
 
 
 @kernel
-def _is_inside(plane: F64, x: float, y: float) -> bool:
-    """Tell whether a point lies in a triangle seen from above, by barycentric coordinates."""
-    first = plane[2] * (x - plane[0]) + plane[3] * (y - plane[1])
-    second = plane[4] * (x - plane[0]) + plane[5] * (y - plane[1])
-    least = min(first, second, 1.0 - first - second)
-    return bool(least >= -_EDGE_TOLERANCE)
+def _height_on(planes: F64, t: int, x: float, y: float) -> float:
+    """Return the height of triangle ``t`` over or under a point, by barycentric coordinates; -inf beside it.
+
+    Reads cell by cell: a view of the row would cost more than the arithmetic.
+    """
+    away_x, away_y = x - planes[t, 0], y - planes[t, 1]
+    first = planes[t, 2] * away_x + planes[t, 3] * away_y
+    second = planes[t, 4] * away_x + planes[t, 5] * away_y
+    if first >= -_EDGE_TOLERANCE and second >= -_EDGE_TOLERANCE and first + second <= 1.0 + _EDGE_TOLERANCE:
+        return planes[t, 6] + planes[t, 7] * away_x + planes[t, 8] * away_y
+    return -math.inf
 
 
 @kernel
@@ -249,22 +254,32 @@ def surface_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[fl
 
     All in m. Where no triangle lies there (beside the roads, or all of them higher) the terrain answers, triangle -1.
     """
-    frame = ground.bin_frame
-    column = _bin_of(x, frame[0], frame[2], frame[3])
-    b = _bin_of(y, frame[1], frame[2], frame[4]) * int(frame[3]) + column
-    best_z, best = -math.inf, -1
-    for k in range(ground.bin_start[b], ground.bin_start[b + 1]):
-        t = ground.bin_items[k]
-        plane = ground.planes[t]
-        if _is_inside(plane, x, y):
-            z = plane[6] + plane[7] * (x - plane[0]) + plane[8] * (y - plane[1])
-            if best_z < z <= z_hint + STEP_M:
-                best_z, best = z, t
+    best_z, best = _triangle_under(ground, x, y, z_hint)
     if best < 0:
         return _terrain_under(ground, x, y)
     slope_x, slope_y = ground.planes[best, 7], ground.planes[best, 8]
     up = 1.0 / math.sqrt(1.0 + slope_x * slope_x + slope_y * slope_y)
     return best_z, -slope_x * up, -slope_y * up, up, best
+
+
+@kernel
+def height_under(ground: Ground, x: float, y: float, z_hint: float) -> float:
+    """Return the height alone of what :func:`surface_under` finds: what a wheel asks for, four times a substep."""
+    best_z, best = _triangle_under(ground, x, y, z_hint)
+    return best_z if best >= 0 else _terrain_under(ground, x, y)[0]
+
+
+@kernel
+def _triangle_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[float, int]:
+    """Return the height and number of the triangle under a point; number -1 where there is none."""
+    frame, start, items = ground.bin_frame, ground.bin_start, ground.bin_items
+    b = _bin_of(y, frame[1], frame[2], frame[4]) * int(frame[3]) + _bin_of(x, frame[0], frame[2], frame[3])
+    best_z, best = -math.inf, -1
+    for k in range(start[b], start[b + 1]):
+        z = _height_on(ground.planes, items[k], x, y)
+        if best_z < z <= z_hint + STEP_M:
+            best_z, best = z, items[k]
+    return best_z, best
 
 
 @kernel
@@ -294,7 +309,5 @@ def _surfaces_under(ground: Ground, points_m: F64) -> tuple[F64, I32]:
     heights = np.empty(len(points_m))
     triangles = np.empty(len(points_m), np.int32)
     for i in range(len(points_m)):
-        z, _, _, _, triangle = surface_under(ground, points_m[i, 0], points_m[i, 1], points_m[i, 2])
-        heights[i] = z
-        triangles[i] = triangle
+        heights[i], _, _, _, triangles[i] = surface_under(ground, points_m[i, 0], points_m[i, 1], points_m[i, 2])
     return heights, triangles

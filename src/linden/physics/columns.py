@@ -7,7 +7,7 @@ import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.physics.state import BODY, VEHICLE_SPEC, Rows
+from linden.physics.state import BODY, VEHICLE_SPEC, VEHICLE_WORK, Rows
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 
@@ -89,6 +89,8 @@ class Columns:
     def __init__(self) -> None:
         self.state = empty_rows(_FIRST_CAPACITY, BODY)
         self.specs = empty_rows(_FIRST_CAPACITY, VEHICLE_SPEC)
+        self.work = empty_rows(1, VEHICLE_WORK)
+        """Scratch of the kernels; nothing in it outlives a step."""
         self.count = 0
         """Slots below this have been given out; kernels look no further."""
 

@@ -17,6 +17,8 @@ Body: TypeAlias = Any
 """One record of BODY, as kernels see it."""
 Spec: TypeAlias = Any
 """One record of VEHICLE_SPEC, as kernels see it."""
+Work: TypeAlias = Any
+"""One record of VEHICLE_WORK, as kernels see it."""
 
 NO_BODY, VEHICLE, WALKER, PROP = range(4)
 """Values of the column ``kind``."""
@@ -139,3 +141,37 @@ BODY = np.dtype(
     align=True,
 )
 """What a body does, one record a slot."""
+
+
+VEHICLE_WORK = np.dtype(
+    [
+        # of the wheels, fixed while the motion is solved
+        ("limit_n", "f8", WHEELS),  # of friction
+        ("slip_n", "f8", WHEELS),  # stiffness to slip
+        ("cornering_n", "f8", WHEELS),  # stiffness to slip angle, N/rad
+        ("cosine", "f8", WHEELS),  # of the steering angle
+        ("sine", "f8", WHEELS),
+        ("along_turn_m", "f8", WHEELS),  # what a yaw rate adds to the contact's speed along the wheel
+        ("across_turn_m", "f8", WHEELS),  # and across it
+        ("brake_nm", "f8", WHEELS),
+        ("inertia_nms", "f8", WHEELS),  # over the step
+        ("pushed_nm", "f8", WHEELS),  # by inertia and by the engine against standing wheels
+        # of the wheels, better from round to round
+        ("turns", "f8", WHEELS),  # which way: -1, 0 locked, 1
+        ("along_mps", "f8", WHEELS),  # speed of the contact along the wheel
+        ("across_mps", "f8", WHEELS),
+        ("omega_radps", "f8", WHEELS),
+        ("push_x_nspm", "f8", WHEELS),  # secant stiffness along the wheel, N·s/m
+        ("push_y_nspm", "f8", WHEELS),
+        ("ease", "f8", WHEELS),  # one over the resistance to a change of spin, rad/s/(N·m)
+        ("grip_per_m", "f8", WHEELS),  # how much of it the road's grip passes on
+        # of the body
+        ("start", "f8", 3),  # the motion before: m/s forward, m/s to the right, rad/s
+        ("pull", "f8", 3),  # outer forces: N, N, N·m; gravity's part along the slope included
+        ("drive", "f8", 3),  # as powertrain.axle_drive returns it
+        ("speeds", "f8", 3),  # the motion after
+        ("ground_m", "f8", WHEELS),  # height under each wheel
+    ],
+    align=True,
+)
+"""What is worked out for the vehicle at hand: scratch. A record, since numba counts references to arrays, not to it."""

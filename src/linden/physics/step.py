@@ -14,7 +14,7 @@ from linden.physics.contact.pairs import find_pairs, is_fixed
 from linden.physics.contact.statics import Statics
 from linden.physics.prop import advance_prop
 from linden.physics.pushes import apply_forces, apply_impulses, clear_pushes, hold_velocity
-from linden.physics.state import VEHICLE, WALKER, WHEELS, Rows
+from linden.physics.state import VEHICLE, WALKER, Rows, Work
 from linden.physics.vehicle.ackermann import drive_to_target
 from linden.physics.vehicle.motion import advance_vehicle
 from linden.physics.walker import advance_walker
@@ -39,12 +39,12 @@ CONTACT = np.dtype(
 Contacts = NDArray[Any]
 """Array of CONTACT ordered by (a, b, static's number), at most one row a pair."""
 
-_Advance = Callable[[Rows, Rows, int, Ground, Statics, float, int, float], F64]
+_Advance = Callable[[Rows, Rows, Rows, int, Ground, Statics, float, int, float], F64]
 
 
 @part
 def _advance_bodies(
-    rows: Rows, specs: Rows, count: int, ground: Ground, wheels: F64, work: F64, gravity_mps2: float, dt_s: float
+    rows: Rows, specs: Rows, work: Work, count: int, ground: Ground, gravity_mps2: float, dt_s: float, left: int
 ) -> None:
     """Advance every body by one substep, in the order of the slots."""
     for i in range(count):
@@ -57,7 +57,7 @@ def _advance_bodies(
             continue
         apply_forces(v, dt_s)
         if v.kind == VEHICLE:
-            advance_vehicle(v, specs[i], wheels, ground, work, gravity_mps2, dt_s)
+            advance_vehicle(v, specs[i], work, ground, gravity_mps2, dt_s, left)
             continue
         if v.constant_velocity_on:
             hold_velocity(v)
@@ -88,6 +88,7 @@ def _build(sources: int) -> _Advance:
     def advance(
         rows: Rows,
         specs: Rows,
+        work: Rows,
         count: int,
         ground: Ground,
         statics: Statics,
@@ -96,7 +97,6 @@ def _build(sources: int) -> _Advance:
         gravity_mps2: float,
     ) -> F64:
         _fingerprint = sources
-        wheels, work = np.zeros((16, WHEELS)), np.zeros((4, 3))
         for i in range(count):
             v = rows[i]
             v.acceleration[:] = v.velocity
@@ -106,8 +106,9 @@ def _build(sources: int) -> _Advance:
                     drive_to_target(v, specs[i], dt_s)
         pairs = find_pairs(rows, count, statics, dt_s)
         account = np.zeros((len(pairs), 7))
-        for _ in range(substeps):
-            _advance_bodies(rows, specs, count, ground, wheels, work, gravity_mps2, dt_s / substeps)
+        for n in range(substeps):
+            left = substeps - 1 - n
+            _advance_bodies(rows, specs, work[0], count, ground, gravity_mps2, dt_s / substeps, left)
             if len(pairs) > 0:
                 part_bodies(rows, pairs, statics, account)
         for i in range(count):
@@ -140,9 +141,8 @@ def advance(
     """
     if not (0.0 < dt_s < np.inf and substeps >= 1):
         raise ValueError(f"a step needs a positive duration and at least one substep, not {dt_s} s in {substeps}")
-    rows = _advance(
-        bodies.state, bodies.specs, bodies.count, ground, statics, float(dt_s), int(substeps), float(gravity_mps2)
-    )
+    columns = bodies.state, bodies.specs, bodies.work
+    rows = _advance(*columns, bodies.count, ground, statics, float(dt_s), int(substeps), float(gravity_mps2))
     return _contacts(rows, statics) if len(rows) else _NO_CONTACTS
 
 

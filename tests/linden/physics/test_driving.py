@@ -6,7 +6,24 @@ import math
 import numpy as np
 import pytest
 
-from fleet import BOX, FLAT, NOTHING, OFFSETS, RATIOS, TORQUE, G, at, one, run, sedan, slick, slope, speed_mps, wheels
+from fleet import (
+    BOX,
+    FLAT,
+    NOTHING,
+    OFFSETS,
+    RATIOS,
+    TORQUE,
+    G,
+    at,
+    one,
+    run,
+    sedan,
+    slick,
+    slope,
+    slow_uncompiled,
+    speed_mps,
+    wheels,
+)
 from linden.physics.bodies import Bodies
 from linden.physics.step import advance
 from linden.physics.vehicle.parameters import WHEEL_MASS_KG
@@ -30,6 +47,7 @@ def launched(v_mps: float, control: VehicleControl = NEUTRAL, **changes: object)
     return bodies, car
 
 
+@slow_uncompiled
 def test_coasting_slows_by_drag_and_rolling_resistance() -> None:
     bodies, car = launched(30.0, drag_coefficient=0.3)
     run(bodies, 20.0)
@@ -57,6 +75,7 @@ def test_brakes_slow_by_their_torque_while_the_tyres_hold() -> None:
     assert before - bodies.velocity[car, 0] == pytest.approx(braking_n / WITH_WHEELS_KG, rel=0.01)
 
 
+@slow_uncompiled
 @pytest.mark.parametrize("dt_s", [0.01, 0.05, 0.1])
 @pytest.mark.parametrize(("front", "rear"), [(20.0, 20.0), (12.0, 20.0)])
 def test_the_steady_turn_has_the_radius_of_the_understeer_gradient(front: float, rear: float, dt_s: float) -> None:
@@ -121,6 +140,7 @@ def test_without_brakes_a_car_rolls_down_by_gravity() -> None:
     assert bodies.rotation[car, 0] == pytest.approx(-tilt, abs=0.003)
 
 
+@slow_uncompiled
 def test_top_speed_is_where_the_engine_balances_what_holds_the_car_back() -> None:
     bodies, car = one(sedan(forward_gears=(Gear(1.0),), final_ratio=2.5))
     bodies.set_control(car, VehicleControl(throttle=1.0))
@@ -148,6 +168,7 @@ def test_the_automatic_goes_through_its_gears_with_a_pause_in_each_change() -> N
     assert max(visited) == len(RATIOS)
 
 
+@slow_uncompiled
 def test_the_automatic_does_not_hunt_between_two_gears() -> None:
     hunting = tuple(Gear(ratio, 0.5, 0.65) for ratio in RATIOS)  # a change up lands below the limit of changing down
     bodies, car = one(sedan(forward_gears=hunting))

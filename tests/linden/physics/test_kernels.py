@@ -89,9 +89,9 @@ def test_three_equations_are_solved_as_numpy_solves_them() -> None:
     for _ in range(50):
         root = rng.normal(size=(3, 3))
         matrix, right = root @ root.T + 0.1 * np.eye(3), rng.normal(size=3)
-        out = np.empty(3)
-        _solve_symmetric(*matrix[np.triu_indices(3)], *right, out)
-        assert out == pytest.approx(np.linalg.solve(matrix, right), rel=1e-7, abs=1e-9)
+        assert _solve_symmetric(*matrix[np.triu_indices(3)], *right) == pytest.approx(
+            np.linalg.solve(matrix, right), rel=1e-7, abs=1e-9
+        )
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from fleet import BOX, FLAT, NOTHING, OFFSETS, G, at, one, run, sedan, slick, slope, wall, wheels
+from fleet import BOX, FLAT, NOTHING, OFFSETS, G, at, one, run, sedan, slick, slope, slow_uncompiled, wall, wheels
 from linden.ground import Ground
 from linden.physics.bodies import Bodies
 from linden.physics.step import advance
@@ -15,6 +15,7 @@ from linden.values.vehicles import VehicleControl
 NEUTRAL = VehicleControl(manual_gear_shift=True, gear=0)
 
 
+@slow_uncompiled
 @pytest.mark.parametrize("dt_s", [0.01, 0.02, 0.05, 0.1])
 @pytest.mark.parametrize("v_mps", [0.0, 0.1, 1.0, 5.0, 20.0, 40.0])
 def test_a_braking_car_comes_to_a_real_stop(v_mps: float, dt_s: float) -> None:
@@ -34,6 +35,7 @@ def test_a_braking_car_comes_to_a_real_stop(v_mps: float, dt_s: float) -> None:
         assert bodies.state[car].tobytes() == stood
 
 
+@slow_uncompiled
 @pytest.mark.parametrize("dt_s", [0.01, 0.05, 0.1])
 @pytest.mark.parametrize("seed", range(4))
 def test_wild_driving_stays_finite_and_upright(seed: int, dt_s: float) -> None:
@@ -66,6 +68,7 @@ def energy_j(bodies: Bodies, slot: int) -> float:
     return 0.5 * float(s["mass_kg"] * (velocity[0] ** 2 + velocity[1] ** 2) + s["yaw_inertia_kgm2"] * turn**2) + spin
 
 
+@slow_uncompiled
 @pytest.mark.parametrize("dt_s", [0.01, 0.05, 0.1])
 def test_a_coasting_car_never_gains_energy(dt_s: float) -> None:
     rng = np.random.default_rng(3)
@@ -93,6 +96,7 @@ def hills() -> Ground:
     )
 
 
+@slow_uncompiled
 def test_over_the_hills_speed_turns_into_height_and_back_and_none_is_gained() -> None:
     ground = hills()
     bodies, car = one(slick())
@@ -122,6 +126,7 @@ def crowd(seed: int) -> Bodies:
     return bodies
 
 
+@slow_uncompiled
 def test_the_same_input_gives_the_same_bytes() -> None:
     def outcome() -> bytes:
         bodies, ground, statics = crowd(5), slope(0.02), wall(30.0)
@@ -132,6 +137,7 @@ def test_the_same_input_gives_the_same_bytes() -> None:
     assert first == outcome()
 
 
+@slow_uncompiled
 def test_what_stood_in_a_slot_before_leaves_no_trace() -> None:
     fresh, used = crowd(6), Bodies()
     for _ in range(30):

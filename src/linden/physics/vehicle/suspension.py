@@ -6,14 +6,9 @@ body that bounces at ``BOUNCE_RADPS``; a force only ever pushes up, so a vehicle
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from linden.compiled import part
-from linden.ground import Ground, surface_under
-from linden.physics.state import Body, Spec
-
-F64 = NDArray[np.float64]
+from linden.ground import Ground, height_under
+from linden.physics.state import Body, Spec, Work
 
 BOUNCE_RADPS = 12.0  # 1.9 Hz: between a soft car (1.0 to 1.5 Hz, Gillespie, chapter 5) and a stiff shuttle
 DAMPING = 0.7  # of critical
@@ -23,31 +18,30 @@ _STEEPEST_LEAN_RAD = 0.7
 
 
 @part
-def find_footing(v: Body, spec: Spec, wheels: F64, ground: Ground) -> None:
-    """Set ``footing``: height under the origin, pitch and roll of the plane through the ground under the wheels."""
+def find_footing(v: Body, spec: Spec, w: Work, ground: Ground, cosine: float, sine: float) -> None:
+    """Set ``footing``: height under the origin, pitch and roll of the plane through the ground under the wheels.
+
+    ``cosine`` and ``sine`` are those of the yaw.
+    """
     count = spec.wheel_count
-    heights = wheels[0]
     x, y, z = v.position[0], v.position[1], v.position[2]
-    pitch, yaw, roll = v.rotation[0], v.rotation[1], v.rotation[2]
-    cosine, sine = math.cos(yaw), math.sin(yaw)
+    rising = math.sin(v.rotation[0])
+    falling = math.sin(v.rotation[2]) if spec.track_m > 0.0 else 0.0  # the lean of a two-wheeler is not its ground's
     highest = -math.inf
     for k in range(count):
         ahead, right = spec.wheel_x_m[k], spec.wheel_y_m[k]
-        hint = z + math.sin(pitch) * ahead
-        if spec.track_m > 0.0:  # the lean of a two-wheeler is not that of its ground
-            hint -= math.sin(roll) * right
-        heights[k], _, _, _, _ = surface_under(
-            ground, x + cosine * ahead - sine * right, y + sine * ahead + cosine * right, hint
-        )
-        highest = max(highest, heights[k])
+        hint = z + rising * ahead - falling * right
+        height = height_under(ground, x + cosine * ahead - sine * right, y + sine * ahead + cosine * right, hint)
+        w.ground_m[k] = height
+        highest = max(highest, height)
     half = count // 2
     front, rear, left, right_side = 0.0, 0.0, 0.0, 0.0
     for k in range(count):
-        height = max(heights[k], highest - _HANGING_M)
-        front += height / half if k < half else 0.0
-        rear += height / half if k >= half else 0.0
-        left += height / half if spec.wheel_y_m[k] < 0.0 else 0.0
-        right_side += height / half if spec.wheel_y_m[k] > 0.0 else 0.0
+        height = max(w.ground_m[k], highest - _HANGING_M) / half
+        front += height if k < half else 0.0
+        rear += height if k >= half else 0.0
+        left += height if spec.wheel_y_m[k] < 0.0 else 0.0
+        right_side += height if spec.wheel_y_m[k] > 0.0 else 0.0
     rise = (front - rear) / spec.wheelbase_m
     fall = (left - right_side) / spec.track_m if spec.track_m > 0.0 else 0.0
     v.footing[0] = front - rise * spec.axle_front_m

@@ -17,7 +17,7 @@ def brush_force(use: float) -> float:
     """
     if use >= 3.0:
         return 1.0
-    return use - use * use / 3.0 + use * use * use / 27.0
+    return use * (1.0 - use * (1.0 / 3.0 - use * (1.0 / 27.0)))
 
 
 @part
@@ -53,8 +53,8 @@ def secant_stiffness(
     use = _length(slip_n * slide_x_mps, cornering_n * slide_y_mps) / (reference_mps * limit_n)
     if use < 1e-9:
         return slip_n / reference_mps, cornering_n / reference_mps
-    turned = min(1.0, use / 3.0) ** 2
-    along = slip_n + (cornering_n - slip_n) * 0.5 * turned
-    across = cornering_n + (slip_n - cornering_n) * 0.5 * turned
+    turned = use * use * (1.0 / 9.0) if use < 3.0 else 1.0
+    shift = 0.5 * turned * (cornering_n - slip_n)
+    along, across = slip_n + shift, cornering_n - shift
     scale = limit_n * brush_force(use) / _length(along * slide_x_mps, across * slide_y_mps)
     return scale * along, scale * across

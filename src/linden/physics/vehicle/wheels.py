@@ -2,23 +2,10 @@
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from linden.compiled import part
-from linden.physics.state import Body, Spec
+from linden.physics.state import Body, Spec, Work
 from linden.physics.vehicle.powertrain import on_curve
 from linden.physics.vehicle.tyre import cornering_stiffness
-
-F64 = NDArray[np.float64]
-
-LIMIT, SLIP, CORNERING, COS, SIN, ARM_X, ARM_Y, BRAKE, TURNS, ALONG, ACROSS, OMEGA, PUSH_X, PUSH_Y, OWN, GRIP = range(
-    16
-)
-"""Rows of the scratch array ``wheels`` (16, 4): friction limit (N), stiffness to slip and to slip angle (N, N/rad),
-cosine and sine of the steering angle, place from the centre of mass (m), braking torque (N·m), which way it turns
-(-1, 0 locked, 1), speed of the contact along and across the wheel (m/s), spin (rad/s), secant stiffnesses (N·s/m),
-resistance to a change of spin (N·m·s/rad), and how much of it the road's grip passes on (1/m)."""
 
 ROLLING_RESISTANCE = 0.012
 """Rolling resistance over load: car tyres on good asphalt, Gillespie, Fundamentals of Vehicle Dynamics, table 4.1."""
@@ -58,26 +45,27 @@ def load_wheels(v: Body, spec: Spec) -> None:
 
 
 @part
-def prepare_wheels(v: Body, spec: Spec, wheels: F64, gravity_mps2: float) -> None:
-    """Fill the scratch rows that stay fixed while the motion is solved."""
+def prepare_wheels(v: Body, spec: Spec, w: Work, gravity_mps2: float, dt_s: float) -> None:
+    """Fill the scratch rows that stay fixed while the motion is solved, and those it begins with."""
     for k in range(spec.wheel_count):
         load = v.wheel_load[k]
         rest_load = spec.load_share[k] * v.mass_kg * gravity_mps2
-        wheels[LIMIT, k] = spec.friction[k] * load
-        wheels[SLIP, k] = spec.slip_stiffness_n[k]
-        wheels[CORNERING, k] = cornering_stiffness(
-            spec.cornering_per_rad[k], spec.cornering_full_load[k], load, rest_load
-        )
+        w.limit_n[k] = spec.friction[k] * load
+        w.slip_n[k] = spec.slip_stiffness_n[k]
+        w.cornering_n[k] = cornering_stiffness(spec.cornering_per_rad[k], spec.cornering_full_load[k], load, rest_load)
         if v.wheel_steer[k] == 0.0:
-            wheels[COS, k], wheels[SIN, k] = 1.0, 0.0
+            w.cosine[k], w.sine[k] = 1.0, 0.0
         else:
-            wheels[COS, k], wheels[SIN, k] = math.cos(v.wheel_steer[k]), math.sin(v.wheel_steer[k])
-        wheels[ARM_X, k] = spec.wheel_x_m[k] - v.centre_of_mass[0]
-        wheels[ARM_Y, k] = spec.wheel_y_m[k] - v.centre_of_mass[1]
-        wheels[BRAKE, k] = (
+            w.cosine[k], w.sine[k] = math.cos(v.wheel_steer[k]), math.sin(v.wheel_steer[k])
+        arm_x, arm_y = spec.wheel_x_m[k] - v.centre_of_mass[0], spec.wheel_y_m[k] - v.centre_of_mass[1]
+        w.along_turn_m[k] = arm_x * w.sine[k] - arm_y * w.cosine[k]
+        w.across_turn_m[k] = arm_x * w.cosine[k] + arm_y * w.sine[k]
+        w.brake_nm[k] = (
             spec.brake_nm[k] * v.brake
             + (spec.hand_brake_nm[k] if v.hand_brake else 0.0)
             + ROLLING_RESISTANCE * load * spec.wheel_radius_m[k]
         )
-        wheels[TURNS, k] = 1.0 if v.wheel_omega[k] > 0.0 else (-1.0 if v.wheel_omega[k] < 0.0 else 0.0)
-        wheels[OMEGA, k] = v.wheel_omega[k]
+        w.inertia_nms[k] = spec.wheel_inertia_kgm2[k] / dt_s
+        w.pushed_nm[k] = w.inertia_nms[k] * v.wheel_omega[k] + spec.drive_share[k] * w.drive[0] * w.drive[1]
+        w.turns[k] = 1.0 if v.wheel_omega[k] > 0.0 else (-1.0 if v.wheel_omega[k] < 0.0 else 0.0)
+        w.omega_radps[k] = v.wheel_omega[k]
