@@ -193,8 +193,7 @@ def _spread_terrain(heights_m: F64) -> None:
     rows, columns = heights_m.shape
     empty = np.isinf(heights_m)
     away = np.where(empty, 1e9, 0.0)
-    dx = np.zeros((rows, columns))
-    dy = np.zeros((rows, columns))
+    dx, dy = np.zeros((rows, columns)), np.zeros((rows, columns))
     for sweep in range(2):
         step = 1 if sweep == 0 else -1
         for i in range(rows):
@@ -229,49 +228,24 @@ def _take_nearer(
     y = dy[from_row, from_column] + (row - from_row)
     if x * x + y * y < away[row, column]:
         away[row, column] = x * x + y * y
-        dx[row, column] = x
-        dy[row, column] = y
+        dx[row, column], dy[row, column] = x, y
         heights_m[row, column] = heights_m[from_row, from_column]
 
 
 @kernel
 def _height_on(planes: F64, t: int, x: float, y: float) -> float:
-    """Return the height of triangle ``t`` over or under a point, by barycentric coordinates; -inf beside it.
-
-    Reads cell by cell: a view of the row would cost more than the arithmetic.
-    """
+    """Return the height of triangle ``t`` over or under a point, by barycentric coordinates; -inf beside it."""
     away_x, away_y = x - planes[t, 0], y - planes[t, 1]
     first = planes[t, 2] * away_x + planes[t, 3] * away_y
     second = planes[t, 4] * away_x + planes[t, 5] * away_y
     if first >= -_EDGE_TOLERANCE and second >= -_EDGE_TOLERANCE and first + second <= 1.0 + _EDGE_TOLERANCE:
-        return planes[t, 6] + planes[t, 7] * away_x + planes[t, 8] * away_y
+        return float(planes[t, 6] + planes[t, 7] * away_x + planes[t, 8] * away_y)
     return -math.inf
 
 
 @kernel
-def surface_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[float, float, float, float, int]:
-    """Return height, upward normal (3) and triangle of the highest surface at most ``STEP_M`` above ``z_hint``.
-
-    All in m. Where no triangle lies there (beside the roads, or all of them higher) the terrain answers, triangle -1.
-    """
-    best_z, best = _triangle_under(ground, x, y, z_hint)
-    if best < 0:
-        return _terrain_under(ground, x, y)
-    slope_x, slope_y = ground.planes[best, 7], ground.planes[best, 8]
-    up = 1.0 / math.sqrt(1.0 + slope_x * slope_x + slope_y * slope_y)
-    return best_z, -slope_x * up, -slope_y * up, up, best
-
-
-@kernel
-def height_under(ground: Ground, x: float, y: float, z_hint: float) -> float:
-    """Return the height alone of what :func:`surface_under` finds: what a wheel asks for, four times a substep."""
-    best_z, best = _triangle_under(ground, x, y, z_hint)
-    return best_z if best >= 0 else _terrain_under(ground, x, y)[0]
-
-
-@kernel
-def _triangle_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[float, int]:
-    """Return the height and number of the triangle under a point; number -1 where there is none."""
+def triangle_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[float, int]:
+    """Return height and number of the highest triangle at most ``STEP_M`` above ``z_hint``, number -1 without one."""
     frame, start, items = ground.bin_frame, ground.bin_start, ground.bin_items
     b = _bin_of(y, frame[1], frame[2], frame[4]) * int(frame[3]) + _bin_of(x, frame[0], frame[2], frame[3])
     best_z, best = -math.inf, -1
@@ -280,6 +254,20 @@ def _triangle_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[
         if best_z < z <= z_hint + STEP_M:
             best_z, best = z, items[k]
     return best_z, best
+
+
+@kernel
+def surface_under(ground: Ground, x: float, y: float, z_hint: float) -> tuple[float, float, float, float, int]:
+    """Return height, upward normal (3) and triangle of the highest surface at most ``STEP_M`` above ``z_hint``.
+
+    All in m. Where no triangle lies there (beside the roads, or all of them higher) the terrain answers, triangle -1.
+    """
+    z, triangle = triangle_under(ground, x, y, z_hint)
+    if triangle < 0:
+        return _terrain_under(ground, x, y)
+    slope_x, slope_y = ground.planes[triangle, 7], ground.planes[triangle, 8]
+    up = 1.0 / math.sqrt(1.0 + slope_x * slope_x + slope_y * slope_y)
+    return z, -slope_x * up, -slope_y * up, up, triangle
 
 
 @kernel
@@ -292,8 +280,7 @@ def _terrain_under(ground: Ground, x: float, y: float) -> tuple[float, float, fl
     fx = min(fx, columns - 1.0) if fx > 0.0 else 0.0
     fy = min(fy, rows - 1.0) if fy > 0.0 else 0.0
     column, row = min(int(fx), columns - 2), min(int(fy), rows - 2)
-    fx -= column
-    fy -= row
+    fx, fy = fx - column, fy - row
     a, b = ground.terrain[row, column], ground.terrain[row, column + 1]
     c, d = ground.terrain[row + 1, column], ground.terrain[row + 1, column + 1]
     slope_x = ((b - a) * (1.0 - fy) + (d - c) * fy) * per_m
@@ -306,8 +293,7 @@ def _terrain_under(ground: Ground, x: float, y: float) -> tuple[float, float, fl
 @kernel
 def _surfaces_under(ground: Ground, points_m: F64) -> tuple[F64, I32]:
     """Ask :func:`surface_under` for each row of (N, 3)."""
-    heights = np.empty(len(points_m))
-    triangles = np.empty(len(points_m), np.int32)
+    heights, triangles = np.empty(len(points_m)), np.empty(len(points_m), np.int32)
     for i in range(len(points_m)):
         heights[i], _, _, _, triangles[i] = surface_under(ground, points_m[i, 0], points_m[i, 1], points_m[i, 2])
     return heights, triangles

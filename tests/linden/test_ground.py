@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fleet import slow_uncompiled
 from linden.ground import STEP_M, Ground, surface_under
 from naive.physics import surface
 
@@ -26,6 +27,7 @@ def height(ground: Ground, x: float, y: float, hint: float) -> float:
     return surface_under(ground, x, y, hint)[0]
 
 
+@slow_uncompiled
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_the_height_is_that_of_the_highest_triangle_within_a_step(seed: int) -> None:

@@ -113,6 +113,7 @@ def test_a_dropped_car_lands_and_stands_still() -> None:
     assert bodies.wheel_load[car].sum() == pytest.approx(MASS_KG * G, rel=1e-3)
 
 
+@slow_uncompiled
 @pytest.mark.parametrize("rise", [0.05, -0.1, 0.3])
 @pytest.mark.parametrize("yaw", [0.0, 90.0, 30.0])
 def test_brakes_hold_a_car_on_a_slope_without_creeping(rise: float, yaw: float) -> None:
@@ -217,6 +218,7 @@ def test_load_moves_forward_in_braking_and_outward_in_a_bend() -> None:
     assert bodies.rotation[car, 2] < 0.0  # and the right side rises
 
 
+@slow_uncompiled
 def test_the_friction_circle_is_never_left() -> None:
     bodies, car = one(sedan(wheels=wheels(tire_friction=0.6, max_brake_torque=4000.0)))
     rng = np.random.default_rng(7)

@@ -18,8 +18,9 @@ _STILL_FOR_S = 0.2
 
 @part
 def advance_vehicle(v: Body, spec: Spec, w: Work, ground: Ground, gravity_mps2: float, dt_s: float, left: int) -> None:
-    """Advance the vehicle ``v``. ``w`` is scratch; ``left`` counts the frame's substeps after this one:
-    what is only read from outside (slips, forces) is written in the last.
+    """Advance the vehicle ``v``; ``w`` is scratch, ``left`` how many of the frame's substeps come after this one.
+
+    What is only read from outside, slips and forces, is written in the last of them.
 
     The body turns first and the motion is solved in the turned axes: that splits the step into a rotation, which keeps
     the energy, and a backward Euler step against friction, which only takes; the steady turn is met at any step.

@@ -7,7 +7,7 @@ body that bounces at ``BOUNCE_RADPS``; a force only ever pushes up, so a vehicle
 import math
 
 from linden.compiled import part
-from linden.ground import Ground, height_under
+from linden.ground import Ground, surface_under, triangle_under
 from linden.physics.state import Body, Spec, Work
 
 BOUNCE_RADPS = 12.0  # 1.9 Hz: between a soft car (1.0 to 1.5 Hz, Gillespie, chapter 5) and a stiff shuttle
@@ -31,7 +31,10 @@ def find_footing(v: Body, spec: Spec, w: Work, ground: Ground, cosine: float, si
     for k in range(count):
         ahead, right = spec.wheel_x_m[k], spec.wheel_y_m[k]
         hint = z + rising * ahead - falling * right
-        height = height_under(ground, x + cosine * ahead - sine * right, y + sine * ahead + cosine * right, hint)
+        wheel_x, wheel_y = x + cosine * ahead - sine * right, y + sine * ahead + cosine * right
+        height, triangle = triangle_under(ground, wheel_x, wheel_y, hint)
+        if triangle < 0:
+            height, _, _, _, _ = surface_under(ground, wheel_x, wheel_y, hint)
         w.ground_m[k] = height
         highest = max(highest, height)
     half = count // 2
