@@ -1,0 +1,1 @@
+"""CARLA's recordings: their bytes and their reports. Knows no simulation."""

@@ -1,0 +1,1 @@
+"""What stands in the world besides actors, and what a ray meets."""
