@@ -1,1 +1,1 @@
-"""CARLA's recordings: their bytes and their reports. Knows no simulation."""
+"""CARLA's recorder files: bytes to packets and back, and the reports about them. Knows no simulation."""

@@ -1,0 +1,157 @@
+"""The packets of a recording and the records of fixed size in them, packed little-endian as they lie in the file.
+
+Source: CARLA's ``Carla/Recorder/CarlaRecorder*.h``, read for their order and sizes; checked against real recordings.
+The file holds cm and degrees; rotations stand as roll, pitch, yaw.
+"""
+
+from enum import IntEnum
+
+import numpy as np
+
+MAGIC = "CARLA_RECORDER"
+VERSION = 1
+"""What CARLA 0.9.16 writes."""
+
+SCENERY = 0xFFFFFFFF
+"""Id in a collision of what is no actor."""
+
+
+class PacketId(IntEnum):
+    """What a packet holds. From 21 on the releases disagree; ``decode`` tells them apart by their sizes."""
+
+    FRAME_START = 0
+    FRAME_END = 1
+    ADDED = 2
+    REMOVED = 3
+    PARENTS = 4
+    COLLISIONS = 5
+    POSITIONS = 6
+    LIGHT_STATES = 7
+    VEHICLES = 8
+    WALKERS = 9
+    VEHICLE_LIGHTS = 10
+    SCENE_LIGHTS = 11
+    KINEMATICS = 12
+    BOXES = 13
+    PLATFORM_TIME = 14
+    PHYSICS = 15
+    LIGHT_TIMES = 16
+    TRIGGER_VOLUMES = 17
+    FRAME_COUNTER = 18
+    BONES = 19
+    VISUAL_TIME = 20
+    DOORS = 21
+    WHEELS = 22
+    BIKERS = 23
+    WEATHER = 24
+
+
+class ActorKind(IntEnum):
+    """What an actor is, as the recorder numbers it."""
+
+    OTHER = 0
+    VEHICLE = 1
+    WALKER = 2
+    TRAFFIC_LIGHT = 3
+    TRAFFIC_SIGN = 4
+    SENSOR = 5
+
+
+FRAME_START = np.dtype(
+    [
+        ("number", "<u8"),  # from 1
+        ("duration_s", "<f8"),  # until the next frame; -1 in the last
+        ("elapsed_s", "<f8"),  # since the recording began
+    ]
+)
+REMOVED = np.dtype([("id", "<u4")])
+PARENT = np.dtype([("child", "<u4"), ("parent", "<u4")])
+COLLISION = np.dtype(
+    [
+        ("collision", "<u4"),  # counts the collisions of a recording
+        ("first", "<u4"),  # actor, or SCENERY
+        ("second", "<u4"),
+        ("first_is_hero", "u1"),
+        ("second_is_hero", "u1"),
+    ]
+)
+POSITION = np.dtype(
+    [
+        ("id", "<u4"),
+        ("location_cm", "<f4", (3,)),  # x, y, z in CARLA's frame
+        ("rotation_deg", "<f4", (3,)),  # roll, pitch, yaw
+    ]
+)
+LIGHT_STATE = np.dtype([("id", "<u4"), ("frozen", "u1"), ("elapsed_s", "<f4"), ("state", "i1")])
+VEHICLE = np.dtype(
+    [
+        ("id", "<u4"),
+        ("steer", "<f4"),
+        ("throttle", "<f4"),
+        ("brake", "<f4"),
+        ("hand_brake", "u1"),
+        ("gear", "<i4"),  # negative: reverse
+    ]
+)
+WALKER = np.dtype([("id", "<u4"), ("speed_mps", "<f4")])
+VEHICLE_LIGHT = np.dtype([("id", "<u4"), ("bits", "<u4")])
+SCENE_LIGHT = np.dtype(
+    [("id", "<i4"), ("intensity", "<f4"), ("rgba", "<f4", (4,)), ("on", "u1"), ("type", "u1")]  # rgba in [0, 1]
+)
+KINEMATICS = np.dtype(
+    [
+        ("id", "<u4"),
+        ("velocity_mps", "<f4", (3,)),
+        ("angular_velocity_degps", "<f4", (3,)),
+    ]
+)
+BOX = np.dtype([("id", "<u4"), ("origin_cm", "<f4", (3,)), ("extent_cm", "<f4", (3,))])
+LIGHT_TIME = np.dtype([("id", "<u4"), ("green_s", "<f4"), ("yellow_s", "<f4"), ("red_s", "<f4")])
+DOOR = np.dtype([("id", "<u4"), ("door", "u1"), ("open", "u1")])
+WHEEL = np.dtype([("wheel", "u1"), ("steer_deg", "<f4"), ("turn_deg", "<f4")])
+BIKER = np.dtype([("id", "<u4"), ("forward_speed", "<f4"), ("engine_share", "<f4")])
+WEATHER = np.dtype(
+    [
+        (name, "<f4")
+        for name in (
+            "cloudiness",
+            "precipitation",
+            "precipitation_deposits",
+            "wind_intensity",
+            "sun_azimuth_angle",
+            "sun_altitude_angle",
+            "fog_density",
+            "fog_distance",
+            "fog_falloff",
+            "wetness",
+            "scattering_intensity",
+            "mie_scattering_scale",
+            "rayleigh_scattering_scale",
+            "dust_storm",
+        )
+    ]
+)
+
+RECORDS: dict[PacketId, np.dtype[np.void]] = {
+    PacketId.REMOVED: REMOVED,
+    PacketId.PARENTS: PARENT,
+    PacketId.COLLISIONS: COLLISION,
+    PacketId.POSITIONS: POSITION,
+    PacketId.LIGHT_STATES: LIGHT_STATE,
+    PacketId.VEHICLES: VEHICLE,
+    PacketId.WALKERS: WALKER,
+    PacketId.VEHICLE_LIGHTS: VEHICLE_LIGHT,
+    PacketId.SCENE_LIGHTS: SCENE_LIGHT,
+    PacketId.KINEMATICS: KINEMATICS,
+    PacketId.BOXES: BOX,
+    PacketId.LIGHT_TIMES: LIGHT_TIME,
+    PacketId.TRIGGER_VOLUMES: BOX,
+    PacketId.DOORS: DOOR,
+    PacketId.BIKERS: BIKER,
+    PacketId.WEATHER: WEATHER,
+}
+"""Packets that are a u16 count and as many records of one size."""
+
+_SIZES = {"POSITION": 28, "LIGHT_STATE": 10, "VEHICLE": 21, "SCENE_LIGHT": 26, "KINEMATICS": 28, "COLLISION": 14}
+for _name, _size in _SIZES.items():
+    assert globals()[_name].itemsize == _size, _name
