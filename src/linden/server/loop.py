@@ -3,21 +3,23 @@
 There is no lock, because nothing happens at the same time: between two events the simulation stands still.
 """
 
-import errno
+import contextlib
 import logging
 import selectors
 import socket
 import time
 import traceback
-from collections.abc import Callable
+from functools import partial
 
 from linden.errors import ProtocolError
 from linden.handlers import registry, session
 from linden.handlers.context import Context, Frames
+from linden.server.entrance import Entrance
 from linden.server.pace import Pace
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports, port_of
 from linden.server.subscribers import Subscribers
+from linden.server.waiting import Waiting
 from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
@@ -28,10 +30,11 @@ CALLS_PER_TURN = 256
 """Calls of one client before the others have their turn: a scene's worth of controls, some ms."""
 UNREAD_ANSWERS_BYTES = 1024 * 1024
 """A client that leaves more than this unread is not listened to until it has caught up."""
-ACCEPT_PAUSE_S = 1.0
-"""How long nobody is let in after the system has run out of sockets."""
+UNFINISHED_BYTES_OF_ALL = 256 * 1024 * 1024
+"""What half-received calls may take in all connections together: four of the largest, hundreds of any usual size."""
 
 _READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
+_BUG = "internal error in %s; the server goes on"
 
 
 class Server:
@@ -39,7 +42,6 @@ class Server:
 
     def __init__(self, simulation: Simulation, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
         self._clock = time.monotonic
-        self._ports = ports
         self._pace = Pace(self._clock())
         self.context = Context(
             simulation=simulation,
@@ -50,12 +52,13 @@ class Server:
         )
         self._selector = selectors.DefaultSelector()
         self._subscribers = Subscribers(self.context.streams, self._watch, self._close)
-        self._with_calls: dict[RpcPeer, None] = {}  # an ordered set: those whose calls wait for their turn
-        self._connections = 0
-        self._closed_to_newcomers_until_s: float | None = None
+        self._entrance = Entrance(ports, self._selector, self._clock, self._welcome, self._close)
+        self._waiting = Waiting()
+        self._clients: dict[RpcPeer, None] = {}  # an ordered set, as the next one is
+        self._with_calls: dict[RpcPeer, None] = {}  # those whose calls wait for their turn
+        self._last_ticker: RpcPeer | None = None
         self._wake_reader, self._wake_writer = socket.socketpair()
         self._stopping = False
-        self._listen()
         self._wake_reader.settimeout(0.0)
         self._wake_writer.settimeout(0.0)
         self._selector.register(self._wake_reader, _READ, self._woken)
@@ -78,12 +81,12 @@ class Server:
     def stop(self) -> None:
         """Ask the server to end; the one method that another thread or a signal handler may call."""
         self._stopping = True
-        self._wake_writer.send(b"\0")
+        with contextlib.suppress(OSError):  # it has ended, or was asked so often that it will wake anyway
+            self._wake_writer.send(b"\0")
 
     def unsent_bytes(self) -> int:
-        """Return how much waits to be sent to all clients together."""
-        peers = (key.data for key in self._selector.get_map().values())
-        return sum(peer.outgoing.waiting_bytes for peer in peers if isinstance(peer, Peer))
+        """Return how many bytes of answers wait to be sent to all clients together."""
+        return sum(peer.outgoing.waiting_bytes for peer in self._clients)
 
     def _turn(self) -> None:
         """Wait for the next thing to do, and do it."""
@@ -92,61 +95,43 @@ class Server:
         for peer in tuple(self._with_calls):
             self._carry_out(peer)
         self._make_due_frame()
+        self._look_around()
 
     def _wait_s(self) -> float | None:
         """Return how long nothing needs doing unless something arrives; None is for ever."""
-        now_s = self._clock()
-        waits: list[float] = []
-        patience_s = self._subscribers.patience_s(now_s)
-        if patience_s is not None:
-            waits.append(patience_s)
         if any(not self._must_wait(peer) for peer in self._with_calls):
             return 0.0
+        now_s = self._clock()
+        waits = [
+            self._subscribers.patience_s(now_s) if self._with_calls else None,
+            self._entrance.wait_s(now_s),
+            self._waiting.untold_s(now_s),
+        ]
         settings = self.context.simulation.settings
         if not settings.synchronous_mode:
             waits.append(self._pace.wait_s(now_s, settings.fixed_delta_seconds))
-        if self._closed_to_newcomers_until_s is not None:
-            waits.append(max(0.0, self._closed_to_newcomers_until_s - now_s))
-            self._open_again(now_s)
-        return min(waits, default=None)
+        return min((wait_s for wait_s in waits if wait_s is not None), default=None)
+
+    def _look_around(self) -> None:
+        """Do what is due by the clock and is no frame."""
+        now_s = self._clock()
+        self._entrance.look(now_s)
+        held_up = self._with_calls and any(self._waits_for_subscribers(peer) for peer in self._with_calls)
+        self._waiting.for_subscribers(now_s, self._subscribers.congested(now_s) if held_up else ())
+        stands_still = self._is_synchronous() and not held_up
+        self._waiting.for_a_tick(
+            now_s, self.context.simulation.frame, tuple(self._clients) if stands_still else (), self._last_ticker
+        )
 
     def _woken(self, _events: int) -> None:
         self._wake_reader.recv(64)
 
-    # -- newcomers -----------------------------------------------------------------------------------------------
-
-    def _listen(self) -> None:
-        self._selector.register(self._ports.rpc, _READ, lambda _: self._accept(self._ports.rpc, RpcPeer))
-        self._selector.register(self._ports.streaming, _READ, lambda _: self._accept(self._ports.streaming, StreamPeer))
-
-    def _open_again(self, now_s: float) -> None:
-        if self._closed_to_newcomers_until_s is not None and now_s >= self._closed_to_newcomers_until_s:
-            self._closed_to_newcomers_until_s = None
-            self._listen()
-
-    def _accept(self, listener: socket.socket, kind: Callable[[socket.socket, int], Peer]) -> None:
-        try:
-            sock, _ = listener.accept()
-        except (BlockingIOError, InterruptedError, ConnectionAbortedError):
-            return
-        except OSError as error:
-            if error.errno not in (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM):
-                raise
-            log.warning("no more connections for %.0f s: %s", ACCEPT_PAUSE_S, error)
-            self._selector.unregister(self._ports.rpc)
-            self._selector.unregister(self._ports.streaming)
-            self._closed_to_newcomers_until_s = self._clock() + ACCEPT_PAUSE_S
-            return
-        self._connections += 1
-        try:
-            peer = kind(sock, self._connections)
-        except OSError:  # gone before it was greeted
-            sock.close()
-            return
-        log.debug("%s has come", peer)
-        self._watch(peer)
-
     # -- connections ---------------------------------------------------------------------------------------------
+
+    def _welcome(self, peer: Peer) -> None:
+        if isinstance(peer, RpcPeer):
+            self._clients[peer] = None
+        self._watch(peer)
 
     def _watch(self, peer: Peer) -> None:
         """Let the selector watch for what can be done with a peer now."""
@@ -157,18 +142,18 @@ class Server:
         if not interest:
             self._selector.unregister(peer.socket)
         elif not peer.interest:
-            self._selector.register(peer.socket, interest, lambda events: self._serve(peer, events))
+            self._selector.register(peer.socket, interest, partial(self._serve, peer))
         else:
-            self._selector.modify(peer.socket, interest, lambda events: self._serve(peer, events))
+            self._selector.modify(peer.socket, interest, partial(self._serve, peer))
         peer.interest = interest
 
     def _serve(self, peer: Peer, events: int) -> None:
         """Read from a peer and send to it, as far as it goes."""
-        if not peer.interest:  # closed in this very turn, on behalf of another
+        if not peer.is_open:  # closed in this very turn, on behalf of another
             return
         try:
             if events & _WRITE:
-                peer.outgoing.flush()
+                peer.flush()
             data = peer.read() if events & _READ else None
             if data is not None:
                 if isinstance(peer, RpcPeer):
@@ -181,18 +166,26 @@ class Server:
         except OSError as error:
             log.info("%s is gone: %s", peer, error)
             self._close(peer)
-        if peer.interest:
+        except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
+            self.context.warn_once(f"{_BUG % peer}, without it. {_traceback(error)}")
+            self._close(peer)
+        if peer.is_open:
             self._watch(peer)
 
     def _close(self, peer: Peer) -> None:
+        if not peer.is_open:
+            return
+        peer.is_open = False
         if peer.interest:
             self._selector.unregister(peer.socket)
             peer.interest = 0
         peer.socket.close()
+        self._entrance.has_left(peer)
         if isinstance(peer, StreamPeer):
             self._subscribers.remove(peer)
         elif isinstance(peer, RpcPeer):
             peer.calls.clear()
+            del self._clients[peer]
             self._with_calls.pop(peer, None)
             session.client_left(self.context, peer.number)
 
@@ -201,19 +194,34 @@ class Server:
             log.debug("%s has left", peer)
             self._close(peer)
         elif peer.subscription.receive(data) and peer.subscription.stream_id is not None:
+            self._entrance.has_spoken(peer)
             self._subscribers.add(peer, peer.subscription.stream_id)
             if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # whoever joins between two ticks sees the world too
                 payload = self.context.frames.world_payload(self.context.simulation)
-                self._subscribers.send(peer, payload, self._clock())
+                self._subscribers.send(peer, payload, self._clock(), may_drop=not self._is_synchronous())
 
     # -- calls and frames ----------------------------------------------------------------------------------------
 
     def _called(self, peer: RpcPeer, data: bytes) -> None:
         if data:
             peer.calls.extend(peer.connection.receive(data))
+            if peer.calls:
+                self._entrance.has_spoken(peer)
+            elif peer.connection.unfinished_bytes > UNREAD_ANSWERS_BYTES:
+                self._refuse_to_hoard()
         else:
             peer.at_end = True
         self._carry_out(peer)
+
+    def _refuse_to_hoard(self) -> None:
+        """Break off where all the half-received calls together have become too much.
+
+        Raises:
+            ProtocolError: the connection that went too far is to be closed.
+        """
+        held = sum(peer.connection.unfinished_bytes for peer in self._clients)
+        if held > UNFINISHED_BYTES_OF_ALL:
+            raise ProtocolError(f"half-received calls of all clients hold {held} bytes, too much to receive more")
 
     def _carry_out(self, peer: RpcPeer) -> None:
         """Carry out a client's calls in their order: some, and the rest at its next turn.
@@ -221,11 +229,11 @@ class Server:
         A client whose last calls are done and who sends nothing more is closed.
         """
         self._with_calls.pop(peer, None)
-        self.context.caller = peer.number
         answers: list[bytes] = []
-        while peer.calls and len(answers) < CALLS_PER_TURN and not self._must_wait(peer):
-            answers.append(registry.dispatch(self.context, peer.calls.popleft()))
-            self._publish()
+        unsent_bytes = 0
+        while peer.calls and len(answers) < CALLS_PER_TURN and not self._must_wait(peer, unsent_bytes):
+            answers.append(self._answer(peer))
+            unsent_bytes += len(answers[-1])
         try:
             if answers:
                 peer.outgoing.send(b"".join(answers))
@@ -243,10 +251,21 @@ class Server:
             return
         self._watch(peer)
 
-    def _must_wait(self, peer: RpcPeer) -> bool:
+    def _answer(self, peer: RpcPeer) -> bytes:
+        """Carry out a client's next call."""
+        self.context.caller = peer.number
+        frame = self.context.simulation.frame
+        answer = registry.dispatch(self.context, peer.calls.popleft())
+        if self.context.simulation.frame != frame:
+            self._last_ticker = peer
+        self._publish()
+        return answer
+
+    def _must_wait(self, peer: RpcPeer, unsent_bytes: int = 0) -> bool:
         """Whether a client's next call cannot be carried out yet."""
-        if peer.outgoing.waiting_bytes > UNREAD_ANSWERS_BYTES:
-            return True
+        return peer.outgoing.waiting_bytes + unsent_bytes > UNREAD_ANSWERS_BYTES or self._waits_for_subscribers(peer)
+
+    def _waits_for_subscribers(self, peer: RpcPeer) -> bool:
         return (
             registry.advances(peer.calls[0])
             and self._is_synchronous()
@@ -265,9 +284,7 @@ class Server:
         try:
             self.context.advance()
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-            self.context.warn_once(
-                "internal error in a frame; the server goes on. " + "".join(traceback.format_exception(error))
-            )
+            self.context.warn_once(f"{_BUG % 'a frame'}. {_traceback(error)}")
         self._pace.frame_made(now_s, settings.fixed_delta_seconds)
         self._publish()
 
@@ -280,3 +297,7 @@ class Server:
         for stream_id, payload in self.context.outbox:
             self._subscribers.publish(stream_id, payload, now_s, may_drop=may_drop)
         self.context.outbox.clear()
+
+
+def _traceback(error: Exception) -> str:
+    return "".join(traceback.format_exception(error))

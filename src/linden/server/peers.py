@@ -23,8 +23,9 @@ class Peer:
         self.outgoing = Outgoing(sock)
         self.interest = 0
         """Which events the selector watches for; 0 where it does not know the socket."""
+        self.is_open = True
         host, port, *_ = sock.getpeername()
-        self.address = f"{host}:{port}"
+        self.address = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
     def read(self) -> bytes | None:
         """Return what has come, ``b""`` at the end of the connection, None where there is nothing.
@@ -36,6 +37,14 @@ class Peer:
             return self.socket.recv(RECEIVED_AT_ONCE)
         except (BlockingIOError, InterruptedError):
             return None
+
+    def flush(self) -> None:
+        """Send what the system takes of what waits.
+
+        Raises:
+            OSError: the peer is gone.
+        """
+        self.outgoing.flush()
 
 
 class RpcPeer(Peer):
@@ -50,7 +59,7 @@ class RpcPeer(Peer):
         """Whether the client sends nothing more."""
 
     def __str__(self) -> str:
-        return f"client {self.address}"
+        return f"client {self.number} at {self.address}"
 
 
 class StreamPeer(Peer):
@@ -60,18 +69,48 @@ class StreamPeer(Peer):
         super().__init__(sock, number)
         self.subscription = Subscription()
         self.dropped = 0
-        """Messages it did not get, because it had not read those before."""
+        """Messages it did not get, because a newer one took their place before it had read those before."""
         self.congested_since_s: float | None = None
         """When it fell behind by more than is queued for it, in synchronous mode."""
+        self._newest: bytes | None = None  # kept until all before it is sent; asynchronous mode
 
     def __str__(self) -> str:
         stream = self.subscription.stream_id
-        return f"subscriber {self.address}" + ("" if stream is None else f" of stream {stream}")
+        return f"subscriber {self.number} at {self.address}" + ("" if stream is None else f" of stream {stream}")
 
     def publish(self, payload: bytes) -> None:
-        """Send a message, or queue what the system does not take.
+        """Send a message, or queue what the system does not take; none is lost.
 
         Raises:
             OSError: the peer is gone.
         """
+        self._send_newest()
         self.outgoing.send(size_prefix(len(payload)), payload)
+
+    def offer(self, payload: bytes) -> None:
+        """Send a message, or keep it until those before it are read; a newer one then takes its place.
+
+        Raises:
+            OSError: the peer is gone.
+        """
+        if not self.outgoing.waiting_bytes:
+            self.publish(payload)
+            return
+        if self._newest is not None:
+            self.dropped += 1
+        self._newest = payload
+
+    def flush(self) -> None:
+        """Send what the system takes of what waits, and the newest message behind it.
+
+        Raises:
+            OSError: the peer is gone.
+        """
+        self.outgoing.flush()
+        if not self.outgoing.waiting_bytes:
+            self._send_newest()
+
+    def _send_newest(self) -> None:
+        if self._newest is not None:
+            kept, self._newest = self._newest, None
+            self.outgoing.send(size_prefix(len(kept)), kept)

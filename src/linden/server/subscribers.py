@@ -1,8 +1,9 @@
 """Who listens to which stream, and what is done about those who read too slowly.
 
-In asynchronous mode a message is dropped for a subscriber that has not read those before it. In synchronous mode
-nothing is dropped: up to :data:`QUEUED_BYTES` wait for each subscriber; whoever has more waiting is congested, no
-frame is made until that is over, and after :data:`PATIENCE_S` the connection is closed.
+In asynchronous mode whole messages are left out for a subscriber that has not read those before: the newest waits for
+it. In synchronous mode nothing is left out: up to :data:`QUEUED_BYTES` wait for each subscriber, and up to
+:data:`QUEUED_BYTES_OF_ALL` for all together; whoever has more waiting is congested, no frame is made until that is
+over, and after :data:`PATIENCE_S` the connection is closed.
 """
 
 import logging
@@ -15,6 +16,8 @@ log = logging.getLogger("linden")
 
 QUEUED_BYTES = 32 * 1024 * 1024
 """What may wait for one subscriber: a second of 800 x 600 pictures at 20 Hz, or an hour of snapshots of one car."""
+QUEUED_BYTES_OF_ALL = 256 * 1024 * 1024
+"""What may wait for all subscribers together; shared evenly among those who are behind, if they are more than eight."""
 PATIENCE_S = 4.0
 """How long a congested subscriber holds up the frames: less than the 5 s after which other clients give up a call."""
 
@@ -29,68 +32,81 @@ class Subscribers:
         self._table = table
         self._watch = watch
         self._close = close
-        self._by_stream: dict[int, list[StreamPeer]] = {}
-        self._congested: list[StreamPeer] = []
+        self._by_stream: dict[int, dict[StreamPeer, None]] = {}
+        self._behind: dict[StreamPeer, None] = {}
 
     def add(self, peer: StreamPeer, stream_id: int) -> None:
         """Begin to send a stream to a peer."""
-        self._by_stream.setdefault(stream_id, []).append(peer)
+        self._by_stream.setdefault(stream_id, {})[peer] = None
         self._table.subscribe(stream_id)
 
     def remove(self, peer: StreamPeer) -> None:
         """Forget a peer, whether or not it ever subscribed."""
+        self._behind.pop(peer, None)
         stream_id = peer.subscription.stream_id
-        if stream_id is not None and peer in self._by_stream.get(stream_id, []):
-            self._by_stream[stream_id].remove(peer)
-            self._table.unsubscribe(stream_id)
-        if peer in self._congested:
-            self._congested.remove(peer)
+        if stream_id is None or peer not in self._by_stream.get(stream_id, {}):
+            return
+        del self._by_stream[stream_id][peer]
+        if not self._by_stream[stream_id]:
+            del self._by_stream[stream_id]
+        self._table.unsubscribe(stream_id)
+        if peer.dropped:
+            log.info("%s has missed %d messages in all", peer, peer.dropped)
 
     def publish(self, stream_id: int, payload: bytes, now_s: float, *, may_drop: bool) -> None:
         """Send one message to all who listen; those whose connection is broken are closed."""
         for peer in tuple(self._by_stream.get(stream_id, ())):
-            if may_drop and peer.outgoing.waiting_bytes:
-                self._drop(peer)
-                continue
-            self.send(peer, payload, now_s)
+            self.send(peer, payload, now_s, may_drop=may_drop)
 
-    def send(self, peer: StreamPeer, payload: bytes, now_s: float) -> None:
+    def send(self, peer: StreamPeer, payload: bytes, now_s: float, *, may_drop: bool) -> None:
         """Send one message to one peer; closes it where its connection is broken."""
+        missed = peer.dropped
         try:
-            peer.publish(payload)
+            (peer.offer if may_drop else peer.publish)(payload)
         except OSError as error:
             log.info("%s is gone: %s", peer, error)
             self._close(peer)
             return
+        if missed == 0 < peer.dropped:
+            log.info("%s reads more slowly than frames are made; it misses some (asynchronous mode)", peer)
         if peer.outgoing.waiting_bytes:
             self._watch(peer)
-        if peer.outgoing.waiting_bytes > QUEUED_BYTES and peer.congested_since_s is None:
-            peer.congested_since_s = now_s
-            self._congested.append(peer)
+        if may_drop:
+            peer.congested_since_s = None
+        elif peer.outgoing.waiting_bytes:
+            self._behind[peer] = None
+            self._weigh(peer, now_s)
 
     def patience_s(self, now_s: float) -> float | None:
         """Return how long frames will wait for the congested, None where they need not wait."""
-        self._relieve(now_s)
-        if not self._congested:
+        congested = self.congested(now_s)
+        if not congested:
             return None
-        return max(0.0, min((peer.congested_since_s or 0.0) for peer in self._congested) + PATIENCE_S - now_s)
+        return max(0.0, min(peer.congested_since_s or 0.0 for peer in congested) + PATIENCE_S - now_s)
 
-    def _relieve(self, now_s: float) -> None:
-        """Take out those who have caught up, and close those with whom patience has ended."""
-        for peer in tuple(self._congested):
-            if peer.outgoing.waiting_bytes <= QUEUED_BYTES:
-                peer.congested_since_s = None
-                self._congested.remove(peer)
-            elif now_s - (peer.congested_since_s or 0.0) >= PATIENCE_S:
+    def congested(self, now_s: float) -> list[StreamPeer]:
+        """Return those for whom frames wait, and close those with whom patience has ended."""
+        if not self._behind:
+            return []
+        for peer in tuple(self._behind):
+            self._weigh(peer, now_s)
+            if peer.congested_since_s is not None and now_s - peer.congested_since_s >= PATIENCE_S:
                 log.warning(
                     "%s is closed: in synchronous mode it held up the frames for %.0f s with %d bytes unread",
                     peer,
-                    PATIENCE_S,
+                    now_s - peer.congested_since_s,
                     peer.outgoing.waiting_bytes,
                 )
                 self._close(peer)
+        return [peer for peer in self._behind if peer.congested_since_s is not None]
 
-    def _drop(self, peer: StreamPeer) -> None:
-        peer.dropped += 1
-        if peer.dropped == 1:
-            log.info("%s reads more slowly than frames are made; it misses some (asynchronous mode)", peer)
+    def _weigh(self, peer: StreamPeer, now_s: float) -> None:
+        """Note whether more waits for a peer than its share, and since when."""
+        waiting = peer.outgoing.waiting_bytes
+        if waiting > min(QUEUED_BYTES, QUEUED_BYTES_OF_ALL // len(self._behind)):
+            if peer.congested_since_s is None:
+                peer.congested_since_s = now_s
+            return
+        peer.congested_since_s = None
+        if not waiting:
+            del self._behind[peer]

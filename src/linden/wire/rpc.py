@@ -53,7 +53,8 @@ class RpcConnection:
             max_array_len=MAX_ARRAY_ITEMS,
             max_map_len=0,  # CARLA sends none
         )
-        self._unfinished_bytes = 0
+        self.unfinished_bytes = 0
+        """How much of a call has come that is not yet whole."""
         self._failure: ProtocolError | None = None
 
     def receive(self, data: bytes) -> list[Call]:
@@ -81,15 +82,15 @@ class RpcConnection:
     def _take(self, data: bytes, calls: list[Call]) -> None:
         if self._failure is not None:
             return
-        self._unfinished_bytes += len(data)
+        self.unfinished_bytes += len(data)
         try:
             self._unpacker.feed(data)
             for message in self._unpacker:
                 calls.append(_call(message))
-                self._unfinished_bytes = 0
+                self.unfinished_bytes = 0
         except _UNPACKING_FAILED as error:
             raise ProtocolError(f"what arrived is not msgpack of a call: {error or type(error).__name__}") from error
-        if self._unfinished_bytes > MAX_MESSAGE_BYTES:
+        if self.unfinished_bytes > MAX_MESSAGE_BYTES:
             raise ProtocolError(f"a message is longer than {MAX_MESSAGE_BYTES} bytes")
 
 

@@ -1,0 +1,146 @@
+"""The two doors: lets newcomers in as long as there is room, and shows out those who never say what they want.
+
+A subscriber says at once which stream it wants, so one that keeps silent is sent away. A client may be silent for as
+long as it likes, for a user may think at a prompt; only where there is no room for others it has to make it.
+"""
+
+import errno
+import logging
+import selectors
+import socket
+from collections.abc import Callable
+from itertools import chain, islice
+
+from linden.server.peers import Peer, RpcPeer, StreamPeer
+from linden.server.ports import Ports
+
+log = logging.getLogger("linden")
+
+FULL_PAUSE_S = 1.0
+"""How long nobody is let in after room has run out."""
+SILENT_SUBSCRIBER_S = 10.0
+"""How long a stream connection may take to say its four bytes; the official client sends them on connecting."""
+LET_IN_AT_ONCE = 64
+"""Newcomers of a door before those who are inside have their turn."""
+SHOWN_OUT_AT_ONCE = 16
+"""Silent clients that leave together when there is no room."""
+RESERVED_FILES = 64
+"""Files of the process that are no connections: its own, those of libraries, maps and recordings."""
+MOST_CONNECTIONS_ANYWHERE = 16384
+"""Where the system sets no limit: a thousand clients of sixteen streams."""
+
+_NO_ROOM = (errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM)
+_OUR_FAULT = (errno.EBADF, errno.EINVAL, errno.ENOTSOCK, errno.EOPNOTSUPP)
+
+
+def most_connections() -> int:
+    """Return how many connections this process may hold: its limit of open files, less what it needs itself."""
+    try:
+        import resource  # noqa: PLC0415 - not on every system
+    except ImportError:
+        return MOST_CONNECTIONS_ANYWHERE
+    soft, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if soft == resource.RLIM_INFINITY:
+        return MOST_CONNECTIONS_ANYWHERE
+    return max(RESERVED_FILES, min(soft - RESERVED_FILES, MOST_CONNECTIONS_ANYWHERE))
+
+
+class Entrance:
+    """Listens on both ports and knows who has come and not yet said anything."""
+
+    def __init__(
+        self,
+        ports: Ports,
+        selector: selectors.BaseSelector,
+        clock: Callable[[], float],
+        welcome: Callable[[Peer], None],
+        show_out: Callable[[Peer], None],
+    ) -> None:
+        """``welcome`` is told of a newcomer, ``show_out`` of one that is to go."""
+        self._ports = ports
+        self._selector = selector
+        self._welcome = welcome
+        self._show_out = show_out
+        self._most = most_connections()
+        self._numbered = 0
+        self._inside = 0
+        self._silent: dict[type[Peer], dict[Peer, float]] = {RpcPeer: {}, StreamPeer: {}}  # when each came, in order
+        self._closed_until_s: float | None = None
+        self._clock = clock
+        self._open()
+
+    def look(self, now_s: float) -> None:
+        """Do what is due by the clock: open the doors again, and show out silent subscribers."""
+        if self._closed_until_s is not None and now_s >= self._closed_until_s:
+            self._closed_until_s = None
+            self._open()
+        while (peer := next(iter(self._silent[StreamPeer]), None)) is not None:
+            if now_s - self._silent[StreamPeer][peer] < SILENT_SUBSCRIBER_S:
+                break
+            log.info("%s is closed: it has not said within %.0f s what it listens to", peer, SILENT_SUBSCRIBER_S)
+            self._show_out(peer)
+
+    def wait_s(self, now_s: float) -> float | None:
+        """Return how long there is nothing to do by the clock, None where that is for ever."""
+        due = [] if self._closed_until_s is None else [self._closed_until_s]
+        due += (came_s + SILENT_SUBSCRIBER_S for came_s in islice(self._silent[StreamPeer].values(), 1))
+        return max(0.0, min(due) - now_s) if due else None
+
+    def has_spoken(self, peer: Peer) -> None:
+        """Note that a peer has said what it wants."""
+        self._silent[type(peer)].pop(peer, None)
+
+    def has_left(self, peer: Peer) -> None:
+        """Note that a peer is no longer inside."""
+        self._inside -= 1
+        self._silent[type(peer)].pop(peer, None)
+
+    def _open(self) -> None:
+        for listener, kind in ((self._ports.rpc, RpcPeer), (self._ports.streaming, StreamPeer)):
+            self._selector.register(
+                listener, selectors.EVENT_READ, lambda _, door=listener, kind=kind: self._let_in(door, kind)
+            )
+
+    def _let_in(self, door: socket.socket, kind: type[Peer]) -> None:
+        for _ in range(LET_IN_AT_ONCE):
+            if self._closed_until_s is not None:
+                return
+            if self._inside >= self._most:
+                self._make_room(f"{self._inside} connections are open")
+                continue
+            try:
+                sock, _ = door.accept()
+            except (BlockingIOError, InterruptedError):
+                return
+            except OSError as error:
+                if error.errno in _OUR_FAULT:
+                    raise
+                if error.errno in _NO_ROOM:
+                    self._make_room(str(error))
+                continue  # else it was gone before it was let in
+            self._greet(sock, kind)
+
+    def _greet(self, sock: socket.socket, kind: type[Peer]) -> None:
+        self._numbered += 1
+        try:
+            peer = kind(sock, self._numbered)
+        except OSError:  # gone before it was greeted
+            sock.close()
+            return
+        log.debug("%s has come", peer)
+        self._inside += 1
+        self._silent[kind][peer] = self._clock()
+        self._welcome(peer)
+
+    def _make_room(self, why: str) -> None:
+        """Show out the silent ones who have been here longest; where there are none, close the doors for a while."""
+        leaving = tuple(islice(chain(self._silent[StreamPeer], self._silent[RpcPeer]), SHOWN_OUT_AT_ONCE))
+        for peer in leaving:
+            self._show_out(peer)
+        if leaving:
+            log.warning("%d silent connections are closed to make room for others: %s", len(leaving), why)
+            return
+        log.warning("nobody more is let in for %.0f s: %s", FULL_PAUSE_S, why)
+        self._selector.unregister(self._ports.rpc)
+        self._selector.unregister(self._ports.streaming)
+        self._closed_until_s = self._clock() + FULL_PAUSE_S
