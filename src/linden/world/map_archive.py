@@ -19,6 +19,7 @@ from linden.opendrive.lane_table import LANES
 from linden.opendrive.placed import PlacedSignal
 from linden.values.space import Rotation, Transform, Vector3D
 from linden.world.map_facts import MapFacts
+from linden.world.map_lots import LOTS
 
 Arrays = Mapping[str, NDArray[Any]]
 
@@ -40,6 +41,7 @@ _COLUMNS: dict[str, tuple[np.dtype[Any], tuple[int | None, ...]]] = {
     "lane_of_triangle": (np.dtype(np.int32), (None,)),
     "lanes": (LANES, (None,)),
     "spawn_points": (np.dtype(np.float64), (None, _POSE)),
+    "lots": (LOTS, (None,)),
     "records": (np.dtype(np.uint8), (None,)),
 }
 """What an archive holds: type and shape of each array, ``None`` for any length."""
@@ -52,6 +54,7 @@ def pack(facts: MapFacts) -> dict[str, NDArray[Any]]:
         **facts.ground._asdict(),
         "lane_of_triangle": facts.lane_of_triangle,
         "lanes": facts.lanes,
+        "lots": facts.lots,
         "spawn_points": np.array([(*point.location, *point.rotation) for point in facts.spawn_points]).reshape(-1, 6),
         "records": np.frombuffer(records.encode(), np.uint8),
     }
@@ -76,6 +79,7 @@ def unpack(arrays: Arrays) -> MapFacts:
         ground=ground,
         lane_of_triangle=lane_of_triangle,
         lanes=lanes,
+        lots=columns["lots"],
         spawn_points=tuple(
             Transform(Vector3D(*pose[:3]), Rotation(*pose[3:])) for pose in columns["spawn_points"].tolist()
         ),

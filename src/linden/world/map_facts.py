@@ -23,6 +23,7 @@ class MapFacts:
         signals: lights and signs, in the order of the map.
         controllers: what switches lights together, in the order of the map.
         geo_origin_deg: latitude and longitude of the map's origin.
+        lots: (N,) of ``map_lots.LOTS``: where beside the streets something may stand.
     """
 
     ground: Ground
@@ -32,6 +33,7 @@ class MapFacts:
     signals: tuple[PlacedSignal, ...]
     controllers: tuple[Controller, ...]
     geo_origin_deg: tuple[float, float]
+    lots: NDArray[np.void]
 
 
 def derive(text: str) -> MapFacts:
@@ -45,15 +47,18 @@ def derive(text: str) -> MapFacts:
     from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
     from linden.opendrive.signals import place  # noqa: PLC0415 - see above
     from linden.opendrive.spawn import spawn_points  # noqa: PLC0415 - see above
+    from linden.world.map_cutting import cut_lots  # noqa: PLC0415 - see above
 
     opendrive = parse(text)
     mesh = road_mesh(opendrive)
+    ground = Ground.from_triangles(mesh.vertices, mesh.triangles)
     return MapFacts(
-        ground=Ground.from_triangles(mesh.vertices, mesh.triangles),
+        ground=ground,
         lane_of_triangle=mesh.lane_of_triangle,
         lanes=mesh.lanes,
         spawn_points=spawn_points(opendrive),
         signals=place(opendrive),
         controllers=opendrive.controllers,
         geo_origin_deg=opendrive.geo_origin,
+        lots=cut_lots(opendrive, ground),
     )
