@@ -1,17 +1,13 @@
 """What a handler may touch: the simulation, the maps, the streams, and what goes out with this call."""
 
-import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from linden.handlers.complaints import Complaints
 from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
-
-log = logging.getLogger("linden")
-
-_REMEMBERED_WARNINGS = 1000  # distinct sentences of one run; more are a flood, and shown every time
 
 
 class Frames(Protocol):
@@ -41,7 +37,7 @@ class Context:
     """Number of the connection whose call is being served."""
     traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
-    _warned: set[str] = field(default_factory=set)
+    complaints: Complaints = field(default_factory=Complaints)
 
     def advance(self) -> int:
         """Make one frame, put what it shows into the outbox, and return its number."""
@@ -55,8 +51,4 @@ class Context:
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""
-        if sentence in self._warned:
-            return
-        if len(self._warned) < _REMEMBERED_WARNINGS:
-            self._warned.add(sentence)
-        log.warning("%s", sentence)
+        self.complaints.say(sentence)

@@ -10,8 +10,8 @@ A result annotated None is CARLA's void; anything else travels as its annotation
 
 import importlib
 import inspect
-import logging
 import pkgutil
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, get_type_hints
@@ -19,6 +19,7 @@ from typing import Any, get_type_hints
 import linden.handlers
 from linden import CARLA_VERSION, __version__
 from linden.errors import Refusal
+from linden.handlers.complaints import shortened
 from linden.handlers.context import Context
 from linden.wire import rpc
 from linden.wire.decode import Decoder, WireTypeError, decoder
@@ -26,8 +27,6 @@ from linden.wire.encode import Encoder, encoder
 from linden.wire.rpc import Call, Reply
 from linden.wire.vocabulary import CARLA_FUNCTIONS
 from linden.world.actors import ActorRefusal
-
-log = logging.getLogger("linden")
 
 Handler = Callable[..., Any]
 
@@ -122,8 +121,11 @@ def dispatch(context: Context, call: Call) -> bytes:
         return rpc.void(call) if found.reply is Reply.VOID else rpc.bare(call, result)
     except Refusal as refusal:
         return _refuse(context, call, told(call.method, refusal), found.reply)
-    except Exception as error:
-        log.exception("internal error in %s; the call is refused and the server goes on", call.method)
+    except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
+        context.warn_once(
+            f"internal error in {call.method}; the call is refused and the server goes on. "
+            + "".join(traceback.format_exception(error))
+        )
         sentence = (
             f"internal error of linden {__version__} in {call.method}: {type(error).__name__}: {error}; the server "
             f"goes on, its log has the traceback"
@@ -141,7 +143,7 @@ def told(function: str, refusal: Refusal) -> str:
 def _missing(context: Context, call: Call) -> bytes:
     reply = CARLA_FUNCTIONS.get(call.method)
     if reply is None:
-        sentence = f"linden has no method '{call.method}', nor has CARLA {CARLA_VERSION}"
+        sentence = f"linden has no method '{shortened(call.method)}', nor has CARLA {CARLA_VERSION}"
         context.warn_once(sentence)
         return rpc.unknown(call, sentence)
     sentence = f"linden has no method '{call.method}': CARLA {CARLA_VERSION} has it, linden {__version__} not yet"
@@ -150,6 +152,7 @@ def _missing(context: Context, call: Call) -> bytes:
 
 def _refuse(context: Context, call: Call, sentence: str, reply: Reply) -> bytes:
     """Refuse a call; the log gets the sentence where the client does not read it or cannot be told."""
+    sentence = shortened(sentence)
     if call.is_async or reply is Reply.BARE:
         context.warn_once(f"{sentence} (told here, because the client of this call cannot be)")
     return rpc.refusal(call, sentence, reply)

@@ -45,15 +45,6 @@ def test_an_asynchronous_call_that_is_refused_is_told_to_the_log_once(caplog: py
     assert caplog.text.count("linden has no method 'enable_carsim'") == 1
 
 
-def test_warnings_beyond_what_is_remembered_are_still_shown(caplog: pytest.LogCaptureFixture) -> None:
-    context = new_context()
-    for number in range(1001):
-        context.warn_once(f"sentence {number}")
-    context.warn_once("sentence 1000")
-    assert caplog.text.count("sentence 1000") == 2
-    assert caplog.text.count("sentence 999\n") == 1
-
-
 def test_only_what_makes_frames_waits_for_slow_subscribers() -> None:
     registry.load_handlers()
     assert {name for name, found in METHODS.items() if found.advances} == {"tick_cue", "apply_batch"}
