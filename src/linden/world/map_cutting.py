@@ -76,8 +76,7 @@ def _is_outer_pavement(tables: Tables) -> NDArray[np.bool_]:
     outermost = np.ones(len(lanes), bool)
     outermost[lanes["inside"][lanes["inside"] >= 0]] = False
     open_road = np.array([not road.is_in_junction for road in tables.roads], bool)
-    is_pavement = np.asarray(lanes["type_bits"] == LaneType.SIDEWALK)
-    found: NDArray[np.bool_] = is_pavement & outermost & open_road[lanes["road"]]
+    found: NDArray[np.bool_] = outermost & open_road[lanes["road"]] & (lanes["type_bits"] == LaneType.SIDEWALK)
     return found
 
 
@@ -87,7 +86,8 @@ def _is_free(ground: Ground, edge_m: F64, outward: F64) -> NDArray[np.bool_]:
     points = edge_m[:, None, :] + outward[:, None, :] * depth_m[None, :, None]
     high = np.full((len(edge_m), len(depth_m), 1), _HIGH_M)
     _, triangle = ground.surfaces_under(np.concatenate([points, high], axis=2))
-    free: NDArray[np.bool_] = (triangle < 0).reshape(len(edge_m), len(depth_m)).all(axis=1)
+    roads = (triangle >= 0).reshape(len(edge_m), len(depth_m)).sum(axis=1)
+    free: NDArray[np.bool_] = roads == 0
     return free
 
 
