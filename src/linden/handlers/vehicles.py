@@ -6,16 +6,16 @@ from linden.handlers.registry import method
 from linden.values.vehicles import (
     AckermannControl,
     AckermannSettings,
-    VehicleControl,
     VehiclePhysicsControl,
     VehicleTelemetry,
 )
+from linden.wire.controls import ClientControl
 from linden.wire.decode import U8, U32
 from linden.world.blueprints import Kind
 
 
 @method("apply_control_to_vehicle")
-def apply_control_to_vehicle(context: Context, actor_id: U32, control: VehicleControl) -> None:
+def apply_control_to_vehicle(context: Context, actor_id: U32, control: ClientControl) -> None:
     """Set feet and hands of the driver; they stay until the next call."""
     episode = context.simulation.episode
     episode.bodies.set_control(episode.vehicle(actor_id), control)

@@ -11,6 +11,7 @@ from linden.values.actors import ActorDescription
 from linden.values.space import Transform, Vector3D
 from linden.values.vehicles import AckermannControl, VehicleControl, VehiclePhysicsControl
 from linden.values.walkers import WalkerControl
+from linden.wire.controls import ClientControl
 from linden.wire.decode import U8, U32, DecodedBy, Decoder, WireTypeError, got, struct_decoder
 
 JUST_SPAWNED = 0
@@ -42,7 +43,7 @@ class ApplyVehicleControl(NamedTuple):
     """Feet and hands of a driver, held until replaced."""
 
     actor_id: U32
-    control: VehicleControl
+    control: ClientControl
 
 
 class ApplyVehicleAckermannControl(NamedTuple):
