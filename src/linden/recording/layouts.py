@@ -44,6 +44,8 @@ class PacketId(IntEnum):
     WHEELS = 22
     BIKERS = 23
     WEATHER = 24
+    LOCATION_ULPS = 240
+    """Linden's own; CARLA skips it, as any id it does not know."""
 
 
 class ActorKind(IntEnum):
@@ -132,6 +134,9 @@ WEATHER = np.dtype(
     ]
 )
 
+LOCATION_ULPS = np.dtype([("ulps", "i1", (3,))])
+"""By how many last bits the location in m differs from that in cm over 100; see ``metres``."""
+
 RECORDS: dict[PacketId, np.dtype[np.void]] = {
     PacketId.REMOVED: REMOVED,
     PacketId.PARENTS: PARENT,
@@ -149,6 +154,7 @@ RECORDS: dict[PacketId, np.dtype[np.void]] = {
     PacketId.DOORS: DOOR,
     PacketId.BIKERS: BIKER,
     PacketId.WEATHER: WEATHER,
+    PacketId.LOCATION_ULPS: LOCATION_ULPS,
 }
 """Packets that are a u16 count and as many records of one size."""
 

@@ -9,6 +9,7 @@
 """
 
 import io
+import logging
 import struct
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,10 +24,14 @@ from linden.recording.errors import CutShortError, RecordingError
 from linden.recording.layouts import PacketId
 from linden.recording.packets import Frame, Header
 
+log = logging.getLogger("linden")
+
 _PACKET_HEAD = struct.Struct("<BI")
 _VERSION = struct.Struct("<H")
 _LENGTH = struct.Struct("<H")
 _DATE = struct.Struct("<q")
+_LATEST_DATE_UNIX_S = 253402300799
+"""The end of the year 9999; what is beyond is no date."""
 _KNOWN_VERSIONS = (1, 2)
 """2 is written by development versions after 0.9.16; only the types of attributes are numbered differently."""
 
@@ -90,6 +95,17 @@ class Recording:
         """
         for place in self.places():
             yield self.frame(place)
+
+    def whole_frames(self) -> Iterator[Frame]:
+        """Yield every whole frame; where the file then ends inside a frame, the log says so.
+
+        Raises:
+            RecordingError: something in it cannot be.
+        """
+        try:
+            yield from self.frames()
+        except CutShortError as error:
+            log.warning("%s", error)
 
     def places(self) -> Iterator[FramePlace]:
         """Yield where each whole frame lies, without reading what is in it.
@@ -182,6 +198,10 @@ def _read_header(file: BinaryIO, path: Path) -> Header:
             f"{path} is a CARLA recorder file of version {version}; this program reads 1 (up to 0.9.16) and 2", 0
         )
     (date_unix_s,) = _DATE.unpack(take(8))
+    if not 0 <= date_unix_s <= _LATEST_DATE_UNIX_S:
+        raise RecordingError(
+            f"{path}: damaged recording: the 8 bytes before byte {file.tell()} are no date", file.tell()
+        )
     return Header(version, date_unix_s, text())
 
 
