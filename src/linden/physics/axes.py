@@ -17,6 +17,16 @@ def plane_axes(pitch_rad: float, yaw_rad: float, roll_rad: float) -> tuple[Axis,
 
 
 @kernel
+def body_axes(pitch_rad: float, yaw_rad: float, roll_rad: float) -> tuple[Axis, Axis, Axis]:
+    """Return the directions forward, to the right and up: the columns of ``geometry.rotation_matrix``."""
+    nose, side = plane_axes(pitch_rad, yaw_rad, roll_rad)
+    sp, cp = math.sin(pitch_rad), math.cos(pitch_rad)
+    sy, cy = math.sin(yaw_rad), math.cos(yaw_rad)
+    sr, cr = math.sin(roll_rad), math.cos(roll_rad)
+    return nose, side, (-cy * sp * cr - sy * sr, -sy * sp * cr + cy * sr, cp * cr)
+
+
+@kernel
 def within_turn(angle_rad: float) -> float:
     """Return the angle as one in [-pi, pi)."""
     if -math.pi <= angle_rad < math.pi:

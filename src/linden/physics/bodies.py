@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.geometry import rotation_matrix
 from linden.physics.columns import finite, twice
 from linden.physics.state import BODY, PROP, VEHICLE, WALKER
 from linden.physics.vehicle.cockpit import Cockpits
@@ -37,6 +38,7 @@ class Bodies(Cockpits):
         s = self.state
         s["alive"][slot] = s["simulate"][slot] = s["gravity"][slot] = s["collides"][slot] = True
         s["kind"][slot], s["mass_kg"][slot], s["support_mps2"][slot] = kind, mass_kg, 0.0
+        s["road_grip"][slot], s["friction_here"][slot] = 1.0, -1.0
         s["box_centre"][slot] = box.location
         s["half_extent"][slot] = np.maximum(box.extent, 1e-3)
         s["ackermann_gains"][slot] = AckermannSettings()
@@ -99,12 +101,24 @@ class Bodies(Cockpits):
         s["velocity"][slot, 2] -= s["heave_mps"][slot]
         s["heave_mps"][slot] = 0.0
         s["tilt_radps"][slot] = 0.0
+        s["tumbling"][slot] = False
         self.wake(slot)
 
     def set_simulate(self, slot: int, *, simulate: bool) -> None:
-        """Switch the physics of one body; without it the body stays where it is put, and others collide with it."""
+        """Switch the physics of one body; without it the body stays where it is put, and others collide with it.
+
+        A vehicle's wheels point straight ahead when it is switched, until they are steered or set (as CARLA does).
+        """
+        if bool(self.simulate[slot]) == simulate:
+            return
         self.state["simulate"][slot] = simulate
         self.state["footing"][slot] = 0.0
+        self.state["wheel_steer"][slot] = self.state["wheel_turned"][slot] = 0.0
+        self.wake(slot)
+
+    def set_gravity(self, slot: int, *, falls: bool) -> None:
+        """Let a body fall, or float."""
+        self.state["gravity"][slot] = falls
         self.wake(slot)
 
     def set_target_velocity(self, slot: int, velocity_mps: Sequence[float]) -> None:
@@ -169,10 +183,9 @@ class Bodies(Cockpits):
             angular[slot] += np.cross(arm, vector)
 
     def _mass_point(self, slot: int) -> NDArray[np.float64]:
-        """Return where the centre of mass is, world, m (the body taken as upright)."""
-        x, y, z = self.state["centre_of_mass"][slot]
-        cosine, sine = math.cos(self.rotation[slot, 1]), math.sin(self.rotation[slot, 1])
-        point: NDArray[np.float64] = self.position[slot] + (cosine * x - sine * y, sine * x + cosine * y, z)
+        """Return where the centre of mass is, world, m."""
+        arm = rotation_matrix(self.pose(slot).rotation) @ self.state["centre_of_mass"][slot]
+        point: NDArray[np.float64] = self.position[slot] + arm
         return point
 
     # -- walkers -------------------------------------------------------------------------------------------------------

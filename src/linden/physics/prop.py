@@ -13,7 +13,14 @@ SLIDING_FRICTION = 0.6
 
 @part
 def advance_prop(v: Body, ground: Ground, gravity_mps2: float, dt_s: float) -> None:
-    """Advance the prop ``v``: Coulomb friction on the ground, free fall above it. It does not tumble."""
+    """Advance the prop ``v``: Coulomb friction on the ground, free fall above it. It does not tumble.
+
+    One that lies still on the ground rests: it costs nothing until something moves it.
+    """
+    if v.resting and v.velocity[0] == 0.0 and v.velocity[1] == 0.0 and v.velocity[2] == 0.0:
+        if v.angular_velocity[2] == 0.0:
+            return
+    v.resting = False
     fall = gravity_mps2 if v.gravity else 0.0
     bottom = v.position[2] + v.box_centre[2] - v.half_extent[2]
     below, _, _, _, _ = surface_under(ground, v.position[0], v.position[1], bottom)
@@ -26,6 +33,8 @@ def advance_prop(v: Body, ground: Ground, gravity_mps2: float, dt_s: float) -> N
         slowed = SLIDING_FRICTION * fall * dt_s * 0.5 * lever * v.mass_kg / v.yaw_inertia_kgm2
         turn = v.angular_velocity[2]
         v.angular_velocity[2] = math.copysign(max(0.0, abs(turn) - slowed), turn)
+        slides = v.velocity[0] != 0.0 or v.velocity[1] != 0.0 or v.angular_velocity[2] != 0.0
+        v.resting = bottom >= below and fall > 0.0 and not slides
     after = v.velocity[2] - fall * dt_s
     moved = 0.5 * (v.velocity[2] + after) * dt_s
     v.position[0] += v.velocity[0] * dt_s

@@ -7,8 +7,14 @@ from numpy.typing import NDArray
 
 from linden.compiled import part
 from linden.physics.state import VEHICLE, Body
+from linden.physics.tumble import push_tumbling, start_tumbling, tripping_speed_mps
 
 F64 = NDArray[np.float64]
+
+_SPRING_RADPS = 12.0  # vehicle.suspension.BOUNCE_RADPS
+_OVERSHOOT = 0.46  # how far a rate swings a spring of 0.7 of critical damping, over rate / SPRING_RADPS
+_LIFTED = 1.5  # of the lean at which one side carries all
+_CAUGHT = 0.8  # of the tripping speed, from which on the fall is worked out in space
 
 
 @part
@@ -30,6 +36,9 @@ def _push(v: Body, push: F64, spin: F64, share: float) -> None:
     """Apply a push and a turn (3,), whole or for ``share`` seconds; wakes a body at rest."""
     if push[0] == 0.0 and push[1] == 0.0 and push[2] == 0.0 and spin[0] == 0.0 and spin[1] == 0.0 and spin[2] == 0.0:
         return
+    if v.tumbling:
+        push_tumbling(v, push, spin, share)
+        return
     for axis in range(3):
         v.velocity[axis] += share * push[axis] / v.mass_kg
     v.heave_mps += share * push[2] / v.mass_kg
@@ -38,6 +47,35 @@ def _push(v: Body, push: F64, spin: F64, share: float) -> None:
     about_side = share * (spin[1] * cosine - spin[0] * sine)
     _turn(v, share * spin[2] / v.yaw_inertia_kgm2, about_nose, about_side)
     v.resting = False
+    if v.kind == VEHICLE and v.footing[3] != 0.0 and (_wheels_lift(v) or _trips(v)):
+        start_tumbling(v)
+
+
+@part
+def _wheels_lift(v: Body) -> bool:
+    """Tell whether a push has given more roll or pitch than the vehicle's weight can hold on its wheels.
+
+    The springs hold up to the angle at which one side carries all, g / (bounce² l/2) with the wheels l/2 away. A rate
+    r swings the body as far as r / bounce times the overshoot of a second-order system.
+    """
+    fall = 9.81 / _SPRING_RADPS**2
+    for axis in range(2):
+        reach = 0.75 * v.half_extent[1] if axis == 1 else 0.6 * v.half_extent[0]
+        limit_rad = fall / reach
+        lean = v.rotation[2 * axis] - v.footing[1 + axis]
+        rate = v.tilt_radps[axis]
+        if abs(rate) > limit_rad * _SPRING_RADPS / _OVERSHOOT:
+            return True
+        if abs(lean) > _LIFTED * limit_rad and lean * rate > 0.0:
+            return True
+    return False
+
+
+@part
+def _trips(v: Body) -> bool:
+    """Tell whether a push has made the vehicle slide sideways so fast that caught wheels may throw it over."""
+    across = v.velocity[1] * math.cos(v.rotation[1]) - v.velocity[0] * math.sin(v.rotation[1])
+    return bool(abs(across) > _CAUGHT * tripping_speed_mps(v))
 
 
 @part

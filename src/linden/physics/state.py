@@ -105,6 +105,7 @@ BODY = np.dtype(
         ("engine_rpm", "f8"),
         ("wheel_omega", "f8", WHEELS),  # rad/s, positive forward
         ("wheel_steer", "f8", WHEELS),  # rad, positive to the right
+        ("wheel_turned", "f8", WHEELS),  # rad, how far it has rolled forward, in [-pi, pi)
         ("wheel_long_slip", "f8", WHEELS),
         ("wheel_lat_slip", "f8", WHEELS),  # rad
         ("wheel_load", "f8", WHEELS),  # N, as the next two
@@ -114,6 +115,9 @@ BODY = np.dtype(
         ("walker_direction", "f8", 3),
         ("walker_speed", "f8"),
         ("jump", "?"),
+        ("road_grip", "f8"),  # of the road's state: 1 dry; what the tyres' friction is multiplied with
+        ("friction_here", "f8"),  # tyre friction that a trigger imposes, below 0 where there is none
+        ("failure", "u1"),  # values.enums.VehicleFailureState
         # from here on: the kernels' memory
         ("heave_mps", "f8"),  # vertical speed beside that of the motion in the plane of the road
         ("tilt_radps", "f8", 2),  # rates of pitch and roll
@@ -127,6 +131,9 @@ BODY = np.dtype(
         ("still_s", "f8"),  # for how long springs and wheels have been still
         ("rest_input", "f8", 6),  # the inputs it rests under
         ("jump_pending", "?"),
+        ("tumbling", "?"),  # a vehicle off its wheels: a rigid body in space until it stands again
+        ("rollover_stage", "u1"),  # how far over it has gone, see vehicle.rollover
+        ("rollover_s", "f8"),  # since it lay on its roof
         ("impulse", "f8", 3),  # N·s, once
         ("angular_impulse", "f8", 3),  # N·m·s, once
         ("force", "f8", 3),  # N, during the next advance

@@ -15,8 +15,11 @@ from linden.physics.contact.statics import Statics
 from linden.physics.prop import advance_prop
 from linden.physics.pushes import apply_forces, apply_impulses, clear_pushes, hold_velocity
 from linden.physics.state import VEHICLE, WALKER, Rows, Work
+from linden.physics.tumble import is_upset, start_tumbling, tumble
 from linden.physics.vehicle.ackermann import drive_to_target
 from linden.physics.vehicle.motion import advance_vehicle
+from linden.physics.vehicle.rollover import watch_rollover
+from linden.physics.vehicle.wheels import turn_wheels
 from linden.physics.walker import advance_walker
 
 if TYPE_CHECKING:
@@ -56,11 +59,17 @@ def _advance_bodies(
             v.angular_velocity[:] = 0.0
             continue
         apply_forces(v, dt_s)
-        if v.kind == VEHICLE:
+        if v.kind == VEHICLE and not v.tumbling and is_upset(v):
+            start_tumbling(v)
+        if v.kind == VEHICLE and not v.tumbling:
             advance_vehicle(v, specs[i], work, ground, gravity_mps2, dt_s, left)
+            turn_wheels(v, specs[i], dt_s)
             continue
         if v.constant_velocity_on:
             hold_velocity(v)
+        if v.tumbling:
+            tumble(v, specs[i], ground, gravity_mps2, dt_s)
+            continue
         if v.kind == WALKER:
             advance_walker(v, ground, gravity_mps2, dt_s)
         else:
@@ -115,6 +124,8 @@ def _build(sources: int) -> _Advance:
             v = rows[i]
             v.acceleration[:] = (v.velocity - v.acceleration) / dt_s
             clear_pushes(v)
+            if v.tumbling or v.rollover_stage > 0:
+                watch_rollover(v, dt_s)
         return _report(pairs, account)
 
     return kernel(advance)

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import part
+from linden.physics.axes import body_axes
 from linden.physics.contact.boxes import COS, HALF_X, HALF_Y, HIGH, LOW, SIN, X, Y, overlap
 from linden.physics.contact.pairs import box_centre, is_fixed
 from linden.physics.contact.statics import Statics
@@ -65,7 +66,10 @@ def _both_rest(rows: Rows, i: int, other: int) -> bool:
 
 @part
 def _write_box(v: Body, box: F64) -> None:
-    """Write a body's box; a vehicle's begins at its ground clearance."""
+    """Write a body's box; a vehicle's begins at its ground clearance, a tumbling one's is the upright box around it."""
+    if v.tumbling:
+        _write_tumbling(v, box)
+        return
     box[X], box[Y] = box_centre(v)
     box[COS], box[SIN] = math.cos(v.rotation[1]), math.sin(v.rotation[1])
     box[HALF_X], box[HALF_Y] = v.half_extent[0], v.half_extent[1]
@@ -73,6 +77,25 @@ def _write_box(v: Body, box: F64) -> None:
     box[LOW], box[HIGH] = middle - v.half_extent[2], middle + v.half_extent[2]
     if v.kind == VEHICLE:
         box[LOW] = max(box[LOW], v.position[2] + CLEARANCE_M)
+
+
+@part
+def _write_tumbling(v: Body, box: F64) -> None:
+    """Write the upright box, turned as the nose is, that holds a body lying on its side or roof."""
+    nose, side, up = body_axes(v.rotation[0], v.rotation[1], v.rotation[2])
+    x, y, z = v.box_centre[0], v.box_centre[1], v.box_centre[2]
+    box[X] = v.position[0] + nose[0] * x + side[0] * y + up[0] * z
+    box[Y] = v.position[1] + nose[1] * x + side[1] * y + up[1] * z
+    middle = v.position[2] + nose[2] * x + side[2] * y + up[2] * z
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    box[COS], box[SIN] = cosine, sine
+    box[HALF_X], box[HALF_Y], high = 0.0, 0.0, 0.0
+    for k in range(3):
+        axis = nose if k == 0 else (side if k == 1 else up)
+        box[HALF_X] += abs(axis[0] * cosine + axis[1] * sine) * v.half_extent[k]
+        box[HALF_Y] += abs(axis[1] * cosine - axis[0] * sine) * v.half_extent[k]
+        high += abs(axis[2]) * v.half_extent[k]
+    box[LOW], box[HIGH] = middle - high, middle + high
 
 
 @part

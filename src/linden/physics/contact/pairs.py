@@ -28,6 +28,8 @@ def is_fixed(v: Body) -> bool:
 def reach_of(v: Body, dt_s: float) -> float:
     """Return the radius in m around the box's centre that the body stays within for ``dt_s``."""
     radius = math.hypot(v.half_extent[0], v.half_extent[1])
+    if v.tumbling:  # it reaches as far as any corner does
+        radius = math.hypot(radius, v.half_extent[2]) + abs(v.box_centre[2])
     if is_fixed(v):
         return radius
     speed = math.hypot(v.velocity[0], v.velocity[1])

@@ -3,6 +3,7 @@
 import math
 
 from linden.compiled import part
+from linden.physics.axes import within_turn
 from linden.physics.state import Body, Spec, Work
 from linden.physics.vehicle.powertrain import on_curve
 from linden.physics.vehicle.tyre import cornering_stiffness
@@ -50,7 +51,8 @@ def prepare_wheels(v: Body, spec: Spec, w: Work, gravity_mps2: float, dt_s: floa
     for k in range(spec.wheel_count):
         load = v.wheel_load[k]
         rest_load = spec.load_share[k] * v.mass_kg * gravity_mps2
-        w.limit_n[k] = spec.friction[k] * load
+        friction = spec.friction[k] if v.friction_here < 0.0 else v.friction_here
+        w.limit_n[k] = friction * v.road_grip * load
         w.slip_n[k] = spec.slip_stiffness_n[k]
         w.cornering_n[k] = cornering_stiffness(spec.cornering_per_rad[k], spec.cornering_full_load[k], load, rest_load)
         if v.wheel_steer[k] == 0.0:
@@ -69,3 +71,12 @@ def prepare_wheels(v: Body, spec: Spec, w: Work, gravity_mps2: float, dt_s: floa
         w.pushed_nm[k] = w.inertia_nms[k] * v.wheel_omega[k] + spec.drive_share[k] * w.drive[0] * w.drive[1]
         w.turns[k] = 1.0 if v.wheel_omega[k] > 0.0 else (-1.0 if v.wheel_omega[k] < 0.0 else 0.0)
         w.omega_radps[k] = v.wheel_omega[k]
+
+
+@part
+def turn_wheels(v: Body, spec: Spec, dt_s: float) -> None:
+    """Turn the wheels on by their spin: what an onlooker sees of them."""
+    if v.resting:
+        return
+    for k in range(spec.wheel_count):
+        v.wheel_turned[k] = within_turn(v.wheel_turned[k] + v.wheel_omega[k] * dt_s)
