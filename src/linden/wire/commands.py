@@ -18,8 +18,26 @@ JUST_SPAWNED = 0
 """The actor id that a command in ``do_after`` gives for the actor which its SpawnActor makes."""
 
 
+MAX_NESTED_SPAWNS = 4
+"""How deep SpawnActor may stand in the ``do_after`` of another: scripts need one, each doubles what an error costs."""
+
+
 def _decode_nested(raw: object) -> "tuple[Command, ...]":
-    return decode_commands(raw)
+    level = raw if type(raw) is list else []
+    for _ in range(MAX_NESTED_SPAWNS):
+        level = [inner for item in level for inner in _do_after(item)]
+        if not level:
+            return decode_commands(raw)
+    raise WireTypeError(f"expected commands at most {MAX_NESTED_SPAWNS} deep in one another, got more")
+
+
+def _do_after(item: Any) -> list[Any]:  # noqa: ANN401 - whatever msgpack found
+    """Return what should follow a command, where it is a SpawnActor; nothing of what is no command at all."""
+    try:
+        (((index, (*_, inner)),),) = (item,)
+    except (TypeError, ValueError):
+        return []
+    return inner if type(index) is int and index == 0 and type(inner) is list else []
 
 
 class SpawnActor(NamedTuple):

@@ -9,7 +9,7 @@ from linden.values.actors import ActorDescription, AttributeValue
 from linden.values.space import Rotation, Transform, Vector3D
 from linden.values.vehicles import VehicleControl
 from linden.wire import commands
-from linden.wire.commands import COMMANDS, decode_commands
+from linden.wire.commands import COMMANDS, MAX_NESTED_SPAWNS, SpawnActor, decode_commands
 from linden.wire.decode import WireTypeError
 
 CONTROL = [0.5, -0.25, 0.0, False, True, False, 3]
@@ -108,3 +108,23 @@ def test_the_short_way_of_a_control_decodes_what_the_long_way_does(command: list
 def test_the_short_way_lets_nothing_through_that_the_long_way_refuses(broken: object) -> None:
     with pytest.raises(WireTypeError):
         decode_commands([broken])
+
+
+def nested_spawns(depth: int) -> list[Any]:
+    description, pose = [0, "walker.pedestrian.0001", []], [[0.0, 0.0, 0.0], [0.0, 0.0, 0.0]]
+    command: list[Any] = [[0, [description, pose, [False], 0, "", []]]]
+    for _ in range(depth):
+        command = [[0, [description, pose, [False], 0, "", [command]]]]
+    return [command]
+
+
+def test_spawns_stand_in_one_another_as_deep_as_anybody_needs() -> None:
+    (outer,) = decode_commands(nested_spawns(MAX_NESTED_SPAWNS))
+    assert isinstance(outer, SpawnActor)
+    assert isinstance(outer.do_after[0], SpawnActor)
+
+
+def test_spawns_nested_without_end_are_refused_by_a_sentence() -> None:
+    for depth in (MAX_NESTED_SPAWNS + 1, 200):
+        with pytest.raises(WireTypeError, match="expected commands at most 4 deep in one another"):
+            decode_commands(nested_spawns(depth))
