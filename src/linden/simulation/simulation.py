@@ -5,6 +5,7 @@ from collections.abc import Container
 
 from linden.simulation.episode import Episode
 from linden.simulation.measuring import Measurements, measure
+from linden.simulation.recorder import Recorder
 from linden.simulation.spawning import destroy, refuse_idle, spawn
 from linden.simulation.step import step
 from linden.values.actors import ActorDescription
@@ -28,6 +29,7 @@ class Simulation:
         settings: how time passes; replaced whole.
         frame: number of the last frame made; grows for the life of the server.
         episode: everything that a load of a map begins anew.
+        recorder: writes what happens into a file, where asked to; a load of a map ends the recording.
     """
 
     def __init__(self, world_map: LoadedMap, settings: EpisodeSettings = EpisodeSettings()) -> None:  # noqa: B008 - frozen
@@ -37,6 +39,7 @@ class Simulation:
         self.frame = 0
         self.episode_id = 0
         self._next_stream = FIRST_SENSOR_STREAM
+        self.recorder = Recorder()
         self._begin(world_map)
 
     def load(self, world_map: LoadedMap, *, reset_settings: bool) -> None:
@@ -47,6 +50,7 @@ class Simulation:
 
     def _begin(self, world_map: LoadedMap) -> None:
         self.episode_id += 1
+        self.recorder.stop()
         self.episode = Episode(world_map, first_frame=self.frame)
         self.delta_s = self.settings.fixed_delta_seconds or 0.0
         self.episode.observe()
@@ -80,7 +84,9 @@ class Simulation:
         """Make the next frame, ``dt_s`` after the last."""
         self.frame += 1
         self.delta_s = dt_s
+        self.recorder.before_step(self.episode)
         step(self.episode, dt_s, self._substeps(dt_s))
+        self.recorder.after_step(self.episode, dt_s)
 
     def _substeps(self, dt_s: float) -> int:
         """Return into how many parts the physics cuts a step: CARLA's rule for its substepping settings."""

@@ -1,0 +1,108 @@
+"""Rows of the snapshot as records of a recording, column by column. Layouts: ``linden.recording.layouts``."""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.recording import layouts
+from linden.simulation.episode import Episode
+from linden.values.snapshot import TRAFFIC_LIGHT_ROW, VEHICLE_ROW, WALKER_ROW
+from linden.world.actors import ActorRecord
+from linden.world.blueprints import Kind
+
+Rows = NDArray[Any]
+Indices = NDArray[np.int64]
+
+_ROLL_PITCH_YAW = [2, 0, 1]
+_NOT_PLACED = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN, Kind.SENSOR)
+"""Kinds whose places CARLA does not record: they stand, or follow somebody."""
+
+
+class Columns(NamedTuple):
+    """Which rows are whose; valid as long as nobody comes or goes."""
+
+    placed: Indices
+    vehicles: Indices
+    walkers: Indices
+    moving: Indices
+    lights: Indices
+    vehicle_records: tuple[ActorRecord, ...]
+
+
+def columns(episode: Episode) -> Columns:
+    """Return which rows of the snapshot belong to whom."""
+    actors = episode.actors
+
+    def rows_where(*kinds: Kind) -> Indices:
+        return np.array([actors.row(record.id) for record in actors if record.kind in kinds], np.int64)
+
+    return Columns(
+        placed=rows_where(*(kind for kind in Kind if kind not in _NOT_PLACED)),
+        vehicles=rows_where(Kind.VEHICLE),
+        walkers=rows_where(Kind.WALKER),
+        moving=rows_where(Kind.VEHICLE, Kind.WALKER),
+        lights=rows_where(Kind.TRAFFIC_LIGHT),
+        vehicle_records=tuple(record for record in actors if record.kind is Kind.VEHICLE),
+    )
+
+
+def positions(rows: Rows, placed: Indices) -> NDArray[np.void]:
+    """Return where everybody is, but for the locations, which are left to the caller."""
+    found = np.empty(len(placed), layouts.POSITION)
+    found["id"] = rows["id"][placed]
+    found["rotation_deg"] = rows["rotation"][placed][:, _ROLL_PITCH_YAW]
+    return found
+
+
+def vehicles(rows: Rows, of: Indices) -> NDArray[np.void]:
+    """Return how vehicles are driven."""
+    return _copied(rows.view(VEHICLE_ROW), of, layouts.VEHICLE, ("steer", "throttle", "brake", "hand_brake", "gear"))
+
+
+def walkers(rows: Rows, of: Indices) -> NDArray[np.void]:
+    """Return how fast walkers were told to walk."""
+    found = np.empty(len(of), layouts.WALKER)
+    found["id"], found["speed_mps"] = rows["id"][of], rows.view(WALKER_ROW)["speed"][of]
+    return found
+
+
+def light_states(rows: Rows, of: Indices) -> NDArray[np.void]:
+    """Return how traffic lights stand."""
+    lights = rows.view(TRAFFIC_LIGHT_ROW)
+    found = np.empty(len(of), layouts.LIGHT_STATE)
+    found["id"], found["frozen"] = lights["id"][of], lights["frozen"][of]
+    found["elapsed_s"], found["state"] = lights["elapsed_time"][of], lights["state"][of]
+    return found
+
+
+def light_times(rows: Rows, of: Indices) -> NDArray[np.void]:
+    """Return for how long the colours of traffic lights last."""
+    lights = rows.view(TRAFFIC_LIGHT_ROW)
+    found = np.empty(len(of), layouts.LIGHT_TIME)
+    found["id"] = lights["id"][of]
+    for colour in ("green", "yellow", "red"):
+        found[f"{colour}_s"] = lights[f"{colour}_time"][of]
+    return found
+
+
+def kinematics(rows: Rows, of: Indices) -> NDArray[np.void]:
+    """Return how actors move."""
+    found = np.empty(len(of), layouts.KINEMATICS)
+    found["id"] = rows["id"][of]
+    found["velocity_mps"] = rows["velocity"][of]
+    found["angular_velocity_degps"] = rows["angular_velocity"][of]
+    return found
+
+
+def lamps(records: Sequence[ActorRecord]) -> NDArray[np.void]:
+    """Return which lamps of vehicles are lit."""
+    return np.array([(record.id, record.light_state) for record in records], layouts.VEHICLE_LIGHT)
+
+
+def _copied(rows: Rows, of: Indices, layout: "np.dtype[np.void]", fields: Sequence[str]) -> NDArray[np.void]:
+    found = np.empty(len(of), layout)
+    for field in ("id", *fields):
+        found[field] = rows[field][of]
+    return found
