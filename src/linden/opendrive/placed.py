@@ -2,7 +2,19 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from linden.values.space import BoundingBox, Transform
+
+GIVE_WAY = np.dtype(
+    [
+        ("signal", "i4"),  # place of the sign among the map's signals
+        ("centre_m", "f8", (3,)),  # CARLA's frame
+        ("half_m", "f8"),  # half the length of the square's sides
+        ("yaw_rad", "f8"),
+    ]
+)
+"""A square on the road; whoever stands under the sign lets pass what is in it."""
 
 
 class AffectedLane(NamedTuple):

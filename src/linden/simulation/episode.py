@@ -11,7 +11,6 @@ from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
 from linden.traffic.lights import Traffic
 from linden.values.actors import ActorDescription
-from linden.values.enums import TrafficLightState
 from linden.values.episode import WeatherParameters
 from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, WALKER_ROW
 from linden.values.space import BoundingBox, Transform
@@ -26,8 +25,6 @@ STANDARD_GRAVITY_MPS2 = 9.81
 """What CARLA's IMU adds unless told otherwise."""
 
 _MPS_TO_KMH = 3.6
-_NO_LIGHT = int(TrafficLightState.GREEN)
-"""The colour of a vehicle under no light; a plain number, for a kernel takes long to recognise an enum."""
 _MOTION = np.dtype(
     {"names": ["motion"], "formats": [("<f4", (15,))], "offsets": [MOTION_OFFSET], "itemsize": ROW.itemsize}
 )
@@ -198,6 +195,7 @@ class Episode:
         """Note which rows are vehicles' and walkers'; called when somebody has come or gone."""
         self._keep_limits()
         self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(Kind.VEHICLE)
+        self._vehicle_actor_id = np.array(self._vehicle_ids, np.int32)
         _, self._walker_slots, self._walker_rows = self._embodied(Kind.WALKER)
         self._limits_kmh = np.array(
             [self._speed_limit_kmh.get(actor_id, DEFAULT_SPEED_LIMIT_KMH) for actor_id in self._vehicle_ids]
@@ -227,8 +225,10 @@ class Episode:
             self.map.ground, self.map.lane_of_triangle, self._limit_of_lane_kmh, bodies.position, slots,
             self._limits_kmh,
         )  # fmt: skip
-        light = self.traffic.over(bodies.position, bodies.rotation, bodies.box_centre, bodies.half_extent, slots)
+        where = (bodies.position, bodies.rotation, bodies.box_centre, bodies.half_extent, slots)
+        light = self.traffic.over(*where)
+        at_sign = self.traffic.at_signs(*where, self._vehicle_actor_id, self.elapsed_s)
         rows.write_surroundings(
             self._row_bytes, self._vehicle_rows, self._limits_kmh, light, self.traffic.state.colour,
-            self._light_actor_id, _NO_LIGHT,
+            self._light_actor_id, at_sign,
         )  # fmt: skip

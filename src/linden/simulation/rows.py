@@ -69,9 +69,12 @@ def write_controls(
 
 @kernel
 def write_surroundings(
-    rows: U8, row_of: I32, speed_limit_kmh: F64, light: I32, light_state: U8, light_actor_id: I32, no_light: int
+    rows: U8, row_of: I32, speed_limit_kmh: F64, light: I32, light_state: U8, light_actor_id: I32, at_sign: U8
 ) -> None:  # pragma: no cover - compiled
-    """Write the limit (V,) in force and the light (V,) over each vehicle: an index into the last two, or -1."""
+    """Write the limit (V,) in force and the light (V,) over each vehicle: an index into the next two, or -1.
+
+    ``at_sign`` (V,) is the colour of those who are under none.
+    """
     for i in range(len(row_of)):
         row = rows[row_of[i]]
         _put_float(row, _SPEED_LIMIT, speed_limit_kmh[i])
@@ -79,7 +82,7 @@ def write_surroundings(
             row[_LIGHT_STATE], row[_HAS_LIGHT] = light_state[light[i]], 1
             _put_word(row, _LIGHT_ID, light_actor_id[light[i]])
         else:
-            row[_LIGHT_STATE], row[_HAS_LIGHT] = no_light, 0
+            row[_LIGHT_STATE], row[_HAS_LIGHT] = at_sign[i], 0
             _put_word(row, _LIGHT_ID, 0)
 
 

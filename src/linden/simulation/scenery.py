@@ -27,7 +27,7 @@ class Scenery(NamedTuple):
 @lru_cache(maxsize=1)
 def scenery_of(world_map: LoadedMap) -> Scenery:
     """Return the scenery of a map; the last one is kept, for most loads load the same map again."""
-    signals = Signals.of(world_map.signals, world_map.controllers)
+    signals = Signals.of(world_map.signals, world_map.controllers, world_map.give_way)
     return Scenery(signals, signal_posts(signals.actors, world_map.ground))
 
 

@@ -5,11 +5,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linden.geometry import compose
 from linden.opendrive.furniture import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE, Controller
 from linden.opendrive.placed import PlacedSignal
 from linden.traffic.cycle import RED_OF_A_SINGLE_LIGHT_S, TIMES_S, LightPlan, plan
+from linden.traffic.signs import SignRules, sign_rules
 from linden.traffic.triggers import TriggerGrid, trigger_grid
 from linden.values.enums import SemanticTag, TrafficLightState
 from linden.values.space import BoundingBox, Transform
@@ -45,31 +47,47 @@ class Signals(NamedTuple):
         actors: every light, then every sign, each in the order of the map.
         plan: which lights change together.
         grid: where a vehicle is under which light.
+        rules: where a vehicle is under which stop or yield sign, and whom it has to let go first.
     """
 
     actors: tuple[TrafficActor, ...]
     plan: LightPlan
     grid: TriggerGrid
+    rules: SignRules
 
     @staticmethod
-    def of(placed: Sequence[PlacedSignal], controllers: Sequence[Controller]) -> "Signals":
-        """Make the actors of a map's signals; ``controllers`` stand in the order of the file."""
+    def of(placed: Sequence[PlacedSignal], controllers: Sequence[Controller], give_way: NDArray[np.void]) -> "Signals":
+        """Make the actors of a map's signals; ``controllers`` and ``give_way`` stand in the order of the file."""
         lights = [signal for signal in placed if signal.is_light]
         signs = [signal for signal in placed if not signal.is_light and signal.name != PAINTED]
         actors = (
             *(_actor(signal, light) for light, signal in enumerate(lights)),
             *(_actor(signal, NO_LIGHT) for signal in signs),
         )
-        return Signals(actors, _plan(lights, controllers), trigger_grid(_world_volumes(actors)))
+        return Signals(
+            actors,
+            _plan(lights, controllers),
+            trigger_grid(_world_volumes(actors[: len(lights)])),
+            _rules(placed, give_way),
+        )
 
 
-def _world_volumes(actors: tuple[TrafficActor, ...]) -> list[tuple[int, BoundingBox]]:
-    """Return the volumes of all lights as boxes in the world, each with the number of its light."""
+def _rules(placed: Sequence[PlacedSignal], give_way: NDArray[np.void]) -> SignRules:
+    """Number the stop and yield signs as they stand in the file; one only painted on the road rules nobody."""
+    kinds = (STOP_SIGN_TYPE, YIELD_SIGN_TYPE)
+    numbered = [nth for nth, signal in enumerate(placed) if signal.type in kinds and signal.name != PAINTED]
+    signs = [_actor(placed[nth], NO_LIGHT) for nth in numbered]
+    return sign_rules(
+        trigger_grid(_world_volumes(signs)),
+        np.array([placed[nth].type == STOP_SIGN_TYPE for nth in numbered], bool),
+        [give_way[give_way["signal"] == nth] for nth in numbered],
+    )
+
+
+def _world_volumes(actors: Sequence[TrafficActor]) -> list[tuple[int, BoundingBox]]:
+    """Return the volumes of all actors as boxes in the world, each with the number of its actor."""
     return [
-        (actor.light, _in_world(actor.transform, volume))
-        for actor in actors
-        if actor.light != NO_LIGHT
-        for volume in actor.volumes
+        (number, _in_world(actor.transform, volume)) for number, actor in enumerate(actors) for volume in actor.volumes
     ]
 
 

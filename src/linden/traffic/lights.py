@@ -1,4 +1,4 @@
-"""The traffic of an episode: its lights and signs, how the lights stand, and who is under one."""
+"""The traffic of an episode: its lights and signs, how the lights stand, who is under one, and what a sign tells."""
 
 import math
 
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from linden.errors import Refusal
 from linden.traffic import cycle
 from linden.traffic.actors import NO_LIGHT, Signals
+from linden.traffic.signs import U8, Columns, SignWatch
 from linden.traffic.triggers import F64, I32, owners_over
 from linden.values.enums import TrafficLightState
 
@@ -25,7 +26,8 @@ class Traffic:
 
     def __init__(self, signals: Signals) -> None:
         """Begin the cycles of a map's lights."""
-        self.actors, self._plan, self._grid = signals
+        self.actors, self._plan, self._grid, rules = signals
+        self._signs = SignWatch(rules)
         self.lights = range(sum(actor.light != NO_LIGHT for actor in self.actors))
         self.state = cycle.initial(self._plan)
         self._shown: cycle.LightState | None = None
@@ -43,10 +45,22 @@ class Traffic:
         """
         return owners_over(self._grid, position_m, rotation_rad, box_centre_m, half_extent_m, slots)
 
+    def at_signs(
+        self, position_m: F64, rotation_rad: F64, box_centre_m: F64, half_extent_m: F64, slots: I32, actor_ids: I32,
+        now_s: float,
+    ) -> U8:  # fmt: skip
+        """Return the colour (V,) that stop and yield signs show to those who are under one; green to all others.
+
+        The columns are those of :meth:`over`; ``actor_ids`` (V,) says who is in the slots, ``now_s`` when.
+        """
+        bodies = Columns(position_m, rotation_rad, box_centre_m, half_extent_m)
+        return self._signs.told(bodies, slots, actor_ids, now_s)
+
     def _compile(self) -> None:
-        """Compile :meth:`over` for columns such as the bodies have (parts of records) before the first vehicle."""
-        column = np.zeros((2, 4))[:, :3]
-        self.over(column, column, column, column, np.zeros(0, np.int32))
+        """Compile what is asked in a step for columns such as the bodies have (parts of records), before the first."""
+        column, nobody = np.zeros((2, 4))[:, :3], np.zeros(0, np.int32)
+        self.over(column, column, column, column, nobody)
+        self.at_signs(column, column, column, column, nobody, nobody, 0.0)
 
     def group(self, light: int) -> tuple[int, ...]:
         """Return the lights that take turns with this one, itself among them."""

@@ -1,4 +1,4 @@
-"""Which light's trigger volume a vehicle touches: a grid over the volumes, then box against box.
+"""Which light's or sign's trigger volume a vehicle touches: a grid over the volumes, then box against box.
 
 As in CARLA the vehicle's whole box counts, not its middle: a volume is 3 m long and ends 1.5 m before the stop line, so
 a front bumper reaches it while there is still room to stop.
@@ -34,7 +34,7 @@ class TriggerGrid(NamedTuple):
     yaw_rad: F64
     """(B,)"""
     owner: I32
-    """(B,) index of the light; a light may have a volume on each of several lanes."""
+    """(B,) index of the light or sign; it may have a volume on each of several lanes."""
     corner_m: F64
     """(2,) least x and y of the grid."""
     cell_m: float
@@ -72,13 +72,31 @@ def trigger_grid(volumes: Sequence[tuple[int, BoundingBox]]) -> TriggerGrid:
 
 
 @kernel
+def boxes_touch(
+    dx: float, dy: float, yaw_a: float, half_ax: float, half_ay: float, yaw_b: float, half_bx: float, half_by: float
+) -> bool:  # pragma: no cover - compiled
+    """Whether two boxes in the plane touch, the second's middle being (dx, dy) m from the first's.
+
+    Separating axes: Ericson, Real-Time Collision Detection, section 4.4.1.
+    """
+    c, s = abs(math.cos(yaw_b - yaw_a)), abs(math.sin(yaw_b - yaw_a))
+    cosine, sine = math.cos(yaw_a), math.sin(yaw_a)
+    along, across = cosine * dx + sine * dy, cosine * dy - sine * dx
+    if abs(along) > half_ax + half_bx * c + half_by * s or abs(across) > half_ay + half_bx * s + half_by * c:
+        return False
+    cosine, sine = math.cos(yaw_b), math.sin(yaw_b)
+    along, across = cosine * dx + sine * dy, cosine * dy - sine * dx
+    return abs(along) <= half_bx + half_ax * c + half_ay * s and abs(across) <= half_by + half_ax * s + half_ay * c
+
+
+@kernel
 def owners_over(
     grid: TriggerGrid, position_m: F64, rotation_rad: F64, box_centre_m: F64, half_extent_m: F64, slots: I32
 ) -> I32:  # pragma: no cover - compiled
     """Return for each of ``slots`` (V,) whose volume the body touches, -1 where none; of several, the nearest one's.
 
     The columns are those of the bodies, (N, 3): the origin, pitch, yaw and roll, and the box in the body's frame.
-    Separating axes in the plane, and overlap in height: Ericson, Real-Time Collision Detection, section 4.4.1.
+    Boxes touch where they do so in the plane and in height.
     """
     found = np.full(len(slots), -1, np.int32)
     for i in range(len(slots)):
@@ -99,16 +117,9 @@ def owners_over(
                 continue
             if abs(grid.centre_m[box, 2] - z) > grid.half_m[box, 2] + half_extent_m[slot, 2]:
                 continue
-            turn = grid.yaw_rad[box] - rotation_rad[slot, 1]
-            c, s = abs(math.cos(turn)), abs(math.sin(turn))
-            ax, ay = half_extent_m[slot, 0], half_extent_m[slot, 1]
-            bx, by = grid.half_m[box, 0], grid.half_m[box, 1]
-            along, across = cosine * dx + sine * dy, cosine * dy - sine * dx
-            if abs(along) > ax + bx * c + by * s or abs(across) > ay + bx * s + by * c:
-                continue
-            cosine_b, sine_b = math.cos(grid.yaw_rad[box]), math.sin(grid.yaw_rad[box])
-            along, across = cosine_b * dx + sine_b * dy, cosine_b * dy - sine_b * dx
-            if abs(along) > bx + ax * c + ay * s or abs(across) > by + ax * s + ay * c:
+            yaw_rad, half_x, half_y = rotation_rad[slot, 1], half_extent_m[slot, 0], half_extent_m[slot, 1]
+            box_x, box_y = grid.half_m[box, 0], grid.half_m[box, 1]
+            if not boxes_touch(dx, dy, yaw_rad, half_x, half_y, grid.yaw_rad[box], box_x, box_y):
                 continue
             nearest = dx * dx + dy * dy
             found[i] = grid.owner[box]

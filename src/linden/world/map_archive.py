@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from linden.ground import Ground
 from linden.opendrive.furniture import Controller
 from linden.opendrive.lane_table import LANES
-from linden.opendrive.placed import PlacedSignal
+from linden.opendrive.placed import GIVE_WAY, PlacedSignal
 from linden.values.space import Rotation, Transform, Vector3D
 from linden.world.map_facts import MapFacts
 from linden.world.map_lots import LOTS
@@ -42,6 +42,7 @@ _COLUMNS: dict[str, tuple[np.dtype[Any], tuple[int | None, ...]]] = {
     "lanes": (LANES, (None,)),
     "spawn_points": (np.dtype(np.float64), (None, _POSE)),
     "lots": (LOTS, (None,)),
+    "give_way": (GIVE_WAY, (None,)),
     "records": (np.dtype(np.uint8), (None,)),
 }
 """What an archive holds: type and shape of each array, ``None`` for any length."""
@@ -56,6 +57,7 @@ def pack(facts: MapFacts) -> dict[str, NDArray[Any]]:
         "lanes": facts.lanes,
         "lots": facts.lots,
         "spawn_points": np.array([(*point.location, *point.rotation) for point in facts.spawn_points]).reshape(-1, 6),
+        "give_way": facts.give_way,
         "records": np.frombuffer(records.encode(), np.uint8),
     }
 
@@ -75,6 +77,8 @@ def unpack(arrays: Arrays) -> MapFacts:
     records = json.loads(columns["records"].tobytes())
     if set(records) != set(_RECORDS):
         raise ValueError("the records are not those of a map")
+    if not _within(columns["give_way"]["signal"], len(records["signals"])):
+        raise ValueError("a place to give way belongs to no signal")
     return MapFacts(
         ground=ground,
         lane_of_triangle=lane_of_triangle,
@@ -83,6 +87,7 @@ def unpack(arrays: Arrays) -> MapFacts:
         spawn_points=tuple(
             Transform(Vector3D(*pose[:3]), Rotation(*pose[3:])) for pose in columns["spawn_points"].tolist()
         ),
+        give_way=columns["give_way"],
         **{name: _revive(kind, records[name]) for name, kind in _RECORDS.items()},
     )
 

@@ -21,6 +21,7 @@ class MapFacts:
         lanes: (L,) of ``opendrive.lane_table.LANES``.
         spawn_points: recommended ones.
         signals: lights and signs, in the order of the map.
+        give_way: (B,) of ``opendrive.placed.GIVE_WAY``: whom stop and yield signs let go first, sign after sign.
         controllers: what switches lights together, in the order of the map.
         geo_origin_deg: latitude and longitude of the map's origin.
         lots: (N,) of ``map_lots.LOTS``: where beside the streets something may stand.
@@ -31,6 +32,7 @@ class MapFacts:
     lanes: NDArray[np.void]
     spawn_points: tuple[Transform, ...]
     signals: tuple[PlacedSignal, ...]
+    give_way: NDArray[np.void]
     controllers: tuple[Controller, ...]
     geo_origin_deg: tuple[float, float]
     lots: NDArray[np.void]
@@ -43,6 +45,7 @@ def derive(text: str) -> MapFacts:
         MapError: the text is no OpenDRIVE that can be used.
     """
     # here, not above: with a map out of the cache a start does not pay for them
+    from linden.opendrive.give_way import give_way_areas  # noqa: PLC0415 - see above
     from linden.opendrive.mesh import road_mesh  # noqa: PLC0415 - see above
     from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
     from linden.opendrive.signals import place  # noqa: PLC0415 - see above
@@ -51,13 +54,15 @@ def derive(text: str) -> MapFacts:
 
     opendrive = parse(text)
     mesh = road_mesh(opendrive)
+    signals = place(opendrive)
     ground = Ground.from_triangles(mesh.vertices, mesh.triangles)
     return MapFacts(
         ground=ground,
         lane_of_triangle=mesh.lane_of_triangle,
         lanes=mesh.lanes,
         spawn_points=spawn_points(opendrive),
-        signals=place(opendrive),
+        signals=signals,
+        give_way=give_way_areas(opendrive, signals),
         controllers=opendrive.controllers,
         geo_origin_deg=opendrive.geo_origin,
         lots=cut_lots(opendrive, ground),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from linden.errors import Refusal
+from linden.opendrive.give_way import give_way_areas
 from linden.opendrive.parse import parse
 from linden.opendrive.signals import place as place_signals
 from linden.traffic.actors import Signals
@@ -63,7 +64,8 @@ def crossing(*signals_of_arms: str) -> Traffic:
     <control signalId="west"/></controller><junction id="100" name="">{links}<controller id="8" type="0"/>
     <controller id="9" type="0"/></junction></OpenDRIVE>"""
     opendrive = parse(text)
-    return Traffic(Signals.of(place_signals(opendrive), opendrive.controllers))
+    placed = place_signals(opendrive)
+    return Traffic(Signals.of(placed, opendrive.controllers, give_way_areas(opendrive, placed)))
 
 
 LIGHT = "1000001"
