@@ -84,6 +84,32 @@ class SemanticTag(IntEnum):
     ANY = 255
 
 
+class MapLayer(IntFlag):
+    """Kinds of scenery that can be loaded and unloaded; what is of none is always there."""
+
+    NONE = 0
+    BUILDINGS = 1
+    DECALS = 2
+    FOLIAGE = 4
+    GROUND = 8
+    PARKED_VEHICLES = 16
+    PARTICLES = 32
+    PROPS = 64
+    STREET_LIGHTS = 128
+    WALLS = 256
+    ALL = 0xFFFF
+
+
+class LightGroup(IntEnum):
+    """What a lamp belongs to."""
+
+    NONE = 0
+    VEHICLE = 1
+    STREET = 2
+    BUILDING = 3
+    OTHER = 4
+
+
 class LaneType(IntFlag):
     """CARLA's lane types as bits."""
 

@@ -1,0 +1,61 @@
+"""The posts of traffic lights and signs, with what hangs on them.
+
+Sizes are those of the Manual on Uniform Traffic Control Devices (FHWA, 2009): a sign's plate hangs at least 7 feet
+above the pavement (section 2A.18), a signal's face at least 8 feet (section 4D.15), and has three lenses of 12 inches.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from linden.ground import Ground
+from linden.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
+from linden.values.enums import SemanticTag
+from linden.values.space import Transform
+
+POST_HALF_WIDTH_M = 0.05
+"""Half the width of a sign's square steel post, and about that of a light's pole where a bumper meets it."""
+
+POST_HEIGHT_M = 2.5
+
+PLATE_HALF_M = (0.375, 0.01, 0.375)
+"""A stop sign of 30 inches; across the lanes along x, as CARLA's models stand."""
+PLATE_BOTTOM_M = 2.13
+
+HEAD_HALF_M = (0.18, 0.15, 0.53)
+"""Three lenses in their housing, on top of the pole."""
+
+
+class Post(NamedTuple):
+    """Where a light or sign of the map stands."""
+
+    transform: Transform
+    is_light: bool
+
+
+def posts(placed: Sequence[Post], ground: Ground) -> Scene:
+    """Return the scene of lights and signs, standing on the ground: first all lights, then all signs, in their order.
+
+    Raises:
+        ValueError: a light comes after a sign.
+    """
+    lights = sum(post.is_light for post in placed)
+    if any(post.is_light for post in placed[lights:]):
+        raise ValueError("lights come before signs, so that a thing's number is that of its actor")
+    return join(
+        [_posts(placed[:lights], ground, Kind.TRAFFIC_LIGHT), _posts(placed[lights:], ground, Kind.TRAFFIC_SIGN)]
+    )
+
+
+def _posts(placed: Sequence[Post], ground: Ground, kind: Kind) -> Scene:
+    base = np.array([post.transform.location for post in placed], np.float64).reshape(-1, 3)
+    base[:, 2], _ = ground.surfaces_under(base)
+    things = things_with(kind, base, np.radians([post.transform.rotation.yaw for post in placed]))
+    half = np.array([POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M])
+    pole = boxes_on(things, np.array([0.0, 0.0, half[2]]), half, SemanticTag.POLES)
+    if kind is Kind.TRAFFIC_LIGHT:
+        above = np.array([0.0, 0.0, POST_HEIGHT_M + HEAD_HALF_M[2]])
+        return assembled(things, pole, boxes_on(things, above, np.array(HEAD_HALF_M), SemanticTag.TRAFFIC_LIGHT))
+    on_it = np.array([0.0, 0.0, PLATE_BOTTOM_M + PLATE_HALF_M[2]])
+    return assembled(things, pole, boxes_on(things, on_it, np.array(PLATE_HALF_M), SemanticTag.TRAFFIC_SIGNS))
