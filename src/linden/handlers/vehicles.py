@@ -10,7 +10,7 @@ from linden.values.vehicles import (
     VehicleTelemetry,
 )
 from linden.wire.controls import ClientControl
-from linden.wire.decode import U8, U32
+from linden.wire.decode import U32
 from linden.world.blueprints import Kind
 
 
@@ -61,17 +61,6 @@ def get_telemetry_data(context: Context, actor_id: U32) -> VehicleTelemetry:
     """Return what moves the vehicle now."""
     episode = context.simulation.episode
     return episode.bodies.telemetry(episode.vehicle(actor_id))
-
-
-@method("get_wheel_steer_angle")
-def get_wheel_steer_angle(context: Context, actor_id: U32, wheel: U8) -> float:
-    """Return a wheel's steering angle in degrees, positive to the right."""
-    episode = context.simulation.episode
-    slot = episode.vehicle(actor_id)
-    wheels = len(episode.bodies.physics_control(slot).wheels)
-    if wheel >= wheels:
-        raise Refusal(f"vehicle {actor_id} has no wheel {wheel}; its wheels are 0 to {wheels - 1}")
-    return episode.bodies.wheel_steer_deg(slot, wheel)
 
 
 @method("get_vehicle_light_state")

@@ -188,6 +188,20 @@ class Bodies(Cockpits):
         point: NDArray[np.float64] = self.position[slot] + arm
         return point
 
+    # -- wheels, as they are seen --------------------------------------------------------------------------------------
+
+    def point_wheel(self, slot: int, wheel: int, angle_deg: float) -> None:
+        """Let a wheel of a vehicle without physics point ``angle_deg`` to the right."""
+        self.state["wheel_steer"][slot, wheel] = math.radians(finite(angle_deg, -1e6, 1e6))
+
+    def wheel_pitch_deg(self, slot: int, wheel: int) -> float:
+        """Return how far a wheel has rolled, degrees; forward is negative, as Unreal's pitch has it."""
+        return -math.degrees(float(self.wheel_turned[slot, wheel]))
+
+    def roll_wheel(self, slot: int, wheel: int, angle_deg: float) -> None:
+        """Turn a wheel of a vehicle without physics about its axle; forward is negative."""
+        self.state["wheel_turned"][slot, wheel] = -math.radians(finite(angle_deg, -1e6, 1e6))
+
     # -- walkers -------------------------------------------------------------------------------------------------------
 
     def set_walker_control(self, slot: int, control: WalkerControl) -> None:

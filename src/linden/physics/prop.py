@@ -17,9 +17,9 @@ def advance_prop(v: Body, ground: Ground, gravity_mps2: float, dt_s: float) -> N
 
     One that lies still on the ground rests: it costs nothing until something moves it.
     """
-    if v.resting and v.velocity[0] == 0.0 and v.velocity[1] == 0.0 and v.velocity[2] == 0.0:
-        if v.angular_velocity[2] == 0.0:
-            return
+    moves = v.velocity[0] != 0.0 or v.velocity[1] != 0.0 or v.velocity[2] != 0.0 or v.angular_velocity[2] != 0.0
+    if v.resting and not moves:
+        return
     v.resting = False
     fall = gravity_mps2 if v.gravity else 0.0
     bottom = v.position[2] + v.box_centre[2] - v.half_extent[2]

@@ -19,11 +19,12 @@ F64 = NDArray[np.float64]
 
 BODY_FRICTION = 0.5  # a car on its side or roof on asphalt: 0.4 to 0.6, Brach, Vehicle Accident Analysis, chapter 4
 ROLLING_FRICTION = 0.02  # of a wheel along its own direction, unless a brake holds it
-_POINTS = 12
+_POINTS = 16
 _ROUNDS = 12
 _SLOP_M = 0.01  # depth that is left, so that lying contacts stay contacts
 _PUSHED_OUT = 0.2  # of the rest, per step
 _FASTEST_OUT_MPS = 1.0
+_SILL, _BELT = 0.25, 0.65  # of the height: between them the sides are upright
 _ROOF = 0.75  # width and length of the roof over those of the box
 _STILL = 0.02  # m/s, rad/s
 _STILL_FOR_S = 0.5
@@ -53,7 +54,7 @@ def tripping_speed_mps(v: Body) -> float:
     lift = math.sqrt(height * height + arm * arm) - height
     y, z = v.half_extent[1], v.half_extent[2]
     inertia = (y * y + z * z) / 3.0 + height * height + arm * arm  # over the mass
-    return math.sqrt(2.0 * 9.81 * inertia * lift) / height
+    return float(math.sqrt(2.0 * 9.81 * inertia * lift) / height)
 
 
 @part
@@ -141,16 +142,17 @@ def _to_mass_point(v: Body, arm: F64, turn: F64, speed: F64) -> None:
 
 @part
 def _local_point(v: Body, spec: Spec, k: int, point: F64) -> None:
-    """Write the k-th point that can meet the ground, in the body's frame, m: wheels, sides at half height, roof."""
+    """Write the k-th point that can meet the ground, in the body's frame, m: wheels, sills, belt line, roof."""
     if k < 4:
         wheel = k % spec.wheel_count
         point[0], point[1], point[2] = spec.wheel_x_m[wheel], spec.wheel_y_m[wheel], 0.0
         return
-    share = 1.0 if k < 8 else _ROOF
+    share = 1.0 if k < 12 else _ROOF
+    height = _SILL if k < 8 else (_BELT if k < 12 else 1.0)
     ahead, right = 1.0 if k & 1 else -1.0, 1.0 if k & 2 else -1.0
     point[0] = v.box_centre[0] + ahead * share * v.half_extent[0]
     point[1] = v.box_centre[1] + right * share * v.half_extent[1]
-    point[2] = v.box_centre[2] + (0.0 if k < 8 else v.half_extent[2])
+    point[2] = v.box_centre[2] + (2.0 * height - 1.0) * v.half_extent[2]
 
 
 @part
@@ -207,17 +209,27 @@ def _press(v: Body, axes: F64, weight: F64, points: F64, met: int, speed: F64, t
             pressed = max(0.0, given[k, 0] + wanted)
             _apply(v, weight, entry, along, pressed - given[k, 0], speed, turn)
             given[k, 0] = pressed
-            for side in range(2):  # the body's own directions, laid into the ground
-                lean = axes[0, side] * entry[3] + axes[1, side] * entry[4] + axes[2, side] * entry[5]
-                length = math.sqrt(max(0.0, 1.0 - lean * lean))
-                if length < 0.1:
-                    continue
-                for row in range(3):
-                    along[row] = (axes[row, side] - lean * entry[3 + row]) / length
+            for side in range(2):
+                _write_tangent(axes, entry, side, along)
                 most = entry[7 + side] * pressed
                 held = max(-most, min(most, given[k, 1 + side] + _impulse(v, weight, entry, along, speed, turn, 0.0)))
                 _apply(v, weight, entry, along, held - given[k, 1 + side], speed, turn)
                 given[k, 1 + side] = held
+
+
+@part
+def _write_tangent(axes: F64, entry: F64, side: int, along: F64) -> None:
+    """Write a direction in the ground's plane: where the nose points (the right side, if that is down), or across."""
+    x, y, z = entry[3], entry[4], entry[5]
+    column = 0 if abs(axes[0, 0] * x + axes[1, 0] * y + axes[2, 0] * z) < 0.95 else 1
+    lean = axes[0, column] * x + axes[1, column] * y + axes[2, column] * z
+    length = math.sqrt(1.0 - lean * lean)
+    ahead_x, ahead_y = (axes[0, column] - lean * x) / length, (axes[1, column] - lean * y) / length
+    ahead_z = (axes[2, column] - lean * z) / length
+    if side == 0:
+        along[0], along[1], along[2] = ahead_x, ahead_y, ahead_z
+    else:
+        along[0], along[1], along[2] = y * ahead_z - z * ahead_y, z * ahead_x - x * ahead_z, x * ahead_y - y * ahead_x
 
 
 @part

@@ -7,12 +7,13 @@ from linden.physics.bodies import Bodies
 from linden.physics.step import CONTACT
 from linden.sensors.instrument import Instrument
 from linden.simulation import rows
+from linden.simulation.doors import Doors
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
 from linden.traffic.lights import Traffic
 from linden.values.actors import ActorDescription
 from linden.values.episode import WeatherParameters
-from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, WALKER_ROW
+from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, VEHICLE_ROW, WALKER_ROW
 from linden.values.space import BoundingBox, Transform
 from linden.world.actors import NO_BODY, ActorRecord, ActorRefusal, ActorTable
 from linden.world.blueprints import DOT, Kind
@@ -42,6 +43,7 @@ class Episode:
         statics: oriented boxes that stand in the way, as ``physics`` takes them.
         traffic: the lights.
         contacts: of the last step, as ``physics`` reports them.
+        doors: of the vehicles, which stand open.
         instruments: sensors that measure by themselves, by actor id.
     """
 
@@ -54,6 +56,7 @@ class Episode:
         signals, self.statics = scenery_of(world_map)
         self.traffic = Traffic(signals)
         self.weather = WeatherParameters()
+        self.doors = Doors()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
         self.light_ids = self._add_traffic()
@@ -221,6 +224,8 @@ class Episode:
             self._row_bytes, self._vehicle_rows, slots, bodies.throttle, bodies.steer, bodies.brake,
             bodies.hand_brake, bodies.reverse, bodies.manual_gear_shift, bodies.gear,
         )  # fmt: skip
+        vehicles = self.actors.rows.view(VEHICLE_ROW)
+        vehicles["failure_state"][self._vehicle_rows] = bodies.failure[slots]
         rows.limits_under(
             self.map.ground, self.map.lane_of_triangle, self._limit_of_lane_kmh, bodies.position, slots,
             self._limits_kmh,

@@ -26,7 +26,6 @@ MEASURING = ("sensor.other.gnss", "sensor.other.imu", "sensor.other.collision", 
 
 NOT_YET = {
     "sensor.": "this version has gnss, imu, collision and lane_invasion; what sees comes with the scene",
-    "controller.ai.walker": "walkers are led by walker.apply_control; leading themselves needs a mesh of the pavements",
     "static.trigger.friction": "friction is that of each wheel's tire_friction (vehicle.apply_physics_control)",
 }
 """Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
@@ -151,3 +150,4 @@ def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
     if record.slot != NO_BODY:
         episode.bodies.remove(record.slot)
     episode.instruments.pop(actor_id, None)
+    episode.doors.forget(actor_id)

@@ -1,9 +1,9 @@
 """Roll-over as CARLA notices it: four stages of roll that each brake the spin, then a flag once it has lain a while.
 
-After CARLA 0.9.16's ``ACarlaWheeledVehicle::ApplyRolloverBehavior``: stages at 130, 140, 150 and 160 degrees of roll, each
-of which takes 35 % of the spin; 5 s after the last the failure state becomes Rollover; within 30 degrees of upright all
-is forgotten. CARLA looks at positive roll alone, for its angles end at 180; here either side counts. A vehicle that
-lies on its side is none that has rolled over, as there. CARLA sets no other failure state, and so does this server.
+After ``ACarlaWheeledVehicle::ApplyRolloverBehavior`` of CARLA 0.9.16: stages at 130, 140, 150 and 160 degrees of roll,
+each of which takes 35 % of the spin; 5 s after the last the failure state becomes Rollover; within 30 degrees of
+upright all is forgotten. CARLA looks at positive roll alone, for its angles end at 180; here either side counts. A vehicle that
+lies on its side has not rolled over, as there. CARLA sets no other failure state, nor does this server.
 """
 
 import math
