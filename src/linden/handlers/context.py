@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from linden.handlers.complaints import Complaints
+from linden.navigation.library import MeshLibrary
 from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
@@ -31,6 +32,7 @@ class Context:
     frames: Frames
     streams: StreamTable
     variable_step_s: Callable[[], float]
+    meshes: MeshLibrary = field(default_factory=MeshLibrary)
     outbox: list[tuple[int, bytes]] = field(default_factory=list)
     """(stream id, message) in the order of sending; the server empties it after every call."""
     caller: int = 0

@@ -75,18 +75,6 @@ def get_map_data(context: Context) -> str:
     return context.simulation.opendrive_text
 
 
-@method("get_required_files")
-def get_required_files(_context: Context, _folder: str) -> list[str]:
-    """Return the files a client should fetch: none, for it builds what it needs from the OpenDRIVE text."""
-    return []
-
-
-@method("request_file")
-def request_file(_context: Context, name: str) -> bytes:
-    """Refuse: no file is offered."""
-    raise Refusal(f"file '{name}' not found; this server offers no files (get_required_files is empty)")
-
-
 @method("get_episode_info")
 def get_episode_info(context: Context) -> EpisodeInfo:
     """Return the episode's id and the token of the world snapshots."""

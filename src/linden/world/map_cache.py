@@ -7,8 +7,9 @@ out of date; it may be broken, and then it is made anew. Without a folder to wri
 import hashlib
 import logging
 import os
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +23,7 @@ log = logging.getLogger("linden")
 MOST_BYTES = 500_000_000
 """How much the folder may hold; a town of 240,000 triangles takes 24 MB."""
 
+_DIGEST_BYTES = 32
 _PACKAGE = Path(__file__).parent.parent
 _DERIVING = ("opendrive/**/*.py", "values/*.py", "world/map_*.py", "ground.py", "geometry.py", "compiled.py")
 
@@ -58,16 +60,36 @@ class MapCache:
             self._write(file, facts)
         return facts
 
+    def kept(self, name: str, make: Callable[[], bytes]) -> bytes:
+        """Return what is kept in the file of that name, made where there is none or it is broken.
+
+        The name has to tell all that decides what is in it.
+        """
+        file = self._folder / name
+        try:
+            digest, content = (whole := file.read_bytes())[:_DIGEST_BYTES], whole[_DIGEST_BYTES:]
+            if digest == _digest(content):
+                os.utime(file)  # so that it counts as used
+                return content
+        except OSError as error:
+            log.debug("%s is made: %s", file, error)
+        content = make()
+        self._keep(file, lambda stream: stream.write(_digest(content) + content))
+        return content
+
     def _write(self, file: Path, facts: MapFacts) -> None:
+        self._keep(file, lambda stream: np.savez(stream, **pack(facts)))  # type: ignore[arg-type] # one array could be called allow_pickle
+
+    def _keep(self, file: Path, write: Callable[[IO[bytes]], object]) -> None:
         part = file.with_suffix(f".{os.getpid()}.part")
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             with part.open("wb") as stream:
-                np.savez(stream, **pack(facts))  # type: ignore[arg-type] # one array could be called allow_pickle
+                write(stream)
             part.replace(file)  # at once: nobody reads half a file, and of two writers the last one wins
             self._prune()
         except OSError as error:
-            log.info("the map's facts cannot be kept: %s", error)
+            log.info("what was derived from the map cannot be kept: %s", error)
 
     def _prune(self) -> None:
         """Remove the files used longest ago that the limit has no room for; what a killed server left is among them."""
@@ -77,6 +99,10 @@ class MapCache:
             total += status.st_size
             if total > self._most_bytes:
                 file.unlink(missing_ok=True)
+
+
+def _digest(content: bytes) -> bytes:
+    return hashlib.sha256(content).digest()
 
 
 def _key(text: str) -> str:

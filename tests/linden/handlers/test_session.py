@@ -50,12 +50,6 @@ def test_an_opendrive_text_can_be_loaded_once_it_was_sent(context: Context) -> N
     assert session.get_map_info(context).name == "Carla/Maps/OpenDriveMap"
 
 
-def test_no_file_is_offered_and_none_is_given(context: Context) -> None:
-    assert session.get_required_files(context, "Nav") == []
-    with pytest.raises(Refusal, match="secrets' not found"):
-        session.request_file(context, "../../secrets")
-
-
 def test_a_traffic_manager_port_belongs_to_the_first_who_takes_it(context: Context) -> None:
     context.caller = 5
     assert session.add_traffic_manager_running(context, ("10.0.0.1", 8000))
