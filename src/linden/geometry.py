@@ -52,6 +52,14 @@ def compose(world_from_parent: Transform, parent_from_child: Transform) -> Trans
     return Transform(Vector3D(*map(float, location)), rotation)
 
 
+def relative(world_from_parent: Transform, world_from_child: Transform) -> Transform:
+    """Return ``parent_from_child``: what :func:`compose` makes the child of."""
+    back = rotation_matrix(world_from_parent.rotation).T
+    apart = np.asarray(world_from_child.location) - np.asarray(world_from_parent.location)
+    rotation = rotation_of(back @ rotation_matrix(world_from_child.rotation))
+    return Transform(Vector3D(*map(float, back @ apart)), rotation)
+
+
 def from_opendrive(x_m: float, y_m: float, z_m: float, heading_rad: float) -> Transform:
     """Return the pose in CARLA's frame of a point and heading in OpenDRIVE's."""
     return Transform(Vector3D(x_m, -y_m, z_m), Rotation(0.0, -math.degrees(heading_rad), 0.0))

@@ -6,6 +6,7 @@ from collections.abc import Container
 from linden.simulation.episode import Episode
 from linden.simulation.measuring import Measurements, measure
 from linden.simulation.recorder import Recorder
+from linden.simulation.replayer import Replayer
 from linden.simulation.spawning import destroy, refuse_idle, spawn
 from linden.simulation.step import step
 from linden.values.actors import ActorDescription
@@ -30,6 +31,7 @@ class Simulation:
         frame: number of the last frame made; grows for the life of the server.
         episode: everything that a load of a map begins anew.
         recorder: writes what happens into a file, where asked to; a load of a map ends the recording.
+        replayer: lets happen again what a file says; a load of a map ends that too.
     """
 
     def __init__(self, world_map: LoadedMap, settings: EpisodeSettings = EpisodeSettings()) -> None:  # noqa: B008 - frozen
@@ -40,6 +42,7 @@ class Simulation:
         self.episode_id = 0
         self._next_stream = FIRST_SENSOR_STREAM
         self.recorder = Recorder()
+        self.replayer = Replayer()
         self._begin(world_map)
 
     def load(self, world_map: LoadedMap, *, reset_settings: bool) -> None:
@@ -51,6 +54,7 @@ class Simulation:
     def _begin(self, world_map: LoadedMap) -> None:
         self.episode_id += 1
         self.recorder.stop()
+        self.replayer.forget()
         self.episode = Episode(world_map, first_frame=self.frame)
         self.delta_s = self.settings.fixed_delta_seconds or 0.0
         self.episode.observe()
@@ -86,6 +90,7 @@ class Simulation:
         self.delta_s = dt_s
         self.recorder.before_step(self.episode)
         step(self.episode, dt_s, self._substeps(dt_s))
+        self.replayer.after_step(self, dt_s)
         self.recorder.after_step(self.episode, dt_s)
 
     def _substeps(self, dt_s: float) -> int:

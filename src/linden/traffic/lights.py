@@ -1,6 +1,7 @@
 """The traffic of an episode: its lights and signs, how the lights stand, who is under one, and what a sign tells."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from linden.errors import Refusal
 from linden.traffic import cycle
 from linden.traffic.actors import NO_LIGHT, Signals
+from linden.traffic.restored import restored
 from linden.traffic.signs import U8, Columns, SignWatch
 from linden.traffic.triggers import F64, I32, owners_over
 from linden.values.enums import TrafficLightState
@@ -120,6 +122,10 @@ class Traffic:
         if shown is None or state.colour is not shown.colour:
             rows["state"] = state.colour
         self._shown = state
+
+    def restore(self, lights: NDArray[np.integer[Any]], colour: U8, elapsed_s: F64, frozen: NDArray[np.bool_]) -> None:
+        """Let lights stand as a recording has them; see ``restored``."""
+        self.state = restored(self._plan, self.state, lights, colour, elapsed_s, frozen)
 
     def _group_of(self, light: int) -> I32:
         return self._plan.group_of_light[light : light + 1]

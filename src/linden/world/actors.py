@@ -1,6 +1,7 @@
 """The actors of an episode: who they are, whom they follow, and the packed rows in which the snapshot carries them."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +16,10 @@ from linden.world.blueprints import Kind
 
 NO_BODY = -1
 """Slot of an actor that occupies no space."""
+
+
+_LARGEST_WISH = 2**31
+"""Ids wished for end here; those counted go on behind the largest, and have 32 bits."""
 
 
 class ActorRefusal(Refusal):
@@ -55,6 +60,7 @@ class ActorTable:
         self._row_of: dict[int, int] = {}
         self._by_slot: dict[int, ActorRecord] = {}
         self._next_id = 1
+        self._wish = 0
         self._dying: list[int] = []
         self._told: list[int] = []
         self.version = 0
@@ -103,8 +109,22 @@ class ActorTable:
         """Return the row of a living actor."""
         return self._row_of[actor_id]
 
+    @contextmanager
+    def preferring(self, actor_id: int) -> Iterator[None]:
+        """Let whoever comes next in the block have this id, if nobody has it; a replay's actors keep theirs so."""
+        is_free = 0 < actor_id <= _LARGEST_WISH and actor_id not in self._records and actor_id not in self._row_of
+        self._wish = actor_id if is_free else 0
+        try:
+            yield
+        finally:
+            self._wish = 0
+
     def next_id(self) -> int:
-        """Return an id never used before in this episode."""
+        """Return an id never used before in this episode, or the one that :meth:`preferring` asks for."""
+        if self._wish:
+            wish, self._wish = self._wish, 0
+            self._next_id = max(self._next_id, wish + 1)
+            return wish
         self._next_id += 1
         return self._next_id - 1
 

@@ -1,0 +1,118 @@
+"""Puts the world as a frame of a recording has it: places, controls, lamps, traffic lights, by whole columns."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.geometry import relative
+from linden.recording.packets import Frame, Records
+from linden.simulation.replay_cast import Cast
+from linden.simulation.replay_moment import Places
+from linden.values.space import Rotation, Transform, Vector3D
+from linden.world.actors import NO_BODY
+from linden.world.blueprints import Kind
+
+if TYPE_CHECKING:
+    from linden.simulation.simulation import Simulation
+
+Indices = NDArray[np.int64]
+
+
+class _Found(NamedTuple):
+    """Which rows of a list concern somebody who plays, and who that is."""
+
+    rows: Indices
+    actor_ids: Indices
+    slots: Indices
+    """Of their bodies; ``NO_BODY`` where they have none."""
+
+
+class Stage:
+    """Puts those who play where they belong."""
+
+    def __init__(self, simulation: "Simulation", cast: Cast) -> None:
+        self._simulation, self._cast = simulation, cast
+        self._kept: dict[str, tuple[tuple[bytes, int, int], _Found]] = {}
+
+    def put(self, where: Places) -> None:
+        """Put everybody in their places."""
+        bodies, found = self._simulation.episode.bodies, self._players("places", where.id)
+        embodied = found.slots != NO_BODY
+        rows, slots = found.rows[embodied], found.slots[embodied]
+        bodies.position[slots] = where.location_m[rows]
+        bodies.rotation[slots] = np.radians(where.rotation_deg[rows])
+        bodies.velocity[slots] = 0.0
+        bodies.angular_velocity[slots] = 0.0
+        for row, actor_id in zip(found.rows[~embodied].tolist(), found.actor_ids[~embodied].tolist(), strict=True):
+            location, rotation = where.location_m[row].tolist(), where.rotation_deg[row].tolist()
+            self._place(actor_id, Transform(Vector3D(*location), Rotation(*rotation)))
+
+    def _place(self, actor_id: int, pose: Transform) -> None:
+        """Put an actor without a body somewhere in the world."""
+        episode = self._simulation.episode
+        parent_id = episode.actors.get(actor_id).parent_id
+        episode.place(actor_id, relative(episode.transform(parent_id), pose) if parent_id else pose)
+
+    def show(self, frame: Frame) -> None:
+        """Let everybody do what they did in a frame."""
+        self._drive(frame.vehicles)
+        self._walk(frame.walkers)
+        self._move(frame.kinematics)
+        self._light(frame.light_states)
+        lamps = self._players("lamps", frame.vehicle_lights["id"])
+        actors = self._simulation.episode.actors
+        for actor_id, bits in zip(
+            lamps.actor_ids.tolist(), frame.vehicle_lights["bits"][lamps.rows].tolist(), strict=True
+        ):
+            actors.get(actor_id).light_state = bits
+
+    def _drive(self, vehicles: Records) -> None:
+        found = self._players("vehicles", vehicles["id"], Kind.VEHICLE)
+        bodies, slots, driven = self._simulation.episode.bodies, found.slots, vehicles[found.rows]
+        bodies.throttle[slots], bodies.steer[slots] = driven["throttle"], driven["steer"]
+        bodies.brake[slots], bodies.hand_brake[slots] = driven["brake"], driven["hand_brake"] != 0
+        bodies.gear[slots] = bodies.gear_command[slots] = driven["gear"]
+        bodies.reverse[slots], bodies.manual_gear_shift[slots] = driven["gear"] < 0, False
+
+    def _walk(self, walkers: Records) -> None:
+        found = self._players("walkers", walkers["id"], Kind.WALKER)
+        self._simulation.episode.bodies.walker_speed[found.slots] = walkers["speed_mps"][found.rows]
+
+    def _move(self, kinematics: Records) -> None:
+        """Let everybody have the velocity that was recorded, for sensors to see; CARLA leaves it at 0."""
+        found = self._players("moving", kinematics["id"], Kind.VEHICLE, Kind.WALKER)
+        bodies = self._simulation.episode.bodies
+        bodies.velocity[found.slots] = kinematics["velocity_mps"][found.rows]
+        bodies.angular_velocity[found.slots] = np.radians(kinematics["angular_velocity_degps"][found.rows])
+
+    def _light(self, states: Records) -> None:
+        episode = self._simulation.episode
+        found = self._players("lights", states["id"], Kind.TRAFFIC_LIGHT)
+        if not len(found.rows):
+            return
+        shown = states[found.rows]
+        lights = np.array([episode.light_ids.index(actor_id) for actor_id in found.actor_ids.tolist()])
+        colour, elapsed_s = shown["state"].astype(np.uint8), shown["elapsed_s"].astype(np.float64)
+        episode.traffic.restore(lights, colour, elapsed_s, shown["frozen"] != 0)
+
+    def _players(self, name: str, ids: NDArray[np.uint32], *kinds: Kind) -> _Found:
+        """Return who plays those of ``ids`` that somebody plays, of some kinds or any; kept while nobody comes or goes.
+
+        Whom a client has destroyed meanwhile plays no more.
+        """
+        actors = self._simulation.episode.actors
+        key = (ids.tobytes(), self._cast.version, actors.version)
+        if name in self._kept and self._kept[name][0] == key:
+            return self._kept[name][1]
+        rows, found = [], []
+        for row, recorded_id in enumerate(ids.tolist()):
+            record = actors.find(self._cast.of.get(recorded_id, 0))
+            if record is None or (kinds and (record.kind not in kinds)):
+                continue
+            rows.append(row)
+            found.append((record.id, record.slot))
+        players = np.array(found, np.int64).reshape(-1, 2)
+        answer = _Found(np.array(rows, np.int64), players[:, 0], players[:, 1])
+        self._kept[name] = (key, answer)
+        return answer
