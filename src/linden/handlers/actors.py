@@ -10,6 +10,8 @@ from linden.values.space import BoundingBox, Transform, Vector3D
 from linden.wire.decode import U8, U32
 from linden.world.actors import ActorRecord
 
+_M2_PER_CM2 = 1e-4
+
 
 def message(context: Context, record: ActorRecord) -> Actor:
     """Return an actor as the client learns of it."""
@@ -138,16 +140,25 @@ def add_actor_force_at_location(context: Context, actor_id: U32, force: Vector3D
 
 @method("add_actor_angular_impulse")
 def add_actor_angular_impulse(context: Context, actor_id: U32, impulse: Vector3D) -> None:
-    """Turn an actor once, N·m·s about the world's axes; the official client's ``add_torque`` calls this too."""
+    """Turn an actor once, kg·cm²·degrees/s about the world's axes; the client's ``add_torque`` calls this too."""
     episode = context.simulation.episode
-    episode.bodies.add_angular_impulse(episode.body(actor_id), impulse)
+    episode.bodies.add_angular_impulse(episode.body(actor_id), _from_unreal(impulse))
 
 
 @method("add_actor_torque")
 def add_actor_torque(context: Context, actor_id: U32, torque: Vector3D) -> None:
-    """Turn an actor during the next frame, N·m in the world."""
+    """Turn an actor during the next frame, kg·cm²·degrees/s² about the world's axes."""
     episode = context.simulation.episode
-    episode.bodies.add_torque(episode.body(actor_id), torque)
+    episode.bodies.add_torque(episode.body(actor_id), _from_unreal(torque))
+
+
+def _from_unreal(moment: Vector3D) -> Vector3D:
+    """Return a torque or angular impulse in N·m or N·m·s.
+
+    CARLA hands the client's numbers to Unreal as they are (``AddTorqueInDegrees``), which counts in cm and degrees: so
+    1e6 of them are a little under 2 N·m.
+    """
+    return Vector3D(*(math.radians(value) * _M2_PER_CM2 for value in moment))
 
 
 @method("set_actor_simulate_physics")
@@ -161,7 +172,7 @@ def set_actor_simulate_physics(context: Context, actor_id: U32, enabled: bool) -
 def set_actor_enable_gravity(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let an actor fall, or float."""
     episode = context.simulation.episode
-    episode.bodies.gravity[episode.body(actor_id)] = enabled
+    episode.bodies.set_gravity(episode.body(actor_id), falls=enabled)
 
 
 @method("set_actor_collisions")

@@ -3,6 +3,7 @@
 from linden.errors import Refusal
 from linden.handlers.context import Context
 from linden.handlers.registry import method
+from linden.values.space import Vector3D
 from linden.values.vehicles import (
     AckermannControl,
     AckermannSettings,
@@ -44,16 +45,26 @@ def apply_ackermann_controller_settings(context: Context, actor_id: U32, setting
 
 @method("get_physics_control")
 def get_physics_control(context: Context, actor_id: U32) -> VehiclePhysicsControl:
-    """Return engine, gears and wheels; wheel positions in cm in the world."""
-    episode = context.simulation.episode
-    return episode.bodies.physics_control(episode.vehicle(actor_id))
+    """Return engine, gears and wheels; wheel positions in cm in the world, friction that of a trigger inside one."""
+    bodies = context.simulation.episode.bodies
+    slot = context.simulation.episode.vehicle(actor_id)
+    control = bodies.physics_control(slot)
+    here = float(bodies.friction_here[slot])
+    if here < 0.0:
+        return control
+    return control._replace(wheels=tuple(wheel._replace(tire_friction=here) for wheel in control.wheels))
 
 
 @method("apply_physics_control")
 def apply_physics_control(context: Context, actor_id: U32, control: VehiclePhysicsControl) -> None:
-    """Replace engine, gears and wheels; the wheels stay where they are."""
+    """Replace engine, gears and wheels; the wheels stay where they are, whatever their positions say (as in CARLA)."""
     episode = context.simulation.episode
-    episode.bodies.set_physics_control(episode.vehicle(actor_id), control)
+    slot = episode.vehicle(actor_id)
+    wheels = tuple(wheel._replace(position=Vector3D()) for wheel in control.wheels)
+    episode.bodies.set_physics_control(slot, control._replace(wheels=wheels))
+    episode.bodies.friction_here[slot] = -1.0
+    if control.use_sweep_wheel_collision:
+        context.warn_once("use_sweep_wheel_collision is kept and has no effect: a wheel meets the ground at one point")
 
 
 @method("get_telemetry_data")

@@ -8,6 +8,7 @@ from linden.physics.step import CONTACT
 from linden.sensors.instrument import Instrument
 from linden.simulation import rows
 from linden.simulation.doors import Doors
+from linden.simulation.grip import Grip
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
 from linden.traffic.lights import Traffic
@@ -44,6 +45,7 @@ class Episode:
         traffic: the lights.
         contacts: of the last step, as ``physics`` reports them.
         doors: of the vehicles, which stand open.
+        grip: of the road, and who is in a friction trigger.
         instruments: sensors that measure by themselves, by actor id.
     """
 
@@ -56,7 +58,7 @@ class Episode:
         signals, self.statics = scenery_of(world_map)
         self.traffic = Traffic(signals)
         self.weather = WeatherParameters()
-        self.doors = Doors()
+        self.doors, self.grip = Doors(), Grip()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
         self.light_ids = self._add_traffic()

@@ -1,15 +1,14 @@
 """Actors come and go: what is checked before one is spawned, and what goes with one that is destroyed."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linden.errors import Refusal
 from linden.geometry import compose
-from linden.physics.bodies import Bodies
 from linden.sensors.collision import scenery_type
 from linden.sensors.instrument import instrument
 from linden.simulation.episode import Episode
-from linden.simulation.overlap import touching
+from linden.simulation.grip import FRICTION_TRIGGER, trigger
+from linden.simulation.overlap import touching, world_centres
 from linden.values.actors import ActorDescription
 from linden.values.space import BoundingBox, Transform
 from linden.world.actors import NO_BODY, ActorRecord
@@ -17,6 +16,9 @@ from linden.world.blueprints import Blueprint, Kind
 
 _NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
 """Props are put where the caller says, as CARLA does; vehicles and walkers only where nothing stands."""
+
+_REACH_M = 16.0
+"""No corner of a vehicle or walker lies further from its origin, bins being generous."""
 
 _OF_THE_MAP = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
 
@@ -26,7 +28,6 @@ MEASURING = ("sensor.other.gnss", "sensor.other.imu", "sensor.other.collision", 
 
 NOT_YET = {
     "sensor.": "this version has gnss, imu, collision and lane_invasion; what sees comes with the scene",
-    "static.trigger.friction": "friction is that of each wheel's tire_friction (vehicle.apply_physics_control)",
 }
 """Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
 
@@ -57,18 +58,21 @@ def spawn(
     if parent_id and parent_id not in episode.actors:
         raise Refusal(f"unable to attach actor: parent actor not found (no actor has id {parent_id})")
     world_pose = compose(episode.transform(parent_id), pose) if parent_id else pose
+    made_trigger = trigger(description) if description.id == FRICTION_TRIGGER else None
     if blueprint.kind in _NEEDS_ROOM:
         _refuse_without_room(episode, blueprint, world_pose)
     record = ActorRecord(
         id=episode.actors.next_id(),
         description=description,
         kind=blueprint.kind,
-        box=blueprint.box,
+        box=blueprint.box if made_trigger is None else made_trigger.box,
         semantic_tags=blueprint.semantic_tags,
         parent_id=parent_id,
         slot=NO_BODY if parent_id else _embody(episode, blueprint, world_pose),
     )
     episode.actors.add(record, world_pose, pose if parent_id else None)
+    if made_trigger is not None:
+        episode.grip.add(record.id, made_trigger)
     if (made := instrument(description)) is not None:
         episode.instruments[record.id] = made
     return record
@@ -113,24 +117,17 @@ def _first_touching(episode: Episode, box: BoundingBox, pose: Transform) -> str 
     """Return the name of what stands where a box would be: a body first, then the scenery."""
     bodies, statics = episode.bodies, episode.statics
     solid = np.flatnonzero(bodies.alive & bodies.collides)
-    found = touching(box, pose, _world_centres(bodies), bodies.half_extent, bodies.rotation[:, 1], solid)
+    found = touching(box, pose, world_centres(bodies), bodies.half_extent, bodies.rotation[:, 1], solid)
     if found.size:
         record = episode.actors.of_slot(int(found[0]))
         return f"{record.description.id} (actor {record.id})"
-    found = touching(box, pose, statics.centre, statics.half, statics.yaw_rad, np.arange(len(statics.id)))
+    near = statics.near(pose.location.x, pose.location.y, _REACH_M)
+    found = touching(box, pose, statics.centre, statics.half, statics.yaw_rad, near)
     return scenery_type(int(statics.tag[found[0]])) if found.size else None
 
 
-def _world_centres(bodies: Bodies) -> NDArray[np.float64]:
-    """Return the middles of all boxes in the world (N, 3), m; what little they lean is left out."""
-    cosine, sine = np.cos(bodies.rotation[:, 1]), np.sin(bodies.rotation[:, 1])
-    x, y, z = bodies.box_centre.T
-    centres: NDArray[np.float64] = bodies.position + np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])
-    return centres
-
-
-def destroy(episode: Episode, actor_id: int) -> None:
-    """Take an actor and everything attached to it out of the episode.
+def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
+    """Take an actor and everything attached to it out of the episode; ``announce`` where no client asked for it.
 
     Raises:
         Refusal: there is none of that id, or it belongs to the map.
@@ -140,7 +137,7 @@ def destroy(episode: Episode, actor_id: int) -> None:
         raise Refusal(f"unable to destroy actor: not found (no actor has id {actor_id})")
     if record.kind in _OF_THE_MAP or actor_id == episode.spectator_id:
         raise Refusal(f"unable to destroy actor: {record.description.id} (actor {actor_id}) belongs to the map")
-    _remove(episode, actor_id, announce=False)
+    _remove(episode, actor_id, announce=announce)
 
 
 def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
@@ -151,3 +148,4 @@ def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
         episode.bodies.remove(record.slot)
     episode.instruments.pop(actor_id, None)
     episode.doors.forget(actor_id)
+    episode.grip.forget(actor_id)

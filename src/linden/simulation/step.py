@@ -8,6 +8,8 @@ def step(episode: Episode, dt_s: float, substeps: int) -> None:
     """Let ``dt_s`` pass in an episode; the physics takes it in ``substeps`` equal parts."""
     episode.actors.turn_page()
     episode.traffic.step(dt_s)
+    episode.grip.update(episode)
     episode.contacts = advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
     episode.elapsed_s += dt_s
+    episode.surroundings.step(episode.elapsed_s)
     episode.observe()
