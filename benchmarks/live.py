@@ -87,3 +87,10 @@ def cpu_s(process: psutil.Process) -> float:
     """Return the processor's time that a process has used until now."""
     times = process.cpu_times()
     return times.user + times.system
+
+
+def free_port() -> int:
+    """Return a port that nobody listens on, for a Traffic Manager."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

@@ -8,14 +8,13 @@ snapshots alone (traffic_watch.py); ticks/s counts the time within ``world.tick(
 
 import argparse
 import random
-import socket
 import time
 from typing import NamedTuple
 
 import carla
 import numpy as np
 import psutil
-from live import LINDEN, STEP_S, Live, Snapshots, cpu_s, server, synchronous_world
+from live import LINDEN, STEP_S, Live, Snapshots, cpu_s, free_port, server, synchronous_world
 from traffic_watch import LIMITS_S, MOVED_M, Watch, fleet_of, stop_signs
 
 OFF_ROAD_EVERY_TICKS = 100
@@ -51,12 +50,6 @@ def manager(client: carla.Client, port: int, *, hybrid: bool, seed: int) -> carl
         traffic_manager.set_hybrid_physics_mode(True)
         traffic_manager.set_hybrid_physics_radius(70.0)
     return traffic_manager
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 class Figures(NamedTuple):

@@ -55,7 +55,9 @@ def test_who_is_under_no_sign_reads_green() -> None:
 
 
 @pytest.mark.parametrize("is_stop", [True, False])
-def test_somebody_in_the_way_keeps_it_red_until_a_little_after_he_has_gone(is_stop: bool) -> None:
+def test_somebody_in_the_way_keeps_it_red_until_a_little_after_he_has_gone(
+    is_stop: bool,  # noqa: FBT001 - pytest gives it by name
+) -> None:
     cars = Cars(crossing(is_stop=is_stop), AT_SIGN, IN_THE_WAY)
     assert cars.told(10.0) == [RED, GREEN]
     assert cars.told(20.0) == [RED, GREEN]
