@@ -6,6 +6,7 @@ from typing import Protocol
 
 from linden.handlers.complaints import Complaints
 from linden.navigation.library import MeshLibrary
+from linden.recording.folder import RecordingFolder
 from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
@@ -33,6 +34,7 @@ class Context:
     streams: StreamTable
     variable_step_s: Callable[[], float]
     meshes: MeshLibrary = field(default_factory=MeshLibrary)
+    recordings: RecordingFolder = field(default_factory=RecordingFolder)
     outbox: list[tuple[int, bytes]] = field(default_factory=list)
     """(stream id, message) in the order of sending; the server empties it after every call."""
     caller: int = 0

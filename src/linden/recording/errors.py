@@ -11,5 +11,9 @@ class RecordingError(UserError):
         self.offset = offset
 
 
+class NoRecordingError(RecordingError):
+    """A file that CARLA's recorder has not written."""
+
+
 class CutShortError(RecordingError):
     """A recording ends inside a frame, as that of a server that was killed may; all whole frames before are good."""

@@ -11,7 +11,16 @@ class RecordingFolder:
 
     def __init__(self, folder: Path | None = None) -> None:
         """Use a folder, or where None is given the user's own: ``$XDG_DATA_HOME/linden/recordings``."""
-        self.path = (_of_user() if folder is None else folder).absolute()
+        self._given = folder
+
+    @property
+    def path(self) -> Path:
+        """The folder.
+
+        Raises:
+            Refusal: none is given, and the user has none.
+        """
+        return (_of_user() if self._given is None else self._given).absolute()
 
     def file(self, name: str) -> Path:
         """Return the file that a client means by a name: one in the folder, or a path below it.
@@ -22,10 +31,11 @@ class RecordingFolder:
         if not name or "\0" in name:
             raise Refusal("a recording needs a name, such as 'drive.log'")
         pure = PureWindowsPath(name) if "\\" in name else PurePosixPath(name)
-        found = Path(os.path.normpath(self.path / Path(*pure.parts)))
-        if found == self.path or not found.resolve().is_relative_to(self.path.resolve()):
+        folder = self.path
+        found = Path(os.path.normpath(folder / Path(*pure.parts)))
+        if found == folder or not found.resolve().is_relative_to(folder.resolve()):
             raise Refusal(
-                f"recording '{name}' lies outside of {self.path}, where this server keeps recordings; give a name "
+                f"recording '{name}' lies outside of {folder}, where this server keeps recordings; give a name "
                 f"without folders, or start the server with --recordings DIR, DIR being the folder you mean"
             )
         return found
@@ -35,5 +45,8 @@ def _of_user() -> Path:
     """Return the folder as the XDG Base Directory Specification places a user's data."""
     data = Path(os.environ.get("XDG_DATA_HOME", ""))
     if not data.is_absolute():  # to be ignored, says the specification
-        data = Path.home() / ".local" / "share"
+        try:
+            data = Path.home() / ".local" / "share"
+        except RuntimeError as error:
+            raise Refusal("this user has no folder for recordings; start the server with --recordings DIR") from error
     return data / "linden" / "recordings"

@@ -20,7 +20,7 @@ import numpy as np
 
 from linden.recording import layouts
 from linden.recording.decode import Cursor, Packet, decode, name_of
-from linden.recording.errors import CutShortError, RecordingError
+from linden.recording.errors import CutShortError, NoRecordingError, RecordingError
 from linden.recording.layouts import PacketId
 from linden.recording.packets import Frame, Header
 
@@ -184,7 +184,7 @@ def _read_header(file: BinaryIO, path: Path) -> Header:
     def take(count: int) -> bytes:
         found = file.read(count)
         if len(found) < count:
-            raise RecordingError(f"{path} is not a CARLA recorder file: it ends at byte {file.tell()}", file.tell())
+            raise NoRecordingError(f"{path} is not a CARLA recorder file: it ends at byte {file.tell()}", file.tell())
         return found
 
     def text() -> str:
@@ -192,7 +192,7 @@ def _read_header(file: BinaryIO, path: Path) -> Header:
 
     (version,) = _VERSION.unpack(take(2))
     if text() != layouts.MAGIC:
-        raise RecordingError(f"{path} is not a CARLA recorder file: '{layouts.MAGIC}' should stand at byte 4", 4)
+        raise NoRecordingError(f"{path} is not a CARLA recorder file: '{layouts.MAGIC}' should stand at byte 4", 4)
     if version not in _KNOWN_VERSIONS:
         raise RecordingError(
             f"{path} is a CARLA recorder file of version {version}; this program reads 1 (up to 0.9.16) and 2", 0

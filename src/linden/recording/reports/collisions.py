@@ -5,6 +5,15 @@ from linden.recording.read import Recording
 from linden.recording.reports.wording import ending, heading, number
 
 ANY, HERO, OTHER = "a", "h", "o"
+ASKED_FOR = {
+    "h": "hero",
+    "v": "vehicles",
+    "w": "walkers",
+    "t": "traffic lights and signs",
+    "o": "others",
+    "a": "any",
+}
+"""Kinds of actors that can be asked for."""
 LETTERS: dict[int, str] = {
     ActorKind.OTHER: OTHER,
     ActorKind.VEHICLE: "v",
@@ -17,7 +26,7 @@ LETTERS: dict[int, str] = {
 
 
 def collisions(recording: Recording, first_kind: str, second_kind: str) -> str:
-    """Return the report of contacts between actors of two kinds: a letter of ``LETTERS``, ``HERO`` or ``ANY``.
+    """Return the report of contacts between actors of two kinds: letters of ``ASKED_FOR``.
 
     A contact that lasts is told once. Where one was told, the duration at the end has no decimals: CARLA's stream
     still rounds as for the times.
