@@ -20,6 +20,8 @@ def world_payload(simulation: Simulation) -> bytes:
     """
     episode = simulation.episode
     state = SimulationState.MAP_CHANGE if simulation.map_changed else SimulationState.NONE
+    if episode.surroundings.lamps.pending:
+        state |= SimulationState.PENDING_LIGHT_UPDATE
     return b"".join(
         (
             sensor_header(SensorType.WORLD_OBSERVER, simulation.frame, episode.elapsed_s, Transform()),

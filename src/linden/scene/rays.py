@@ -240,3 +240,10 @@ def crossings(ground: Ground, standing: StandingBoxes, moving: MovingBoxes, star
     hits = _cross(ground, standing, moving, start_m, end_m - start_m)
     in_order: Hits = hits[np.lexsort((hits[:, 2], hits[:, 1], hits[:, 0]))]
     return in_order
+
+
+def warm_up() -> None:
+    """Compile the caster, or load it from the cache."""
+    standing = StandingBoxes.of(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0))
+    moving = MovingBoxes(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros((0, 3, 3)))
+    crossings(Ground.flat(), standing, moving, np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, -1.0]))

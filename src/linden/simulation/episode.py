@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.physics.bodies import Bodies
+from linden.physics.contact.statics import Statics
 from linden.physics.step import CONTACT
 from linden.sensors.instrument import Instrument
 from linden.simulation import rows
@@ -11,6 +12,7 @@ from linden.simulation.doors import Doors
 from linden.simulation.grip import Grip
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
+from linden.simulation.surroundings import Surroundings
 from linden.traffic.lights import Traffic
 from linden.values.actors import ActorDescription
 from linden.values.episode import WeatherParameters
@@ -41,7 +43,7 @@ class Episode:
         elapsed_s: simulated time since it began.
         actors: who is there, with the packed rows of the snapshot.
         bodies: what occupies space and moves.
-        statics: oriented boxes that stand in the way, as ``physics`` takes them.
+        surroundings: what stands there, its lamps, and what clients drew.
         traffic: the lights.
         contacts: of the last step, as ``physics`` reports them.
         doors: of the vehicles, which stand open.
@@ -55,8 +57,9 @@ class Episode:
         self.elapsed_s = 0.0
         self.actors = ActorTable()
         self.bodies = Bodies()
-        signals, self.statics = scenery_of(world_map)
-        self.traffic = Traffic(signals)
+        scenery = scenery_of(world_map)
+        self.surroundings = Surroundings(scenery)
+        self.traffic = Traffic(scenery.signals)
         self.weather = WeatherParameters()
         self.doors, self.grip = Doors(), Grip()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
@@ -102,6 +105,11 @@ class Episode:
                 row["pole_index"] = self.traffic.pole_index(len(light_ids))
                 light_ids.append(record.id)
         return light_ids
+
+    @property
+    def statics(self) -> Statics:
+        """Oriented boxes that stand in the way, as ``physics`` takes them."""
+        return self.surroundings.statics
 
     # -- who is meant --------------------------------------------------------------------------------------------
 

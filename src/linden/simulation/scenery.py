@@ -1,45 +1,51 @@
-"""What stands on a map before anybody comes: its lights and signs, and what is in the way, as yet their posts."""
+"""What stands on a map before anybody comes: its lights and signs, and the scene that they are part of."""
 
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from linden.ground import Ground
 from linden.physics.contact.statics import STATIC_BOX, Statics
-from linden.traffic.actors import Signals, TrafficActor
-from linden.values.enums import SemanticTag
-from linden.world.maps import LoadedMap
-
-POST_HALF_WIDTH_M = 0.05
-"""Half the width of a sign's square steel post, and about that of a light's pole where a bumper meets it."""
-
-POST_HEIGHT_M = 2.5
+from linden.scene.neighbourhood import furnish
+from linden.scene.objects import Scene, join
+from linden.scene.signs import Post, posts
+from linden.traffic.actors import NO_LIGHT, Signals
+from linden.world.maps import HOME_MAP, LoadedMap
 
 
 class Scenery(NamedTuple):
-    """What every episode on a map begins with; nothing in it ever changes."""
+    """What every episode on a map begins with; nothing in it ever changes.
+
+    The first things of the scene are those of the signals' actors, in their order.
+    """
 
     signals: Signals
+    scene: Scene
     statics: Statics
 
 
 @lru_cache(maxsize=1)
 def scenery_of(world_map: LoadedMap) -> Scenery:
-    """Return the scenery of a map; the last one is kept, for most loads load the same map again."""
+    """Return the scenery of a map; the last one is kept, for most loads load the same map again.
+
+    Only of Linden it is known what stands beside its streets; elsewhere there are lights and signs.
+    """
     signals = Signals.of(world_map.signals, world_map.controllers, world_map.give_way)
-    return Scenery(signals, signal_posts(signals.actors, world_map.ground))
+    standing = [Post(actor.transform, actor.light != NO_LIGHT) for actor in signals.actors]
+    scene = posts(standing, world_map.ground)
+    if world_map.name == HOME_MAP:
+        scene = join([scene, furnish(world_map.lots, world_map.ground)])
+    return Scenery(signals, scene, solid(scene, np.ones(len(scene.boxes), bool)))
 
 
-def signal_posts(actors: tuple[TrafficActor, ...], ground: Ground) -> Statics:
-    """Return one upright box under every light and sign, standing on the ground; its id is the place in ``actors``."""
-    if not actors:
+def solid(scene: Scene, present: NDArray[np.bool_]) -> Statics:
+    """Return the boxes of a scene that are present as physics takes them; their ids are their rows in the scene."""
+    rows = np.flatnonzero(present)
+    if not len(rows):
         return Statics.none()
-    posts = np.zeros(len(actors), STATIC_BOX)
-    centres = np.array([actor.transform.location for actor in actors])
-    height_m, _ = ground.surfaces_under(centres)
-    posts["centre"] = np.column_stack([centres[:, :2], height_m + 0.5 * POST_HEIGHT_M])
-    posts["half"] = (POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M)
-    posts["tag"] = SemanticTag.POLES
-    posts["id"] = np.arange(len(posts))
-    return Statics.of(posts)
+    boxes = np.zeros(len(rows), STATIC_BOX)
+    for name in ("centre", "half", "yaw_rad", "tag"):
+        boxes[name] = scene.boxes[name][rows]
+    boxes["id"] = rows
+    return Statics.of(boxes)

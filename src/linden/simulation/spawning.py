@@ -17,8 +17,8 @@ from linden.world.blueprints import Blueprint, Kind
 _NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
 """Props are put where the caller says, as CARLA does; vehicles and walkers only where nothing stands."""
 
-_REACH_M = 16.0
-"""No corner of a vehicle or walker lies further from its origin, bins being generous."""
+_REACH_M = 8.0
+"""No corner of a vehicle or walker lies further from its origin; the longest, a bus, has 5.5 m."""
 
 _OF_THE_MAP = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
 

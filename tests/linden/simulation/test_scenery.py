@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from linden.simulation import Simulation
-from linden.simulation.scenery import POST_HALF_WIDTH_M, POST_HEIGHT_M, scenery_of
+from linden.scene.objects import Kind
+from linden.scene.signs import POST_HALF_WIDTH_M, POST_HEIGHT_M
+from linden.simulation.scenery import scenery_of
 from linden.values.enums import SemanticTag, TrafficLightState
 from linden.world.map_facts import derive
 from linden.world.maps import LoadedMap
@@ -20,12 +22,20 @@ def street() -> LoadedMap:
 
 
 def test_every_light_and_sign_stands_on_a_post(street: LoadedMap) -> None:
-    signals, statics = scenery_of(street)
+    signals, scene, statics = scenery_of(street)
+    posts = statics.tag == SemanticTag.POLES
     assert [actor.sign_id for actor in signals.actors] == ["7", "8"]
-    np.testing.assert_allclose(statics.centre[:, :2], [actor.transform.location[:2] for actor in signals.actors])
-    np.testing.assert_allclose(statics.centre[:, 2], PAVEMENT_M + 0.5 * POST_HEIGHT_M)
-    np.testing.assert_allclose(statics.half, [[POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M]] * 2)
-    assert statics.tag.tolist() == [SemanticTag.POLES] * 2
+    assert [Kind(kind) for kind in scene.things["kind"]] == [Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN]
+    np.testing.assert_allclose(statics.centre[posts, :2], [actor.transform.location[:2] for actor in signals.actors])
+    np.testing.assert_allclose(statics.centre[posts, 2], PAVEMENT_M + 0.5 * POST_HEIGHT_M)
+    np.testing.assert_allclose(statics.half[posts], [[POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M]] * 2)
+
+
+def test_lights_have_heads_and_signs_plates_out_of_a_walkers_way(street: LoadedMap) -> None:
+    statics = scenery_of(street).statics
+    hung = statics.tag != SemanticTag.POLES
+    assert statics.tag[hung].tolist() == [SemanticTag.TRAFFIC_LIGHT, SemanticTag.TRAFFIC_SIGNS]
+    assert (statics.centre[hung, 2] - statics.half[hung, 2] > PAVEMENT_M + 2.1).all()
 
 
 def test_a_map_loaded_again_has_the_same_scenery_and_lights_that_begin_anew(street: LoadedMap) -> None:

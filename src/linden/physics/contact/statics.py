@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.scene.bins import bins_of
+from linden.scene.bins import Bins, bins_of, items_near
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -47,6 +47,10 @@ class Statics(NamedTuple):
             raise ValueError("a static box has a place, size or yaw that is not finite")
         bins = bins_of(columns["centre"][:, :2], np.hypot(*columns["half"][:, :2].T))
         return Statics(**columns, bin_start=bins.start, bin_items=bins.items, bin_frame=bins.frame)
+
+    def near(self, x_m: float, y_m: float, reach_m: float) -> NDArray[np.int64]:
+        """Return the numbers of all boxes that may reach into a square of this half size, ascending."""
+        return items_near(Bins(self.bin_start, self.bin_items, self.bin_frame), x_m, y_m, reach_m)
 
     @staticmethod
     def none() -> "Statics":
