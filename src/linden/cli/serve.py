@@ -66,6 +66,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
     from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
+    from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
@@ -81,6 +82,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         except Refusal as refusal:
             raise UserError(f"--map: {refusal}") from refusal
         warm_up()
+        warm_rays()
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
     server = Server(simulation, maps, frames, ports)
     _say(f"linden: ready, rpc port {port_of(ports.rpc)}, streaming port {port_of(ports.streaming)}")
