@@ -78,7 +78,8 @@ def _tile(tile: Tile) -> bytes:
     details = np.zeros(count, DETAIL)
     details["triangles"] = corner_counts - 2
     details["triangle"] = np.cumsum(corner_counts - 2) - (corner_counts - 2)
-    fan = np.array([(0, n + 1, n + 2, 0) for corners in corner_counts for n in range(corners - 2)], np.uint8)
+    fans = {corners: _fan(corners) for corners in set(corner_counts.tolist())}
+    fan = np.array([triangle for corners in corner_counts.tolist() for triangle in fans[corners]], np.uint8)
     vertices = np.ascontiguousarray(tile.vertices_m[:, [0, 2, 1]], "<f4")
     links = int(corner_counts.sum()) + 2 * _sides_on_border(tile)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
@@ -88,6 +89,12 @@ def _tile(tile: Tile) -> bytes:
     )  # fmt: skip
     body = (vertices, polygons, b"\0" * LINK_BYTES * links, details, fan)
     return header + b"".join(part if isinstance(part, bytes) else part.tobytes() for part in body)
+
+
+def _fan(corners: int) -> list[tuple[int, int, int, int]]:
+    """Return a polygon's triangles from its first corner: three corners, and by two bits each which sides are outer."""
+    last = corners - 3
+    return [(0, n + 1, n + 2, (n == 0) | 1 << 2 | (n == last) << 4) for n in range(corners - 2)]
 
 
 def _sides_on_border(tile: Tile) -> int:
