@@ -9,6 +9,7 @@ from linden.sensors.instrument import instrument
 from linden.simulation.episode import Episode
 from linden.simulation.grip import FRICTION_TRIGGER, trigger
 from linden.simulation.overlap import touching, world_centres
+from linden.simulation.props import solid
 from linden.values.actors import ActorDescription
 from linden.values.space import BoundingBox, Transform
 from linden.world.actors import NO_BODY, ActorRecord
@@ -59,16 +60,19 @@ def spawn(
         raise Refusal(f"unable to attach actor: parent actor not found (no actor has id {parent_id})")
     world_pose = compose(episode.transform(parent_id), pose) if parent_id else pose
     made_trigger = trigger(description) if description.id == FRICTION_TRIGGER else None
+    box = made_trigger.box if made_trigger else blueprint.box
+    if blueprint.kind is Kind.PROP:
+        box = solid(blueprint, description).box
     if blueprint.kind in _NEEDS_ROOM:
         _refuse_without_room(episode, blueprint, world_pose)
     record = ActorRecord(
         id=episode.actors.next_id(),
         description=description,
         kind=blueprint.kind,
-        box=blueprint.box if made_trigger is None else made_trigger.box,
+        box=box,
         semantic_tags=blueprint.semantic_tags,
         parent_id=parent_id,
-        slot=NO_BODY if parent_id else _embody(episode, blueprint, world_pose),
+        slot=NO_BODY if parent_id else _embody(episode, blueprint, description, world_pose),
     )
     episode.actors.add(record, world_pose, pose if parent_id else None)
     if made_trigger is not None:
@@ -78,7 +82,7 @@ def spawn(
     return record
 
 
-def _embody(episode: Episode, blueprint: Blueprint, pose: Transform) -> int:
+def _embody(episode: Episode, blueprint: Blueprint, description: ActorDescription, pose: Transform) -> int:
     bodies = episode.bodies
     if blueprint.vehicle is not None:
         model = blueprint.vehicle
@@ -86,7 +90,10 @@ def _embody(episode: Episode, blueprint: Blueprint, pose: Transform) -> int:
     if blueprint.kind is Kind.WALKER:
         return bodies.add_walker(pose, blueprint.box, blueprint.mass_kg)
     if blueprint.kind is Kind.PROP:
-        return bodies.add_prop(pose, blueprint.box, None)
+        made = solid(blueprint, description)
+        slot = bodies.add_prop(pose, made.box, made.mass_kg)
+        bodies.set_simulate(slot, simulate=made.loose)
+        return slot
     return NO_BODY
 
 

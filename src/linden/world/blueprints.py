@@ -132,7 +132,7 @@ def _statics(facts: dict[str, Any]) -> Iterator[Blueprint]:
             Kind.PROP,
             BoundingBox(Vector3D(0.0, 0.0, half_m.z), half_m),
             bytes([SemanticTag[tag.upper()]]),
-            PROP_DENSITY_KG_M3 * length_m * width_m * height_m,
+            facts["prop_masses_kg"].get(name, PROP_DENSITY_KG_M3 * length_m * width_m * height_m),
         )
 
 
