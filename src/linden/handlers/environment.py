@@ -2,7 +2,7 @@
 
 from linden.handlers.context import Context
 from linden.handlers.registry import method
-from linden.values.episode import LightState, WeatherParameters
+from linden.values.episode import WeatherParameters
 
 
 @method("get_weather_parameters")
@@ -14,7 +14,9 @@ def get_weather_parameters(context: Context) -> WeatherParameters:
 @method("set_weather_parameters")
 def set_weather_parameters(context: Context, weather: WeatherParameters) -> None:
     """Keep the weather; negative values mean the map's own default and are returned as they came."""
-    context.simulation.episode.weather = weather
+    episode = context.simulation.episode
+    episode.weather = weather
+    episode.surroundings.lamps.follow_sun(weather)
 
 
 @method("get_imui_gravity")
@@ -27,9 +29,3 @@ def get_imui_gravity(context: Context) -> float:
 def set_imui_gravity(context: Context, gravity_mps2: float) -> None:
     """Set the gravity that IMU sensors add."""
     context.simulation.episode.imu_gravity_mps2 = gravity_mps2
-
-
-@method("query_lights_state")
-def query_lights_state(_context: Context, _client: str) -> tuple[LightState, ...]:
-    """Return the lamps of streets and houses: as yet the world has none."""
-    return ()

@@ -10,14 +10,13 @@ from linden import CARLA_VERSION
 from linden.errors import Refusal
 from linden.handlers.context import Context
 from linden.handlers.registry import method
+from linden.values.enums import MapLayer
 from linden.values.episode import EpisodeSettings, MapInfo, OpendriveGenerationParameters
 from linden.wire.decode import U16, U32
 from linden.wire.stream import WORLD_OBSERVER_ID, Token
 
 log = logging.getLogger("linden")
 
-ALL_LAYERS = 0xFFFF
-"""carla.MapLayer.All."""
 MAX_FIXED_DELTA_S = 10.0
 """Longest fixed step accepted; CARLA sets none, but a step of minutes can only be a unit mixed up."""
 
@@ -43,11 +42,10 @@ def get_available_maps(context: Context) -> list[str]:
 
 @method("load_new_episode")
 def load_new_episode(context: Context, name: str, reset_settings: bool, layers: U16) -> None:  # noqa: FBT001 - the wire's order
-    """Begin a new episode on a map; an empty name is the map that is loaded now."""
-    if layers != ALL_LAYERS:
-        log.info("map layers %#06x asked for; the maps of this version have no layers, so all of it is loaded", layers)
+    """Begin a new episode on a map, with some of its layers; an empty name is the map that is loaded now."""
     simulation = context.simulation
     simulation.load(context.maps.load(name or simulation.map_name), reset_settings=reset_settings)
+    simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)
 
 
 @method("copy_opendrive_to_file")
