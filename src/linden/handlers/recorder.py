@@ -29,7 +29,7 @@ MOST_TIMES_FASTER = 1000.0
 def start_recorder(context: Context, name: str, additional_data: bool) -> str:  # noqa: FBT001 - the wire's order
     """Record from the next frame on and return the file's path; what is recorded or replayed meanwhile ends."""
     simulation, path = context.simulation, context.recordings.file(name)
-    simulation.replayer.stop(simulation, keep_actors=False)
+    simulation.replayer.stop(keep_actors=False)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         simulation.recorder.start(
@@ -118,7 +118,7 @@ def replay_file(
     told = f"Replaying File: {path}\n"
     recording = _opened(path)
     if isinstance(recording, str):
-        simulation.replayer.stop(simulation, keep_actors=False)
+        simulation.replayer.stop(keep_actors=False)
         return told + recording
     map_name = recording.header.map_name
     if map_name != _short(simulation.map_name):
@@ -153,7 +153,7 @@ def _short(map_name: str) -> str:
 @method("stop_replayer")
 def stop_replayer(context: Context, keep_actors: bool) -> None:  # noqa: FBT001 - the wire's order
     """End the replay, if one is under way."""
-    context.simulation.replayer.stop(context.simulation, keep_actors=keep_actors)
+    context.simulation.replayer.stop(keep_actors=keep_actors)
 
 
 @method("set_replayer_time_factor")

@@ -126,16 +126,19 @@ class _Tape:
 
     def _packets(self, episode: Episode) -> Iterator[bytes]:
         """Yield the packets of a frame in CARLA's order, then Linden's own."""
-        come = [self._known[actor.id] for actor in self._added]
+        come = [record for actor in self._added if (record := episode.actors.find(actor.id)) is not None]
+        gone: list[tuple[int]] = []
         if episode.actors.version != self._columns_version:
             self._columns = rows_of.columns(episode)
             self._columns_version = episode.actors.version
+            gone = [(actor_id,) for actor_id in self._known if actor_id not in episode.actors]
+            self._known = {record.id: record for record in self._known.values() if record.id in episode.actors}
         rows = episode.actors.rows
         positions = rows_of.positions(rows, self._columns.placed)
         positions["location_cm"], ulps = to_file(rows["location"][self._columns.placed])
         yield encode.seconds(PacketId.VISUAL_TIME, episode.elapsed_s)
         yield encode.added(self._added)
-        yield encode.records(PacketId.REMOVED, self._gone(episode))
+        yield encode.records(PacketId.REMOVED, np.array(gone, layouts.REMOVED))
         yield encode.records(PacketId.PARENTS, _parents(come))
         yield encode.records(PacketId.COLLISIONS, self._contacts(episode))
         yield encode.records(PacketId.POSITIONS, positions)
@@ -146,12 +149,6 @@ class _Tape:
         if self._additional_data:
             yield from self._additional(episode, come)
         yield encode.packet(PacketId.LOCATION_ULPS, len(ulps).to_bytes(2, "little") + ulps.tobytes())
-
-    def _gone(self, episode: Episode) -> NDArray[np.void]:
-        gone = [actor_id for actor_id in self._known if actor_id not in episode.actors]
-        for actor_id in gone:
-            del self._known[actor_id]
-        return np.array([(actor_id,) for actor_id in gone], layouts.REMOVED)
 
     def _contacts(self, episode: Episode) -> NDArray[np.void]:
         if not len(episode.contacts):

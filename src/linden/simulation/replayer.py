@@ -62,7 +62,7 @@ class Replayer:
         Raises:
             RecordingError: it holds no frame, or something in it cannot be; it is then closed.
         """
-        self.stop(simulation, keep_actors=False)
+        self.stop(keep_actors=False)
         rules = Rules(self.ignore_hero, self.ignore_spectator, plan.replay_sensors)
         try:
             self._run = _Run(simulation, recording, plan, rules)
@@ -71,7 +71,7 @@ class Replayer:
             raise
         return self._run.span
 
-    def stop(self, simulation: "Simulation", *, keep_actors: bool) -> None:
+    def stop(self, *, keep_actors: bool) -> None:
         """End the replay under way, if there is one: everybody stops, and physics has them again.
 
         Without ``keep_actors`` those go whom the rest of the recording would have taken away.
@@ -80,7 +80,6 @@ class Replayer:
             return
         run, self._run = self._run, None
         run.end(keep_actors=keep_actors)
-        simulation.episode.observe()
 
     def forget(self) -> None:
         """End the replay under way, as its episode is over."""
@@ -97,10 +96,9 @@ class Replayer:
         except (RecordingError, OSError) as error:
             log.warning("the replay ends here: %s", error)
             is_over = True
+        simulation.episode.observe()  # before the end: the frame shows the recording's last moment
         if is_over:
-            self.stop(simulation, keep_actors=True)
-        else:
-            simulation.episode.observe()
+            self.stop(keep_actors=True)
 
 
 class Span(NamedTuple):
