@@ -156,13 +156,17 @@ class Cockpits(Columns):
         return math.degrees(float(self.wheel_steer[slot, wheel]))
 
     def telemetry(self, slot: int) -> VehicleTelemetry:
-        """Return speeds, forces and slips as they were at the end of the last step."""
+        """Return speeds, forces and slips as they were at the end of the last step, in CARLA's units.
+
+        As CARLA has it: the speed is the one forward, the lateral slip in degrees, a normalised force the size of the
+        force over the wheel's load at rest, and the friction what the tyre finds here, not what it has of its own.
+        """
         assert self.kind[slot] == VEHICLE
         s = self.state
         cosine, sine = math.cos(s["rotation"][slot, 1]), math.sin(s["rotation"][slot, 1])
         ahead = float(s["velocity"][slot, 0] * cosine + s["velocity"][slot, 1] * sine)
         return VehicleTelemetry(
-            speed=float(np.linalg.norm(s["velocity"][slot])),
+            speed=ahead,
             steer=float(s["steer"][slot]),
             throttle=float(s["throttle"][slot]),
             brake=float(s["brake"][slot]),
@@ -176,10 +180,11 @@ class Cockpits(Columns):
         s, spec = self.state, self.specs[slot]
         load_n = float(s["wheel_load"][slot, k])
         rest_n = float(spec["load_share"][k]) * float(s["mass_kg"][slot]) * 9.81
+        here = float(s["friction_here"][slot])
         long_n, lat_n = float(s["wheel_long_force"][slot, k]), float(s["wheel_lat_force"][slot, k])
         return WheelTelemetry(
-            tire_friction=float(spec["friction"][k]),
-            lat_slip=float(s["wheel_lat_slip"][slot, k]),
+            tire_friction=(float(spec["friction"][k]) if here < 0.0 else here) * float(s["road_grip"][slot]),
+            lat_slip=math.degrees(float(s["wheel_lat_slip"][slot, k])),
             long_slip=float(s["wheel_long_slip"][slot, k]),
             omega=float(s["wheel_omega"][slot, k]),
             tire_load=load_n,
@@ -187,6 +192,6 @@ class Cockpits(Columns):
             torque=float(s["wheel_torque"][slot, k]),
             long_force=long_n,
             lat_force=lat_n,
-            normalized_long_force=long_n / load_n if load_n > 0.0 else 0.0,
-            normalized_lat_force=lat_n / load_n if load_n > 0.0 else 0.0,
+            normalized_long_force=abs(long_n) / rest_n if rest_n > 0.0 else 0.0,
+            normalized_lat_force=abs(lat_n) / rest_n if rest_n > 0.0 else 0.0,
         )
