@@ -50,6 +50,8 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
         run = list(group)
         if kind is cmd.ApplyVehicleControl and len(run) >= WORTH_AN_ARRAY:
             answers += _drive(context, run)
+        elif kind is cmd.ApplyWalkerState and len(run) >= WORTH_AN_ARRAY:
+            answers += _lead(context, run)
         else:
             answers += [_answer(context, command) for command in run]
     if do_tick:
@@ -72,6 +74,15 @@ def _drive(context: Context, commands: list[Any]) -> list[Answer]:
     if slots:
         episode.bodies.set_controls(np.array(slots), np.array(controls, np.float64))
     return answers
+
+
+def _lead(context: Context, states: list[Any]) -> list[Answer]:
+    """Lead many walkers at once, or each by itself where one of them cannot be led."""
+    try:
+        walkers.lead(context, states)
+    except Refusal:
+        return [_answer(context, state) for state in states]
+    return [cmd.done(state.actor_id) for state in states]
 
 
 def _answer(context: Context, command: cmd.Command) -> Answer:

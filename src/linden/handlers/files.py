@@ -4,7 +4,7 @@ from linden.errors import Refusal
 from linden.handlers.context import Context
 from linden.handlers.registry import method
 from linden.navigation.library import MeshFile
-from linden.simulation.walkers import mesh_file
+from linden.simulation.walking_mesh import mesh_file
 
 
 def _mesh(context: Context) -> MeshFile | None:

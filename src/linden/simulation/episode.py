@@ -13,6 +13,7 @@ from linden.simulation.grip import Grip
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
 from linden.simulation.surroundings import Surroundings
+from linden.simulation.walkers import Walkers
 from linden.traffic.lights import Traffic
 from linden.values.actors import ActorDescription
 from linden.values.episode import WeatherParameters
@@ -48,6 +49,7 @@ class Episode:
         contacts: of the last step, as ``physics`` reports them.
         doors: of the vehicles, which stand open.
         grip: of the road, and who is in a friction trigger.
+        walkers: who is led, who is dead, and how far each has walked.
         instruments: sensors that measure by themselves, by actor id.
     """
 
@@ -62,6 +64,7 @@ class Episode:
         self.traffic = Traffic(scenery.signals)
         self.weather = WeatherParameters()
         self.doors, self.grip = Doors(), Grip()
+        self.walkers = Walkers()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
         self.light_ids = self._add_traffic()
@@ -204,12 +207,18 @@ class Episode:
             walkers["speed"][self._walker_rows] = bodies.walker_speed[slots]
             walkers["jump"][self._walker_rows] = bodies.jump[slots]
 
+    def walker_ids_and_slots(self) -> tuple[list[int], NDArray[np.int32]]:
+        """Return ids and slots of all walkers, oldest first."""
+        if self._seen_version != self.actors.version:
+            self._survey()
+        return self._walker_ids, self._walker_slots
+
     def _survey(self) -> None:
         """Note which rows are vehicles' and walkers'; called when somebody has come or gone."""
         self._keep_limits()
         self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(Kind.VEHICLE)
         self._vehicle_actor_id = np.array(self._vehicle_ids, np.int32)
-        _, self._walker_slots, self._walker_rows = self._embodied(Kind.WALKER)
+        self._walker_ids, self._walker_slots, self._walker_rows = self._embodied(Kind.WALKER)
         self._limits_kmh = np.array(
             [self._speed_limit_kmh.get(actor_id, DEFAULT_SPEED_LIMIT_KMH) for actor_id in self._vehicle_ids]
         )

@@ -2,6 +2,7 @@
 
 from linden.physics.step import advance
 from linden.simulation.episode import Episode
+from linden.simulation.spawning import destroy
 
 
 def step(episode: Episode, dt_s: float, substeps: int) -> None:
@@ -11,5 +12,7 @@ def step(episode: Episode, dt_s: float, substeps: int) -> None:
     episode.grip.update(episode)
     episode.contacts = advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
     episode.elapsed_s += dt_s
+    for actor_id in episode.walkers.step(episode, dt_s):
+        destroy(episode, actor_id, announce=True)
     episode.surroundings.step(episode.elapsed_s)
     episode.observe()
