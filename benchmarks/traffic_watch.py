@@ -23,7 +23,10 @@ QUEUE_GAP_M = 8.0
 QUEUE_WIDTH_M = 2.5
 TOUCH_M = 0.05
 PILE_UP_S = 10.0
-SIGN_REACH_M = 15.0
+SIGN_BEFORE_M, SIGN_AFTER_M, SIGN_ACROSS_M = 4.0, 5.0, 1.5
+"""Where a front bumper is at a stop sign, seen from the middle of its trigger volume, 3 m before the line."""
+SIGN_TURN_DEG = 90.0
+"""CARLA's models of signs are turned by this against the traffic they are for."""
 
 
 class Fleet(NamedTuple):
@@ -37,13 +40,12 @@ class Fleet(NamedTuple):
 
 
 class Signs(NamedTuple):
-    """Stop signs' trigger volumes in the world; S of them."""
+    """Stop signs; S of them."""
 
     centre_m: F64
-    """(S, 2)"""
+    """(S, 2) of the trigger volumes, in the world."""
     yaw_rad: F64
-    half_m: F64
-    """(S, 2)"""
+    """(S,) of the traffic that they are for."""
 
 
 def fleet_of(actors: list[carla.Actor]) -> Fleet:
@@ -60,13 +62,11 @@ def stop_signs(world: carla.World) -> Signs:
     """Return where vehicles have to stop for a sign."""
     found = []
     for sign in world.get_actors().filter("traffic.stop"):
-        volume, pose = sign.trigger_volume, sign.get_transform()
-        middle = pose.transform(carla.Location(volume.location))
-        found.append(
-            (middle.x, middle.y, np.radians(pose.rotation.yaw + volume.rotation.yaw), volume.extent.x, volume.extent.y)
-        )
-    table = np.array(found).reshape(-1, 5)
-    return Signs(table[:, :2], table[:, 2], table[:, 3:])
+        pose = sign.get_transform()
+        middle = pose.transform(carla.Location(sign.trigger_volume.location))
+        found.append((middle.x, middle.y, np.radians(pose.rotation.yaw - SIGN_TURN_DEG)))
+    table = np.array(found).reshape(-1, 3)
+    return Signs(table[:, :2], table[:, 2])
 
 
 class Watch:
@@ -184,12 +184,13 @@ class Watch:
 
     def _note_signs(self, middle: F64, yaw_rad: F64, speed_mps: F64) -> None:
         """Count who passes a stop sign having stood, crept (below 3 km/h) or neither."""
-        front = middle + self._fleet.half_m[:, :1] * np.column_stack([np.cos(yaw_rad), np.sin(yaw_rad)])
-        gap = front[:, None, :] - self._signs.centre_m[None, :, :]
-        cos, sin = np.cos(self._signs.yaw_rad), np.sin(self._signs.yaw_rad)
-        along, across = gap[..., 0] * cos + gap[..., 1] * sin, gap[..., 1] * cos - gap[..., 0] * sin
-        reach = self._signs.half_m + 4.0 * (self._signs.half_m.min(axis=1, keepdims=True) == self._signs.half_m)
-        inside = (np.abs(along) < reach[:, 0]) & (np.abs(across) < reach[:, 1]) & self.present[:, None]
+        forward = np.column_stack([np.cos(yaw_rad), np.sin(yaw_rad)])
+        gap = (middle + self._fleet.half_m[:, :1] * forward)[:, None, :] - self._signs.centre_m[None, :, :]
+        along = gap[..., 0] * forward[:, :1] + gap[..., 1] * forward[:, 1:]
+        across = gap[..., 1] * forward[:, :1] - gap[..., 0] * forward[:, 1:]
+        same_way = np.cos(yaw_rad[:, None] - self._signs.yaw_rad) > np.cos(np.radians(40.0))
+        near = (along > -SIGN_BEFORE_M) & (along < SIGN_AFTER_M) & (np.abs(across) < SIGN_ACROSS_M)
+        inside = near & same_way & self.present[:, None]
         sign = np.where(inside.any(axis=1), inside.argmax(axis=1), -1)
         left = (self._at_sign >= 0) & (sign != self._at_sign)
         for slowest in self._slowest_mps[left & self.present]:
