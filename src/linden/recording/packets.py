@@ -27,6 +27,7 @@ class Header(NamedTuple):
 class ActorAdded(NamedTuple):
     """An actor that came, or was there when the recording began; cm, and roll, pitch, yaw in degrees.
 
+    Where the same frame tells of its parent, its place is relative to that one; otherwise it is in the world.
     The types of the description's attributes are those of the file: releases number them from 0 or from 1.
     """
 

@@ -117,7 +117,7 @@ class _Tape:
             if record.id in self._known:
                 continue
             self._known[record.id] = record
-            self._added.append(_added(record, episode.transform(record.id)))
+            self._added.append(_added(record, episode.own_transform(record.id)))
 
     def write(self, episode: Episode, delta_s: float) -> None:
         self.writer.add(delta_s, list(self._packets(episode)))
@@ -182,6 +182,7 @@ class _Tape:
 
 
 def _added(record: ActorRecord, pose: Transform) -> ActorAdded:
+    """Return an actor that came, at its place in the world, or relative to whom it is attached to, as in CARLA."""
     x, y, z = pose.location
     kind = record.kind if record.kind in _KINDS_OF_FILE else Kind.OTHER
     turned = pose.rotation

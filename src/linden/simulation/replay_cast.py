@@ -8,7 +8,6 @@ import logging
 from typing import TYPE_CHECKING, NamedTuple
 
 from linden.errors import Refusal
-from linden.geometry import relative
 from linden.recording.packets import ActorAdded
 from linden.simulation.spawning import destroy
 from linden.values.actors import ActorDescription, AttributeValue
@@ -52,20 +51,17 @@ class Cast:
         self.version = 0
         self._told: set[str] = set()
 
-    def enter(self, actor: ActorAdded, parent_id: int, parent_pose: Transform | None) -> None:
+    def enter(self, actor: ActorAdded, parent_id: int) -> None:
         """Let an actor of the recording into the world.
 
-        Args:
-            actor: who.
-            parent_id: to whom it is attached in the recording, 0 to nobody.
-            parent_pose: where that one was then.
+        ``parent_id`` is to whom it is attached in the recording, 0 nobody; its place is then relative to that one.
         """
         if self._is_ignored(actor):
             return
         pose = pose_of(actor)
         found = self._existing(actor, pose)
         if found is None:
-            found = self._spawned(actor, pose, parent_id, parent_pose)
+            found = self._spawned(actor, pose, parent_id)
         if found is None:
             return
         self.of[actor.id] = found.id
@@ -108,22 +104,20 @@ class Cast:
         self._tell(f"replay: the map has no {type_id} at {_place(location)}; that of the recording is left out")
         return None
 
-    def _spawned(
-        self, actor: ActorAdded, pose: Transform, parent_id: int, parent_pose: Transform | None
-    ) -> ActorRecord | None:
+    def _spawned(self, actor: ActorAdded, pose: Transform, parent_id: int) -> ActorRecord | None:
         """Return the actor, spawned under its own id where that is free; None where it cannot be."""
         type_id, episode = actor.description.id, self._simulation.episode
         if type_id.startswith("traffic."):
             return None
         carrier = self.of.get(parent_id, 0)
-        if parent_id and (not carrier or parent_pose is None):
+        if parent_id and not carrier:
             self._tell(f"replay: {type_id} (actor {actor.id}) is left out: so is actor {parent_id}, which carries it")
             return None
         try:
             description = self._description(actor.description)
             with episode.actors.preferring(actor.id):
-                if carrier and parent_pose is not None:
-                    return self._simulation.spawn(description, relative(parent_pose, pose), parent_id=carrier)
+                if carrier:
+                    return self._simulation.spawn(description, pose, parent_id=carrier)
                 record = self._simulation.spawn(description, _ALOFT)
         except Refusal as refusal:
             self._tell(f"replay: {type_id} is left out: {refusal}")
@@ -184,7 +178,7 @@ class Cast:
 
 
 def pose_of(actor: ActorAdded) -> Transform:
-    """Return where an actor came into the recording."""
+    """Return where an actor came into the recording: in the world, or relative to whom it is attached to."""
     roll, pitch, yaw = actor.rotation_deg
     x, y, z = (value * CM_TO_M for value in actor.location_cm)
     return Transform(Vector3D(x, y, z), Rotation(pitch, yaw, roll))

@@ -13,10 +13,10 @@ from linden.geometry import compose
 from linden.recording.errors import CutShortError, RecordingError
 from linden.recording.packets import Frame
 from linden.recording.read import FramePlace, Recording
-from linden.simulation.replay_cast import Cast, Rules, pose_of
+from linden.simulation.replay_cast import Cast, Rules
 from linden.simulation.replay_moment import Places, between, places
 from linden.simulation.replay_stage import Stage
-from linden.values.space import Rotation, Transform, Vector3D
+from linden.values.space import Transform
 
 if TYPE_CHECKING:
     from linden.simulation.simulation import Simulation
@@ -164,23 +164,11 @@ class _Run:
     def _take_in_events(self, at: int) -> None:
         """Let those come and go who do so in a frame."""
         frame = self._frame(at)
-        parent_of = {int(child): int(parent) for child, parent in frame.parents.tolist()}
-        where = {actor.id: pose_of(actor) for actor in frame.added}
+        parent_of = dict(frame.parents.tolist())
         for actor in frame.added:
-            parent_id = parent_of.get(actor.id, 0)
-            carrier = where.get(parent_id) or (self._recorded_pose(at - 1, parent_id) if parent_id and at else None)
-            self._cast.enter(actor, parent_id, carrier)
+            self._cast.enter(actor, parent_of.get(actor.id, 0))
         for (actor_id,) in frame.removed.tolist():
             self._cast.leave(actor_id)
-
-    def _recorded_pose(self, at: int, actor_id: int) -> Transform | None:
-        """Return where an actor of the recording was in a frame, None where it was not there."""
-        here = places(self._frame(at))
-        row = np.flatnonzero(here.id == actor_id)
-        if not len(row):
-            return None
-        location, rotation = here.location_m[row[0]].tolist(), here.rotation_deg[row[0]].tolist()
-        return Transform(Vector3D(*location), Rotation(*rotation))
 
     def _follow(self) -> None:
         episode = self._simulation.episode
