@@ -62,6 +62,7 @@ def apply_physics_control(context: Context, actor_id: U32, control: VehiclePhysi
     slot = episode.vehicle(actor_id)
     wheels = tuple(wheel._replace(position=Vector3D()) for wheel in control.wheels)
     episode.bodies.set_physics_control(slot, control._replace(wheels=wheels))
+    context.simulation.recorder.physics_changed(actor_id)
     episode.bodies.friction_here[slot] = -1.0
     if control.use_sweep_wheel_collision:
         context.warn_once("use_sweep_wheel_collision is kept and has no effect: a wheel meets the ground at one point")
