@@ -33,7 +33,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     command: Callable[[argparse.Namespace], int] = arguments.command
     try:
         code = command(arguments)
-        sys.stdout.flush()
+        print(end="", flush=True)  # noqa: T201 - what waits to be printed; it need not have an end where stdout is closed
     except UserError as error:
         print(f"linden: {error}", file=sys.stderr)  # noqa: T201 - what a command says to its user
         return 2

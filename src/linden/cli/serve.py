@@ -4,14 +4,12 @@ import argparse
 import gc
 import logging
 import os
-import signal
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING
 
+from linden.cli.process import Ending, allow_connections, give_up_stdout, write_log
 from linden.values.episode import EpisodeSettings
 
 if TYPE_CHECKING:
@@ -19,6 +17,8 @@ if TYPE_CHECKING:
 
 DEFAULT_PORT = 2000
 SYNCHRONOUS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
+log = logging.getLogger("linden")
+
 LOG_LEVELS = ("debug", "info", "warning", "error")
 
 
@@ -35,6 +35,12 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
         "--maps", type=Path, action="append", default=[], metavar="DIR", help="offer every .xodr of a folder as a map"
     )
     serve.add_argument(
+        "--recordings",
+        type=Path,
+        metavar="DIR",
+        help="folder that recordings are written to and replayed from (default: linden/recordings in the user's data)",
+    )
+    serve.add_argument(
         "--sync",
         action="store_true",
         help="begin in synchronous mode with steps of 0.05 s: no frame before the first tick",
@@ -49,14 +55,13 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UserError: a port or a map cannot be had.
     """
-    logging.basicConfig(level=logging.WARNING, stream=sys.stderr, format="linden: %(levelname)s: %(message)s")
-    logging.getLogger("linden").setLevel(arguments.log_level.upper())  # the compiler's own log is nobody's business
+    write_log(arguments.log_level.upper())
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start one a core, and they spin; we are one thread
-    with _ending_cleanly():
+    allow_connections()
+    with Ending() as ending:
         with _collector_paused():
             server = _make_server(arguments)
-        for number in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(number, lambda _number, _frame: server.stop())
+        ending.ask_first(server.stop)
         server.run()
     return 0
 
@@ -65,17 +70,21 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     # here, not above: these bring in the compiler, which other commands of this program do not need
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
+    from linden.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
     from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
+    from linden.recording.folder import RecordingFolder  # noqa: PLC0415 - see above
     from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
+    from linden.simulation.walking_mesh import mesh_file  # noqa: PLC0415 - see above
     from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
     from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
 
     registry.load_handlers()
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
-    maps = MapLibrary(arguments.maps, MapCache.of_user().facts_of)
+    cache = MapCache.of_user()
+    maps, meshes = MapLibrary(arguments.maps, cache.facts_of), MeshLibrary(cache)
     with _told_of_compiling():  # all kernels now, so that a client's first tick takes no longer than the others
         try:
             world_map = maps.load(arguments.map)
@@ -84,7 +93,10 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         warm_up()
         warm_rays()
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
+        mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
     server = Server(simulation, maps, frames, ports)
+    server.context.recordings = RecordingFolder(arguments.recordings)
+    server.context.meshes = meshes
     _say(f"linden: ready, rpc port {port_of(ports.rpc)}, streaming port {port_of(ports.streaming)}")
     return server
 
@@ -126,21 +138,10 @@ def _told_of_compiling() -> Iterator[None]:
         event.unregister("numba:compile", teller)  # type: ignore[no-untyped-call]
 
 
-@contextmanager
-def _ending_cleanly() -> Iterator[None]:
-    """Let SIGINT and SIGTERM end the program with 0, also while it starts; put the old handlers back afterwards."""
-
-    def leave(_number: int, _frame: FrameType | None) -> None:
-        raise SystemExit(0)
-
-    before = {number: signal.signal(number, leave) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-
-
 def _say(line: str) -> None:
-    """Print a line that programs read, at once."""
-    print(line, flush=True)  # noqa: T201 - what a command says to its user
+    """Print a line that programs read, at once; a server whose output nobody reads any more serves all the same."""
+    try:
+        print(line, flush=True)  # noqa: T201 - what a command says to its user
+    except OSError as error:  # a closed pipe, a full disk
+        log.warning("cannot print %r: %s", line, error)
+        give_up_stdout()

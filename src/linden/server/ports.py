@@ -37,9 +37,11 @@ def open_ports(host: str, port: int, streaming_port: int | None = None) -> Ports
     """
     if streaming_port is None:
         streaming_port = port + 1 if port else 0
-    rpc = _listen(host, port)
+    if port == streaming_port != 0:
+        raise UserError(f"port {port} cannot be both --port and --streaming-port; name another for the second")
+    rpc = _listen(host, port, "--port")
     try:
-        return Ports(rpc, _listen(host, streaming_port))
+        return Ports(rpc, _listen(host, streaming_port, "--streaming-port"))
     except UserError:
         rpc.close()
         raise
@@ -51,9 +53,12 @@ def port_of(listener: socket.socket) -> int:
     return port
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def _listen(host: str, port: int, option: str) -> socket.socket:
     if not 0 <= port <= LAST_PORT:
-        raise UserError(f"cannot listen on port {port}: ports go from 0 to {LAST_PORT}; choose another with --port")
+        raise UserError(
+            f"cannot listen on port {port}: ports go from 0 to {LAST_PORT}, and --streaming-port is the one after "
+            f"--port unless it is named; choose another with {option}"
+        )
     try:
         family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM, flags=socket.AI_PASSIVE)[0]
     except (socket.gaierror, UnicodeError) as error:
@@ -65,17 +70,19 @@ def _listen(host: str, port: int) -> socket.socket:
         listener.listen(BACKLOG)
     except OSError as error:
         listener.close()
-        raise UserError(_why(host, port, error)) from error
+        raise UserError(_why(host, port, option, error)) from error
     listener.settimeout(0.0)
     return listener
 
 
-def _why(host: str, port: int, error: OSError) -> str:
+def _why(host: str, port: int, option: str, error: OSError) -> str:
     if error.errno == errno.EADDRINUSE:
         return (
-            f"port {port} on {host} is in use, perhaps by another server; end that one, or choose with --port "
+            f"port {port} on {host} is in use, perhaps by another server; end that one, or choose with {option} "
             f"(0 lets the system choose)"
         )
     if error.errno == errno.EACCES:
-        return f"port {port} may not be used by this user; choose one above 1023 with --port"
-    return f"cannot listen on {host}, port {port}: {error}; choose another with --host and --port"
+        return f"port {port} may not be used by this user; choose one above 1023 with {option}"
+    if error.errno == errno.EADDRNOTAVAIL:
+        return f"cannot listen on {host}: this machine has no such address; name one of its own with --host"
+    return f"cannot listen on {host}, port {port}: {error}; choose another with --host and {option}"

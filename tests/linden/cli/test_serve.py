@@ -1,14 +1,23 @@
 """Claims about ``linden serve`` as a program: what it prints, how it ends, what it says to a mistake."""
 
+import contextlib
+import os
 import signal
 import socket
+import subprocess
+import sys
+import time
 from pathlib import Path
+from typing import Any
 
+import carla
+import msgpack
 import psutil
 import pytest
 
+from fakes.raw_client import RawClient, RawSubscriber
 from linden.cli import main
-from servers import running_server
+from servers import START_LIMIT_S, running_server
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -69,3 +78,104 @@ def test_the_version_names_both(capsys: pytest.CaptureFixture[str]) -> None:
         main(["--version"])
     assert ended.value.code == 0
     assert "CARLA 0.9.16" in capsys.readouterr().out
+
+
+def started(*options: str, **how: Any) -> subprocess.Popen[str]:
+    return subprocess.Popen([sys.executable, "-m", "linden.cli", "serve", *options], text=True, **how)
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        pytest.param(["--port", "65535"], "--streaming-port is the one after --port", id="no port after the last"),
+        pytest.param(["--port", "2000", "--streaming-port", "2000"], "cannot be both", id="one port for both"),
+        pytest.param(["--port", "-1"], "ports go from 0 to 65535", id="no such port"),
+        pytest.param(["--port", "0", "--host", "192.0.2.1"], "this machine has no such address", id="no such address"),
+    ],
+)
+def test_ports_that_cannot_be_are_a_sentence(
+    options: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["serve", *options]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith("linden: ")
+    assert sentence in said
+    assert said.count("\n") == 1
+
+
+def test_it_serves_on_although_nobody_reads_what_it_prints() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    with (
+        socket.create_server(("127.0.0.1", 0)) as one,
+        socket.create_server(("127.0.0.1", 0)) as other,
+    ):
+        rpc, streaming = one.getsockname()[1], other.getsockname()[1]
+    process = started("--port", str(rpc), "--streaming-port", str(streaming), stdout=writing, stderr=subprocess.PIPE)
+    os.close(writing)
+    try:
+        until_it_answers(rpc)
+        process.terminate()
+        _, err = process.communicate(timeout=10)
+    finally:
+        process.kill()
+    assert process.returncode == 0
+    assert err.count("\n") == 1
+    assert "cannot print 'linden: ready" in err
+
+
+def until_it_answers(port: int) -> None:
+    while True:
+        with contextlib.suppress(ConnectionRefusedError), RawClient(port) as client:
+            client.socket.settimeout(START_LIMIT_S)  # the port is open before the server is ready
+            assert client.call("version") == "0.9.16"
+            return
+
+
+def test_a_cache_that_cannot_be_written_stops_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "linden").write_text("a file where the folder should be")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    with running_server() as server, RawClient(server.port) as client:
+        assert client.call("get_map_info")[0] == "Carla/Maps/Linden"
+        assert server.log() == ""
+
+
+def test_a_signal_during_a_long_call_ends_it_cleanly_within_two_seconds() -> None:
+    with running_server("--sync") as server, RawClient(server.port) as client:
+        client.socket.sendall(b"".join(client.request("load_new_episode", "", True, 0xFFFF) for _ in range(5000)))
+        client.answer()
+        began_s = time.monotonic()
+        server.process.terminate()
+        assert server.process.wait(10) == 0
+        assert time.monotonic() - began_s < 2.0
+        assert "Traceback" not in server.log()
+
+
+def test_it_ends_while_a_subscriber_reads_nothing() -> None:
+    with (
+        running_server("--sync") as server,
+        RawClient(server.port) as client,
+        RawSubscriber(server.streaming_port, 1) as deaf,
+    ):
+        deaf.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        for _ in range(500):
+            client.call("tick_cue")
+        server.process.send_signal(signal.SIGINT)
+        assert server.process.wait(2) == 0
+        assert server.log() == ""
+
+
+def test_it_listens_on_ipv6_too_for_those_who_speak_it() -> None:  # the official client looks for IPv4 alone
+    with running_server("--host", "::1") as server:
+        with socket.create_connection(("::1", server.port), 10.0) as client:
+            client.sendall(msgpack.packb([0, 1, "version", [[False]]]))
+            assert msgpack.unpackb(client.recv(1000)) == [1, 1, None, [[1, "0.9.16"]]]
+        with pytest.raises(ConnectionRefusedError), socket.create_connection(("127.0.0.1", server.port), 10.0):
+            pass
+
+
+def test_the_official_client_finds_it_by_name() -> None:
+    with running_server() as server:
+        client = carla.Client("localhost", server.port)
+        client.set_timeout(20.0)
+        assert client.get_world().get_map().name == "Carla/Maps/Linden"
