@@ -134,6 +134,11 @@ class Frame:
         return self._records(PacketId.VEHICLE_LIGHTS)
 
     @property
+    def scene_lights(self) -> Records:
+        """Lamps of streets and houses that were switched, in the first frame all: ``layouts.SCENE_LIGHT``."""
+        return self._records(PacketId.SCENE_LIGHTS)
+
+    @property
     def kinematics(self) -> Records:
         """Velocities (additional data): ``layouts.KINEMATICS``, m/s and degrees/s."""
         return self._records(PacketId.KINEMATICS)

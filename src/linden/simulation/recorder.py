@@ -17,9 +17,11 @@ from linden.recording.layouts import PacketId
 from linden.recording.metres import to_file
 from linden.recording.packets import ActorAdded, PhysicsRecord
 from linden.recording.write import RecordingWriter
+from linden.simulation import recorded_lamps
 from linden.simulation import recorded_rows as rows_of
 from linden.simulation.episode import Episode
 from linden.simulation.recorded_contacts import collisions
+from linden.values.episode import LightState
 from linden.values.space import Transform
 from linden.world.actors import ActorRecord
 from linden.world.blueprints import Kind
@@ -106,6 +108,7 @@ class _Tape:
         self._added: list[ActorAdded] = []
         self._seen_version = -1
         self._columns_version = -1
+        self._lamps: dict[int, LightState] | None = None
         self._light_times: NDArray[np.void] | None = None
         self._collisions = 0
 
@@ -146,9 +149,19 @@ class _Tape:
         yield encode.records(PacketId.VEHICLES, rows_of.vehicles(rows, self._columns.vehicles))
         yield encode.records(PacketId.WALKERS, rows_of.walkers(rows, self._columns.walkers))
         yield encode.records(PacketId.VEHICLE_LIGHTS, rows_of.lamps(self._columns.vehicle_records))
+        if len(lamps := self._changed_lamps(episode)):
+            yield encode.records(PacketId.SCENE_LIGHTS, lamps)
         if self._additional_data:
             yield from self._additional(episode, come)
         yield encode.packet(PacketId.LOCATION_ULPS, len(ulps).to_bytes(2, "little") + ulps.tobytes())
+
+    def _changed_lamps(self, episode: Episode) -> NDArray[np.void]:
+        """Return the lamps of streets and houses that stand otherwise than in the last frame; in the first, all."""
+        known = self._lamps
+        if known is not None and not episode.surroundings.lamps.pending:
+            return recorded_lamps.records([])
+        self._lamps = {lamp.id: lamp for lamp in episode.surroundings.lamp_states()}
+        return recorded_lamps.records([lamp for lamp in self._lamps.values() if (known or {}).get(lamp.id) != lamp])
 
     def _contacts(self, episode: Episode) -> NDArray[np.void]:
         if not len(episode.contacts):

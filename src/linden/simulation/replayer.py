@@ -13,6 +13,7 @@ from linden.geometry import compose
 from linden.recording.errors import CutShortError, RecordingError
 from linden.recording.packets import Frame
 from linden.recording.read import FramePlace, Recording
+from linden.simulation import recorded_lamps
 from linden.simulation.replay_cast import Cast, Rules
 from linden.simulation.replay_moment import Places, between, places
 from linden.simulation.replay_stage import Stage
@@ -162,13 +163,16 @@ class _Run:
         return self._known[at]
 
     def _take_in_events(self, at: int) -> None:
-        """Let those come and go who do so in a frame."""
+        """Let those come and go who do so in a frame, and switch the lamps that were switched in it."""
         frame = self._frame(at)
         parent_of = dict(frame.parents.tolist())
         for actor in frame.added:
             self._cast.enter(actor, parent_of.get(actor.id, 0))
         for (actor_id,) in frame.removed.tolist():
             self._cast.leave(actor_id)
+        lamps = recorded_lamps.states(frame.scene_lights)
+        if unknown := self._simulation.episode.surroundings.lamps.update(lamps):
+            log.info("replay: the map lacks %d of the lamps that were switched", len(unknown))
 
     def _follow(self) -> None:
         episode = self._simulation.episode
