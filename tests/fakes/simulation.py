@@ -10,6 +10,17 @@ from linden.wire.headers import SensorType, episode_header, sensor_header
 EMPTY_MAP = '<?xml version="1.0"?><OpenDRIVE/>'
 
 
+class FakeEpisode:
+    """Stands for its own surroundings, which have no layers."""
+
+    @property
+    def surroundings(self) -> "FakeEpisode":
+        return self
+
+    def unload_layers(self, layers: int) -> None:
+        assert layers == 0
+
+
 @dataclass
 class FakeSimulation:
     settings: EpisodeSettings = field(default_factory=EpisodeSettings)
@@ -21,6 +32,7 @@ class FakeSimulation:
     opendrive_text: str = EMPTY_MAP
     spawn_points: tuple[Transform, ...] = (Transform(),)
     steps_s: list[float] = field(default_factory=list)
+    episode: FakeEpisode = field(default_factory=FakeEpisode)
 
     def step(self, dt_s: float) -> None:
         self.frame += 1

@@ -102,12 +102,11 @@ class Entrance:
             )
 
     def _let_in(self, door: socket.socket, kind: type[Peer]) -> None:
+        if self._inside >= self._most:
+            self._make_room(f"{self._inside} connections are open")
         for _ in range(LET_IN_AT_ONCE):
-            if self._closed_until_s is not None:
+            if self._inside >= self._most or self._closed_until_s is not None:
                 return
-            if self._inside >= self._most:
-                self._make_room(f"{self._inside} connections are open")
-                continue
             try:
                 sock, _ = door.accept()
             except (BlockingIOError, InterruptedError):

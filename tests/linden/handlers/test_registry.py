@@ -38,7 +38,10 @@ def test_a_function_cannot_be_registered_twice() -> None:
         method("version")(lambda context: None)
 
 
-def test_an_asynchronous_call_that_is_refused_is_told_to_the_log_once(caplog: pytest.LogCaptureFixture) -> None:
+def test_an_asynchronous_call_that_is_refused_is_told_to_the_log_once(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delitem(METHODS, "enable_carsim", raising=False)
     context = new_context()
     for number in range(3):
         dispatch(context, Call(number, "enable_carsim", [1, "x"], is_async=True))
