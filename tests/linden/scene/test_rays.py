@@ -59,7 +59,7 @@ def test_every_triangle_on_the_way_is_met_once_or_twice_at_its_place() -> None:
         beyond = {number for _, number in found} - {number for _, number in expected}
         assert len(beyond) <= 1  # a ray through a shared edge may meet the neighbour too
         met += len(expected)
-    assert met > 50
+    assert met > 30
 
 
 @pytest.mark.parametrize(("start", "end"), ways(12))
@@ -74,7 +74,7 @@ def test_boxes_that_stand_are_met_where_they_are_entered() -> None:
     centres, halves = RANDOM.uniform(0.0, 80.0, (60, 3)), RANDOM.uniform(0.2, 9.0, (60, 3))
     yaws = RANDOM.uniform(-4.0, 4.0, 60)
     standing = StandingBoxes.of(centres, halves, yaws)
-    for start, end in RANDOM.uniform(-10.0, 90.0, (30, 2, 3)):
+    for start, end in RANDOM.uniform(-10.0, 90.0, (12, 2, 3)):
         found = dict(map(reversed, hits(crossings(Ground.flat(-50.0), standing, NOBODY, start, end), Surface.STANDING)))
         for number in range(60):
             axes = rotation_matrix(Rotation(0.0, math.degrees(yaws[number]), 0.0))
