@@ -2,9 +2,9 @@
 
 import math
 
-from linden.errors import Refusal
 from linden.handlers.context import Context
 from linden.handlers.registry import method
+from linden.simulation.sockets import in_parent
 from linden.values.actors import Actor, ActorDefinition, ActorDescription
 from linden.values.space import BoundingBox, Transform, Vector3D
 from linden.wire.decode import U8, U32
@@ -50,9 +50,24 @@ def spawn_actor_with_parent(
     context: Context, description: ActorDescription, pose: Transform, parent_id: U32, _attachment: U8, socket: str
 ) -> Actor:
     """Attach an actor to another; spring arms hold as rigidly as the rest, for there is no screen to calm."""
-    if socket:
-        raise Refusal(f"unable to attach actor: the parent has no socket or bone '{socket}'; attach without one")
-    return message(context, context.simulation.spawn(description, pose, parent_id=parent_id))
+    return message(context, attach(context, description, pose, parent_id, socket))
+
+
+def attach(
+    context: Context, description: ActorDescription, pose: Transform, parent_id: int, socket: str
+) -> ActorRecord:
+    """Spawn an actor that follows its parent, or one of its bones where ``socket`` names one.
+
+    Raises:
+        Refusal: no such parent or bone, or the actor cannot be spawned.
+    """
+    if not socket:
+        return context.simulation.spawn(description, pose, parent_id=parent_id)
+    episode = context.simulation.episode
+    at = in_parent(episode, parent_id, socket, pose)
+    record = context.simulation.spawn(description, at, parent_id=parent_id)
+    episode.sockets.attach(episode, record.id, socket, pose)
+    return record
 
 
 @method("destroy_actor")

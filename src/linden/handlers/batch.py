@@ -110,7 +110,8 @@ def _run(context: Context, command: cmd.Command) -> int:
 
 def _spawn(context: Context, command: cmd.SpawnActor) -> int:
     """Spawn, then do what should follow; as in CARLA, what fails of the latter does not undo the spawn."""
-    record = context.simulation.spawn(command.description, command.transform, parent_id=command.parent_id or 0)
+    parent_id, socket = command.parent_id or 0, command.socket if command.parent_id else ""
+    record = actors.attach(context, command.description, command.transform, parent_id, socket)
     for follow_up in command.do_after:
         aimed = follow_up
         if not isinstance(follow_up, cmd.SpawnActor) and follow_up[0] == cmd.JUST_SPAWNED:

@@ -8,10 +8,12 @@ from linden.physics.contact.statics import Statics
 from linden.physics.step import CONTACT
 from linden.sensors.instrument import Instrument
 from linden.simulation import rows
+from linden.simulation.bones import Poses
 from linden.simulation.doors import Doors
 from linden.simulation.grip import Grip
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
+from linden.simulation.sockets import Sockets
 from linden.simulation.surroundings import Surroundings
 from linden.simulation.walkers import Walkers
 from linden.traffic.lights import Traffic
@@ -50,6 +52,8 @@ class Episode:
         doors: of the vehicles, which stand open.
         grip: of the road, and who is in a friction trigger.
         walkers: who is led, who is dead, and how far each has walked.
+        poses: of walkers, as clients set them.
+        sockets: what is attached to a bone.
         instruments: sensors that measure by themselves, by actor id.
     """
 
@@ -64,7 +68,7 @@ class Episode:
         self.traffic = Traffic(scenery.signals)
         self.weather = WeatherParameters()
         self.doors, self.grip = Doors(), Grip()
-        self.walkers = Walkers()
+        self.walkers, self.poses, self.sockets = Walkers(), Poses(), Sockets()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
         self.light_ids = self._add_traffic()

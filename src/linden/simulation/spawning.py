@@ -156,3 +156,4 @@ def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
     episode.instruments.pop(actor_id, None)
     episode.doors.forget(actor_id)
     episode.grip.forget(actor_id)
+    episode.poses.forget(actor_id)

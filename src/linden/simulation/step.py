@@ -15,4 +15,5 @@ def step(episode: Episode, dt_s: float, substeps: int) -> None:
     for actor_id in episode.walkers.step(episode, dt_s):
         destroy(episode, actor_id, announce=True)
     episode.surroundings.step(episode.elapsed_s)
+    episode.sockets.follow(episode)
     episode.observe()

@@ -1,0 +1,171 @@
+"""The bones, sockets and components of any actor: where they are now, and the poses that clients give walkers.
+
+Walkers have CARLA's skeleton; a vehicle has its body and its wheels, which steer and turn. As in Unreal, every bone is
+a socket too. What else there is (props, sensors, signs) has one component and no bones.
+"""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.errors import Refusal
+from linden.physics.columns import finite
+from linden.values.space import Rotation, Transform, Vector3D
+from linden.world.actors import NO_BODY, ActorRecord, ActorRefusal
+from linden.world.blueprints import Kind
+from linden.world.skeleton import blended, frame_of, in_component, skeleton, transform_of, walking_pose
+
+if TYPE_CHECKING:
+    from linden.simulation.episode import Episode
+
+F64 = NDArray[np.float64]
+
+_WHEELS = {
+    2: ("Wheel_Front", "Wheel_Rear"),
+    4: ("Wheel_Front_Left", "Wheel_Front_Right", "Wheel_Rear_Left", "Wheel_Rear_Right"),
+}
+"""Names of CARLA's vehicle skeletons, in the order of the physics control's wheels."""
+
+_COMPONENTS = {Kind.WALKER: ("CollisionCylinder", "CharacterMesh0"), Kind.VEHICLE: ("VehicleMesh",)}
+"""Names that Unreal gives the parts of a character and of a wheeled vehicle; the first is the root."""
+
+_ROOT = ("DefaultSceneRoot",)
+
+
+class Bones(NamedTuple):
+    """Names and frames (N, 4, 4), in the parent bone's and in the actor's."""
+
+    names: tuple[str, ...]
+    in_parent: F64
+    in_actor: F64
+
+
+class Poses:
+    """What clients made of walkers' poses, by actor id."""
+
+    def __init__(self) -> None:
+        self._custom: dict[int, F64] = {}
+        self._blend: dict[int, float] = {}
+
+    def set(self, episode: "Episode", actor_id: int, bones: dict[str, Transform]) -> None:
+        """Set bones of the custom pose; the others stay, at first as the animation has them now.
+
+        Raises:
+            Refusal: no walker has a bone of one of these names.
+        """
+        unknown = [name for name in bones if skeleton().row(name) is None]
+        if unknown:
+            raise Refusal(
+                f"walkers have no bone '{unknown[0]}'; get_bones lists them ({', '.join(skeleton().names[:4])} …)"
+            )
+        if actor_id not in self._custom:
+            self.take(episode, actor_id)
+        for name, transform in bones.items():
+            self._custom[actor_id][skeleton().row(name)] = frame_of(transform)
+
+    def take(self, episode: "Episode", actor_id: int) -> None:
+        """Make the pose that the animation has now the custom pose."""
+        self._custom[actor_id] = _animated(episode, actor_id)
+
+    def blend(self, actor_id: int, share: float) -> None:
+        """Show the custom pose: 0 not at all, 1 alone."""
+        self._blend[actor_id] = finite(share, 0.0, 1.0)
+
+    def forget(self, actor_id: int) -> None:
+        """Forget a walker that is gone."""
+        self._custom.pop(actor_id, None)
+        self._blend.pop(actor_id, None)
+
+    def shown(self, episode: "Episode", actor_id: int) -> F64:
+        """Return the pose that a walker shows, (N, 4, 4) in the parents' frames."""
+        animated, share = _animated(episode, actor_id), self._blend.get(actor_id, 0.0)
+        custom = self._custom.get(actor_id)
+        return animated if custom is None or share == 0.0 else blended(animated, custom, share)
+
+
+def _animated(episode: "Episode", actor_id: int) -> F64:
+    slot = episode.walker(actor_id)
+    stature_m = 2.0 * episode.actors.get(actor_id).box.extent.z
+    velocity = episode.bodies.velocity[slot]
+    speed_mps = 0.0 if episode.walkers.is_dead(actor_id) else float(np.hypot(velocity[0], velocity[1]))
+    return walking_pose(stature_m, episode.walkers.walked_m(actor_id), speed_mps)
+
+
+def bones_of(episode: "Episode", actor_id: int) -> Bones:
+    """Return the bones of an actor as they are now.
+
+    Raises:
+        ActorRefusal: no such actor, or it has none.
+    """
+    record = episode.actors.get(actor_id)
+    if record.kind is Kind.WALKER and record.slot != NO_BODY:
+        pose = episode.poses.shown(episode, actor_id)
+        return Bones(skeleton().names, pose, _mesh_frame(record) @ in_component(pose))
+    if record.kind is Kind.VEHICLE and record.slot != NO_BODY:
+        frames = np.stack([np.eye(4), *_wheels(episode, record.slot)])
+        return Bones(("Vehicle_Base", *_WHEELS[len(frames) - 1]), frames, frames)
+    raise ActorRefusal("Component could not be found in this actor:  Component Name: SkinnedMeshComponent", actor_id)
+
+
+def in_skeleton(episode: "Episode", actor_id: int, bones: Bones) -> F64:
+    """Return the frames of bones in that of the component they belong to."""
+    frames: F64 = np.linalg.inv(component(episode, actor_id, component_names(episode, actor_id)[-1])) @ bones.in_actor
+    return frames
+
+
+def sockets_of(episode: "Episode", actor_id: int) -> Bones:
+    """Return what can be attached to of an actor; nothing where it has no bones.
+
+    Raises:
+        ActorRefusal: no such actor.
+    """
+    record = episode.actors.get(actor_id)
+    if record.kind in (Kind.WALKER, Kind.VEHICLE) and record.slot != NO_BODY:
+        return bones_of(episode, actor_id)
+    return Bones((), np.empty((0, 4, 4)), np.empty((0, 4, 4)))
+
+
+def _wheels(episode: "Episode", slot: int) -> list[F64]:
+    """Return the frame of each wheel's hub in the vehicle's."""
+    bodies = episode.bodies
+    spec = bodies.specs[slot]
+    hubs = []
+    for wheel in range(int(spec["wheel_count"])):
+        place = Vector3D(*(float(spec[name][wheel]) for name in ("wheel_x_m", "wheel_y_m", "wheel_radius_m")))
+        turned = Rotation(bodies.wheel_pitch_deg(slot, wheel), float(np.degrees(bodies.wheel_steer[slot, wheel])), 0.0)
+        hubs.append(frame_of(Transform(place, turned)))
+    return hubs
+
+
+def _mesh_frame(record: ActorRecord) -> F64:
+    """Return where a walker's skeleton begins: under the middle of the body, between the feet."""
+    return frame_of(Transform(Vector3D(0.0, 0.0, -record.box.extent.z), Rotation(0.0, 0.0, 0.0)))
+
+
+def component_names(episode: "Episode", actor_id: int) -> tuple[str, ...]:
+    """Return the names of an actor's components.
+
+    Raises:
+        ActorRefusal: no such actor.
+    """
+    return _COMPONENTS.get(episode.actors.get(actor_id).kind, _ROOT)
+
+
+def component(episode: "Episode", actor_id: int, name: str) -> F64:
+    """Return the frame (4, 4) of a component in the actor's.
+
+    Raises:
+        ActorRefusal: no such actor, or it has no such component.
+    """
+    names = component_names(episode, actor_id)
+    if name not in names:
+        raise ActorRefusal(f"Component could not be found in this actor:  Component Name: {name}", actor_id)
+    record = episode.actors.get(actor_id)
+    return _mesh_frame(record) if record.kind is Kind.WALKER and name != names[0] else np.eye(4)
+
+
+def in_world(episode: "Episode", actor_id: int, frames: F64) -> list[Transform]:
+    """Return frames (N, 4, 4) of the actor's as transforms of the world's."""
+    actor = frame_of(episode.transform(actor_id))
+    return [transform_of(actor @ frame) for frame in frames]
