@@ -1,5 +1,6 @@
 """A recording being written: each frame goes to the file at once and whole, so that a killed server leaves it."""
 
+import contextlib
 import io
 import os
 import struct
@@ -58,7 +59,8 @@ class RecordingWriter:
             while left:
                 left = left[self._file.write(left) :]
         except OSError:
-            os.ftruncate(self._file.fileno(), self._end)
+            with contextlib.suppress(OSError):  # a frame that cannot be taken back is read as cut short
+                os.ftruncate(self._file.fileno(), self._end)
             raise
         self._end += len(content)
 
