@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from linden.errors import Refusal
 from linden.physics.state import VEHICLE
 from linden.simulation.overlap import touching, world_centres
 from linden.values.actors import ActorDescription
@@ -51,19 +50,9 @@ class Trigger(NamedTuple):
 
 
 def trigger(description: ActorDescription) -> Trigger:
-    """Return what a description of ``static.trigger.friction`` asks for; its extents are half sizes in **cm**.
-
-    Raises:
-        Refusal: an extent or the friction is negative or no number.
-    """
-    extent = [float(description.attribute(f"extent_{axis}", "1.0")) for axis in "xyz"]
-    friction = float(description.attribute("friction", "3.5"))
-    if not all(np.isfinite(value) and value >= 0.0 for value in (*extent, friction)):
-        raise Refusal(
-            "Spawn failed because of invalid actor description: friction and extents (half sizes in cm) of "
-            f"{FRICTION_TRIGGER} must be numbers of at least 0, not {friction:g} and {extent}"
-        )
-    return Trigger(BoundingBox(Vector3D(), Vector3D(*(value * _M_PER_CM for value in extent))), friction)
+    """Return what a checked description asks for; its extents are half sizes in **cm**, as in CARLA."""
+    half = Vector3D(*(float(description.attribute(f"extent_{axis}")) * _M_PER_CM for axis in "xyz"))
+    return Trigger(BoundingBox(Vector3D(), half), float(description.attribute("friction")))
 
 
 class Grip:

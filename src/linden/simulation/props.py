@@ -6,7 +6,6 @@ containers; from then on its mass decides. ``static.prop.mesh`` is loose if its 
 mesh is Unreal's and nobody has it here, so it is a cube of 1 m times its ``scale``.
 """
 
-import math
 from typing import NamedTuple
 
 from linden.errors import Refusal
@@ -30,20 +29,17 @@ class Solid(NamedTuple):
 
 
 def solid(blueprint: Blueprint, description: ActorDescription) -> Solid:
-    """Return what is put into the world for a description of a prop.
+    """Return what is put into the world for a checked description of a prop.
 
     Raises:
-        Refusal: the mass or scale of a mesh is negative or no number.
+        Refusal: the scale of a mesh is 0.
     """
     if description.id != MESH:
         loose = bytes([SemanticTag.DYNAMIC]) == blueprint.semantic_tags or description.id in LOOSE_SIGNS
         return Solid(blueprint.box, blueprint.mass_kg, loose)
-    mass_kg, scale = float(description.attribute("mass", "0.0")), float(description.attribute("scale", "1.0"))
-    if not (math.isfinite(mass_kg) and mass_kg >= 0.0 and math.isfinite(scale) and scale > 0.0):
-        raise Refusal(
-            f"Spawn failed because of invalid actor description: {MESH} needs a mass of at least 0 kg and a scale "
-            f"above 0, not {mass_kg:g} and {scale:g}"
-        )
+    mass_kg, scale = float(description.attribute("mass")), float(description.attribute("scale"))
+    if scale == 0.0:
+        raise Refusal(f"Spawn failed because of invalid actor description: {MESH} needs a scale above 0")
     centre, half = (Vector3D(*(scale * value for value in vector)) for vector in blueprint.box[:2])
     weight_kg = mass_kg or MESH_DENSITY_KGPM3 * scale**3
     return Solid(BoundingBox(centre, half), weight_kg, mass_kg > 0.0)
