@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from linden.physics.bodies import Bodies
 from linden.physics.contact.statics import Statics
 from linden.physics.step import CONTACT
+from linden.scene.weather import CLEAR_NOON
 from linden.sensors.instrument import Instrument
 from linden.simulation import rows
 from linden.simulation.bones import Poses
@@ -66,7 +67,7 @@ class Episode:
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)
         self.traffic = Traffic(scenery.signals)
-        self.weather = WeatherParameters()
+        self.weather: WeatherParameters = CLEAR_NOON
         self.doors, self.grip = Doors(), Grip()
         self.walkers, self.poses, self.sockets = Walkers(), Poses(), Sockets()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
