@@ -1,0 +1,289 @@
+"""Rows of soak.py, of clients that come, go, are killed or read slowly: each does so a number of times.
+
+A row takes the server, how often, and what to call after every repetition; it returns a remark.
+"""
+
+import contextlib
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import carla
+import msgpack
+import psutil
+from typing_extensions import Self
+
+Done = Callable[[], None]
+
+
+class Target(NamedTuple):
+    """The server under test."""
+
+    process: psutil.Process
+    port: int
+    streaming_port: int
+    log: Path
+
+
+class Rude:
+    """A connection that speaks bytes."""
+
+    def __init__(self, port: int) -> None:
+        self.socket = socket.create_connection(("127.0.0.1", port), 60.0)
+        self._unpacker = msgpack.Unpacker(max_buffer_size=2**30)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.socket.close()
+
+    def send(self, method: str, *arguments: object) -> None:
+        self.socket.sendall(request(method, *arguments))
+
+    def call(self, method: str, *arguments: object) -> Any:  # noqa: ANN401 - whatever a function returns
+        self.send(method, *arguments)
+        while True:
+            for _, _, error, result in self._unpacker:
+                return result[0][-1] if error is None and method != "apply_batch" else error or result
+            data = self.socket.recv(1 << 20)
+            if not data:
+                raise EOFError("the server has closed the connection")
+            self._unpacker.feed(data)
+
+    def reset(self) -> None:
+        """Vanish as a killed process does."""
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        self.socket.close()
+
+
+def request(method: str, *arguments: object) -> bytes:
+    packed: bytes = msgpack.packb([0, 1, method, [[False], *arguments]])
+    return packed
+
+
+def subscriber(target: Target, stream_id: int) -> Rude:
+    found = Rude(target.streaming_port)
+    found.socket.sendall(struct.pack("<I", stream_id))
+    return found
+
+
+def settle(target: Target, synchronous: bool = True) -> None:  # noqa: FBT001, FBT002 - what a row asks for
+    """Begin a new episode, in one mode or the other, and tick a few times: what a client that behaves does next."""
+    with Rude(target.port) as client:
+        client.call("load_new_episode", "Linden", True, 0xFFFF)
+        settings = [synchronous, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
+        client.call("set_episode_settings", settings)
+        for _ in range(20):
+            client.call("tick_cue")
+
+
+def official(target: Target) -> tuple[carla.Client, carla.World]:
+    client = carla.Client("127.0.0.1", target.port)
+    client.set_timeout(60.0)
+    return client, client.get_world()
+
+
+# -- coming and going ------------------------------------------------------------------------------------------------
+
+
+def rpc_connects(target: Target, count: int, done: Done) -> str:
+    for _ in range(count):
+        with Rude(target.port) as client:
+            client.call("version")
+        done()
+    return ""
+
+
+def stream_connects(target: Target, count: int, done: Done) -> str:
+    for number in range(count):
+        subscriber(target, 1 + number % 50).socket.close()
+        done()
+    return ""
+
+
+def cut_off(target: Target, count: int, done: Done) -> str:
+    for number in range(count):
+        client = Rude(target.port if number % 2 else target.streaming_port)
+        client.socket.sendall(request("tick_cue")[: 1 + number % 10] if number % 2 else b"\1\0\0"[: number % 4])
+        client.reset()
+        done()
+    return "half by half a call, half by half a handshake"
+
+
+def silent(target: Target, count: int, done: Done) -> str:
+    held = []
+    for _ in range(count):
+        held.append(Rude(target.port))
+        done()
+    open_files = target.process.num_fds()
+    with Rude(target.port) as client:
+        client.call("tick_cue")
+    for each in held:
+        each.socket.close()
+    return f"{open_files} files open meanwhile, and a tick was made"
+
+
+def whole_clients(target: Target, count: int, done: Done) -> str:
+    for _ in range(count):
+        client, world = official(target)
+        world.get_settings()
+        del world, client
+        done()
+    return ""
+
+
+# -- killed ----------------------------------------------------------------------------------------------------------
+
+BEGIN = """
+import carla, sys
+client = carla.Client("127.0.0.1", int(sys.argv[1]))
+client.set_timeout(60.0)
+world = client.get_world()
+points = world.get_map().get_spawn_points()
+library = world.get_blueprint_library()
+def car(place):
+    return world.try_spawn_actor(library.find("vehicle.tesla.model3"), points[place % len(points)])
+"""
+TICKING = BEGIN + "while True: print(world.tick(), flush=True)\n"
+LISTENING = (
+    BEGIN
+    + """
+ego = car(int(sys.argv[2]))
+sensors = [world.spawn_actor(library.find("sensor.other." + kind), carla.Transform(), attach_to=ego)
+           for kind in ("imu", "gnss", "collision")]
+for sensor in sensors:
+    sensor.listen(lambda event: None)
+while True: print(world.tick(), flush=True)
+"""
+)
+TRAFFIC = (
+    BEGIN
+    + """
+manager = client.get_trafficmanager(0)
+manager.set_synchronous_mode(True)
+for place in range(10):
+    vehicle = car(place)
+    if vehicle is not None:
+        vehicle.set_autopilot(True, manager.get_port())
+while True: print(world.tick(), flush=True)
+"""
+)
+
+
+@contextmanager
+def program(target: Target, text: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
+    """A client in a process of its own, killed at the end."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", text, str(target.port), *arguments],
+        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+    )  # fmt: skip
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def killed(text: str) -> Callable[[Target, int, Done], str]:
+    def row(target: Target, count: int, done: Done) -> str:
+        for number in range(count):
+            with program(target, text, str(number)) as victim:
+                for _ in range(30):
+                    victim.stdout.readline()
+            with Rude(target.port) as survivor:
+                survivor.call("tick_cue")
+            done()
+        return "each after 30 ticks of its own; another ticked after each"
+
+    return row
+
+
+def ten_at_once(target: Target, count: int, done: Done) -> str:
+    with contextlib.ExitStack() as stack:
+        clients = [stack.enter_context(program(target, LISTENING, str(5 * number))) for number in range(10)]
+        frames: list[list[int]] = [[int(client.stdout.readline())] for client in clients]
+        began_s = time.monotonic()
+
+        def follow(client: subprocess.Popen[str], mine: list[int]) -> None:
+            mine += [int(client.stdout.readline()) for _ in range(count // 10)]
+
+        threads = [threading.Thread(target=follow, args=pair) for pair in zip(clients, frames, strict=True)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        took_s = time.monotonic() - began_s
+    for _ in range(count):
+        done()
+    ticks = [frame for mine in frames for frame in mine]
+    return f"{count / took_s:.0f} ticks/s together, {len(ticks) - len(set(ticks))} frames shared by two"
+
+
+# -- reading slowly --------------------------------------------------------------------------------------------------
+
+
+def crowd(target: Target) -> None:
+    """Enough actors that snapshots are not small."""
+    client, world = official(target)
+    library, points = world.get_blueprint_library(), world.get_map().get_spawn_points()
+    spawn, car = carla.command.SpawnActor, library.find("vehicle.tesla.model3")
+    client.apply_batch_sync([spawn(car, point) for point in points[:100]], True)
+
+
+def deaf_asynchronous(target: Target, count: int, done: Done) -> str:
+    settle(target, synchronous=False)
+    crowd(target)
+    with Rude(target.port) as client, subscriber(target, 1) as reader, contextlib.ExitStack() as stack:
+        for _ in range(10):
+            stack.enter_context(subscriber(target, 1))
+        seen = longest_ms = 0
+        for _ in range(count):  # frames beside those by the clock, so that it does not take an hour
+            began_s = time.perf_counter()
+            client.call("tick_cue")
+            longest_ms = max(longest_ms, (time.perf_counter() - began_s) * 1000.0)
+            seen += len(reader.socket.recv(1 << 20)) > 0
+            done()
+    return f"10 deaf subscribers of 120 actors; longest tick for the others {longest_ms:.0f} ms"
+
+
+def deaf_synchronous(target: Target, count: int, done: Done) -> str:
+    crowd(target)
+    waits_s = []
+    with Rude(target.port) as client:
+        for _ in range(count):
+            with subscriber(target, 1):
+                longest_s, closed = 0.0, target.log.read_text().count("is closed: in synchronous")
+                while longest_s < 1.0:
+                    began_s = time.perf_counter()
+                    client.call("tick_cue")
+                    longest_s = max(longest_s, time.perf_counter() - began_s)
+                waits_s.append(longest_s)
+                assert target.log.read_text().count("is closed: in synchronous") > closed
+            done()
+    return f"each closed after the others had waited {max(waits_s):.1f} s at most"
+
+
+def slow_loris(target: Target, count: int, done: Done) -> str:
+    message = request("get_sensor_token", 1)
+    clients = [Rude(target.port) for _ in range(count)]
+    longest_ms = 0.0
+    with Rude(target.port) as other:
+        for byte in message:
+            for client in clients:
+                client.socket.sendall(bytes([byte]))
+            began_s = time.perf_counter()
+            other.call("tick_cue")
+            longest_ms = max(longest_ms, (time.perf_counter() - began_s) * 1000.0)
+    for client in clients:
+        assert client.socket.recv(1000)
+        client.socket.close()
+        done()
+    return f"a byte a turn, all answered in the end; longest tick for another {longest_ms:.0f} ms"
