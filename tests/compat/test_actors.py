@@ -3,6 +3,8 @@
 import carla
 import pytest
 
+from fakes.raw_client import RawClient
+
 
 @pytest.fixture
 def blueprints(world: carla.World) -> carla.BlueprintLibrary:
@@ -163,3 +165,14 @@ def test_a_push_from_the_side_moves_a_vehicle_sideways(world, car) -> None:
     car.add_impulse(carla.Vector3D(side.x, side.y, 0.0))
     world.tick()
     assert car.get_velocity().dot(begin.get_right_vector()) > 0.5
+
+
+def test_the_box_of_somebody_gone_is_empty_and_no_error(server, world, car) -> None:
+    # another client's Traffic Manager may ask so, in a thread where an error ends its program
+    with RawClient(server.port) as other:
+        there = other.call("get_actor_bounding_box", car.id)
+        car.destroy()
+        gone = other.call("get_actor_bounding_box", car.id)
+    assert there[1][0] > 1.0
+    assert there[3] == car.id
+    assert gone == [[0, 0, 0], [0, 0, 0], [0, 0, 0], 0]

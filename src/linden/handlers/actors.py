@@ -79,8 +79,13 @@ def destroy_actor(context: Context, actor_id: U32) -> bool:
 
 @method("get_actor_bounding_box")
 def get_actor_bounding_box(context: Context, actor_id: U32) -> BoundingBox:
-    """Return the box in the actor's frame."""
-    return context.simulation.episode.actors.get(actor_id).box
+    """Return the box in the actor's frame; the empty box for an id that nobody has.
+
+    The client then takes the box it knows. Its Traffic Manager asks for vehicles that another client may have destroyed
+    since the last snapshot, in a thread where an error would end the whole program.
+    """
+    record = context.simulation.episode.actors.find(actor_id)
+    return BoundingBox() if record is None else record.box._replace(actor_id=actor_id)
 
 
 @method("set_actor_transform")
