@@ -63,6 +63,8 @@ class ActorTable:
         self._wish = 0
         self._dying: list[int] = []
         self._told: list[int] = []
+        self._leaving: list[int] = []  # rows that go with the next frame: all at once, so that each costs little
+        self._children: dict[int, dict[int, ActorRecord]] = {}
         self.version = 0
         """Grows whenever an actor comes or goes, so that what is derived from the set can be kept until then."""
         self._allocate(256)
@@ -112,6 +114,8 @@ class ActorTable:
     @contextmanager
     def preferring(self, actor_id: int) -> Iterator[None]:
         """Let whoever comes next in the block have this id, if nobody has it; a replay's actors keep theirs so."""
+        if actor_id in self._leaving:
+            self._drop_leaving()
         is_free = 0 < actor_id <= _LARGEST_WISH and actor_id not in self._records and actor_id not in self._row_of
         self._wish = actor_id if is_free else 0
         try:
@@ -130,6 +134,8 @@ class ActorTable:
 
     def add(self, record: ActorRecord, pose: Transform, relative: Transform | None = None) -> None:
         """Put an actor into the table; ``relative`` is its pose in its parent's frame, where it has one."""
+        if len(self) == len(self.rows) and self._leaving:
+            self._drop_leaving()
         if len(self) == len(self.rows):
             old, count = self._columns(), len(self)
             self._allocate(2 * count)
@@ -146,6 +152,8 @@ class ActorTable:
         self.parent_row[row] = -1
         if record.slot != NO_BODY:
             self._by_slot[record.slot] = record
+        if record.parent_id:
+            self._children.setdefault(record.parent_id, {})[record.id] = record
         if relative is not None:
             self.relative[row] = (*relative.location, *relative.rotation)
             self.parent_row[row] = self._row_of[record.parent_id]
@@ -153,35 +161,39 @@ class ActorTable:
 
     def children(self, actor_id: int) -> list[ActorRecord]:
         """Return the actors attached to this one, oldest first."""
-        return [record for record in self if record.parent_id == actor_id]
+        return list(self._children.get(actor_id, {}).values())
 
     def remove(self, actor_id: int, *, announce: bool) -> ActorRecord:
-        """Take an actor out; ``announce`` leaves its row, marked as killed, in the next snapshot.
+        """Take an actor out; ``announce`` leaves its row, marked as killed, in the next frame's snapshot.
 
         The client that destroyed an actor knows it; whoever else holds a handle learns it from such a row only.
         """
         record = self._records.pop(actor_id)
         if record.slot != NO_BODY:
             del self._by_slot[record.slot]
+        siblings = self._children.get(record.parent_id, {})
+        siblings.pop(actor_id, None)
+        if not siblings:
+            self._children.pop(record.parent_id, None)
         row = self._row_of[actor_id]
         self.rows["actor_state"][row] = ActorState.PENDING_KILL
         self.slot[row] = NO_BODY
         self.parent_row[row] = -1
-        if announce:
-            self._dying.append(actor_id)
-        else:
-            self._drop([actor_id])
+        (self._dying if announce else self._leaving).append(actor_id)
         self.version += 1
         return record
 
     def turn_page(self) -> None:
         """Begin a frame: those whose end the last snapshot told go, those that died since then are told in this one."""
-        if self._told:
-            self._drop(self._told)
-            self.version += 1
+        self._leaving += self._told
+        if self._leaving:
+            self._drop_leaving()
         self._told, self._dying = self._dying, []
 
-    def _drop(self, actor_ids: list[int]) -> None:
+    def _drop_leaving(self) -> None:
+        """Close the gaps that those who have left leave in the rows."""
+        actor_ids, self._leaving = self._leaving, []
+        self.version += 1
         count = len(self)
         kept = np.ones(count, bool)
         kept[[self._row_of[actor_id] for actor_id in actor_ids]] = False

@@ -24,7 +24,7 @@ def test_a_port_in_use_is_a_sentence_and_leaves_nothing_open() -> None:
         free.close()
         with pytest.raises(UserError, match="in use"):
             open_ports("127.0.0.1", rpc_port, port_of(taken))
-        open_ports("127.0.0.1", rpc_port).close()
+        open_ports("127.0.0.1", rpc_port, 0).close()
 
 
 @pytest.mark.parametrize(("host", "port"), [("no.such.host.invalid", 0), ("127.0.0.1", 70_000), ("192.0.2.1", 0)])

@@ -29,10 +29,11 @@ def test_an_unknown_id_is_refused_in_carlas_words() -> None:
         ActorTable().get(7)
 
 
-def test_a_destroyed_actor_leaves_the_next_snapshot_at_once() -> None:
+def test_a_destroyed_actor_is_not_in_the_next_frame() -> None:
     table = ActorTable()
     first, second = add(table), add(table)
     table.remove(first.id, announce=False)
+    table.turn_page()
     assert shown(table) == [second.id]
     assert first.id not in table
 
@@ -48,11 +49,44 @@ def test_an_announced_end_is_told_in_one_snapshot() -> None:
     assert shown(table) == [second.id]
 
 
+def test_rows_of_those_who_have_left_are_used_again_where_no_frame_is_made() -> None:
+    table = ActorTable()
+    stays = add(table)
+    for _ in range(1000):
+        table.remove(add(table).id, announce=False)
+    assert len(table.rows) == 256
+    assert table.row(stays.id) == 0
+
+
+def test_an_id_whose_actor_has_left_in_this_very_frame_can_be_given_again() -> None:
+    table = ActorTable()
+    first, second = add(table), add(table)
+    table.remove(first.id, announce=False)
+    with table.preferring(first.id):
+        again = add(table, x=3.0)
+    assert again.id == first.id
+    for _ in range(3):
+        assert shown(table) == [second.id, again.id]
+        assert table.transform(again.id).location.x == 3.0
+        table.turn_page()
+
+
+def test_a_parent_forgets_the_children_that_have_left() -> None:
+    table = ActorTable()
+    parent = add(table)
+    elder, younger = add(table, parent_id=parent.id), add(table, parent_id=parent.id)
+    table.remove(elder.id, announce=False)
+    assert table.children(parent.id) == [younger]
+    table.remove(younger.id, announce=True)
+    assert table.children(parent.id) == []
+
+
 def test_children_keep_their_parent_when_rows_move_up() -> None:
     table = ActorTable()
     gone, parent = add(table), add(table, x=1.0)
     child = add(table, parent_id=parent.id, x=2.0)
     table.remove(gone.id, announce=False)
+    table.turn_page()
     assert table.parent_row[table.row(child.id)] == table.row(parent.id)
     assert [record.id for record in table.children(parent.id)] == [child.id]
     assert table.relative_transform(child.id).location.x == 2.0
@@ -77,7 +111,9 @@ def test_any_coming_and_going_keeps_order_and_columns_together(moves: list[int])
             expected.append(add(table, x=float(table._next_id)).id)
         else:
             table.remove(expected.pop(move % len(expected)), announce=False)
-    assert shown(table) == expected == [record.id for record in table]
+    assert expected == [record.id for record in table]
+    table.turn_page()
+    assert shown(table) == expected
     assert table.pose[: len(table), 0].tolist() == list(map(float, expected))
 
 
