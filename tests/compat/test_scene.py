@@ -5,6 +5,7 @@ import math
 import carla
 import pytest
 
+from opendrive_texts import street_through_junction
 from servers import RunningServer
 
 Label = carla.CityObjectLabel
@@ -191,3 +192,16 @@ def test_what_needs_unreal_is_refused_by_a_sentence(world, server: RunningServer
     world.set_annotations_traverse_translucency(True)
     world.tick()
     assert "nothing in linden's scene is translucent" in server.log()
+
+
+def test_a_world_made_of_a_text_has_the_walls_that_were_asked_for(client) -> None:
+    text = street_through_junction()
+    walled = client.generate_opendrive_world(text, carla.OpendriveGenerationParameters(wall_height=1.5))
+    walls = walled.get_level_bbs(Label.Walls)
+    assert len(walls) >= 4
+    assert all(box.extent.z == pytest.approx(0.75) for box in walls)
+    across = walled.cast_ray(carla.Location(21.0, 0.0, 0.5), carla.Location(21.0, 9.0, 0.5))
+    assert labels(across) == [Label.Walls]
+    assert across[0].location.y == pytest.approx(5.0, abs=0.1)
+    open_world = client.generate_opendrive_world(text, carla.OpendriveGenerationParameters(wall_height=0.0))
+    assert open_world.get_level_bbs(Label.Walls) == []

@@ -59,7 +59,7 @@ class FakeMaps:
             raise Refusal(f"Map '{name}' not found")
         return f"Carla/Maps/{name.rsplit('/', 1)[-1]}"
 
-    def from_opendrive(self, text: str) -> str:
+    def from_opendrive(self, text: str, *, wall_height_m: float = 0.0, beyond_m: float = 0.0) -> str:
         self.sent.append(text)
         return "OpenDriveMap"
 

@@ -45,20 +45,20 @@ def load_new_episode(context: Context, name: str, reset_settings: bool, layers: 
     """Begin a new episode on a map, with some of its layers; an empty name is the map that is loaded now."""
     simulation = context.simulation
     simulation.load(context.maps.load(name or simulation.map_name), reset_settings=reset_settings)
-    simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)
+    if layers != MapLayer.ALL:
+        simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)
 
 
 @method("copy_opendrive_to_file")
 def copy_opendrive_to_file(context: Context, opendrive: str, parameters: OpendriveGenerationParameters) -> None:
     """Make a map of an OpenDRIVE text; the client then loads it as ``OpenDriveMap``.
 
-    The road's surface follows from the text alone; of the parameters only walls would show, and none are made.
+    Walls are built as high and as far beyond driving lanes as the parameters say. The others say how a mesh is cut and
+    smoothed; here the surface follows from the text alone, and goes on beside the road, so that none of them shows.
     """
-    if parameters.wall_height > 0.0:
-        log.info(
-            "generate_opendrive_world: no walls are built beside the road (wall_height %g)", parameters.wall_height
-        )
-    context.maps.from_opendrive(opendrive)
+    context.maps.from_opendrive(
+        opendrive, wall_height_m=parameters.wall_height, beyond_m=max(0.0, parameters.additional_width)
+    )
 
 
 @method("get_map_info")

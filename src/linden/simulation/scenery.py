@@ -10,6 +10,7 @@ from linden.physics.contact.statics import STATIC_BOX, Statics
 from linden.scene.neighbourhood import furnish
 from linden.scene.objects import Scene, join
 from linden.scene.signs import Post, posts
+from linden.scene.walls import walls
 from linden.traffic.actors import NO_LIGHT, Signals
 from linden.world.maps import HOME_MAP, LoadedMap
 
@@ -29,11 +30,14 @@ class Scenery(NamedTuple):
 def scenery_of(world_map: LoadedMap) -> Scenery:
     """Return the scenery of a map; the last one is kept, for most loads load the same map again.
 
-    Only of Linden it is known what stands beside its streets; elsewhere there are lights and signs.
+    Only of Linden it is known what stands beside its streets; elsewhere there are lights, signs and what walls a client
+    has asked for.
     """
     signals = Signals.of(world_map.signals, world_map.controllers, world_map.give_way)
     standing = [Post(actor.transform, actor.light != NO_LIGHT) for actor in signals.actors]
     scene = posts(standing, world_map.ground)
+    if len(world_map.walls.feet_m):
+        scene = join([scene, walls(*world_map.walls)])
     if world_map.name == HOME_MAP:
         scene = join([scene, furnish(world_map.lots, world_map.ground)])
     return Scenery(signals, scene, solid(scene, np.ones(len(scene.boxes), bool)))

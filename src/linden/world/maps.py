@@ -1,8 +1,12 @@
 """The maps a server offers: found by name, made ready once, and kept for the next load."""
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from linden.errors import Refusal, UserError
 from linden.world.map_facts import MapFacts, derive
@@ -16,6 +20,13 @@ _FOLDERS = ("/Game/Carla/Maps/", "Carla/Maps/")
 """How CARLA writes a map's name: the first when it lists them, the second in the map's info."""
 
 
+class Walls(NamedTuple):
+    """Walls of one height over the feet (N, 2, 3) of their pieces, from and to, m."""
+
+    feet_m: NDArray[np.float64] = np.empty((0, 2, 3))
+    height_m: float = 0.0
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class LoadedMap(MapFacts):
     """A map made ready to be driven on.
@@ -23,10 +34,12 @@ class LoadedMap(MapFacts):
     Attributes:
         name: without a folder.
         text: the OpenDRIVE text, word for word as it was read.
+        walls: beside its roads.
     """
 
     name: str
     text: str
+    walls: Walls = field(default_factory=Walls)
 
     @property
     def full_name(self) -> str:
@@ -78,17 +91,33 @@ class MapLibrary:
                 raise Refusal(f"Map '{name}' cannot be read: {error}") from error
         return self._loaded[bare]
 
-    def from_opendrive(self, text: str) -> LoadedMap:
+    def from_opendrive(self, text: str, *, wall_height_m: float = 0.0, beyond_m: float = 0.0) -> LoadedMap:
         """Make a map of a text that a client sent and keep it for the load that follows.
+
+        Args:
+            text: the OpenDRIVE text.
+            wall_height_m: of walls beside the roads; none are built where it is not positive.
+            beyond_m: how far outside of driving lanes they stand.
 
         Raises:
             Refusal: the text is no OpenDRIVE that can be used.
         """
         try:
-            self._loaded[GENERATED_MAP] = self._make_ready(GENERATED_MAP, text)
+            ready = self._make_ready(GENERATED_MAP, text)
+            if wall_height_m > 0.0:
+                ready = replace(ready, walls=Walls(_walls(text, ready, beyond_m), wall_height_m))
+            self._loaded[GENERATED_MAP] = ready
         except UserError as error:
             raise Refusal(f"the OpenDRIVE text cannot be used: {error}") from error
         return self._loaded[GENERATED_MAP]
 
     def _make_ready(self, name: str, text: str) -> LoadedMap:
         return LoadedMap(name=name, text=text, **vars(self._facts_of(text)))
+
+
+def _walls(text: str, facts: MapFacts, beyond_m: float) -> NDArray[np.float64]:
+    # here, not above: only who sends a map pays for them
+    from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
+    from linden.world.map_walls import walls_along  # noqa: PLC0415 - see above
+
+    return walls_along(parse(text), facts.ground, beyond_m)
