@@ -198,13 +198,16 @@ class _Assembly:
         return ranks
 
     def _add_controllers(self, legs: tuple[Leg, ...]) -> tuple[int, ...]:
-        """Return the ids of the controllers of a junction with lights: one for the approaches of each axis."""
-        lit = [leg for leg in legs if leg.view.driving(right=True)]
+        """Return the ids of the controllers of a junction with lights: one for each approach.
+
+        So have CARLA's towns: the approaches take turns, and nobody turns left through oncoming traffic, which its
+        Traffic Manager cannot do without now and then blocking a junction for good.
+        """
         ids = []
-        for group in controls.phases(lit):
-            signals = tuple(self._light_of(lit[place]) for place in group)
-            ids.append(next(self.controller_ids))
-            self.controllers.append(Controller(ids[-1], f"{lit[group[0]].street.name}", signals))
+        for leg in legs:
+            if leg.view.driving(right=True):
+                ids.append(next(self.controller_ids))
+                self.controllers.append(Controller(ids[-1], leg.street.name, (self._light_of(leg),)))
         return tuple(ids)
 
     def _light_of(self, leg: Leg) -> int:

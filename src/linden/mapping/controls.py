@@ -1,7 +1,6 @@
 """What tells drivers at a junction what to do: signs, lights, stop lines, crosswalks; and where they stand."""
 
 from linden.mapping import roundabouts
-from linden.mapping.curves import wrapped
 from linden.mapping.document import Object, Signal
 from linden.mapping.facts import Control, Intersection
 from linden.mapping.network import Leg
@@ -107,20 +106,6 @@ def island(number: int, leg: Leg, road_m: float, outline: tuple[tuple[float, flo
 def line_before_end_m(*, crosswalk: bool) -> float:
     """Return how far before the end of its road a stop line's middle lies."""
     return CROSSWALK_TO_END_M + CROSSWALK_M + LINE_TO_CROSSWALK_M if crosswalk else LINE_TO_END_M
-
-
-def phases(legs: list[Leg]) -> list[list[int]]:
-    """Return the legs, by their place in the list, that may go together: those on one axis (within 40 degrees)."""
-    groups: list[list[int]] = []
-    for number, leg in enumerate(legs):
-        for group in groups:
-            apart = abs(wrapped(2 * (leg.pose.heading_rad - legs[group[0]].pose.heading_rad))) / 2
-            if apart < 0.7:
-                group.append(number)
-                break
-        else:
-            groups.append([number])
-    return groups
 
 
 def junction_notes(found: list[Intersection], rules: list[Control]) -> tuple[tuple[str, str], ...]:

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 
 from linden.mapping.build import Built
-from linden.mapping.controls import phases
 from linden.mapping.curves import length, moved, pose_at, seen_from
 from linden.mapping.document import RoadRecord, Signal
 
@@ -46,20 +45,14 @@ def test_crosswalk_outlines_are_closed(built_of: Any, sketch: Any) -> None:
     assert all(walk.outline[0] == walk.outline[-1] and len(walk.outline) == 5 for walk in walks)
 
 
-def test_lights_of_one_axis_share_a_controller(built_of: Any, sketch: Any) -> None:
+def test_every_approach_with_a_light_has_a_turn_of_its_own(built_of: Any, sketch: Any) -> None:
     built = built_of(sketch.crossing("signal"))
-    street_of = {signal.id: road.name for road, signal in signals_of(built)}
-    groups = [{street_of[signal] for signal in controller.signals} for controller in built.document.controllers]
-    assert groups == [{"east Street"}, {"north Street"}]
-    assert all(signal.dynamic and signal.kind == "1000001" for _, signal in signals_of(built))
+    lights = [signal for _, signal in signals_of(built)]
+    assert all(signal.dynamic and signal.kind == "1000001" for signal in lights)
+    turns = [controller.signals for controller in built.document.controllers]
+    assert [len(turn) for turn in turns] == [1, 1, 1, 1]
+    assert sorted(turn[0] for turn in turns) == sorted(signal.id for signal in lights)
     assert built.document.junctions[0].controllers == tuple(one.id for one in built.document.controllers)
-
-
-def test_phases_pair_opposite_approaches(facts_of: Any, sketch: Any) -> None:
-    from linden.mapping.network import build  # noqa: PLC0415 - read beside its only use
-
-    legs = list(build(facts_of(sketch.crossing())).junctions[0][1])
-    assert phases(legs) == [[0, 2], [1, 3]]
 
 
 def test_ways_without_a_sign_go_first(built_of: Any, sketch: Any) -> None:
