@@ -14,6 +14,7 @@ from functools import partial
 from linden.errors import ProtocolError
 from linden.handlers import registry, session
 from linden.handlers.context import Context, Frames
+from linden.server.cue import QUESTION, TICK, Cue, hear_question
 from linden.server.entrance import Entrance
 from linden.server.pace import Pace
 from linden.server.peers import Peer, RpcPeer, StreamPeer
@@ -57,6 +58,7 @@ class Server:
         self._clients: dict[RpcPeer, None] = {}  # an ordered set, as the next one is
         self._with_calls: dict[RpcPeer, None] = {}  # those whose calls wait for their turn
         self._last_ticker: RpcPeer | None = None
+        self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
         self._wake_reader, self._wake_writer = socket.socketpair()
         self._stopping = False
         self._wake_reader.settimeout(0.0)
@@ -187,6 +189,7 @@ class Server:
             peer.calls.clear()
             del self._clients[peer]
             self._with_calls.pop(peer, None)
+            self._cues.pop(peer, None)
             session.client_left(self.context, peer.number)
 
     def _subscribed(self, peer: StreamPeer, data: bytes) -> None:
@@ -231,10 +234,13 @@ class Server:
         self._with_calls.pop(peer, None)
         answers: list[bytes] = []
         unsent_bytes = 0
-        while peer.calls and len(answers) < CALLS_PER_TURN and not self._must_wait(peer, unsent_bytes):
-            answers.append(self._answer(peer))
-            unsent_bytes += len(answers[-1])
         try:
+            while peer.calls and len(answers) < CALLS_PER_TURN and not self._must_wait(peer, unsent_bytes):
+                if peer.calls[0].method in (QUESTION, TICK) and self._leads_traffic(peer):
+                    self._keep_order(peer, answers)
+                else:
+                    answers.append(self._answer(peer))
+                unsent_bytes += len(answers[-1]) if answers else 0
             if answers:
                 peer.outgoing.send(b"".join(answers))
             if not peer.calls and peer.connection.is_broken:
@@ -250,6 +256,29 @@ class Server:
             self._close(peer)
             return
         self._watch(peer)
+
+    def _leads_traffic(self, peer: RpcPeer) -> bool:
+        owners = self.context.traffic_managers.values()
+        return self._is_synchronous() and any(owner == peer.number for _, owner in owners)
+
+    def _keep_order(self, peer: RpcPeer, answers: list[bytes]) -> None:
+        """Carry out a tick, or the question before it, of a client that runs a Traffic Manager; see ``server.cue``.
+
+        Raises:
+            OSError: the client is gone.
+        """
+        if answers:
+            peer.outgoing.send(b"".join(answers))
+            answers.clear()
+        cue = self._cues.setdefault(peer, Cue())
+        if peer.calls[0].method == TICK:
+            if cue.answered_s is None and hear_question(peer, self._clock):
+                return
+            cue.settle(self._clock)
+            answers.append(self._answer(peer))
+        else:
+            peer.outgoing.send(self._answer(peer))
+            cue.answered(self._clock())
 
     def _answer(self, peer: RpcPeer) -> bytes:
         """Carry out a client's next call."""
