@@ -23,7 +23,7 @@ from linden.simulation.episode import Episode
 from linden.simulation.recorded_contacts import collisions
 from linden.values.episode import LightState
 from linden.values.space import Transform
-from linden.world.actors import ActorRecord
+from linden.world.actors import NO_BODY, ActorRecord
 from linden.world.blueprints import Kind
 
 log = logging.getLogger("linden")
@@ -182,8 +182,10 @@ class _Tape:
             if len(found):
                 yield encode.records(packet, found)
         yield encode.seconds(PacketId.PLATFORM_TIME, self._clock() - self._began_s)
-        of_vehicles = {record.id: record for record in come if record.kind is Kind.VEHICLE}
-        of_vehicles.update((i, self._known[i]) for i in self.new_physics if i in self._known)
+        of_vehicles = {record.id: record for record in come if _has_physics(record)}
+        of_vehicles.update(
+            (i, self._known[i]) for i in self.new_physics if i in self._known and _has_physics(self._known[i])
+        )
         if of_vehicles:
             control = episode.bodies.physics_control
             yield encode.physics([PhysicsRecord(i, control(record.slot)) for i, record in of_vehicles.items()])
@@ -206,6 +208,11 @@ def _added(record: ActorRecord, pose: Transform) -> ActorAdded:
         (turned.roll, turned.pitch, turned.yaw),
         record.description,
     )
+
+
+def _has_physics(record: ActorRecord) -> bool:
+    """Whether an actor is a vehicle that drives; one that is attached to somebody does not."""
+    return record.kind is Kind.VEHICLE and record.slot != NO_BODY
 
 
 def _parents(come: list[ActorRecord]) -> NDArray[np.void]:

@@ -7,8 +7,11 @@ so does this one.
 import logging
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from linden.errors import Refusal
 from linden.recording.packets import ActorAdded
+from linden.simulation.replay_moment import FARTHEST_M, within
 from linden.simulation.spawning import destroy
 from linden.values.actors import ActorDescription, AttributeValue
 from linden.values.space import Rotation, Transform, Vector3D
@@ -179,8 +182,8 @@ class Cast:
 
 def pose_of(actor: ActorAdded) -> Transform:
     """Return where an actor came into the recording: in the world, or relative to whom it is attached to."""
-    roll, pitch, yaw = actor.rotation_deg
-    x, y, z = (value * CM_TO_M for value in actor.location_cm)
+    roll, pitch, yaw = within(np.array(actor.rotation_deg), 360.0).tolist()
+    x, y, z = within(np.array(actor.location_cm) * CM_TO_M, FARTHEST_M).tolist()
     return Transform(Vector3D(x, y, z), Rotation(pitch, yaw, roll))
 
 

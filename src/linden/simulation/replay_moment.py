@@ -1,6 +1,9 @@
-"""Where everybody of a recording was at a moment between two of its frames."""
+"""Where everybody of a recording was at a moment between two of its frames.
 
-from typing import NamedTuple
+A file may say anything. What it says reaches compiled code that looks things up by place, so it is held within limits.
+"""
+
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +13,9 @@ from linden.recording.metres import from_file
 from linden.recording.packets import Frame
 
 F64 = NDArray[np.float64]
+
+FARTHEST_M = 1e7
+"""As far as physics lets a body go."""
 
 _PITCH_YAW_ROLL = [1, 2, 0]
 
@@ -31,7 +37,13 @@ def places(frame: Frame) -> Places:
     ulps = frame.packets.get(PacketId.LOCATION_ULPS)
     location_m = from_file(positions["location_cm"], None if ulps is None else ulps["ulps"])
     rotation_deg = positions["rotation_deg"][:, _PITCH_YAW_ROLL]
-    return Places(positions["id"], location_m.astype(np.float64), rotation_deg.astype(np.float64))
+    return Places(positions["id"], within(location_m, FARTHEST_M), within(rotation_deg, 360.0))
+
+
+def within(values: NDArray[np.floating[Any]], limit: float) -> F64:
+    """Return numbers held between ``-limit`` and ``limit``; what is none is 0."""
+    held: F64 = np.clip(np.nan_to_num(values.astype(np.float64), posinf=limit, neginf=-limit), -limit, limit)
+    return held
 
 
 def between(before: Places, after: Places, share: float) -> Places:

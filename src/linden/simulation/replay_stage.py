@@ -8,13 +8,19 @@ from numpy.typing import NDArray
 from linden.geometry import relative
 from linden.recording.packets import Frame, Records
 from linden.simulation.replay_cast import Cast
-from linden.simulation.replay_moment import Places
+from linden.simulation.replay_moment import Places, within
+from linden.values.enums import TrafficLightState
 from linden.values.space import Rotation, Transform, Vector3D
 from linden.world.actors import NO_BODY
 from linden.world.blueprints import Kind
 
 if TYPE_CHECKING:
     from linden.simulation.simulation import Simulation
+
+_EMBODIED = (Kind.VEHICLE, Kind.WALKER)
+_FASTEST_MPS, _FASTEST_DEGPS, _FASTEST_WALKER_MPS = 1e3, 6e3, 50.0
+"""As fast as physics lets a client make a body, turn it, and let a walker walk."""
+_LONGEST_COLOUR_S = 1e9
 
 Indices = NDArray[np.int64]
 
@@ -70,21 +76,25 @@ class Stage:
     def _drive(self, vehicles: Records) -> None:
         found = self._players("vehicles", vehicles["id"], Kind.VEHICLE)
         bodies, slots, driven = self._simulation.episode.bodies, found.slots, vehicles[found.rows]
-        bodies.throttle[slots], bodies.steer[slots] = driven["throttle"], driven["steer"]
-        bodies.brake[slots], bodies.hand_brake[slots] = driven["brake"], driven["hand_brake"] != 0
-        bodies.gear[slots] = bodies.gear_command[slots] = driven["gear"]
+        for pedal, column in (("throttle", bodies.throttle), ("steer", bodies.steer), ("brake", bodies.brake)):
+            column[slots] = within(driven[pedal], 1.0)
+        bodies.hand_brake[slots] = driven["hand_brake"] != 0
+        bodies.gear[slots] = bodies.gear_command[slots] = np.clip(driven["gear"], -1, bodies.specs["gear_count"][slots])
         bodies.reverse[slots], bodies.manual_gear_shift[slots] = driven["gear"] < 0, False
 
     def _walk(self, walkers: Records) -> None:
         found = self._players("walkers", walkers["id"], Kind.WALKER)
-        self._simulation.episode.bodies.walker_speed[found.slots] = walkers["speed_mps"][found.rows]
+        self._simulation.episode.bodies.walker_speed[found.slots] = np.abs(
+            within(walkers["speed_mps"][found.rows], _FASTEST_WALKER_MPS)
+        )
 
     def _move(self, kinematics: Records) -> None:
         """Let everybody have the velocity that was recorded, for sensors to see; CARLA leaves it at 0."""
         found = self._players("moving", kinematics["id"], Kind.VEHICLE, Kind.WALKER)
         bodies = self._simulation.episode.bodies
-        bodies.velocity[found.slots] = kinematics["velocity_mps"][found.rows]
-        bodies.angular_velocity[found.slots] = np.radians(kinematics["angular_velocity_degps"][found.rows])
+        bodies.velocity[found.slots] = within(kinematics["velocity_mps"][found.rows], _FASTEST_MPS)
+        turning_degps = within(kinematics["angular_velocity_degps"][found.rows], _FASTEST_DEGPS)
+        bodies.angular_velocity[found.slots] = np.radians(turning_degps)
 
     def _light(self, states: Records) -> None:
         episode = self._simulation.episode
@@ -93,7 +103,9 @@ class Stage:
             return
         shown = states[found.rows]
         lights = np.array([episode.light_ids.index(actor_id) for actor_id in found.actor_ids.tolist()])
-        colour, elapsed_s = shown["state"].astype(np.uint8), shown["elapsed_s"].astype(np.float64)
+        colour = np.where(shown["state"] < 0, TrafficLightState.UNKNOWN, shown["state"]).astype(np.uint8)
+        colour = np.minimum(colour, np.uint8(TrafficLightState.UNKNOWN))
+        elapsed_s = np.abs(within(shown["elapsed_s"], _LONGEST_COLOUR_S))
         episode.traffic.restore(lights, colour, elapsed_s, shown["frozen"] != 0)
 
     def _players(self, name: str, ids: NDArray[np.uint32], *kinds: Kind) -> _Found:
@@ -108,7 +120,9 @@ class Stage:
         rows, found = [], []
         for row, recorded_id in enumerate(ids.tolist()):
             record = actors.find(self._cast.of.get(recorded_id, 0))
-            if record is None or (kinds and (record.kind not in kinds)):
+            if record is None or (kinds and record.kind not in kinds):
+                continue
+            if record.kind in _EMBODIED and kinds and record.slot == NO_BODY:  # one that is attached to somebody
                 continue
             rows.append(row)
             found.append((record.id, record.slot))

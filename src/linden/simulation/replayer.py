@@ -201,6 +201,9 @@ def _places_of(recording: Recording) -> list[FramePlace]:
         found.extend(recording.places())
     except CutShortError as error:
         log.warning("%s", error)
+    elapsed_s = np.array([place.elapsed_s for place in found])
+    if not (np.isfinite(elapsed_s).all() and (np.diff(elapsed_s) >= 0.0).all()):
+        raise RecordingError(f"{recording.path}: damaged recording: the times of its frames do not go forward", 0)
     if not found:
         raise RecordingError(f"{recording.path} holds no whole frame, so there is nothing to replay", 0)
     return found

@@ -1,9 +1,12 @@
 import struct
 from collections import Counter
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from fakes import recordings as made
 from linden.recording.errors import CutShortError, NoRecordingError, RecordingError
@@ -164,3 +167,20 @@ def test_frames_are_found_without_reading_them(tmp_path: Path) -> None:
         assert Counter(place.end - place.start for place in found) == Counter(len(part) for part in parts[1:])
         assert recording.frame(found[2]).removed["id"].tolist() == [9]
         assert recording.frame(found[0]).added[0].id == 9
+
+
+@given(st.lists(st.tuples(st.integers(0, 10_000), st.integers(0, 255)), max_size=8), st.integers(0, 10_000))
+def test_whatever_stands_in_a_file_is_read_or_refused(changes: list[tuple[int, int]], length: int) -> None:
+    content = bytearray(b"".join(whole()))
+    for at, value in changes:
+        content[at % len(content)] = value
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "any.log"
+        path.write_bytes(content[: max(1, length % (2 * len(content)))])
+        said = ""
+        try:
+            with Recording(path) as recording:
+                list(recording.frames())
+        except RecordingError as error:
+            said = str(error)
+        assert not said or str(path) in said or "at byte" in said

@@ -341,3 +341,43 @@ def test_a_load_of_a_map_ends_the_replay(recorded: Recorded) -> None:
     simulation.load(recorded.map, reset_settings=False)
     simulation.step(STEP_S)
     assert recorded.drive.hero.id not in simulation.episode.actors
+
+
+def test_no_number_of_a_file_reaches_the_physics_unheld(world_map: LoadedMap, tmp_path: Path) -> None:
+    nan, vast = float("nan"), 1e38
+    cast = made.added(
+        made.actor(50, HERO, 1, (nan, vast, -vast), (nan, vast, 0)),
+        made.actor(51, "walker.pedestrian.0001", 2),
+        made.actor(52, HERO, 1, (nan, 0, 0)),  # attached: it has no body of its own
+        made.actor(53, "static.prop.barrel", 0, (vast, nan, 0)),
+    )
+    wild = (
+        made.several(4, "II", [(52, 50)]),
+        made.positions((50, nan, vast, 0, nan, vast, 0), (51, vast, vast, vast, 0, 0, vast), (52, *[nan] * 6)),
+        made.several(8, "IfffBi", [(i, nan, vast, -vast, 9, 99) for i in (50, 52)]),
+        made.several(9, "If", [(51, nan)]),
+        made.several(12, "I6f", [(50, *[vast] * 6), (51, *[nan] * 6), (52, *[vast] * 6)]),
+    )
+    path = made.write(
+        tmp_path,
+        made.header(),
+        made.frame(1, 0.0, cast, *wild, duration_s=0.1),
+        made.frame(2, 0.1, *wild[1:], duration_s=-1.0),
+    )
+    simulation = Simulation(world_map)
+    start(simulation, path)
+    for _ in range(6):
+        simulation.step(STEP_S)
+        bodies = simulation.episode.bodies
+        for column in (bodies.position, bodies.rotation, bodies.velocity, bodies.throttle, bodies.walker_speed):
+            assert np.isfinite(column).all()
+        for field in ("location", "rotation", "velocity"):
+            assert np.isfinite(simulation.episode.actors.rows[field]).all()
+    assert bodies.gear.max() <= bodies.specs["gear_count"].max()
+
+
+@pytest.mark.parametrize("elapsed_s", [float("nan"), -1.0])
+def test_times_that_do_not_go_forward_are_refused(world_map: LoadedMap, tmp_path: Path, elapsed_s: float) -> None:
+    path = made.write(tmp_path, made.header(), made.frame(1, 0.0), made.frame(2, elapsed_s))
+    with pytest.raises(RecordingError, match="do not go forward"):
+        start(Simulation(world_map), path)
