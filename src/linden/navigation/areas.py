@@ -1,4 +1,4 @@
-"""What of a map is walkable, as triangles with a kind: lanes by their type, crosswalks with ramps up to the pavements."""
+"""What of a map is walkable, as triangles with a kind: lanes by their type, crosswalks with ramps to the pavements."""
 
 import math
 from typing import NamedTuple
@@ -20,7 +20,10 @@ U8 = NDArray[np.uint8]
 _BETWEEN = LaneType.NONE | LaneType.BORDER | LaneType.MEDIAN | LaneType.RESTRICTED
 LONGEST_RAMP_M = 4.0
 """How far from a crosswalk's end a pavement may begin and still be led to: the width of a kerb and a broad verge."""
-_PROBE_M = 0.1
+_PROBES_M = np.arange(-0.5, LONGEST_RAMP_M, 0.1)
+_NEARLY = 0.8  # of half a crosswalk's width: where beside the middle a pavement is looked for
+_LANDING_M = 1.0  # how far onto the pavement a ramp goes on; what is pavement stays pavement
+_OVERLAP_M = 3.0  # how far back a ramp begins, for a crosswalk's end may be slanted
 
 
 class Surfaces(NamedTuple):
@@ -101,25 +104,35 @@ def _ramps(outline_m: F64, ground: Ground, lane_of_triangle: I32, lane_type: NDA
     z_m = float(outline_m[:, 2].mean())
     best: tuple[int, float, list[F64]] = (0, 0.0, [])
     for along, across in ((0, 1), (1, 0)):
+        side = half_m[across] * axes[across]
         ramps = []
         for way in (-1.0, 1.0):
             end = centre + way * half_m[along] * axes[along]
-            probes_m = np.arange(0.0, LONGEST_RAMP_M, _PROBE_M)
-            points = end + way * probes_m[:, None] * axes[along]
-            _, triangle = ground.surfaces_under(np.column_stack([points, np.full(len(points), z_m)]))
-            on_pavement = (triangle >= 0) & (lane_type[lane_of_triangle[triangle]] & int(LaneType.SIDEWALK) != 0)
-            if on_pavement.any():
-                far = end + way * (float(probes_m[np.argmax(on_pavement)]) + 1.0) * axes[along]
-                side = half_m[across] * axes[across]
-                ramp = np.array([end - side, end + side, far + side, far - side])
+            starts = np.array([end - _NEARLY * side, end, end + _NEARLY * side])
+            points = starts[:, None] + way * _PROBES_M[:, None] * axes[along]
+            reached = _on_pavement(points.reshape(-1, 2), z_m, ground, lane_of_triangle, lane_type).reshape(3, -1)
+            if reached.any():
+                far_m = float(_PROBES_M[reached.argmax(axis=1)][reached.any(axis=1)].max()) + _LANDING_M
+                begin, far = end - way * min(_OVERLAP_M, half_m[along]) * axes[along], end + way * far_m * axes[along]
+                ramp = np.array([begin - side, begin + side, far + side, far - side])
                 ramps.append(np.column_stack([ramp, np.full(4, z_m)]))
         if (len(ramps), half_m[along]) > best[:2]:
             best = (len(ramps), float(half_m[along]), ramps)
     return best[2]
 
 
+def _on_pavement(
+    points_m: F64, z_m: float, ground: Ground, lane_of_triangle: I32, lane_type: NDArray[np.uint32]
+) -> NDArray[np.bool_]:
+    """Return which points (N, 2) lie on a pavement, ``z_m`` being about its height."""
+    _, triangle = ground.surfaces_under(np.column_stack([points_m, np.full(len(points_m), z_m)]))
+    on_pavement: NDArray[np.bool_] = triangle >= 0
+    on_pavement[on_pavement] = lane_type[lane_of_triangle[triangle[on_pavement]]] & int(LaneType.SIDEWALK) != 0
+    return on_pavement
+
+
 def _rectangle(points_m: F64) -> tuple[F64, F64, F64]:
-    """Return centre (2,), axes (2, 2) and half sizes (2,) of the smallest rectangle one of whose sides is the shape's."""
+    """Return centre (2,), axes (2, 2) and half sizes (2,) of the smallest rectangle along one of the shape's sides."""
     best_area, best = math.inf, (points_m.mean(axis=0), np.eye(2), np.zeros(2))
     for side in np.roll(points_m, -1, axis=0) - points_m:
         length_m = float(np.hypot(*side))

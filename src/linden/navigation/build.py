@@ -90,13 +90,22 @@ def _painted(surfaces: Surfaces, items: I32, obstacles: Obstacles, frame: F64) -
     lanes = items[surfaces.kinds[items] != CROSSWALK]
     crossings = items[surfaces.kinds[items] == CROSSWALK]
     raster.paint(surfaces.corners_m, surfaces.kinds, lanes, frame, kind, z_m)
-    raster.close_gaps(kind, z_m)
-    raster.keep_clear(kind, z_m)
+    levels = _used(kind)
+    raster.close_gaps(kind[:levels], z_m[:levels])
+    raster.keep_clear(kind[:levels], z_m[:levels])
     raster.paint(surfaces.corners_m, surfaces.kinds, crossings, frame, kind, z_m)
+    levels = _used(kind)
+    kind, z_m = kind[:levels], z_m[:levels]
     raster.block(*obstacles, frame, kind, z_m)
-    levels = raster.untangle(kind, z_m)
+    if levels > 1:
+        raster.untangle(kind, z_m)
     inside = slice(_MARGIN, _MARGIN + CELLS)
-    return kind[:levels, inside, inside], z_m[:levels, inside, inside]
+    return kind[:, inside, inside], z_m[:, inside, inside]
+
+
+def _used(kind: U8) -> int:
+    """Return how many levels are in use; the lower ones fill first."""
+    return max(1, int((kind != VOID).any(axis=(1, 2)).sum()))
 
 
 def _polygons(kind: U8, z_m: F64) -> Iterator[tuple[Area, list[Corner], list[float]]]:

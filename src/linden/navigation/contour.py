@@ -4,6 +4,7 @@ After Recast's contours: a line between two patches is simplified once, from one
 shared stays shared and a mesh of the faces has no cracks. Corners are whole numbers of cells; x to the right, y down.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -71,7 +72,7 @@ def _patches(framed: U8) -> I32:  # pragma: no cover - compiled
     found = 0
     for row in range(rows):
         for column in range(columns):
-            if number[row, column] != 0:
+            if number[row, column] != 0 or framed[row, column] in (0, OUTSIDE):
                 continue
             found += 1
             number[row, column] = found
@@ -122,6 +123,13 @@ def _trace(framed: U8) -> tuple[I32, I32]:  # pragma: no cover - compiled
     other_x, other_y = (1, 0, 0, 1), (1, 1, 0, 0)
     for first_y in range(rows + 1):
         for first_x in range(columns + 1):
+            corner = framed[first_y, first_x]
+            if (
+                framed[first_y, first_x + 1] == corner
+                and framed[first_y + 1, first_x] == corner
+                and framed[first_y + 1, first_x + 1] == corner
+            ):
+                continue
             for first in range(4):
                 own = framed[first_y + own_y[first], first_x + own_x[first]]
                 other = framed[first_y + other_y[first], first_x + other_x[first]]
@@ -156,7 +164,7 @@ def _simplified(
     points = np.column_stack([turned * cell_m, z_m[turned[:, 1], turned[:, 0]]])
     points = np.concatenate([points, points[:1]])
     keep = np.zeros(len(line) + 1, np.bool_)
-    for first, last in zip(ends[:-1], ends[1:], strict=True):
+    for first, last in pairwise(ends):
         _thin(points[first : last + 1], tolerance_m, tolerance_z_m, keep[first : last + 1])
     return [(x, y) for x, y in turned[keep[:-1]].tolist()]
 

@@ -1,6 +1,6 @@
 """The file of a walking mesh: a tiled set of Detour, as CARLA's client loads it (``carla/nav/Navigation.cpp``).
 
-Layouts: Recast Navigation, ``DetourNavMesh.h``, mesh version 7, references of 32 bits; ``NavMeshSetHeader`` of its demo.
+Layouts: Recast Navigation, ``DetourNavMesh.h``, mesh version 7, references of 32 bits, and its demo's tile set.
 Detour's x is CARLA's x, its y (up) is z, and its z is y.
 """
 
@@ -84,7 +84,8 @@ def _tile(tile: Tile) -> bytes:
     links = int(corner_counts.sum()) + 2 * _sides_on_border(tile)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     header = TILE_HEADER.pack(
-        TILE_MAGIC, TILE_VERSION, tile.column, tile.row, 0, 0, count, len(vertices), links, count, 0, len(fan), 0, 0, count,
+        TILE_MAGIC, TILE_VERSION, tile.column, tile.row, 0, 0,
+        count, len(vertices), links, count, 0, len(fan), 0, 0, count,
         _HEIGHT_M, _RADIUS_M, _CLIMB_M, *map(float, low), *map(float, high), 1.0,
     )  # fmt: skip
     body = (vertices, polygons, b"\0" * LINK_BYTES * links, details, fan)

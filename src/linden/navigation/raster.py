@@ -58,7 +58,7 @@ def paint(corners_m: F64, kinds: U8, items: I32, frame: F64, kind: U8, z_m: F64)
 @kernel
 def _lay(kind: U8, z_m: F64, row: int, column: int, new: int, new_z_m: float) -> None:  # pragma: no cover - compiled
     """Lay a surface onto the floor it belongs to, or make one of it; a crosswalk is paint and leaves the height."""
-    for level in range(LEVELS):
+    for level in range(len(kind)):
         old = kind[level, row, column]
         if old == VOID:
             kind[level, row, column], z_m[level, row, column] = new, new_z_m
@@ -77,7 +77,7 @@ def _lay(kind: U8, z_m: F64, row: int, column: int, new: int, new_z_m: float) ->
 @kernel
 def _floor_beside(kind: U8, z_m: F64, row: int, column: int, from_z_m: float) -> int:  # pragma: no cover - compiled
     """Return the level on which a cell can be stepped onto from a height, -1 where there is none."""
-    for level in range(LEVELS):
+    for level in range(len(kind)):
         if kind[level, row, column] != VOID and abs(z_m[level, row, column] - from_z_m) <= CLIMB_M:
             return level
     return -1
@@ -89,7 +89,7 @@ def close_gaps(kind: U8, z_m: F64) -> None:  # pragma: no cover - compiled
     before = kind.copy()
     for row in range(1, kind.shape[1] - 1):
         for column in range(1, kind.shape[2] - 1):
-            for level in range(LEVELS):
+            for level in range(len(kind)):
                 if before[level, row, column] != VOID:
                     continue
                 for down, right in ((0, 1), (1, 0)):
@@ -97,7 +97,7 @@ def close_gaps(kind: U8, z_m: F64) -> None:  # pragma: no cover - compiled
                     other = before[level, row + down, column + right]
                     one_z = z_m[level, row - down, column - right]
                     other_z = z_m[level, row + down, column + right]
-                    if one != VOID and other != VOID and abs(one_z - other_z) <= CLIMB_M:
+                    if VOID not in (one, other) and abs(one_z - other_z) <= CLIMB_M:
                         kind[level, row, column] = min(one, other)
                         z_m[level, row, column] = 0.5 * (one_z + other_z)
 
@@ -111,7 +111,7 @@ def keep_clear(kind: U8, z_m: F64) -> None:  # pragma: no cover - compiled
     before = kind.copy()
     for row in range(1, kind.shape[1] - 1):
         for column in range(1, kind.shape[2] - 1):
-            for level in range(LEVELS):
+            for level in range(len(kind)):
                 own = before[level, row, column]
                 if own == VOID:
                     continue
@@ -145,57 +145,68 @@ def block(
                 y = frame[1] + (row + 0.5) * cell - centre_m[n, 1]
                 if abs(cosine * x + sine * y) > half_m[n, 0] or abs(cosine * y - sine * x) > half_m[n, 1]:
                     continue
-                for level in range(LEVELS):
+                for level in range(len(kind)):
                     over_feet = centre_m[n, 2] - z_m[level, row, column]
                     if half_m[n, 2] + over_feet > 0.2 and over_feet - half_m[n, 2] < HEADROOM_M:
                         kind[level, row, column] = VOID
 
 
 @kernel
-def untangle(kind: U8, z_m: F64) -> int:  # pragma: no cover - compiled
-    """Sort the floors so that each level holds whole floors, unbroken; returns how many levels are in use.
-
-    A floor is what can be reached from cell to cell. Larger numbers of levels than LEVELS are dropped with their cells.
-    """
+def _flood(
+    kind: U8, z_m: F64, seen: NDArray[np.bool_], stack: I32, first: tuple[int, int, int]
+) -> int:  # pragma: no cover - compiled
+    """Write into ``stack`` all cells (level, row, column) that can be reached from one; returns how many they are."""
     rows, columns = kind.shape[1], kind.shape[2]
-    if not (kind[1] != VOID).any():
-        return 1
+    stack[0, 0], stack[0, 1], stack[0, 2] = first
+    seen[first] = True
+    count, done = 1, 0
+    while done < count:
+        level, row, column = stack[done, 0], stack[done, 1], stack[done, 2]
+        done += 1
+        for step in range(4):
+            r, c = row + (0, 1, 0, -1)[step], column + (1, 0, -1, 0)[step]
+            if r < 0 or r >= rows or c < 0 or c >= columns:
+                continue
+            beside = _floor_beside(kind, z_m, r, c, z_m[level, row, column])
+            if beside >= 0 and not seen[beside, r, c]:
+                seen[beside, r, c] = True
+                stack[count, 0], stack[count, 1], stack[count, 2] = beside, r, c
+                count += 1
+    return count
+
+
+@kernel
+def _free_level(kind: U8, stack: I32, count: int) -> int:  # pragma: no cover - compiled
+    """Return the lowest level on which the first ``count`` cells of ``stack`` are all free, -1 where there is none."""
+    for level in range(len(kind)):
+        fits = True
+        for n in range(count):
+            fits = fits and kind[level, stack[n, 1], stack[n, 2]] == VOID
+        if fits:
+            return level
+    return -1
+
+
+@kernel
+def untangle(kind: U8, z_m: F64) -> None:  # pragma: no cover - compiled
+    """Sort the floors so that each level holds whole ones: a floor is what can be reached from cell to cell.
+
+    A floor for which no level is left is dropped.
+    """
+    levels, rows, columns = kind.shape
     old_kind, old_z = kind.copy(), z_m.copy()
     kind[:] = VOID
-    taken = np.zeros((LEVELS, rows, columns), np.bool_)
-    seen = np.zeros((LEVELS, rows, columns), np.bool_)
-    stack = np.empty((LEVELS * rows * columns, 3), np.int32)
-    used = 1
-    for first in range(LEVELS * rows * columns):
-        level, row, column = first // (rows * columns), first // columns % rows, first % columns
-        if old_kind[level, row, column] == VOID or seen[level, row, column]:
+    seen = np.zeros((levels, rows, columns), np.bool_)
+    stack = np.empty((levels * rows * columns, 3), np.int32)
+    for first in range(levels * rows * columns):
+        place = (first // (rows * columns), first // columns % rows, first % columns)
+        if old_kind[place] == VOID or seen[place]:
             continue
-        stack[0, 0], stack[0, 1], stack[0, 2] = level, row, column
-        seen[level, row, column] = True
-        count, done = 1, 0
-        while done < count:
-            k, r, c = stack[done, 0], stack[done, 1], stack[done, 2]
-            done += 1
-            for step in range(4):
-                r2, c2 = r + (0, 1, 0, -1)[step], c + (1, 0, -1, 0)[step]
-                if r2 < 0 or r2 >= rows or c2 < 0 or c2 >= columns:
-                    continue
-                k2 = _floor_beside(old_kind, old_z, r2, c2, old_z[k, r, c])
-                if k2 >= 0 and not seen[k2, r2, c2]:
-                    seen[k2, r2, c2] = True
-                    stack[count, 0], stack[count, 1], stack[count, 2] = k2, r2, c2
-                    count += 1
-        for target in range(LEVELS):
-            fits = True
-            for n in range(count):
-                if taken[target, stack[n, 1], stack[n, 2]]:
-                    fits = False
-                    break
-            if fits:
-                for n in range(count):
-                    k, r, c = stack[n, 0], stack[n, 1], stack[n, 2]
-                    taken[target, r, c] = True
-                    kind[target, r, c], z_m[target, r, c] = old_kind[k, r, c], old_z[k, r, c]
-                used = max(used, target + 1)
-                break
-    return used
+        count = _flood(old_kind, old_z, seen, stack, place)
+        target = _free_level(kind, stack, count)
+        if target < 0:
+            continue
+        for n in range(count):
+            level, row, column = stack[n, 0], stack[n, 1], stack[n, 2]
+            kind[target, row, column] = old_kind[level, row, column]
+            z_m[target, row, column] = old_z[level, row, column]

@@ -102,9 +102,9 @@ def _is_empty(loop: Loop, a: Corner, b: Corner, c: Corner) -> bool:
     low_x, high_x = min(a[0], b[0], c[0]), max(a[0], b[0], c[0])
     low_y, high_y = min(a[1], b[1], c[1]), max(a[1], b[1], c[1])
     for p in loop:
-        if low_x <= p[0] <= high_x and low_y <= p[1] <= high_y and p not in (a, b, c):
-            if _turn(a, b, p) <= 0 and _turn(b, c, p) <= 0 and _turn(c, a, p) <= 0:
-                return False
+        near = low_x <= p[0] <= high_x and low_y <= p[1] <= high_y and p not in (a, b, c)
+        if near and _turn(a, b, p) <= 0 and _turn(b, c, p) <= 0 and _turn(c, a, p) <= 0:
+            return False
     return True
 
 
