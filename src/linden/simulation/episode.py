@@ -20,7 +20,7 @@ from linden.simulation.walkers import Walkers
 from linden.traffic.lights import Traffic
 from linden.values.actors import ActorDescription
 from linden.values.episode import WeatherParameters
-from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, VEHICLE_ROW, WALKER_ROW
+from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, WALKER_ROW
 from linden.values.space import BoundingBox, Transform
 from linden.world.actors import NO_BODY, ActorRecord, ActorRefusal, ActorTable
 from linden.world.blueprints import DOT, Kind
@@ -248,8 +248,7 @@ class Episode:
             self._row_bytes, self._vehicle_rows, slots, bodies.throttle, bodies.steer, bodies.brake,
             bodies.hand_brake, bodies.reverse, bodies.manual_gear_shift, bodies.gear,
         )  # fmt: skip
-        vehicles = self.actors.rows.view(VEHICLE_ROW)
-        vehicles["failure_state"][self._vehicle_rows] = bodies.failure[slots]
+        self._row_bytes[self._vehicle_rows, rows.FAILURE_STATE] = bodies.failure[slots]
         rows.limits_under(
             self.map.ground, self.map.lane_of_triangle, self._limit_of_lane_kmh, bodies.position, slots,
             self._limits_kmh,

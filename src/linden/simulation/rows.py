@@ -23,6 +23,7 @@ def _offset(field: str) -> int:
 
 _THROTTLE, _STEER, _BRAKE = _offset("throttle"), _offset("steer"), _offset("brake")
 _HAND_BRAKE, _REVERSE, _MANUAL = _offset("hand_brake"), _offset("reverse"), _offset("manual_gear_shift")
+FAILURE_STATE = _offset("failure_state")
 _GEAR, _SPEED_LIMIT = _offset("gear"), _offset("speed_limit")
 _LIGHT_STATE, _HAS_LIGHT, _LIGHT_ID = (
     _offset("traffic_light_state"),
