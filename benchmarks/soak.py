@@ -39,6 +39,7 @@ ROWS: dict[str, tuple[int, Callable[[Target, int, Done], str]]] = {
     "never reads, synchronous": (3, rows.deaf_synchronous),
     "slow-loris clients at once": (500, rows.slow_loris),
     "reloads": (2000, worlds.reloads),
+    "reloads by the official client": (200, worlds.official_reloads),
     TOWNS: (1, worlds.towns),
     "sensors made, heard, destroyed": (3000, worlds.sensor_cycles),
     "vehicles one by one": (10_000, worlds.one_by_one),

@@ -1,20 +1,44 @@
 """More rows of soak.py: those that load, spawn and destroy, and those that send what no client means."""
 
+import contextlib
 import random
 import time
 
 import carla
-from soak_rows import Done, Rude, Target, official, request, settle
+from soak_rows import BEGIN, Done, Rude, Target, official, program, request, settle, subscriber
 
 OPENING = b"\x94\x00\x01\xa7version\x92\x91\xc2"  # a request, up to where its argument begins
 
 
 def reloads(target: Target, count: int, done: Done) -> str:
-    client, _ = official(target)
-    for _ in range(count):
-        client.reload_world(reset_settings=False)
-        done()
-    return ""
+    """Load again and again while a car drives and somebody listens, who reads all that comes."""
+    with Rude(target.port) as client, subscriber(target, 1) as listener:
+        listener.socket.setblocking(False)
+        points = client.call("get_map_info")[1]
+        for number in range(count):
+            client.call("load_new_episode", "", False, 0xFFFF)
+            client.call("spawn_actor", [0, "vehicle.tesla.model3", []], points[number % len(points)])
+            client.call("tick_cue")
+            with contextlib.suppress(BlockingIOError):
+                while listener.socket.recv(1 << 20):
+                    pass
+            done()
+    return "each with a car and a tick"
+
+
+RELOADING = BEGIN + "while True: client.reload_world(False); print(world.tick(), flush=True)\n"
+
+
+def official_reloads(target: Target, count: int, done: Done) -> str:
+    """The client drops its stream at every reload and, once in a thousand or so, ends itself over it."""
+    made = ended = 0
+    while made < count:
+        with program(target, RELOADING) as client:
+            while made < count and client.stdout.readline():
+                made += 1
+                done()
+            ended += made < count
+    return f"the client ended itself {ended} times"
 
 
 def towns(target: Target, count: int, done: Done) -> str:
