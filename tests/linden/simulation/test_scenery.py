@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from linden.simulation import Simulation
 from linden.scene.objects import Kind
 from linden.scene.signs import POST_HALF_WIDTH_M, POST_HEIGHT_M
+from linden.simulation import Simulation
 from linden.simulation.scenery import scenery_of
 from linden.values.enums import SemanticTag, TrafficLightState
 from linden.world.map_facts import derive
