@@ -31,6 +31,7 @@ bench:  ## the figures of benchmarks/README.md, anew
 
 docs:  ## the generated pages
 	@scripts/setup dev
+	$(BIN)/python scripts/observe_client.py
 	$(BIN)/python scripts/make_supported.py
 
 clean:

@@ -17,7 +17,7 @@ from every_method.stage import Stage
 from every_method.wiretap import wiretap
 
 PROCESSES = (
-    "enums geometry vehicle_values settings map world actors vehicles walkers lights commands traffic_manager",
+    "enums geometry vehicle_values settings map world lights actors walkers vehicles commands traffic_manager",
     "sensors cameras",
     "client",
 )
@@ -44,7 +44,8 @@ def _defect(expected: Defect, error: Exception | None) -> Outcome:
     """Say whether the client fails as it is known to: a defect that has gone belongs into the table no longer."""
     if expected.raises not in {kind.__name__ for kind in type(error).__mro__}:
         return Outcome(Kind.WRONG, (), f"{type(error).__name__} ({error}) instead of {expected.raises}")
-    return Outcome(Kind.DEFECT, (), f"{expected.raises}: {expected.because}")
+    told = (str(error).splitlines() or [""])[0].strip()
+    return Outcome(Kind.DEFECT, (), f"{type(error).__name__}: {told}; {expected.because}")
 
 
 def _masked(sentence: str) -> str:

@@ -11,7 +11,8 @@ import carla
 
 from every_method.wiretap import RemoteCall, Wiretap
 
-TIMEOUT_S = 20.0
+TIMEOUT_S = 60.0
+"""A machine that does much else takes its time over a new world."""
 EVENT_LIMIT_TICKS = 40
 
 
@@ -22,6 +23,7 @@ class Stage:
         self.tap = tap
         self._hidden: list[tuple[int, int]] = []
         self._forgotten: frozenset[str] = frozenset()
+        self._background: set[str] = set()
         self._made: dict[str, Any] = {}
         self.client = carla.Client("127.0.0.1", tap.port())
         self.client.set_timeout(TIMEOUT_S)
@@ -53,6 +55,10 @@ class Stage:
         """Leave functions out of this member's record: what a thread of the client calls when it likes."""
         self._forgotten = frozenset(functions)
 
+    def forget_from_now_on(self, *functions: str) -> None:
+        """Leave functions out of every later member's record, for the same reason."""
+        self._background.update(functions)
+
     def recorded(self, begin: int, end: int) -> tuple[list[RemoteCall], list[tuple[RemoteCall, str]]]:
         """Return the calls, and the refused ones with their sentences, that were not aside."""
         calls: list[RemoteCall] = []
@@ -61,7 +67,7 @@ class Stage:
             if not any(first <= at < last for first, last in self._hidden):
                 calls += self.tap.calls(at, at + 1)
                 refusals += self.tap.refusals(at, at + 1)
-        calls = [call for call in calls if call.function not in self._forgotten]
+        calls = [call for call in calls if call.function not in self._forgotten | self._background]
         self._forgotten = frozenset()
         return calls, refusals
 

@@ -6,14 +6,14 @@ from typing import Any
 import carla
 
 from every_method.call import Call
-from every_method.stage import Stage
+from every_method.stage import TIMEOUT_S, Stage
 from opendrive_texts import street_through_junction
 
 
 def another(stage: Stage) -> carla.Client:
     """A client of its own, on the same wiretap."""
     client = carla.Client("127.0.0.1", stage.tap.port())
-    client.set_timeout(20.0)
+    client.set_timeout(TIMEOUT_S)
     return client
 
 

@@ -97,12 +97,14 @@ def an_object(stage: Stage) -> Any:
 
 
 def put_there(stage: Stage, *, trying: bool) -> bool:
-    """Whether an actor is spawned."""
+    """Whether an actor is spawned, and another one attached to it."""
     with stage.aside():
-        blueprint = stage.world.get_blueprint_library().find("vehicle.audi.a2")
+        library = stage.world.get_blueprint_library()
         pose = stage.map.get_spawn_points()[20 if trying else 22]
-    spawned = stage.world.try_spawn_actor(blueprint, pose) if trying else stage.world.spawn_actor(blueprint, pose)
-    return spawned is not None and spawned.id > 0
+    spawn = stage.world.try_spawn_actor if trying else stage.world.spawn_actor
+    car = spawn(library.find("vehicle.audi.a2"), pose)
+    sensor = spawn(library.find("sensor.other.imu"), carla.Transform(), car)
+    return sensor is not None and sensor.parent.id == car.id
 
 
 def textures(stage: Stage) -> tuple[list[str], carla.TextureColor]:
