@@ -29,7 +29,7 @@ from linden.world.maps import HOME_MAP, MapLibrary
 from servers import RunningServer
 
 SESSION = str(Path(__file__).parents[1] / "fakes" / "session.py")
-EXAMPLES = 300
+EXAMPLES = 200
 LONGEST_MESSAGE = 20_000
 """Longer ones are texts of maps and the like, of which nearly every byte is as good as any other."""
 
@@ -84,6 +84,7 @@ def hurt(chance: random.Random, message: bytearray, others: list[bytes]) -> byte
     return bytes(message)
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("overheard", "context")
 @settings(
     max_examples=EXAMPLES, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture]

@@ -1,0 +1,148 @@
+"""Claims about clients that are killed, hang or come in crowds: what they leave behind is no more than CARLA leaves.
+
+The long versions, with figures, are the rows of ``benchmarks/soak.py``.
+"""
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import carla
+import psutil
+import pytest
+
+from fakes.raw_client import RawClient, RawSubscriber
+from servers import RunningServer
+
+BEGIN = """
+import carla, sys
+client = carla.Client("127.0.0.1", int(sys.argv[1]))
+client.set_timeout(20.0)
+world = client.get_world()
+points = world.get_map().get_spawn_points()
+library = world.get_blueprint_library()
+car = world.spawn_actor(library.find("vehicle.tesla.model3"), points[0])
+"""
+LISTENING = (
+    BEGIN
+    + """
+sensors = [world.spawn_actor(library.find("sensor.other." + kind), carla.Transform(), attach_to=car)
+           for kind in ("imu", "gnss", "collision")]
+for sensor in sensors:
+    sensor.listen(lambda event: None)
+while True: print(world.tick(), flush=True)
+"""
+)
+TRAFFIC = (
+    BEGIN
+    + """
+manager = client.get_trafficmanager(0)
+manager.set_synchronous_mode(True)
+car.set_autopilot(True, manager.get_port())
+print(manager.get_port(), flush=True)
+while True: print(world.tick(), flush=True)
+"""
+)
+
+
+@contextmanager
+def program(server: RunningServer, text: str) -> Iterator[subprocess.Popen[str]]:
+    with subprocess.Popen([sys.executable, "-c", text, str(server.port)], stdout=subprocess.PIPE, text=True) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def numbers(process: subprocess.Popen[str], count: int) -> list[int]:
+    assert process.stdout is not None
+    return [int(process.stdout.readline()) for _ in range(count)]
+
+
+@pytest.fixture
+def raw(server: RunningServer, world: carla.World) -> Iterator[RawClient]:
+    """A client that speaks bytes, in the fresh episode of ``world``."""
+    with RawClient(server.port) as client:
+        yield client
+
+
+def test_what_a_killed_client_spawned_stays_and_others_can_clear_it_away(
+    server: RunningServer, client: carla.Client, world: carla.World
+) -> None:
+    with program(server, LISTENING) as victim:
+        ticks = numbers(victim, 20)
+        victim.kill()
+        victim.wait()
+    assert world.tick() > ticks[-1]
+    left = [actor for actor in world.get_actors() if actor.type_id.startswith(("vehicle.", "sensor."))]
+    assert len(left) == 4
+    destroyed = client.apply_batch_sync([carla.command.DestroyActor(actor) for actor in left], True)
+    assert not any(answer.has_error() for answer in destroyed[:1])
+    world.tick()
+    assert not [actor for actor in world.get_actors() if actor.type_id.startswith(("vehicle.", "sensor."))]
+
+
+def test_the_port_of_a_killed_traffic_manager_is_free_again(server: RunningServer, raw: RawClient) -> None:
+    with program(server, TRAFFIC) as victim:
+        (port,) = numbers(victim, 1)
+        assert raw.call("is_traffic_manager_running", port) is True
+        numbers(victim, 10)
+        victim.kill()
+        victim.wait()
+    while raw.call("is_traffic_manager_running", port):
+        pass
+    assert raw.call("tick_cue") > 0
+
+
+def least_growth_mib(server: RunningServer, act: Callable[[], None], times: int) -> float:
+    """The least of three rounds' growth in memory: a leak is in all of them, a pool that is filled in one."""
+    process, growths = psutil.Process(server.process.pid), []
+    for _ in range(3):
+        before = process.memory_info().rss
+        for _ in range(times):
+            act()
+        growths.append((process.memory_info().rss - before) / 2**20)
+    return min(growths)
+
+
+def test_reloads_take_no_memory(server: RunningServer, raw: RawClient) -> None:
+    def reload() -> None:
+        raw.call("load_new_episode", "", False, 0xFFFF)
+        raw.call("tick_cue")
+
+    assert least_growth_mib(server, reload, 40) < 1.0
+
+
+def test_sensors_that_come_and_go_take_no_memory_and_no_files(server: RunningServer, raw: RawClient) -> None:
+    points = raw.call("get_map_info")[1]
+    car = raw.call("spawn_actor", [0, "vehicle.tesla.model3", []], points[0])[0]
+    imu, at_its_middle = [0, "sensor.other.imu", []], [[0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]
+
+    def cycle() -> None:
+        sensor = raw.call("spawn_actor_with_parent", imu, at_its_middle, car, 0, "")
+        with RawSubscriber(server.streaming_port, int.from_bytes(sensor[5][:4], "little")) as listener:
+            raw.call("tick_cue")
+            listener.socket.setblocking(False)
+        assert raw.call("destroy_actor", sensor[0]) is True
+        raw.call("tick_cue")
+
+    before_files = psutil.Process(server.process.pid).num_fds()
+    assert least_growth_mib(server, cycle, 100) < 0.5
+    assert psutil.Process(server.process.pid).num_fds() <= before_files + 2
+
+
+def test_a_hundred_silent_connections_keep_nobody_out(server: RunningServer, raw: RawClient) -> None:
+    silent = [RawClient(server.port) for _ in range(100)]
+    with RawClient(server.port) as newcomer:
+        assert newcomer.call("tick_cue") > 0
+    for each in silent:
+        each.socket.close()
+
+
+def test_a_batch_of_ten_thousand_comes_through(raw: RawClient) -> None:
+    points = raw.call("get_map_info")[1]
+    car = raw.call("spawn_actor", [0, "vehicle.tesla.model3", []], points[0])[0]
+    control = [[2, [car, [0.1, 0.0, 0.0, False, False, False, 0]]]]
+    number = raw.send("apply_batch", [control] * 10_000, False)
+    assert raw.answer() == [1, number, None, [[[1, car]]] * 10_000]
