@@ -95,12 +95,11 @@ def _painted(surfaces: Surfaces, items: I32, obstacles: Obstacles, frame: F64) -
     raster.keep_clear(kind[:levels], z_m[:levels])
     raster.paint(surfaces.corners_m, surfaces.kinds, crossings, frame, kind, z_m)
     levels = _used(kind)
-    kind, z_m = kind[:levels], z_m[:levels]
-    raster.block(*obstacles, frame, kind, z_m)
+    raster.block(*obstacles, frame, kind[:levels], z_m[:levels])
     if levels > 1:
-        raster.untangle(kind, z_m)
+        raster.untangle(kind[:levels], z_m[:levels])
     inside = slice(_MARGIN, _MARGIN + CELLS)
-    return kind[:, inside, inside], z_m[:, inside, inside]
+    return kind[:levels, inside, inside], z_m[:levels, inside, inside]
 
 
 def _used(kind: U8) -> int:
