@@ -185,6 +185,8 @@ class Watch:
     def _note_signs(self, middle: F64, yaw_rad: F64, speed_mps: F64) -> None:
         """Count who passes a stop sign having stood, crept (below 3 km/h) or neither."""
         forward = np.column_stack([np.cos(yaw_rad), np.sin(yaw_rad)])
+        if not len(self._signs.yaw_rad):
+            return
         gap = (middle + self._fleet.half_m[:, :1] * forward)[:, None, :] - self._signs.centre_m[None, :, :]
         along = gap[..., 0] * forward[:, :1] + gap[..., 1] * forward[:, 1:]
         across = gap[..., 1] * forward[:, :1] - gap[..., 0] * forward[:, 1:]
