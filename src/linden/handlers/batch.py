@@ -7,7 +7,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from linden.errors import Refusal
-from linden.handlers import actors, lights, vehicles, walkers
+from linden.handlers import actors, lights, other_physics, vehicles, walkers
 from linden.handlers.context import Context
 from linden.handlers.registry import method, told
 from linden.wire import commands as cmd
@@ -36,6 +36,7 @@ RUN: dict[type[cmd.Command], Callable[..., object]] = {
     cmd.SetSimulatePhysics: actors.set_actor_simulate_physics,
     cmd.SetEnableGravity: actors.set_actor_enable_gravity,
     cmd.SetAutopilot: vehicles.set_actor_autopilot,
+    cmd.ShowDebugTelemetry: other_physics.show_vehicle_debug_telemetry,
     cmd.SetVehicleLightState: vehicles.set_light_bits,
     cmd.SetTrafficLightState: lights.set_traffic_light_state,
 }

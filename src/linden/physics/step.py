@@ -59,7 +59,7 @@ def _advance_bodies(
             v.angular_velocity[:] = 0.0
             continue
         apply_forces(v, dt_s)
-        if v.kind == VEHICLE and not v.tumbling and is_upset(v):
+        if v.kind == VEHICLE and not v.tumbling and is_upset(v, specs[i]):
             start_tumbling(v)
         if v.kind == VEHICLE and not v.tumbling:
             advance_vehicle(v, specs[i], work, ground, gravity_mps2, dt_s, left)

@@ -31,16 +31,18 @@ _STILL_FOR_S = 0.5
 _UPRIGHT_COSINE = math.cos(math.radians(10.0))
 _UPRIGHT_RADPS = 0.7
 _UPSET_RAD = 0.6  # a vehicle put down or falling steeper than this does not land on its wheels
+_UPSET_TWO_WHEELER_RAD = 1.0  # it leans into bends, up to 0.7 (vehicle.suspension)
 _HALF_TRACK = 0.75  # over half the width: where wheels sit when nobody says
 _NEAR_GROUND_M = 0.08
 
 
 @part
-def is_upset(v: Body) -> bool:
+def is_upset(v: Body, spec: Spec) -> bool:
     """Tell whether a vehicle that is put down or in the air leans too far to land on its wheels."""
     if v.footing[3] != 0.0 and v.support_mps2 > 0.0:
         return False
-    return bool(abs(v.rotation[0]) > _UPSET_RAD or abs(v.rotation[2]) > _UPSET_RAD)
+    most = _UPSET_RAD if spec.track_m > 0.0 else _UPSET_TWO_WHEELER_RAD
+    return bool(abs(v.rotation[0]) > _UPSET_RAD or abs(v.rotation[2]) > most)
 
 
 @part
@@ -171,7 +173,7 @@ def _meet_ground(v: Body, spec: Spec, ground: Ground, axes: F64, arm: F64, point
         x, y, z = v.position[0] + arm[0] + at[0], v.position[1] + arm[1] + at[1], v.position[2] + arm[2] + at[2]
         height, normal_x, normal_y, normal_z, _ = surface_under(ground, x, y, max(z, v.position[2] + arm[2]))
         depth = (height - z) * normal_z
-        if depth < -_NEAR_GROUND_M - 0.5 * dt_s * _speed(v):
+        if depth < -_NEAR_GROUND_M - dt_s * _speed(v):
             continue
         entry = points[met]
         for row in range(3):

@@ -159,6 +159,27 @@ def test_a_vehicle_without_weight_keeps_turning_about_its_centre_of_mass() -> No
     assert turned == pytest.approx(math.degrees(1.05), abs=0.5)
 
 
+def test_a_two_wheeler_that_leans_in_the_air_is_not_upset_and_one_that_lies_is() -> None:
+    two = (wheels()[0], wheels()[2])
+    offsets = (Vector3D(0.7, 0.0, 0.0), Vector3D(-0.7, 0.0, 0.0))
+    slim = BOX._replace(extent=Vector3D(1.0, 0.4, 0.75))
+    for lean_deg, upset in ((38.0, False), (90.0, True)):
+        bodies = Bodies()
+        bike = bodies.add_vehicle(sedan(mass=200.0, wheels=two), put(lean_deg, 0.5), slim, offsets)
+        run(bodies, 4.0)
+        assert bodies.tumbling[bike] == upset
+        assert (abs(roll_deg(bodies, bike)) > 60.0) is upset
+
+
+def test_nothing_falls_through_the_ground_however_fast_and_coarsely_stepped() -> None:
+    for dt_s in (0.01, 0.05, 0.1):
+        bodies, car = one(pose=put(170.0, 60.0, 20.0))
+        bodies.set_target_velocity(car, (0.0, 0.0, -60.0))
+        for _ in range(round(6.0 / dt_s)):
+            advance(bodies, FLAT, NOTHING, dt_s)
+            assert bodies.position[car, 2] > -0.6
+
+
 def lowest_m(bodies: Bodies, slot: int) -> float:
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * BOX.extent * 0.75
     turned = (corners + BOX.location) @ rotation_matrix(bodies.pose(slot).rotation).T

@@ -2,8 +2,8 @@
 
 After ``ACarlaWheeledVehicle::ApplyRolloverBehavior`` of CARLA 0.9.16: stages at 130, 140, 150 and 160 degrees of roll,
 each of which takes 35 % of the spin; 5 s after the last the failure state becomes Rollover; within 30 degrees of
-upright all is forgotten. CARLA looks at positive roll alone, for its angles end at 180; here either side counts. A vehicle that
-lies on its side has not rolled over, as there. CARLA sets no other failure state, nor does this server.
+upright all is forgotten. CARLA looks at positive roll alone, for its angles end at 180; here either side counts. A
+vehicle that lies on its side has not rolled over, as there. CARLA sets no other failure state, nor does this server.
 """
 
 import math
