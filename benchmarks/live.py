@@ -70,12 +70,16 @@ class Snapshots:
         (size,) = struct.unpack("<I", self._file.read(4))
         return self._file.read(size)
 
+    def until(self, frame: int) -> list[bytes]:
+        """Return the snapshots up to that of a frame, bytes as they came."""
+        found = [self.message()]
+        while struct.unpack_from("<Q", found[-1], 8)[0] < frame:
+            found.append(self.message())
+        return found
+
     def rows_of(self, frame: int) -> NDArray[np.void]:
         """Return the actors of a frame, read as vehicles' rows; what came before it is passed over."""
-        while True:
-            message = self.message()
-            if struct.unpack_from("<Q", message, 8)[0] >= frame:
-                return np.frombuffer(message, VEHICLE_ROW, offset=HEADERS_BYTES)
+        return np.frombuffer(self.until(frame)[-1], VEHICLE_ROW, offset=HEADERS_BYTES)
 
     def close(self) -> None:
         """Leave the stream."""
