@@ -37,7 +37,7 @@ Oddities of the client that look like the server's; `tests/compat/test_client_qu
 - `TrafficLight.freeze` freezes all lights.
 - `command.SetVehicleLightState` with an actor turns the lamps into on or off; with the actor's id it keeps them.
 - `MapLayer` members joined by `|` are an `int`, which `load_world` does not take.
-- `VehicleTelemetryData(drag=…)` forgets the drag; `BoundingBox(…)` has an `actor_id` of whatever was in memory.
+- `VehicleTelemetryData(drag=…)` forgets the drag.
 """
 """What fails silently in the client and so does not stand in the table of its defects."""
 

@@ -28,6 +28,9 @@ MEASURING = ("sensor.other.gnss", "sensor.other.imu", "sensor.other.collision", 
 """The sensors that measure; the last does so in the client."""
 
 NOT_YET = {
+    "sensor.other.rss": "it is computed in a client that is built with the ad-rss library; the wheel is not",
+    "sensor.other.v2x": "it would need a model of the radio channel between vehicles",
+    "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
     "sensor.": "this version has gnss, imu, collision and lane_invasion; what sees comes with the scene",
 }
 """Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
