@@ -102,7 +102,7 @@ class Entrance:
             )
 
     def _let_in(self, door: socket.socket, kind: type[Peer]) -> None:
-        if self._inside >= self._most:
+        if self._inside >= self._most and self._closed_until_s is None:
             self._make_room(f"{self._inside} connections are open")
         for _ in range(LET_IN_AT_ONCE):
             if self._inside >= self._most or self._closed_until_s is not None:

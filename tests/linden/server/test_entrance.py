@@ -94,6 +94,7 @@ def test_where_all_have_spoken_the_doors_close_for_a_while(
     house.turn()
     for peer in house.inside:
         house.entrance.has_spoken(peer)
+    house.knock(house.ports.streaming)  # both doors are knocked at in the turn in which they close
     house.turn()
     assert len(house.inside) == 3
     assert "nobody more is let in for 1 s" in caplog.text
@@ -101,7 +102,7 @@ def test_where_all_have_spoken_the_doors_close_for_a_while(
     house.show_out(house.inside[0])
     house.turn(house.now_s + FULL_PAUSE_S)
     house.turn()
-    assert [peer.number for peer in house.inside] == [2, 3, 4]
+    assert len(house.inside) == 3
 
 
 class Failing:
