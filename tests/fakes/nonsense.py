@@ -106,6 +106,8 @@ def extreme(chance: Chance, annotation: Any) -> Any:
         return body(chance, annotation)
     if get_args(annotation):
         return extreme_composite(chance, get_origin(annotation), get_args(annotation))
+    if annotation is object:
+        return oddity(chance)
     return chance.choice(EXTREMES.get(annotation) or [member.value for member in annotation])
 
 

@@ -42,6 +42,7 @@ class Context:
     traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
     complaints: Complaints = field(default_factory=Complaints)
+    bugs: Complaints = field(default_factory=Complaints)
 
     def advance(self) -> int:
         """Make one frame, put what it shows into the outbox, and return its number."""
@@ -56,3 +57,7 @@ class Context:
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""
         self.complaints.say(sentence)
+
+    def own_up(self, sentence: str) -> None:
+        """Log a bug of ours; however many warnings clients have called forth, it is seen."""
+        self.bugs.say(sentence)

@@ -122,7 +122,7 @@ def dispatch(context: Context, call: Call) -> bytes:
     except Refusal as refusal:
         return _refuse(context, call, told(call.method, refusal), found.reply)
     except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-        context.warn_once(
+        context.own_up(
             f"internal error in {call.method}; the call is refused and the server goes on. "
             + "".join(traceback.format_exception(error))
         )

@@ -160,7 +160,7 @@ class Server:
             log.info("%s is gone: %s", peer, error)
             self._close(peer)
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-            self.context.warn_once(f"{_BUG % peer}, without it. {_traceback(error)}")
+            self.context.own_up(f"{_BUG % peer}, without it. {_traceback(error)}")
             self._close(peer)
         if peer.is_open:
             self._watch(peer)
@@ -224,7 +224,7 @@ class Server:
         try:
             self.context.advance()
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-            self.context.warn_once(f"{_BUG % 'a frame'}. {_traceback(error)}")
+            self.context.own_up(f"{_BUG % 'a frame'}. {_traceback(error)}")
         self._pace.frame_made(now_s, settings.fixed_delta_seconds)
         self._calls.publish()
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.geometry import compose
+from linden.physics.columns import finite
 from linden.recording import encode, layouts
 from linden.recording.layouts import PacketId
 from linden.recording.metres import to_file
@@ -21,6 +22,7 @@ from linden.simulation import recorded_lamps
 from linden.simulation import recorded_rows as rows_of
 from linden.simulation.episode import Episode
 from linden.simulation.recorded_contacts import collisions
+from linden.simulation.replay_moment import FARTHEST_M
 from linden.values.episode import LightState
 from linden.values.space import Transform
 from linden.world.actors import NO_BODY, ActorRecord
@@ -198,7 +200,7 @@ class _Tape:
 
 def _added(record: ActorRecord, pose: Transform) -> ActorAdded:
     """Return an actor that came, at its place in the world, or relative to whom it is attached to, as in CARLA."""
-    x, y, z = pose.location
+    x, y, z = (finite(along, -FARTHEST_M, FARTHEST_M) for along in pose.location)  # a float32 has to hold them in cm
     kind = record.kind if record.kind in _KINDS_OF_FILE else Kind.OTHER
     turned = pose.rotation
     return ActorAdded(
