@@ -48,14 +48,16 @@ def started(arguments: list[str], cache: Path) -> Iterator[tuple[psutil.Process,
         text=True,
         env={**os.environ, "XDG_CACHE_HOME": str(cache)},
     ) as child:
-        line = next((line for line in child.stdout if "ready" in line), None)
-        wall_s = time.perf_counter() - begin
-        if line is None:
-            raise SystemExit("the process ended before it was ready")
-        process = psutil.Process(child.pid)
-        times = process.cpu_times()
-        yield process, line, Figures(wall_s, times.user + times.system, process.memory_info().rss / 2**20)
-        child.terminate()
+        try:
+            line = next((line for line in child.stdout if "ready" in line), None)
+            wall_s = time.perf_counter() - begin
+            if line is None:
+                raise SystemExit("the process ended before it was ready")
+            process = psutil.Process(child.pid)
+            times = process.cpu_times()
+            yield process, line, Figures(wall_s, times.user + times.system, process.memory_info().rss / 2**20)
+        finally:  # whatever went wrong out there: Popen would wait for a server that nobody has told to end
+            child.terminate()
 
 
 def start(arguments: list[str], cache: Path) -> Figures:

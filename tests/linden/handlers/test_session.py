@@ -5,6 +5,7 @@ import pytest
 from fakes.simulation import EMPTY_MAP, FakeFrames, FakeMaps, FakeSimulation
 from linden.errors import Refusal
 from linden.handlers import session
+from linden.handlers.complaints import KINDS
 from linden.handlers.context import Context
 from linden.values.episode import EpisodeSettings, OpendriveGenerationParameters
 from linden.wire.stream import StreamTable, token_bytes
@@ -80,3 +81,14 @@ def test_without_substepping_their_figures_do_not_matter(context: Context) -> No
     settings = EpisodeSettings(substepping=False, max_substeps=0, max_substep_delta_time=0.0)
     assert session.set_episode_settings(context, settings) == 0
     assert context.simulation.settings == settings
+
+
+def test_a_bug_of_ours_is_logged_however_many_kinds_of_warnings_clients_have_called_forth(
+    context: Context, caplog: pytest.LogCaptureFixture
+) -> None:
+    for number in range(KINDS + 1):
+        context.warn_once("x" * number)
+    context.warn_once("a walker has no wheels")
+    assert "a walker has no wheels" not in caplog.messages
+    context.own_up("internal error in tick_cue")
+    assert caplog.messages[-1] == "internal error in tick_cue"
