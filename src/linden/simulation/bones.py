@@ -32,6 +32,18 @@ _COMPONENTS = {Kind.WALKER: ("CollisionCylinder", "CharacterMesh0"), Kind.VEHICL
 
 _ROOT = ("DefaultSceneRoot",)
 
+_BLINKERS = {
+    "front-blinker-l-1": (1.0, -1.0),
+    "front-blinker-r-1": (1.0, 1.0),
+    "back-blinker-l-1": (-1.0, -1.0),
+    "back-blinker-r-1": (-1.0, 1.0),
+}
+"""Lamps of four-wheeled vehicles, and at which corner (forward, to the right) they are.
+
+CARLA's own example asks for the second (PythonAPI/examples/get_component_test.py); the others are called by analogy,
+as the content that names them is not in its sources.
+"""
+
 
 class Bones(NamedTuple):
     """Names and frames (N, 4, 4), in the parent bone's and in the actor's."""
@@ -110,8 +122,13 @@ def bones_of(episode: "Episode", actor_id: int) -> Bones:
 
 def in_skeleton(episode: "Episode", actor_id: int, bones: Bones) -> F64:
     """Return the frames of bones in that of the component they belong to."""
-    frames: F64 = np.linalg.inv(component(episode, actor_id, component_names(episode, actor_id)[-1])) @ bones.in_actor
+    frames: F64 = np.linalg.inv(component(episode, actor_id, _mesh_name(episode, actor_id))) @ bones.in_actor
     return frames
+
+
+def _mesh_name(episode: "Episode", actor_id: int) -> str:
+    """Return the component that has the bones."""
+    return _COMPONENTS.get(episode.actors.get(actor_id).kind, _ROOT)[-1]
 
 
 def sockets_of(episode: "Episode", actor_id: int) -> Bones:
@@ -149,7 +166,9 @@ def component_names(episode: "Episode", actor_id: int) -> tuple[str, ...]:
     Raises:
         ActorRefusal: no such actor.
     """
-    return _COMPONENTS.get(episode.actors.get(actor_id).kind, _ROOT)
+    record = episode.actors.get(actor_id)
+    names = _COMPONENTS.get(record.kind, _ROOT)
+    return (*names, *_BLINKERS) if _has_blinkers(episode, record) else names
 
 
 def component(episode: "Episode", actor_id: int, name: str) -> F64:
@@ -162,7 +181,22 @@ def component(episode: "Episode", actor_id: int, name: str) -> F64:
     if name not in names:
         raise ActorRefusal(f"Component could not be found in this actor:  Component Name: {name}", actor_id)
     record = episode.actors.get(actor_id)
+    if name in _BLINKERS:
+        return _blinker_frame(record, *_BLINKERS[name])
     return _mesh_frame(record) if record.kind is Kind.WALKER and name != names[0] else np.eye(4)
+
+
+def _has_blinkers(episode: "Episode", record: ActorRecord) -> bool:
+    """Whether this is a vehicle with four wheels; CARLA's bicycles have no lamps, and its motorcycles other ones."""
+    has_body = record.kind is Kind.VEHICLE and record.slot != NO_BODY
+    return has_body and int(episode.bodies.specs[record.slot]["wheel_count"]) == len(_WHEELS[4])
+
+
+def _blinker_frame(record: ActorRecord, forward: float, right: float) -> F64:
+    """Return where a blinker is: at its corner of the vehicle's box, half way up, looking forward or back."""
+    middle, half = record.box.location, record.box.extent
+    place = Vector3D(middle.x + forward * half.x, middle.y + right * half.y, middle.z)
+    return frame_of(Transform(place, Rotation(0.0, 0.0 if forward > 0.0 else 180.0, 0.0)))
 
 
 def in_world(episode: "Episode", actor_id: int, frames: F64) -> list[Transform]:
