@@ -1,0 +1,65 @@
+"""What is asked of a caster and what it answers; the same on the CPU (``embree``) and on a GPU (``warp``)."""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.meshes.mesh import Mesh
+
+F32 = NDArray[np.float32]
+I32 = NDArray[np.int32]
+
+STATIC = -1
+"""``Hits.instance`` of what stands."""
+NOTHING = -2
+"""``Hits.instance`` of a ray that meets nothing."""
+
+
+class Rays(NamedTuple):
+    """Rays in the world, m; directions of length 1, so that distances are metres."""
+
+    origin_m: F32  # (N, 3)
+    direction: F32  # (N, 3)
+
+
+class Instances(NamedTuple):
+    """The bodies that move, a row each; an actor may have several (a walker's legs)."""
+
+    mesh: I32  # (K,) number of the mesh among those the caster was made with
+    pose: F32  # (K, 3, 4) from the mesh's frame to the world, m
+    before: F32  # (K, 3, 4) the same one frame earlier
+    actor_id: NDArray[np.uint32]  # (K,)
+    colour: NDArray[np.uint8]  # (K, 3) sRGB, for faces that are painted
+    lights: NDArray[np.uint32]  # (K,) LampOf bits that shine: 1 << LampOf
+    velocity_mps: F32  # (K, 3) in the world, of the body's origin
+    turning_radps: F32  # (K, 3) angular velocity in the world
+
+
+class Hits(NamedTuple):
+    """The nearest surface along each ray."""
+
+    distance_m: F32  # (N,) infinite where there is none
+    instance: I32  # (N,) row of Instances, STATIC or NOTHING
+    triangle: I32  # (N,) row of that mesh's triangles, -1 where there is none
+    normal: F32  # (N, 3) of the triangle, in the world, length 1, pointing outwards
+
+
+class Caster(Protocol):
+    """Answers rays; made with what stands and the meshes that bodies may have."""
+
+    def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
+        """Build what makes asking fast."""
+        ...
+
+    def pose(self, instances: Instances) -> None:
+        """Put the bodies where they are now; who is not among them is not there."""
+        ...
+
+    def closest(self, rays: Rays, farthest_m: float) -> Hits:
+        """Return the nearest surface of each ray; faces count from either side."""
+        ...
+
+    def blocked(self, rays: Rays, farthest_m: float) -> NDArray[np.bool_]:
+        """Return (N,) whether anything is met at all."""
+        ...
