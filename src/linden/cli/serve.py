@@ -93,6 +93,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         warm_up()
         warm_rays()
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
+        simulation.episode.warm_up()
         mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
     server = Server(simulation, maps, frames, ports)
     server.context.recordings = RecordingFolder(arguments.recordings)
@@ -125,7 +126,7 @@ def _told_of_compiling() -> Iterator[None]:
         def on_start(self, _event: object) -> None:
             if not self.told:
                 self.told = True
-                _say("linden: compiling the physics kernels, about a minute, once on this machine")
+                _say("linden: compiling the physics kernels, a minute or two, once on this machine")
 
         def on_end(self, _event: object) -> None:
             """Nothing to say."""

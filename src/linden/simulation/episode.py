@@ -212,6 +212,11 @@ class Episode:
             walkers["speed"][self._walker_rows] = bodies.walker_speed[slots]
             walkers["jump"][self._walker_rows] = bodies.jump[slots]
 
+    def warm_up(self) -> None:
+        """Compile, or load from the cache, what only vehicles need, so that the first one does not wait for it."""
+        self.observe()
+        self._observe_vehicles()
+
     def walker_ids_and_slots(self) -> tuple[list[int], NDArray[np.int32]]:
         """Return ids and slots of all walkers, oldest first."""
         if self._seen_version != self.actors.version:
