@@ -75,7 +75,9 @@ def _check(blueprint_id: str, attribute: ActorAttribute, value: str) -> None:
     quoted = f"'{value}' as {attribute.id}"
     if not attribute.is_modifiable:
         _refuse(blueprint_id, f"{quoted}: it is '{attribute.value}' and can only be read")
-    if attribute.restrict_to_recommended and value not in attribute.recommended_values:
+    # CARLA's generate_traffic.py asks walkers that have no wheelchair to use it, and CARLA lets them go on foot
+    is_bound = attribute.restrict_to_recommended and attribute.type != AttributeType.BOOL
+    if is_bound and value not in attribute.recommended_values:
         _refuse(blueprint_id, f"{quoted}: allowed are {', '.join(attribute.recommended_values)}")
     wanted = _wanted(AttributeType(attribute.type), value)
     if wanted is not None:

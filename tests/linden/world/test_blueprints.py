@@ -7,7 +7,7 @@ import time
 import pytest
 
 from linden.errors import Refusal
-from linden.values.actors import ActorDescription, AttributeValue
+from linden.values.actors import ActorDefinition, ActorDescription, AttributeValue
 from linden.values.enums import AttributeType, SemanticTag
 from linden.world.blueprints import Blueprint, BlueprintLibrary, Kind
 
@@ -192,6 +192,16 @@ def test_a_description_is_completed_in_the_blueprints_order() -> None:
 def test_pythons_true_is_taken_for_true() -> None:
     complete = LIBRARY.validate(described("vehicle.tesla.model3", sticky_control="False"))
     assert complete.attribute("sticky_control") == "false"
+
+
+def _reads(definition: ActorDefinition, name: str) -> str | None:
+    return next((attribute.value for attribute in definition.attributes if attribute.id == name), None)
+
+
+def test_a_walker_without_a_wheelchair_may_be_asked_to_use_one() -> None:
+    definition = next(d for d in LIBRARY.definitions if _reads(d, "can_use_wheelchair") == "false")
+    complete = LIBRARY.validate(described(definition.id, use_wheelchair="true"))
+    assert complete.attribute("use_wheelchair") == "true"
 
 
 @pytest.mark.parametrize(
