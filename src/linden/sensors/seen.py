@@ -1,0 +1,84 @@
+"""What there is to be seen: the faces of all meshes in one table, and the moment in which a sensor looks at them."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.casting.rays import Caster, Instances
+from linden.meshes.mesh import Mesh
+from linden.values.episode import WeatherParameters
+
+F32 = NDArray[np.float32]
+I64 = NDArray[np.int64]
+U8 = NDArray[np.uint8]
+
+STREETS = 0
+"""What cameras and lidars call the object of a face that belongs to none."""
+
+
+class Faces(NamedTuple):
+    """Columns of the faces (F,) of what stands and then of each body's mesh, in the order of their numbers.
+
+    The face of a hit is ``first[instance's place] + triangle``; see :func:`first_of_places`.
+    """
+
+    tag: U8
+    material: U8
+    lamp: U8
+    painted: NDArray[np.bool_]
+    colour: F32  # (F, 3), linear light, 0 to 1
+    object: NDArray[np.int32]  # row of the scene's boxes, or NO_OBJECT
+    first: I64  # (1 + number of bodies' meshes,) where each mesh begins; what stands is the first
+
+
+class Seen(NamedTuple):
+    """One moment of a world as it is seen. Made once a frame, for all sensors that look."""
+
+    caster: Caster  # with the bodies posed
+    standing: Mesh
+    bodies: Sequence[Mesh]
+    faces: Faces
+    instances: Instances
+    object_id: NDArray[np.uint32]  # (O,) of each of the scene's boxes: its actor's id, or a number above all actors'
+    object_lights: NDArray[np.uint32]  # (O,) LampOf bits that shine: 1 << LampOf
+    object_light_colour: U8  # (O, 3) sRGB of what a street lamp shines with
+    weather: WeatherParameters
+    now_s: float  # since the episode began
+
+
+def table_of(standing: Mesh, bodies: Sequence[Mesh]) -> Faces:
+    """Return the faces of all meshes as columns."""
+    meshes = (standing, *bodies)
+    faces = np.concatenate([mesh.faces for mesh in meshes])
+    return Faces(
+        np.ascontiguousarray(faces["tag"]),
+        np.ascontiguousarray(faces["material"]),
+        np.ascontiguousarray(faces["lamp"]),
+        np.ascontiguousarray(faces["painted"]),
+        LINEAR[faces["colour"]],
+        np.ascontiguousarray(faces["object"]),
+        np.cumsum([0, *(len(mesh.faces) for mesh in meshes)])[:-1].astype(np.int64),
+    )
+
+
+def first_of_places(faces: Faces, instances: Instances) -> I64:
+    """Return (1 + K,) the first face of what stands, then of each instance: entry ``instance + 1`` belongs to a hit."""
+    return np.concatenate([faces.first[:1], faces.first[1 + instances.mesh]])
+
+
+def id_of_places(instances: Instances) -> NDArray[np.uint32]:
+    """Return (1 + K,) the actor of each place, in the order of :func:`first_of_places`; 0 for what stands."""
+    return np.concatenate([np.zeros(1, np.uint32), instances.actor_id])
+
+
+def _linear() -> F32:
+    """Return the light of each of sRGB's 256 steps (IEC 61966-2-1)."""
+    encoded = np.arange(256) / 255.0
+    light = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    return light.astype(np.float32)
+
+
+LINEAR = _linear()
+"""Linear light of an sRGB byte, 0 to 1."""
