@@ -26,6 +26,9 @@ PLATE_BOTTOM_M = 2.13
 HEAD_HALF_M = (0.18, 0.15, 0.53)
 """Three lenses in their housing, on top of the pole."""
 
+HIGHEST_M = 7.8
+"""A light hangs at most 25.6 feet above its pavement (section 4D.15). Ground further down is under a bridge."""
+
 
 class Post(NamedTuple):
     """Where a light or sign of the map stands."""
@@ -35,7 +38,9 @@ class Post(NamedTuple):
 
 
 def posts(placed: Sequence[Post], ground: Ground) -> Scene:
-    """Return the scene of lights and signs, standing on the ground: first all lights, then all signs, in their order.
+    """Return the scene of lights and signs: first all lights, then all signs, in their order.
+
+    They stand on the ground, or at the edge of the bridge whose road they belong to.
 
     Raises:
         ValueError: a light comes after a sign.
@@ -50,7 +55,8 @@ def posts(placed: Sequence[Post], ground: Ground) -> Scene:
 
 def _posts(placed: Sequence[Post], ground: Ground, kind: Kind) -> Scene:
     base = np.array([post.transform.location for post in placed], np.float64).reshape(-1, 3)
-    base[:, 2], _ = ground.surfaces_under(base)
+    under_m, _ = ground.surfaces_under(base)
+    base[:, 2] = np.where(base[:, 2] - under_m > HIGHEST_M, base[:, 2], under_m)
     things = things_with(kind, base, np.radians([post.transform.rotation.yaw for post in placed]))
     half = np.array([POST_HALF_WIDTH_M, POST_HALF_WIDTH_M, 0.5 * POST_HEIGHT_M])
     pole = boxes_on(things, np.array([0.0, 0.0, half[2]]), half, SemanticTag.POLES)
