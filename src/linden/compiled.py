@@ -1,7 +1,8 @@
 """How functions are compiled: one decorator, so that every kernel is built alike and keeps its type for the reader.
 
 ``error_model="numpy"``: dividing by zero gives inf or nan, as arrays do. No ``fastmath`` and no threads: the same input
-gives the same bits; pictures alone have both (``spread_shading``). The compiled code is kept beside the source (numba's cache), so it is paid for once.
+gives the same bits; what is seen has threads (``spread``), pictures both. The compiled code is kept beside the source
+(numba's cache), so it is paid for once.
 """
 
 import hashlib
