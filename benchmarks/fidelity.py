@@ -1,6 +1,6 @@
 """How far our vehicles are from CARLA's: its own recordings replayed here with the recorded pedals and steering.
 
-    python benchmarks/fidelity.py FOLDER [--pictures FOLDER]
+    python benchmarks/fidelity.py FOLDER [--picture FILE]
 
 FOLDER holds CARLA recorder logs (*.log) with additional data. Every half second of each vehicle's drive, the same
 vehicle starts here from the recorded moment and gets the recorded controls frame by frame. The table tells how far
@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from fidelity_replay import HORIZONS_S, Run, last_frame, replay, starts
+from fidelity_pictures import draw
+from fidelity_replay import HORIZONS_S, Run, last_frame, moments, replay, starts
 from fidelity_tracks import F64, Track, read_tracks
 
 
@@ -60,11 +61,11 @@ def _error(track: Track, run: Run, end: int, here: int) -> tuple[float, ...]:
 
 def drive(track: Track) -> list[Run]:
     """Replay every window as long as the track and the longest horizon let it."""
-    runs = []
+    runs, begun = [], moments(track)
     for start in starts(track):
         ends = [end for h in HORIZONS_S if (end := last_frame(track, start, h)) is not None]
         if ends:
-            runs.append(replay(track, start, max(ends)))
+            runs.append(replay(track, start, max(ends), begun[start]))
     return runs
 
 
@@ -97,7 +98,7 @@ def _line(horizon_s: float, errors: Errors) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="CARLA recorder logs")
-    parser.add_argument("--pictures", type=Path, help="where to put the plots")
+    parser.add_argument("--picture", type=Path, help="draw speeds and errors into this PNG")
     options = parser.parse_args()
     paths = sorted(options.folder.glob("*.log"))
     tracks = [track for path in paths if path.stat().st_size for track in read_tracks(path)]
@@ -106,6 +107,8 @@ def main() -> None:
     if not found:
         raise SystemExit(f"{options.folder} holds no recording with a vehicle that drives")
     print(table(found))
+    if options.picture:
+        draw(found, options.picture)
 
 
 if __name__ == "__main__":

@@ -65,49 +65,67 @@ def control(track: Track, k: int) -> VehicleControl:
     )
 
 
-def replay(track: Track, start: int, end: int) -> Run:
-    """Drive from frame ``start`` to frame ``end`` on flat ground."""
-    bodies, ground, statics = Bodies(), Ground.flat(), Statics.none()
-    slot = _put(bodies, track, start)
-    rows = [_row(bodies, slot)]
+class Double:
+    """Our vehicle of a track's kind, alone on flat ground."""
+
+    def __init__(self, track: Track) -> None:
+        self.track = track
+        self.bodies, self.ground, self.statics = Bodies(), Ground.flat(), Statics.none()
+        model = LIBRARY.find(track.type_id).vehicle
+        assert model is not None
+        (x_m, y_m, _), yaw_rad = track.place_m[0], track.rotation_rad[0, 2]
+        pose = Transform(Vector3D(x_m, y_m, 0.0), Rotation(yaw=math.degrees(yaw_rad)))
+        self.slot = self.bodies.add_vehicle(model.physics, pose, track.box, model.wheel_offsets_m, model.undercarriage)
+
+    def drive(self, k: int) -> None:
+        """Drive from frame ``k`` to the next."""
+        self.bodies.set_control(self.slot, control(self.track, k + 1))
+        step_s = float(self.track.step_s[k])
+        advance(self.bodies, self.ground, self.statics, step_s, max(1, math.ceil(step_s / SUBSTEP_S - 1e-9)))
+
+    def lead(self, k: int) -> None:
+        """Set place, motion and gear to those of frame ``k``; engine, springs, wheels and driver stay as they are."""
+        state, track = self.bodies.state[self.slot], self.track
+        yaw_rad, turn = track.rotation_rad[k, 2], track.turn_radps[k]
+        across = turn * state["centre_of_mass"][0] * np.array([-math.sin(yaw_rad), math.cos(yaw_rad)])
+        state["position"][:2], state["rotation"][1] = track.place_m[k, :2], yaw_rad
+        state["velocity"][:2], state["angular_velocity"][2] = track.velocity_mps[k, :2] - across, turn
+        state["resting"] = False
+        gear = int(track.gear[k])
+        if gear != state["gear"]:
+            changing = track.gear[k:][track.gear[k:] != 0]
+            state["gear"], state["target_gear"] = gear, gear or (changing[0] if len(changing) else 0)
+
+    def row(self) -> tuple[float, ...]:
+        """Return what a Run keeps of this moment."""
+        s = self.bodies.state[self.slot]
+        pitch_rad, yaw_rad, roll_rad = map(float, s["rotation"])
+        speed_mps = s["velocity"][0] * math.cos(yaw_rad) + s["velocity"][1] * math.sin(yaw_rad)
+        return (*s["position"], yaw_rad, speed_mps, s["angular_velocity"][2], s["gear"], pitch_rad, roll_rad)
+
+
+def moments(track: Track) -> list[np.void]:
+    """Return our vehicle as it is at every frame when it is led along the track: what windows start from.
+
+    What no recording tells (the engine's speed, the springs, how far the pedals have followed) has then been worked
+    out from all that was recorded until that frame.
+    """
+    double, found = Double(track), []
+    for k in range(len(track.time_s)):
+        double.lead(k)
+        found.append(double.bodies.state[double.slot].copy())
+        if k + 1 < len(track.time_s):
+            double.drive(k)
+    return found
+
+
+def replay(track: Track, start: int, end: int, moment: np.void) -> Run:
+    """Drive from frame ``start``, of which ``moment`` is one of :func:`moments`, to frame ``end``."""
+    double = Double(track)
+    double.bodies.state[double.slot] = moment
+    rows = [double.row()]
     for k in range(start, end):
-        bodies.set_control(slot, control(track, k))
-        step_s = float(track.step_s[k])
-        advance(bodies, ground, statics, step_s, max(1, math.ceil(step_s / SUBSTEP_S - 1e-9)))
-        rows.append(_row(bodies, slot))
+        double.drive(k)
+        rows.append(double.row())
     columns = np.array(rows)
     return Run(start, columns[:, :3], *columns[:, 3:].T)
-
-
-def _put(bodies: Bodies, track: Track, start: int) -> int:
-    """Add the vehicle as it was at a frame: place, motion, gear."""
-    model = LIBRARY.find(track.type_id).vehicle
-    roll_deg, pitch_deg, yaw_deg = np.degrees(track.rotation_rad[start])
-    x_m, y_m, _ = track.place_m[start]
-    pose = Transform(Vector3D(x_m, y_m, 0.0), Rotation(pitch_deg, yaw_deg, roll_deg))
-    slot = bodies.add_vehicle(model.physics, pose, track.box, model.wheel_offsets_m)
-    bodies.set_control(slot, control(track, start))
-    advance(bodies, Ground.flat(), Statics.none(), 1e-6)  # finds its footing
-    gear = int(track.gear[start])
-    bodies.state["target_gear"][slot] = bodies.state["gear"][slot] = gear or 1
-    ahead_m = bodies.state["centre_of_mass"][slot, 0]
-    yaw_rad, turn = track.rotation_rad[start, 2], track.turn_radps[start]
-    of_origin = track.velocity_mps[start, :2] - turn * ahead_m * np.array([-math.sin(yaw_rad), math.cos(yaw_rad)])
-    bodies.set_target_angular_velocity(slot, (0.0, 0.0, turn))
-    bodies.set_target_velocity(slot, (*of_origin, 0.0))
-    return slot
-
-
-def _row(bodies: Bodies, slot: int) -> tuple[float, ...]:
-    s = bodies.state[slot]
-    yaw_rad = float(s["rotation"][1])
-    speed_mps = s["velocity"][0] * math.cos(yaw_rad) + s["velocity"][1] * math.sin(yaw_rad)
-    return (
-        *s["position"],
-        yaw_rad,
-        speed_mps,
-        s["angular_velocity"][2],
-        s["gear"],
-        s["rotation"][0],
-        s["rotation"][2],
-    )

@@ -22,8 +22,9 @@ LOWEST_M = -50.0  # ScenarioRunner parks actors far below the ground until it ne
 class Track(NamedTuple):
     """One vehicle without a gap; arrays of N frames, world in m, m/s and rad.
 
-    Frame k's controls drive the vehicle from frame k to k + 1, which takes ``step_s[k]``. CARLA tells the velocity of
-    the centre of mass (Unreal's GetVelocity of a simulated body), and the place of the actor's origin.
+    From frame k to k + 1 it takes ``step_s[k]``, and the controls of frame k + 1 drive the vehicle there: CARLA records
+    at a frame's end. The velocity is that of the centre of mass (Unreal's GetVelocity of a simulated body), the place
+    that of the actor's origin.
     """
 
     recording: str
@@ -52,7 +53,8 @@ class Track(NamedTuple):
     def speed_mps(self) -> F64:
         """(N,) along the heading, negative backwards."""
         yaw_rad = self.rotation_rad[:, 2]
-        return self.velocity_mps[:, 0] * np.cos(yaw_rad) + self.velocity_mps[:, 1] * np.sin(yaw_rad)
+        speed_mps: F64 = self.velocity_mps[:, 0] * np.cos(yaw_rad) + self.velocity_mps[:, 1] * np.sin(yaw_rad)
+        return speed_mps
 
 
 class _Row(NamedTuple):

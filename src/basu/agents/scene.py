@@ -28,7 +28,7 @@ class Ego(NamedTuple):
     y_m: float
     yaw_rad: float
     speed_mps: float  # along its own axis, negative when rolling backwards
-    gear: int = 1  # 0 while the gearbox shifts
+    gear: int = 1  # 0 while the gearbox shifts, and where nobody has pressed the throttle yet
 
 
 class Kind(enum.Enum):

@@ -106,6 +106,7 @@ def get_vehicle_light_states(context: Context) -> list[tuple[int, int]]:
 
 
 @method("set_actor_autopilot")
-def set_actor_autopilot(context: Context, actor_id: U32, _enabled: bool) -> None:  # noqa: FBT001 - the wire's order
+def set_actor_autopilot(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Take note of a vehicle's autopilot: it is driven by the Traffic Manager of the client that set it."""
-    context.simulation.episode.vehicle(actor_id)
+    episode = context.simulation.episode
+    episode.bodies.set_autopilot(episode.vehicle(actor_id), on=enabled)

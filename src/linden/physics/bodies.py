@@ -12,7 +12,12 @@ from linden.physics.state import BODY, PROP, VEHICLE, WALKER
 from linden.physics.vehicle.cockpit import Cockpits
 from linden.physics.vehicle.parameters import check, default_wheel_offsets, local_wheels, yaw_inertia_kgm2
 from linden.values.space import BoundingBox, Transform, Vector3D
-from linden.values.vehicles import AckermannSettings, VehiclePhysicsControl
+from linden.values.vehicles import (
+    UNKNOWN_UNDERCARRIAGE,
+    AckermannSettings,
+    Undercarriage,
+    VehiclePhysicsControl,
+)
 from linden.values.walkers import WalkerControl
 
 _FARTHEST_M = 1e7
@@ -39,6 +44,7 @@ class Bodies(Cockpits):
         s["alive"][slot] = s["simulate"][slot] = s["gravity"][slot] = s["collides"][slot] = True
         s["kind"][slot], s["mass_kg"][slot], s["support_mps2"][slot] = kind, mass_kg, 0.0
         s["road_grip"][slot], s["friction_here"][slot] = 1.0, -1.0
+        s["sticky"][slot] = True
         s["box_centre"][slot] = box.location
         s["half_extent"][slot] = np.maximum(box.extent, 1e-3)
         s["ackermann_gains"][slot] = AckermannSettings()
@@ -51,20 +57,23 @@ class Bodies(Cockpits):
         pose: Transform,
         box: BoundingBox,
         wheel_offsets_m: Sequence[Vector3D] | None = None,
+        undercarriage: Undercarriage = UNKNOWN_UNDERCARRIAGE,
     ) -> int:
         """Add a vehicle at ``pose`` and return its slot.
 
-        ``wheel_offsets_m``: contact points in the vehicle's frame (m), in the wheels' order; without it they are taken
-        from ``control.wheels`` (cm, world), and where those all lie at the world's origin, from the box.
+        ``wheel_offsets_m``: contact points in the vehicle's frame (m), in the wheels' order, or of the front and the
+        back wheel where the four of ``control`` stand for those of a two-wheeler; without it they are taken from
+        ``control.wheels`` (cm, world), and where those all lie at the world's origin, from the box.
 
         Raises:
             Refusal: the physics control describes nothing that can drive.
         """
         check(control)
         if wheel_offsets_m is None:
-            wheel_offsets_m = local_wheels(control, pose) or default_wheel_offsets(box, len(control.wheels))
+            count = len(control.wheels)
+            wheel_offsets_m = local_wheels(control, pose, count) or default_wheel_offsets(box, count)
         slot = self._add(VEHICLE, pose, box, control.mass)
-        self.state["target_gear"][slot] = self.state["gear"][slot] = 1
+        self._undercarriage[slot] = undercarriage
         self._fit(slot, control, wheel_offsets_m)
         return slot
 

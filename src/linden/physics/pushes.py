@@ -11,8 +11,8 @@ from linden.physics.tumble import push_tumbling, start_tumbling, tripping_speed_
 
 F64 = NDArray[np.float64]
 
-_SPRING_RADPS = 12.0  # vehicle.suspension.BOUNCE_RADPS
-_OVERSHOOT = 0.46  # how far a rate swings a spring of 0.7 of critical damping, over rate / SPRING_RADPS
+_SPRING_RADPS = 10.0  # vehicle.suspension.BOUNCE_RADPS
+_OVERSHOOT = 0.36  # how far a rate swings a spring of 1.05 of critical damping, over rate / SPRING_RADPS
 _LIFTED = 1.5  # of the lean at which one side carries all
 _CAUGHT = 0.8  # of the tripping speed, from which on the fall is worked out in space
 

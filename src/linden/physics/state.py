@@ -35,22 +35,23 @@ VEHICLE_SPEC = np.dtype(
         ("wheel_radius_m", "f8", WHEELS),
         ("wheel_inertia_kgm2", "f8", WHEELS),
         ("wheel_damping_nms", "f8", WHEELS),
-        ("friction", "f8", WHEELS),
+        ("friction", "f8", WHEELS),  # of the tyre alone; the road's is added by vehicle.wheels
         ("cornering_per_rad", "f8", WHEELS),  # cornering stiffness over the wheel's load at rest
         ("cornering_full_load", "f8", WHEELS),  # load over that at rest beyond which cornering stiffness grows no more
         ("slip_stiffness_n", "f8", WHEELS),  # longitudinal force per unit of slip
         ("steer_max_rad", "f8", WHEELS),
         ("brake_nm", "f8", WHEELS),
         ("hand_brake_nm", "f8", WHEELS),
-        ("drive_share", "f8", WHEELS),  # of the axle torque; adds up to 1
+        ("drive_share", "f8", WHEELS),  # of the axle torque while no wheel slips; adds up to 1
         ("load_share", "f8", WHEELS),  # of the weight at rest on the flat; adds up to 1
-        ("load_per_ax", "f8", WHEELS),  # load over mass per m/s² of forward acceleration; adds up to 0
-        ("load_per_ay", "f8", WHEELS),  # likewise to the right
+        ("tyres_lag", "u1"),  # whether wheels turn by the tyres' torque of the moment before, as PhysX has it
         ("wheelbase_m", "f8"),
         ("track_m", "f8"),  # 0 for a two-wheeler
         ("axle_front_m", "f8"),
         ("axle_rear_m", "f8"),
-        ("com_height_m", "f8"),
+        ("sway_m", "f8"),  # how far below the centre of mass the tyres' forces act: what the body leans by
+        ("pitch_arm2_m2", "f8"),  # mean square of the wheels' distance from the centre of mass, weighted by load
+        ("roll_arm2_m2", "f8"),
         ("drag_kgpm", "f8"),  # force over the square of the speed
         ("engine_inertia_kgm2", "f8"),
         ("engine_max_radps", "f8"),
@@ -62,6 +63,7 @@ VEHICLE_SPEC = np.dtype(
         ("autobox", "u1"),
         ("gear_count", "i4"),
         ("gear_ratio", "f8", GEARS),  # axle turns into engine turns, final drive included
+        ("reverse_ratio", "f8"),  # likewise; negative
         ("gear_down", "f8", GEARS),  # of the engine's greatest speed
         ("gear_up", "f8", GEARS),
         ("torque_points", "i4"),
@@ -101,6 +103,9 @@ BODY = np.dtype(
         ("reverse", "?"),
         ("manual_gear_shift", "?"),
         ("gear_command", "i4"),
+        ("sticky", "?"),  # whether a control stays until the next; else it is that of one frame
+        ("autopilot", "?"),  # a client's Traffic Manager drives: its controls stay
+        ("controlled", "?"),  # since the last frame
         ("gear", "i4"),  # engaged now: 0 while changing
         ("engine_rpm", "f8"),
         ("wheel_omega", "f8", WHEELS),  # rad/s, positive forward
@@ -122,7 +127,11 @@ BODY = np.dtype(
         ("heave_mps", "f8"),  # vertical speed beside that of the motion in the plane of the road
         ("tilt_radps", "f8", 2),  # rates of pitch and roll
         ("footing", "f8", 4),  # of the ground under the wheels: height m, pitch rad, roll rad, 1 where known
-        ("felt_mps2", "f8", 2),  # smoothed force over mass, forward and right: moves the load
+        ("felt_mps2", "f8", 2),  # force of the tyres over mass, forward and right: what the body leans under
+        ("asked", "f8", 4),  # throttle, steer, brake and hand brake as far as they have followed the driver
+        ("given", "f8", 4),  # and as they have followed that: what engine, wheels and brakes get
+        ("since_shift_s", "f8"),  # since the automatic last began to change
+        ("slow_s", "f8"),  # for how long the wheels have all but stood, nobody wanting to go
         ("support_mps2", "f8"),  # force of the ground over mass
         ("target_gear", "i4"),
         ("shift_left_s", "f8"),
@@ -152,31 +161,29 @@ BODY = np.dtype(
 
 VEHICLE_WORK = np.dtype(
     [
-        # of the wheels, fixed while the motion is solved
+        # of the wheels, fixed for a substep
         ("limit_n", "f8", WHEELS),  # of friction
-        ("slip_n", "f8", WHEELS),  # stiffness to slip
-        ("cornering_n", "f8", WHEELS),  # stiffness to slip angle, N/rad
+        ("cornering_n", "f8", WHEELS),  # stiffness to the tangent of the slip angle, N
         ("cosine", "f8", WHEELS),  # of the steering angle
         ("sine", "f8", WHEELS),
         ("along_turn_m", "f8", WHEELS),  # what a yaw rate adds to the contact's speed along the wheel
         ("across_turn_m", "f8", WHEELS),  # and across it
         ("brake_nm", "f8", WHEELS),
-        ("inertia_nms", "f8", WHEELS),  # over the step
-        ("pushed_nm", "f8", WHEELS),  # by inertia and by the engine against standing wheels
-        # of the wheels, better from round to round
-        ("turns", "f8", WHEELS),  # which way: -1, 0 locked, 1
+        # of the wheels, now
         ("along_mps", "f8", WHEELS),  # speed of the contact along the wheel
         ("across_mps", "f8", WHEELS),
-        ("omega_radps", "f8", WHEELS),
-        ("push_x_nspm", "f8", WHEELS),  # secant stiffness along the wheel, N·s/m
-        ("push_y_nspm", "f8", WHEELS),
+        ("slip", "f8", WHEELS),  # longitudinal
+        ("push_x_n", "f8", WHEELS),  # on the body, along the wheel
+        ("push_y_n", "f8", WHEELS),  # and across it
+        ("share", "f8", WHEELS),  # of the clutch's torque
+        ("grip_nspm", "f8", WHEELS),  # what the tyre's push grows by with its sliding; 0 where the tyre lags
         ("ease", "f8", WHEELS),  # one over the resistance to a change of spin, rad/s/(N·m)
-        ("grip_per_m", "f8", WHEELS),  # how much of it the road's grip passes on
+        # of the driver
+        ("wants_to_go", "?"),  # throttle without brakes, in gear
+        ("hand_braked", "?"),
         # of the body
-        ("start", "f8", 3),  # the motion before: m/s forward, m/s to the right, rad/s
+        ("speeds", "f8", 3),  # the motion: m/s forward, m/s to the right, rad/s
         ("pull", "f8", 3),  # outer forces: N, N, N·m; gravity's part along the slope included
-        ("drive", "f8", 3),  # as powertrain.axle_drive returns it
-        ("speeds", "f8", 3),  # the motion after
         ("ground_m", "f8", WHEELS),  # height under each wheel
     ],
     align=True,

@@ -14,9 +14,10 @@ from linden.physics.contact.pairs import find_pairs, is_fixed
 from linden.physics.contact.statics import Statics
 from linden.physics.prop import advance_prop
 from linden.physics.pushes import apply_forces, apply_impulses, clear_pushes, hold_velocity
-from linden.physics.state import VEHICLE, WALKER, Rows, Work
+from linden.physics.state import VEHICLE, WALKER, Body, Rows, Spec, Work
 from linden.physics.tumble import is_upset, start_tumbling, tumble
 from linden.physics.vehicle.ackermann import drive_to_target
+from linden.physics.vehicle.driver import follow_control, let_go
 from linden.physics.vehicle.motion import advance_vehicle
 from linden.physics.vehicle.rollover import watch_rollover
 from linden.physics.vehicle.wheels import turn_wheels
@@ -77,6 +78,17 @@ def _advance_bodies(
 
 
 @part
+def _heed_driver(v: Body, spec: Spec, dt_s: float) -> None:
+    """Bring what a vehicle's driver does up to date for a frame."""
+    let_go(v)
+    if is_fixed(v):
+        return
+    if v.ackermann_on:
+        drive_to_target(v, spec, dt_s)
+    follow_control(v, dt_s)
+
+
+@part
 def _report(pairs: NDArray[np.int32], account: F64) -> F64:
     """Return the pairs that touched: first, second, impulse, point (C, 8)."""
     rows = np.empty((len(pairs), 8))
@@ -111,8 +123,8 @@ def _build(sources: int) -> _Advance:
             v.acceleration[:] = v.velocity
             if v.alive and not is_fixed(v):
                 apply_impulses(v)
-                if v.kind == VEHICLE and v.ackermann_on:
-                    drive_to_target(v, specs[i], dt_s)
+            if v.kind == VEHICLE:
+                _heed_driver(v, specs[i], dt_s)
         pairs = find_pairs(rows, count, statics, dt_s)
         account = np.zeros((len(pairs), 7))
         for n in range(substeps):

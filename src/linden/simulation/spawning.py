@@ -89,7 +89,9 @@ def _embody(episode: Episode, blueprint: Blueprint, description: ActorDescriptio
     bodies = episode.bodies
     if blueprint.vehicle is not None:
         model = blueprint.vehicle
-        return bodies.add_vehicle(model.physics, pose, blueprint.box, wheel_offsets_m=model.wheel_offsets_m)
+        slot = bodies.add_vehicle(model.physics, pose, blueprint.box, model.wheel_offsets_m, model.undercarriage)
+        bodies.set_sticky(slot, sticky=description.attribute("sticky_control") == "true")
+        return slot
     if blueprint.kind is Kind.WALKER:
         return bodies.add_walker(pose, blueprint.box, blueprint.mass_kg)
     if blueprint.kind is Kind.PROP:

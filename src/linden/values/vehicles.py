@@ -83,6 +83,24 @@ class VehiclePhysicsControl(NamedTuple):
     use_sweep_wheel_collision: bool = False
 
 
+class Undercarriage(NamedTuple):
+    """What CARLA's vehicle blueprints hold besides the physics control, which has no fields for it.
+
+    ``sway_m``: how far below the centre of mass the tyres push (Unreal's suspension force offset), which is what the
+    body leans by; None: from the ground. ``hull_x_m``: the middle of the hull in the vehicle's frame, to which
+    ``center_of_mass`` is added; None: that of its box. ``reverse_ratio``: that of PhysX by default. ``tyres_lag``:
+    whether the wheels turn by the tyres' torque of the moment before, as CARLA's do, or by that of the same moment.
+    """
+
+    sway_m: float | None = None
+    hull_x_m: float | None = None
+    reverse_ratio: float = -4.0
+    tyres_lag: bool = False
+
+
+UNKNOWN_UNDERCARRIAGE = Undercarriage()
+
+
 class WheelTelemetry(NamedTuple):
     """One wheel's forces and slips, N, N·m, rad/s."""
 

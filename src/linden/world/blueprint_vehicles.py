@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from linden.values.actors import ActorAttribute
 from linden.values.enums import AttributeType, SemanticTag
 from linden.values.space import BoundingBox, Vector2D, Vector3D
-from linden.values.vehicles import Gear, VehiclePhysicsControl, Wheel
+from linden.values.vehicles import UNKNOWN_UNDERCARRIAGE, Gear, Undercarriage, VehiclePhysicsControl, Wheel
 from linden.world.blueprint_attributes import constant, names, variation
 
 ROLES = ("autopilot", "scenario", "ego_vehicle")
@@ -28,11 +28,13 @@ class VehicleModel(NamedTuple):
     """How a vehicle drives.
 
     ``wheel_offsets_m``: centres of the wheels in the vehicle's frame (x forward, y right, z above the ground), in the
-    order FL, FR, BL, BR, or front, back. ``physics`` leaves the wheels' positions at zero: they are in the world.
+    order FL, FR, BL, BR, or front, back. ``physics`` has four wheels, those of two-wheelers in pairs, as CARLA's have;
+    it leaves the wheels' positions at zero: they are in the world.
     """
 
     physics: VehiclePhysicsControl
     wheel_offsets_m: tuple[Vector3D, ...]
+    undercarriage: Undercarriage = UNKNOWN_UNDERCARRIAGE
 
 
 def box(facts: dict[str, Any]) -> BoundingBox:
@@ -101,32 +103,36 @@ def model(facts: dict[str, Any], kind: dict[str, Any]) -> VehicleModel:
         steering_curve=tuple(Vector2D(float(kmh), share) for kmh, share in kind["steering_kmh"]),
         wheels=_wheels(kind["wheel"], growth, wheel_count(facts)),
     )
-    return VehicleModel(physics, _offsets(facts, kind))
+    undercarriage = Undercarriage(kind["sway_m"], facts.get("hull_x_m"), kind["reverse_ratio"], kind["tyres_lag"])
+    return VehicleModel(physics, _offsets(facts, kind), undercarriage)
 
 
 def _wheels(facts: dict[str, float], growth: float, count: int) -> tuple[Wheel, ...]:
+    """Return four wheels: CARLA's two-wheelers have two on each axle, which share what the table says of one."""
+    share = 0.5 if count == 2 else 1.0
     front = Wheel(
         tire_friction=facts["friction"],
-        damping_rate=facts["damping"],
+        damping_rate=facts["damping"] * share,
         max_steer_angle=facts["steer_front_deg"],
         radius=100.0 * facts["radius_m"],
-        max_brake_torque=facts["brake_nm"] * growth,
+        max_brake_torque=facts["brake_nm"] * growth * share,
         max_handbrake_torque=0.0,
         lat_stiff_max_load=facts["lat_load"],
         lat_stiff_value=facts["lat_stiffness"],
-        long_stiff_value=facts["long_stiffness"] * growth,
+        long_stiff_value=facts["long_stiffness"] * growth * share,
     )
     rear = front._replace(
-        max_steer_angle=facts["steer_rear_deg"], max_handbrake_torque=facts["handbrake_rear_nm"] * growth
+        max_steer_angle=facts["steer_rear_deg"],
+        max_handbrake_torque=facts["handbrake_rear_nm"] * growth * share,
     )
-    return (front, rear) if count == 2 else (front, front, rear, rear)
+    return front, front, rear, rear
 
 
 def _offsets(facts: dict[str, Any], kind: dict[str, Any]) -> tuple[Vector3D, ...]:
-    """Return the wheels' centres; the axles lie evenly about the middle of the box, their distance a share of it."""
+    """Return the wheels' centres; unless told, the axles lie evenly about the middle of the box, as a share of it."""
     half_length_m, half_width_m, _ = facts["half_m"]
     half_base_m = 0.5 * facts.get("wheelbase_m", 2.0 * half_length_m * kind["wheelbase_share"])
     half_track_m = 0.5 * facts.get("track_m", 2.0 * half_width_m * kind["track_share"])
-    middle_m, radius_m = facts["centre_m"][0], kind["wheel"]["radius_m"]
+    middle_m, radius_m = facts.get("axles_middle_m", facts["centre_m"][0]), kind["wheel"]["radius_m"]
     sides = (0.0,) if wheel_count(facts) == 2 else (-half_track_m, half_track_m)
     return tuple(Vector3D(middle_m + end, side, radius_m) for end in (half_base_m, -half_base_m) for side in sides)

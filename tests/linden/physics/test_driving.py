@@ -26,8 +26,8 @@ from fleet import (
 )
 from linden.physics.bodies import Bodies
 from linden.physics.step import advance
-from linden.physics.vehicle.parameters import WHEEL_MASS_KG
-from linden.physics.vehicle.wheels import ROLLING_RESISTANCE
+from linden.physics.vehicle.powertrain import AUTOBOX_LATENCY_S
+from linden.physics.vehicle.wheels import ROAD_FRICTION, WHEEL_MASS_KG, grip_load
 from linden.values.space import Vector2D, Vector3D
 from linden.values.vehicles import AckermannControl, Gear, VehicleControl
 from naive.physics import on_curve
@@ -35,44 +35,84 @@ from naive.physics import on_curve
 NEUTRAL = VehicleControl(manual_gear_shift=True, gear=0)
 MASS_KG = 1696.0
 WITH_WHEELS_KG = MASS_KG + 4 * 0.5 * WHEEL_MASS_KG  # a disc of mass m that rolls resists like m/2 more
-DRAG_KGPM = 0.5 * 1.225 * 0.3 * 4.0 * BOX.extent.y * BOX.extent.z
+DRAG_KGPM = 0.5 * 1.25 * 0.3 * 1.8 * 1.4
+REST_N = (MASS_KG / 4.0 + WHEEL_MASS_KG) * G  # a quarter of the car with its wheel
+GRIP_N = grip_load(MASS_KG * G / 4.0, REST_N)
 WHEELBASE_M, TRACK_M = 2.87, 1.57
 
 
 def launched(v_mps: float, control: VehicleControl = NEUTRAL, **changes: object) -> tuple[Bodies, int]:
     bodies, car = one(slick(**changes))
     bodies.set_control(car, control)
-    run(bodies, 0.05)
+    run(bodies, 0.5)  # the pedals have followed
     bodies.set_target_velocity(car, (v_mps, 0.0, 0.0))
     return bodies, car
 
 
-@slow_uncompiled
-def test_coasting_slows_by_drag_and_rolling_resistance() -> None:
+def test_coasting_slows_by_drag() -> None:
     bodies, car = launched(30.0, drag_coefficient=0.3)
     run(bodies, 20.0)
-    a, b = ROLLING_RESISTANCE * MASS_KG * G / WITH_WHEELS_KG, DRAG_KGPM / WITH_WHEELS_KG
-    expected = math.sqrt(a / b) * math.tan(math.atan(30.0 * math.sqrt(b / a)) - 20.0 * math.sqrt(a * b))
+    expected = 30.0 / (1.0 + 30.0 * DRAG_KGPM / WITH_WHEELS_KG * 20.0)
     assert bodies.velocity[car, 0] == pytest.approx(expected, rel=0.005)
 
 
 @pytest.mark.parametrize(("v_mps", "friction"), [(10.0, 0.8), (20.0, 0.8), (30.0, 0.4)])
-def test_braking_distance_is_v_squared_over_two_mu_g(v_mps: float, friction: float) -> None:
+def test_braking_distance_of_locked_wheels_is_v_squared_over_two_mu_g(v_mps: float, friction: float) -> None:
     locking = wheels(damping_rate=0.0, tire_friction=friction, max_brake_torque=1e5)
     bodies, car = launched(v_mps, VehicleControl(manual_gear_shift=True, brake=1.0), wheels=locking)
     start = float(bodies.position[car, 0])
-    run(bodies, 12.0)
+    run(bodies, 15.0)
     assert speed_mps(bodies, car) == 0.0
-    assert bodies.position[car, 0] - start == pytest.approx(v_mps**2 / (2.0 * friction * G), rel=0.03)
+    slowing = ROAD_FRICTION * friction * 4.0 * GRIP_N / MASS_KG
+    assert bodies.position[car, 0] - start == pytest.approx(v_mps**2 / (2.0 * slowing), rel=0.03)
 
 
-def test_brakes_slow_by_their_torque_while_the_tyres_hold() -> None:
-    bodies, car = launched(30.0, VehicleControl(manual_gear_shift=True, brake=0.5))
+def test_brakes_slow_by_their_torque_while_the_wheels_turn() -> None:
+    bodies, car = launched(40.0, VehicleControl(manual_gear_shift=True, brake=0.5))
     run(bodies, 0.5)
     before = float(bodies.velocity[car, 0])
     run(bodies, 1.0)
-    braking_n = 4 * 400.0 / 0.355 + ROLLING_RESISTANCE * MASS_KG * G
-    assert before - bodies.velocity[car, 0] == pytest.approx(braking_n / WITH_WHEELS_KG, rel=0.01)
+    assert (bodies.wheel_omega[car] > 0.0).all()
+    assert before - bodies.velocity[car, 0] == pytest.approx(4 * 400.0 / 0.355 / WITH_WHEELS_KG, rel=0.02)
+
+
+def test_a_wheel_that_has_locked_stays_locked_until_the_brake_is_released() -> None:
+    for lags in (True, False):  # CARLA's wheels; those that the road turns again when it is stronger than the brake
+        bodies, car = launched(10.0, VehicleControl(manual_gear_shift=True, brake=0.2))
+        bodies.specs[car]["tyres_lag"] = lags
+        bodies.state["wheel_omega"][car] = 0.0
+        run(bodies, 0.1)
+        assert (bodies.wheel_omega[car] == 0.0).all() == lags
+        bodies.set_control(car, NEUTRAL)
+        run(bodies, 0.3)
+        assert (bodies.wheel_omega[car] > 0.0).all()
+
+
+def test_light_wheels_that_lag_are_locked_by_a_brake_that_alone_could_not() -> None:
+    slowest = []
+    for lags in (True, False):
+        bodies, car = launched(8.0, NEUTRAL)
+        bodies.specs[car]["tyres_lag"] = lags
+        bodies.set_control(car, VehicleControl(manual_gear_shift=True, brake=1.0))
+        slowing = []
+        while speed_mps(bodies, car) > 1.0:
+            run(bodies, 0.01)
+            slowing.append(-float(bodies.acceleration[car, 0]))
+        slowest.append(max(slowing))
+    grip = ROAD_FRICTION * 3.5 * 4.0 * GRIP_N / MASS_KG
+    assert slowest[0] == pytest.approx(grip, rel=0.1)  # as recorded: 26 m/s²
+    assert slowest[1] == pytest.approx(4 * 800.0 / 0.355 / WITH_WHEELS_KG, rel=0.1)
+
+
+def test_a_car_spawned_is_in_neutral_and_leaves_it_when_the_engine_turns_up() -> None:
+    bodies, car = one()
+    bodies.set_control(car, VehicleControl(throttle=1.0))
+    waited = 0
+    while bodies.gear[car] == 0 and waited < 300:
+        run(bodies, 0.01)
+        waited += 1
+    assert bodies.engine_rpm[car] > 0.15 * 6500.0
+    assert AUTOBOX_LATENCY_S + 0.5 <= 0.01 * waited < AUTOBOX_LATENCY_S + 1.0  # and takes its time to change
 
 
 @slow_uncompiled
@@ -92,8 +132,9 @@ def test_the_steady_turn_has_the_radius_of_the_understeer_gradient(front: float,
     run(bodies, 3.0, dt_s)
     v, turn = speed_mps(bodies, car), float(bodies.angular_velocity[car, 2])
     middle = math.atan(1.0 / (1.0 / math.tan(inner) + TRACK_M / 2.0 / WHEELBASE_M))
-    at_rest_load = 1.0 - 1.0 / 3.0 + 1.0 / 27.0  # of the stiffness: the load curve at a third of its end
-    gradient = (1.0 / front - 1.0 / rear) / (G * at_rest_load)
+    use = GRIP_N / REST_N  # of the load at which the stiffness levels off, times three
+    stiffness_n = REST_N * (use - use**2 / 3.0 + use**3 / 27.0)  # per rad
+    gradient = (1.0 / front - 1.0 / rear) * MASS_KG / 4.0 / stiffness_n * (v + 1.0) / v  # the slip angle's tangent
     assert turn > 0.0  # steer is positive to the right, and so is yaw
     assert v / turn == pytest.approx((WHEELBASE_M + gradient * v * v) / math.tan(middle), rel=0.03)
 
@@ -135,9 +176,9 @@ def test_without_brakes_a_car_rolls_down_by_gravity() -> None:
     before = speed_mps(bodies, car)
     run(bodies, 4.0, ground=ground)
     tilt = math.atan(0.1)
-    pulled = (math.sin(tilt) - ROLLING_RESISTANCE * math.cos(tilt)) * MASS_KG * G / WITH_WHEELS_KG
+    pulled = math.sin(tilt) * MASS_KG * G / WITH_WHEELS_KG
     assert speed_mps(bodies, car) - before == pytest.approx(4.0 * pulled, rel=0.01)
-    assert bodies.velocity[car, 2] / bodies.velocity[car, 0] == pytest.approx(-0.1, rel=1e-3)
+    assert bodies.velocity[car, 2] / bodies.velocity[car, 0] == pytest.approx(-0.1, rel=3e-3)
     assert bodies.rotation[car, 0] == pytest.approx(-tilt, abs=0.003)
 
 
@@ -149,7 +190,7 @@ def test_top_speed_is_where_the_engine_balances_what_holds_the_car_back() -> Non
     v, radius = speed_mps(bodies, car), 0.355
     radps = float(bodies.engine_rpm[car]) * math.pi / 30.0
     engine_n = (on_curve(float(bodies.engine_rpm[car]), TORQUE) - 0.05 * radps) * 2.5 / radius
-    held_n = DRAG_KGPM * v * v + ROLLING_RESISTANCE * MASS_KG * G + 4 * 0.25 * v / radius**2
+    held_n = DRAG_KGPM * v * v + 4 * 0.25 * v / radius**2
     assert abs(bodies.acceleration[car, 0]) < 0.01
     assert engine_n == pytest.approx(held_n, rel=0.01)
     assert radps > v / radius * 2.5  # the clutch slips by torque over its strength
@@ -163,23 +204,24 @@ def test_the_automatic_goes_through_its_gears_with_a_pause_in_each_change() -> N
         run(bodies, 0.01)
         gears.append(int(bodies.gear[car]))
     visited = [gear for gear, _ in itertools.groupby(gears)]
-    assert visited[:7] == [1, 0, 2, 0, 3, 0, 4]
-    first_change = [gear for gear, _ in zip(gears, itertools.count(), strict=False)].index(0)
-    assert gears[first_change : first_change + 60].count(0) == pytest.approx(50, abs=1)
+    assert visited[:8] == [0, 1, 0, 2, 0, 3, 0, 4]
+    pauses = [len(list(same)) for gear, same in itertools.groupby(gears) if gear == 0][1:4]
+    assert pauses == pytest.approx([51, 51, 51], abs=1)  # the first step past gear_switch_time engages
     assert max(visited) == len(RATIOS)
 
 
-@slow_uncompiled
-def test_the_automatic_does_not_hunt_between_two_gears() -> None:
-    hunting = tuple(Gear(ratio, 0.5, 0.65) for ratio in RATIOS)  # a change up lands below the limit of changing down
-    bodies, car = one(sedan(forward_gears=hunting))
-    bodies.set_control(car, VehicleControl(throttle=0.7))
-    gears = []
-    for _ in range(2000):
+def test_the_automatic_waits_after_a_change_before_it_looks_again() -> None:
+    eager = tuple(Gear(1.0, 0.1, 0.11) for _ in range(6))  # wants up, always
+    bodies, car = one(sedan(forward_gears=eager, gear_switch_time=0.05))
+    bodies.set_control(car, VehicleControl(throttle=1.0))
+    begun = []
+    for n in range(600):
+        before = int(bodies.gear[car])
         run(bodies, 0.01)
-        gears.append(int(bodies.gear[car]))
-    engaged = [gear for gear, _ in itertools.groupby(gear for gear in gears if gear)]
-    assert engaged == sorted(set(engaged))
+        if before > 0 and bodies.gear[car] == 0:
+            begun.append(0.01 * n)
+    assert len(begun) >= 4
+    assert np.diff(begun) == pytest.approx(AUTOBOX_LATENCY_S, abs=0.03)
 
 
 def test_manual_gears_and_reverse_engage_at_once() -> None:
@@ -206,10 +248,10 @@ def test_engine_braking_slows_more_in_a_low_gear() -> None:
 
 def test_load_moves_forward_in_braking_and_outward_in_a_bend() -> None:
     bodies, car = launched(20.0, VehicleControl(manual_gear_shift=True, brake=0.6))
-    run(bodies, 0.6)
+    run(bodies, 1.2)
     loads = bodies.wheel_load[car]
     a = -float(bodies.acceleration[car, 0])
-    height_m = BOX.location.z - 0.3
+    height_m = BOX.location.z - 0.3  # nobody says how far below the centre of mass the tyres push: from the ground
     assert loads[:2].sum() - loads[2:].sum() == pytest.approx(2.0 * MASS_KG * a * height_m / WHEELBASE_M, rel=0.05)
     bodies, car = launched(15.0, NEUTRAL._replace(steer=0.1))
     run(bodies, 1.0)
@@ -227,15 +269,16 @@ def test_the_friction_circle_is_never_left() -> None:
         bodies.set_control(car, VehicleControl(throttle, rng.uniform(-1.0, 1.0), brake * (rng.random() < 0.4)))
         run(bodies, 0.2)
         force = np.hypot(bodies.wheel_long_force[car], bodies.wheel_lat_force[car])
-        assert (force <= 0.6 * bodies.wheel_load[car] * (1.0 + 1e-2) + 1.0).all()
+        most = [ROAD_FRICTION * 0.6 * grip_load(load, REST_N) for load in bodies.wheel_load[car]]
+        assert (force <= np.array(most) * (1.0 + 1e-2) + 1.0).all()
 
 
 def test_steering_weakens_with_speed_by_the_steering_curve() -> None:
     for v_mps, fraction in ((0.0, 1.0), (60.0 / 3.6, 0.8), (200.0 / 3.6, 0.7)):
         bodies, car = one()
+        bodies.enable_constant_velocity(car, (v_mps, 0.0, 0.0))
         bodies.set_control(car, NEUTRAL._replace(steer=-0.1))
-        bodies.set_target_velocity(car, (v_mps, 0.0, 0.0))
-        run(bodies, 0.01)
+        run(bodies, 0.1)
         assert bodies.wheel_steer_deg(car, 0) == pytest.approx(-7.0 * fraction, rel=1e-3)  # the inner wheel
         assert -7.0 * fraction < bodies.wheel_steer_deg(car, 1) < 0.0
 

@@ -52,7 +52,7 @@ def test_a_vehicle_put_back_on_its_wheels_has_no_failure_and_drives_on() -> None
     assert bodies.failure[car] == ROLLOVER
     bodies.set_pose(car, at(z=0.2))
     bodies.set_control(car, VehicleControl(throttle=0.5))
-    run(bodies, 3.0, 0.05)
+    run(bodies, 4.0, 0.05)
     assert bodies.failure[car] == 0
     assert not bodies.tumbling[car]
     assert bodies.velocity[car, 0] > 3.0

@@ -25,8 +25,8 @@ class Fleet:
         for lane, blueprint in enumerate(found for found in LIBRARY if found.vehicle is not None):
             assert blueprint.vehicle is not None
             pose = Transform(Vector3D(0.0, 40.0 * lane, 0.0))
-            physics, offsets = blueprint.vehicle
-            slot = self.bodies.add_vehicle(physics, pose, blueprint.box, wheel_offsets_m=offsets)
+            physics, offsets, undercarriage = blueprint.vehicle
+            slot = self.bodies.add_vehicle(physics, pose, blueprint.box, offsets, undercarriage)
             self.slots[blueprint.definition.id] = slot
 
     def drive(self, seconds: float, control: VehicleControl) -> None:

@@ -68,7 +68,7 @@ class PedalControl:
         lag_mps = reference_mps - reference_mps2 * self.dt_s - speed_mps
         demand_mps2 = reference_mps2 + FOLLOW_1PS * lag_mps - self.disturbance_mps2
         gain_mps2 = max(self.model.throttle_mps2(speed_mps), 0.1)
-        if demand_mps2 >= 0.0 and gear == 0:
+        if demand_mps2 >= 0.0 and gear == 0 and speed_mps > STUCK_MPS:
             self.last = Pedals(0.0, 0.0)  # nothing pulls while it shifts, and everything at once afterwards
         elif demand_mps2 >= 0.0:
             self.last = Pedals(min(demand_mps2 / gain_mps2, 1.0), 0.0)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from linden.physics.columns import Columns, finite
 from linden.physics.state import VEHICLE
 from linden.physics.vehicle.parameters import (
+    HULL_INERTIA,
     centre_of_mass,
     check,
     local_wheels,
@@ -21,6 +22,7 @@ from linden.values.space import BoundingBox, Rotation, Transform, Vector3D
 from linden.values.vehicles import (
     AckermannControl,
     AckermannSettings,
+    Undercarriage,
     VehicleControl,
     VehiclePhysicsControl,
     VehicleTelemetry,
@@ -37,6 +39,7 @@ class Cockpits(Columns):
         super().__init__()
         self._physics: dict[int, VehiclePhysicsControl] = {}
         self._offsets_m: dict[int, tuple[Vector3D, ...]] = {}
+        self._undercarriage: dict[int, Undercarriage] = {}
 
     def pose(self, slot: int) -> Transform:
         """Return where the actor's origin is, m and degrees."""
@@ -55,6 +58,7 @@ class Cockpits(Columns):
         s["manual_gear_shift"][slot] = control.manual_gear_shift
         s["gear_command"][slot] = max(-1, min(99, int(control.gear)))
         s["ackermann_on"][slot] = False
+        s["controlled"][slot] = True
 
     def set_controls(self, slots: NDArray[np.integer], controls: F64) -> None:
         """Set many at once: ``controls`` (K, 7) in the order of VehicleControl's fields; the last of a slot holds."""
@@ -67,6 +71,7 @@ class Cockpits(Columns):
             s[name][slots] = clean[:, column] != 0.0
         s["gear_command"][slots] = np.clip(clean[:, 6], -1, 99)
         s["ackermann_on"][slots] = False
+        s["controlled"][slots] = True
 
     def control(self, slot: int) -> VehicleControl:
         """Return the control in force; ``gear`` is the one engaged, -1 in reverse, 0 while the gearbox changes."""
@@ -87,7 +92,24 @@ class Cockpits(Columns):
         if not s["ackermann_on"][slot]:
             s["ackermann_memory"][slot] = 0.0
         s["ackermann"][slot] = [finite(value, -1e3, 1e3) for value in target]
-        s["ackermann_on"][slot] = True
+        s["ackermann_on"][slot] = s["controlled"][slot] = True
+
+    def set_sticky(self, slot: int, *, sticky: bool) -> None:
+        """Let every control stay until the next (as at first), or act in one frame only."""
+        self.state["sticky"][slot] = sticky
+
+    def set_autopilot(self, slot: int, *, on: bool) -> None:
+        """Take note of who drives; a change takes feet and hands off, unless a control has come since the last frame.
+
+        After CARLA's AWheeledVehicleAIController: a client's own control goes before.
+        """
+        s = self.state
+        if bool(s["autopilot"][slot]) == on:
+            return
+        s["autopilot"][slot] = on
+        if not s["controlled"][slot]:
+            s["throttle"][slot] = s["steer"][slot] = s["brake"][slot] = 0.0
+            s["hand_brake"][slot] = s["reverse"][slot] = s["ackermann_on"][slot] = False
 
     def ackermann_settings(self, slot: int) -> AckermannSettings:
         """Return the gains of the two controllers."""
@@ -110,16 +132,18 @@ class Cockpits(Columns):
         Raises:
             Refusal: the physics control describes nothing that can drive, or changes the number of wheels.
         """
-        check(control, wheel_count=len(self._offsets_m[slot]))
-        self._fit(slot, control, local_wheels(control, self.pose(slot)) or self._offsets_m[slot])
+        check(control, wheel_count=len(self._physics[slot].wheels))
+        count = len(self._offsets_m[slot])
+        self._fit(slot, control, local_wheels(control, self.pose(slot), count) or self._offsets_m[slot])
 
     def _fit(self, slot: int, control: VehiclePhysicsControl, offsets_m: Sequence[Vector3D]) -> None:
         s = self.state
         box = BoundingBox(Vector3D(*map(float, s["box_centre"][slot])), Vector3D(*map(float, s["half_extent"][slot])))
-        com_m = centre_of_mass(control, box, offsets_m)
-        self.specs[slot] = specification(control, box, offsets_m, com_m)
+        under = self._undercarriage[slot]
+        com_m = centre_of_mass(control, box, offsets_m, under)
+        self.specs[slot] = specification(control, offsets_m, com_m, under)
         s["mass_kg"][slot] = control.mass
-        s["yaw_inertia_kgm2"][slot] = yaw_inertia_kgm2(control.mass, box)
+        s["yaw_inertia_kgm2"][slot] = HULL_INERTIA * yaw_inertia_kgm2(control.mass, box)
         s["centre_of_mass"][slot] = com_m
         s["target_gear"][slot] = min(s["target_gear"][slot], len(control.forward_gears))
         s["footing"][slot] = 0.0
@@ -142,11 +166,12 @@ class Cockpits(Columns):
             gear = int(fitting[0]) + 1 if len(fitting) else int(spec["gear_count"])
             s["target_gear"][slot] = s["gear"][slot] = gear
             s["shift_left_s"][slot] = 0.0
-        ratio = (0.0, *spec["gear_ratio"], -spec["gear_ratio"][0])[gear]
+        ratio = (0.0, *spec["gear_ratio"], spec["reverse_ratio"])[gear]
         s["engine_rpm"][slot] = np.clip(radps * ratio, 0.0, spec["engine_max_radps"]) * RPM_PER_RADPS
 
     def _forget_vehicle(self, slot: int) -> None:
         self._physics.pop(slot, None)
+        self._undercarriage.pop(slot, None)
         self._offsets_m.pop(slot, None)
 
     # -- what it does --------------------------------------------------------------------------------------------------
@@ -173,7 +198,24 @@ class Cockpits(Columns):
             engine_rpm=float(s["engine_rpm"][slot]),
             gear=int(s["gear"][slot]),
             drag=float(self.specs[slot]["drag_kgpm"]) * ahead * ahead,
-            wheels=tuple(self._wheel_telemetry(slot, k) for k in range(len(self._offsets_m[slot]))),
+            wheels=self._wheels_telemetry(slot),
+        )
+
+    def _wheels_telemetry(self, slot: int) -> tuple[WheelTelemetry, ...]:
+        """Return as many as the physics control has wheels; two that stand for one share its load and forces."""
+        count = len(self._offsets_m[slot])
+        wheels = tuple(self._wheel_telemetry(slot, k) for k in range(count))
+        if count == len(self._physics[slot].wheels):
+            return wheels
+        return tuple(
+            wheel._replace(
+                tire_load=0.5 * wheel.tire_load,
+                torque=0.5 * wheel.torque,
+                long_force=0.5 * wheel.long_force,
+                lat_force=0.5 * wheel.lat_force,
+            )
+            for wheel in wheels
+            for _ in range(2)
         )
 
     def _wheel_telemetry(self, slot: int, k: int) -> WheelTelemetry:

@@ -1,4 +1,4 @@
-"""One vehicle, one step: gear, steering, loads, motion in the plane of the road, place, footing, in that order."""
+"""One vehicle, one step: driver, gear, steering, loads, motion in the plane of the road, footing, in that order."""
 
 import math
 
@@ -6,12 +6,17 @@ from linden.compiled import part
 from linden.ground import Ground
 from linden.physics.axes import plane_axes, within_turn
 from linden.physics.state import Body, Spec, Work
-from linden.physics.vehicle.chassis import solve_motion
-from linden.physics.vehicle.powertrain import axle_drive, change_gear, turn_engine
+from linden.physics.vehicle.chassis import move_body, push_tyres, stands, stop
+from linden.physics.vehicle.driver import BRAKE, HAND_BRAKE, THROTTLE, follow_inputs
+from linden.physics.vehicle.powertrain import change_gear, pedal, turn_wheels_and_engine
 from linden.physics.vehicle.suspension import find_footing, settle
+from linden.physics.vehicle.tyre import slip_tangent
 from linden.physics.vehicle.wheels import load_wheels, prepare_wheels, steer_wheels
 
-FELT_LAG_S = 0.1  # the load follows the acceleration as fast as springs and dampers let it
+LONGEST_STEP_S = 0.01  # tyres and wheels are worked out in steps no longer: CARLA's own max_substep_delta_time
+SLOW_MPS = 5.0  # below, each of those in three: Unreal's ThresholdLongitudinalSpeed and its substep counts
+SLOW_STEPS = 3
+FASTEST_TURN_RADPS = math.radians(3600.0)  # Unreal lets no body spin faster
 _STILL = 1e-4  # m/s, rad/s: springs slower than this, and for longer than they could turn round in, have come to rest
 _STILL_FOR_S = 0.2
 
@@ -21,87 +26,102 @@ def advance_vehicle(v: Body, spec: Spec, w: Work, ground: Ground, gravity_mps2: 
     """Advance the vehicle ``v``; ``w`` is scratch, ``left`` how many of the frame's substeps come after this one.
 
     What is only read from outside, slips and forces, is written in the last of them.
-
-    The body turns first and the motion is solved in the turned axes: that splits the step into a rotation, which keeps
-    the energy, and a backward Euler step against friction, which only takes; the steady turn is met at any step.
     """
     cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
     if v.footing[3] == 0.0:
         find_footing(v, spec, w, ground, cosine, sine)
     if _goes_on_resting(v):
         return
+    ahead = v.velocity[0] * cosine + v.velocity[1] * sine
+    follow_inputs(v, spec, ahead, dt_s)
     change_gear(v, spec, dt_s)
-    arm_x, arm_y = _arm(v, cosine, sine)
-    turn = v.angular_velocity[2]
-    velocity_x, velocity_y = v.velocity[0] - turn * arm_y, v.velocity[1] + turn * arm_x  # of the centre of mass
-    v.rotation[1] = within_turn(v.rotation[1] + turn * dt_s)
-    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
-    on_ground = v.support_mps2 > 0.0
-    pitch = v.footing[1] if on_ground else 0.0
-    roll = v.footing[2] if on_ground else 0.0
-    nose, side = plane_axes(pitch, v.rotation[1], roll)
+    steer_wheels(v, spec)
+    load_wheels(v, spec)
+    prepare_wheels(v, spec, w, gravity_mps2)
+    steps = math.ceil(dt_s / LONGEST_STEP_S - 1e-9) * (1 if abs(ahead) > SLOW_MPS else SLOW_STEPS)
     rise = v.velocity[2] - v.heave_mps
-    w.start[0] = velocity_x * nose[0] + velocity_y * nose[1] + rise * nose[2]
-    w.start[1] = velocity_x * side[0] + velocity_y * side[1] + rise * side[2]
-    w.start[2] = turn
-    weight = v.mass_kg * gravity_mps2 if v.gravity else 0.0
-    w.pull[0], w.pull[1], w.pull[2] = -weight * nose[2], -weight * side[2], 0.0
-    _move(v, spec, w, gravity_mps2, dt_s, left)
-    ahead, across, turn = w.speeds[0], w.speeds[1], w.speeds[2]
-    velocity_x, velocity_y = ahead * nose[0] + across * side[0], ahead * nose[1] + across * side[1]
-    v.position[0] += arm_x + velocity_x * dt_s
-    v.position[1] += arm_y + velocity_y * dt_s
-    arm_x, arm_y = _arm(v, cosine, sine)
-    v.position[0] -= arm_x
-    v.position[1] -= arm_y
-    v.velocity[0], v.velocity[1] = velocity_x + turn * arm_y, velocity_y - turn * arm_x
-    v.angular_velocity[2] = turn
+    gained_x, gained_y = 0.0, 0.0
+    for _ in range(steps):
+        rise, pushed_x, pushed_y = _roll_on(v, spec, w, gravity_mps2, rise, dt_s / steps)
+        gained_x, gained_y = gained_x + pushed_x / steps, gained_y + pushed_y / steps
+    v.felt_mps2[0], v.felt_mps2[1] = gained_x, gained_y
+    if left == 0:
+        _report_wheels(v, spec, w)
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
     find_footing(v, spec, w, ground, cosine, sine)
-    settle(v, spec, ahead, across, gravity_mps2, dt_s)
-    v.heave_mps = v.velocity[2] - ahead * nose[2] - across * side[2]
+    settle(v, spec, w.speeds[0], w.speeds[1], gravity_mps2, dt_s)
+    v.heave_mps = v.velocity[2] - rise
     write_tilt(v, cosine, sine)
     _rest_where_still(v, w, dt_s)
 
 
 @part
-def _move(v: Body, spec: Spec, w: Work, gravity_mps2: float, dt_s: float, left: int) -> None:
-    """Solve the motion in the plane of the road and turn wheels and engine with it."""
-    held = v.constant_velocity_on
-    if held:
-        w.start[0], w.start[1] = v.constant_velocity[0], v.constant_velocity[1]
-    steer_wheels(v, spec, w.start[0])
-    load_wheels(v, spec)
-    w.drive[0], w.drive[1], w.drive[2] = axle_drive(v, spec, dt_s)
-    prepare_wheels(v, spec, w, gravity_mps2, dt_s)
-    solve_motion(v, spec, w, dt_s)
-    if held:
+def _roll_on(
+    v: Body, spec: Spec, w: Work, gravity_mps2: float, rise_mps: float, dt_s: float
+) -> tuple[float, float, float]:
+    """Advance motion, place and heading in the plane of the road, wheels and engine with them.
+
+    ``rise_mps``: the vertical speed that goes with the plane. Returned: that afterwards, and the tyres' force over
+    the mass, forward and to the right, m/s².
+    """
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    on_ground = v.support_mps2 > 0.0
+    nose, side = plane_axes(v.footing[1] if on_ground else 0.0, v.rotation[1], v.footing[2] if on_ground else 0.0)
+    arm_x, arm_y = _arm(v, cosine, sine)
+    turn = max(-FASTEST_TURN_RADPS, min(FASTEST_TURN_RADPS, v.angular_velocity[2]))
+    velocity_x, velocity_y = v.velocity[0] - turn * arm_y, v.velocity[1] + turn * arm_x  # of the centre of mass
+    w.speeds[0] = velocity_x * nose[0] + velocity_y * nose[1] + rise_mps * nose[2]
+    w.speeds[1] = velocity_x * side[0] + velocity_y * side[1] + rise_mps * side[2]
+    w.speeds[2] = turn
+    weight = v.mass_kg * gravity_mps2 if v.gravity else 0.0
+    w.pull[0], w.pull[1], w.pull[2] = -weight * nose[2], -weight * side[2], 0.0
+    if v.constant_velocity_on:
         w.speeds[0], w.speeds[1] = v.constant_velocity[0], v.constant_velocity[1]
-    blend = dt_s / (FELT_LAG_S + dt_s)
-    for axis in range(2):
-        felt = (w.speeds[axis] - w.start[axis]) / dt_s - w.pull[axis] / v.mass_kg
-        v.felt_mps2[axis] += blend * (felt - v.felt_mps2[axis])
-    if left == 0:
-        _report_wheels(v, spec, w)
-    mean = 0.0
-    for k in range(spec.wheel_count):
-        v.wheel_omega[k] = w.omega_radps[k]
-        mean += spec.drive_share[k] * w.omega_radps[k]
-    turn_engine(v, spec, mean, dt_s)
+    before_x, before_y = w.speeds[0], w.speeds[1]
+    _push_and_turn(v, spec, w, dt_s)
+    felt_x, felt_y = (w.speeds[0] - before_x) / dt_s, (w.speeds[1] - before_y) / dt_s
+    if v.constant_velocity_on:
+        w.speeds[0], w.speeds[1] = v.constant_velocity[0], v.constant_velocity[1]
+    ahead, across, turn = w.speeds[0], w.speeds[1], w.speeds[2]
+    velocity_x, velocity_y = ahead * nose[0] + across * side[0], ahead * nose[1] + across * side[1]
+    v.rotation[1] = within_turn(v.rotation[1] + turn * dt_s)
+    new_x, new_y = _arm(v, math.cos(v.rotation[1]), math.sin(v.rotation[1]))
+    v.position[0] += velocity_x * dt_s + arm_x - new_x
+    v.position[1] += velocity_y * dt_s + arm_y - new_y
+    v.velocity[0], v.velocity[1] = velocity_x + turn * new_y, velocity_y - turn * new_x
+    v.angular_velocity[2] = turn
+    return (
+        ahead * nose[2] + across * side[2],
+        felt_x - w.pull[0] / v.mass_kg,
+        felt_y - w.pull[1] / v.mass_kg,
+    )
+
+
+@part
+def _push_and_turn(v: Body, spec: Spec, w: Work, dt_s: float) -> None:
+    """Advance ``speeds`` and the spins of wheels and engine by one step."""
+    throttle = pedal(v, v.given[THROTTLE])
+    w.hand_braked = v.given[HAND_BRAKE] > 0.0
+    w.wants_to_go = throttle > 0.0 and v.given[BRAKE] == 0.0 and not w.hand_braked and v.gear != 0
+    push_tyres(v, spec, w)
+    if stands(v, spec, w, dt_s) and not v.constant_velocity_on:
+        stop(v, spec, w)
+        turn_wheels_and_engine(v, spec, w, throttle, dt_s)
+        for k in range(spec.wheel_count):
+            v.wheel_omega[k] = 0.0
+        return
+    turn_wheels_and_engine(v, spec, w, throttle, dt_s)
+    move_body(v, spec, w, dt_s)
 
 
 @part
 def _report_wheels(v: Body, spec: Spec, w: Work) -> None:
-    """Write the columns of slips, forces and torques from the solved motion, the wheels' spins being those before."""
+    """Write the columns of slips and forces."""
     for k in range(spec.wheel_count):
-        radius = spec.wheel_radius_m[k]
-        slide = w.omega_radps[k] * radius - w.along_mps[k]
-        speed = max(abs(w.along_mps[k]), 0.5)
-        v.wheel_long_slip[k] = slide / speed
-        v.wheel_lat_slip[k] = math.atan2(w.across_mps[k], speed)
-        v.wheel_long_force[k] = w.push_x_nspm[k] * slide
-        v.wheel_lat_force[k] = -w.push_y_nspm[k] * w.across_mps[k]
-        gained = w.inertia_nms[k] * (w.omega_radps[k] - v.wheel_omega[k])
-        v.wheel_torque[k] = gained + radius * v.wheel_long_force[k]
+        v.wheel_long_slip[k] = w.slip[k]
+        v.wheel_lat_slip[k] = math.atan(slip_tangent(w.across_mps[k], w.along_mps[k]))
+        v.wheel_long_force[k] = w.push_x_n[k]
+        v.wheel_lat_force[k] = w.push_y_n[k]
 
 
 @part

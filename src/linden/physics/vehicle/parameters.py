@@ -9,14 +9,19 @@ from numpy.typing import NDArray
 from linden.errors import Refusal
 from linden.geometry import rotation_matrix
 from linden.physics.state import CURVE_POINTS, GEARS, VEHICLE_SPEC, WHEELS, Rows
+from linden.physics.vehicle.wheels import WHEEL_MASS_KG
 from linden.values.space import BoundingBox, Transform, Vector2D, Vector3D
-from linden.values.vehicles import VehiclePhysicsControl, Wheel
+from linden.values.vehicles import UNKNOWN_UNDERCARRIAGE, Undercarriage, VehiclePhysicsControl, Wheel
 
 F64 = NDArray[np.float64]
 
 STANDARD_GRAVITY_MPS2 = 9.81
-AIR_DENSITY_KGPM3 = 1.225  # ISA at sea level, 15 °C
-WHEEL_MASS_KG = 20.0  # of a wheel as PhysX has it by default; a uniform disc
+AIR_DENSITY_KGPM3 = 1.25  # Unreal's, as is the area that drag_coefficient is multiplied with: its chassis by default
+CHASSIS_AREA_M2 = 1.8 * 1.4
+FRONT_SHARE = 0.45  # of the torque, on four wheels: PhysX's differential by default
+HULL_INERTIA = 0.75
+"""Yaw inertia of a vehicle's hull over that of its box: PhysX takes the inertia of the hull, which is shorter at the
+corners and has no mirrors. From recorded yaw rates, which are met best between 0.7 and 0.8 (docs/fidelity.md)."""
 _RPM = 2.0 * math.pi / 60.0
 _LEAST_COM_HEIGHT_M = 0.1
 
@@ -29,21 +34,44 @@ def default_wheel_offsets(box: BoundingBox, wheel_count: int) -> tuple[Vector3D,
     return Vector3D(x, -y, 0.0), Vector3D(x, y, 0.0), Vector3D(-x, -y, 0.0), Vector3D(-x, y, 0.0)
 
 
-def local_wheels(control: VehiclePhysicsControl, pose: Transform) -> tuple[Vector3D, ...] | None:
-    """Return the wheels' places in the vehicle's frame, m, of those in the world, cm; None if none is given."""
+def local_wheels(control: VehiclePhysicsControl, pose: Transform, count: int) -> tuple[Vector3D, ...] | None:
+    """Return the wheels' places in the vehicle's frame, m, of those in the world, cm; None if none is given.
+
+    ``count``: how many it drives on; of four that stand for two, the middle of each pair.
+    """
     world_m = np.array([wheel.position for wheel in control.wheels]) / 100.0
     if not world_m.any():
         return None
     local = (world_m - np.asarray(pose.location)) @ rotation_matrix(pose.rotation)
+    local = local.reshape(count, -1, 3).mean(axis=1)
     return tuple(Vector3D(*map(float, row)) for row in local)
 
 
 def world_wheels(control: VehiclePhysicsControl, pose: Transform, offsets_m: Sequence[Vector3D]) -> tuple[Wheel, ...]:
     """Return the wheels with their places in the world, cm: the inverse of :func:`local_wheels`."""
-    world_cm = 100.0 * (np.asarray(offsets_m) @ rotation_matrix(pose.rotation).T + np.asarray(pose.location))
+    local_m = np.repeat(np.asarray(offsets_m), len(control.wheels) // len(offsets_m), axis=0)
+    world_cm = 100.0 * (local_m @ rotation_matrix(pose.rotation).T + np.asarray(pose.location))
     return tuple(
         wheel._replace(position=Vector3D(*map(float, place)))
         for wheel, place in zip(control.wheels, world_cm, strict=True)
+    )
+
+
+def axle_wheel(left: Wheel, right: Wheel) -> Wheel:
+    """Return the one wheel of an axle on which CARLA's two-wheelers have two, side by side.
+
+    What each of two wheels adds, torques and the forces of damping and slip, adds up; the rest is their mean.
+    """
+    return Wheel(
+        tire_friction=0.5 * (left.tire_friction + right.tire_friction),
+        damping_rate=left.damping_rate + right.damping_rate,
+        max_steer_angle=0.5 * (left.max_steer_angle + right.max_steer_angle),
+        radius=0.5 * (left.radius + right.radius),
+        max_brake_torque=left.max_brake_torque + right.max_brake_torque,
+        max_handbrake_torque=left.max_handbrake_torque + right.max_handbrake_torque,
+        lat_stiff_max_load=0.5 * (left.lat_stiff_max_load + right.lat_stiff_max_load),
+        lat_stiff_value=0.5 * (left.lat_stiff_value + right.lat_stiff_value),
+        long_stiff_value=left.long_stiff_value + right.long_stiff_value,
     )
 
 
@@ -79,14 +107,21 @@ def _numbers(value: object) -> list[float]:
     return [float(value)]  # type: ignore[arg-type]  # the leaves of a VehiclePhysicsControl are numbers
 
 
-def centre_of_mass(control: VehiclePhysicsControl, box: BoundingBox, offsets_m: Sequence[Vector3D]) -> Vector3D:
+def centre_of_mass(
+    control: VehiclePhysicsControl,
+    box: BoundingBox,
+    offsets_m: Sequence[Vector3D],
+    undercarriage: Undercarriage = UNKNOWN_UNDERCARRIAGE,
+) -> Vector3D:
     """Return the centre of mass in the vehicle's frame, m.
 
     ``center_of_mass`` is an offset (Unreal adds it to the centre it computes from the body's shape); we add it to the
-    centre of the box, and keep the result between the axles and over the ground, so that every wheel carries weight.
+    middle of the hull where that is known, else to that of the box, and keep the result between the axles and over
+    the ground, so that every wheel carries weight.
     """
     front, rear = offsets_m[0].x, offsets_m[-1].x
-    x = box.location.x + control.center_of_mass.x
+    hull_x_m = box.location.x if undercarriage.hull_x_m is None else undercarriage.hull_x_m
+    x = hull_x_m + control.center_of_mass.x
     z = box.location.z + control.center_of_mass.z
     span = front - rear
     return Vector3D(
@@ -97,37 +132,43 @@ def centre_of_mass(control: VehiclePhysicsControl, box: BoundingBox, offsets_m: 
 
 
 def yaw_inertia_kgm2(mass_kg: float, box: BoundingBox) -> float:
-    """Return that of a uniform box about the vertical, as PhysX computes it: m (l² + w²) / 12."""
+    """Return that of a uniform box about the vertical: m (l² + w²) / 12."""
     return mass_kg * ((2.0 * box.extent.x) ** 2 + (2.0 * box.extent.y) ** 2) / 12.0
 
 
 def specification(
-    control: VehiclePhysicsControl, box: BoundingBox, offsets_m: Sequence[Vector3D], com_m: Vector3D
+    control: VehiclePhysicsControl,
+    offsets_m: Sequence[Vector3D],
+    com_m: Vector3D,
+    undercarriage: Undercarriage = UNKNOWN_UNDERCARRIAGE,
 ) -> Rows:
-    """Return a VEHICLE_SPEC record. ``offsets_m``: wheels in the vehicle's frame, FL, FR, BL, BR (front, back)."""
+    """Return a VEHICLE_SPEC record. ``offsets_m``: wheels in the vehicle's frame, FL, FR, BL, BR.
+
+    Two places (front, back) make a two-wheeler, whose control may have four wheels, as CARLA's have.
+    """
     spec: Rows = np.zeros((), VEHICLE_SPEC)
-    count = len(control.wheels)
+    count, wheels = len(offsets_m), control.wheels
+    if count < len(wheels):
+        wheels = axle_wheel(*wheels[:2]), axle_wheel(*wheels[2:])
     spec["wheel_count"] = count
     spec["wheel_x_m"][:count] = [offset.x for offset in offsets_m]
     spec["wheel_y_m"][:count] = [offset.y for offset in offsets_m]
-    for k, wheel in enumerate(control.wheels):
+    for k, wheel in enumerate(wheels):
         _wheel(spec, k, wheel)
-    spec["drive_share"][:count] = 0.25 if count == WHEELS else (0.0, 1.0)
+    rear_share = 1.0 - FRONT_SHARE
+    spec["drive_share"][:count] = np.repeat((FRONT_SHARE, rear_share), 2) / 2.0 if count == WHEELS else (0.0, 1.0)
     _loads(spec, count, com_m)
     half = count // 2
     spec["axle_front_m"] = spec["wheel_x_m"][:half].mean()
     spec["axle_rear_m"] = spec["wheel_x_m"][half:count].mean()
     spec["wheelbase_m"] = max(0.1, float(spec["axle_front_m"] - spec["axle_rear_m"]))
     spec["track_m"] = np.ptp(spec["wheel_y_m"][:count])
-    spec["com_height_m"] = com_m.z
-    spec["drag_kgpm"] = 0.5 * AIR_DENSITY_KGPM3 * max(0.0, control.drag_coefficient) * frontal_area_m2(box)
+    spec["sway_m"] = com_m.z if undercarriage.sway_m is None else undercarriage.sway_m
+    spec["drag_kgpm"] = 0.5 * AIR_DENSITY_KGPM3 * max(0.0, control.drag_coefficient) * CHASSIS_AREA_M2
+    spec["tyres_lag"] = undercarriage.tyres_lag
     _engine(spec, control)
+    spec["reverse_ratio"] = min(undercarriage.reverse_ratio, 0.0) * control.final_ratio
     return spec
-
-
-def frontal_area_m2(box: BoundingBox) -> float:
-    """Return width times height of the box: what CARLA's dimensionless drag_coefficient is multiplied with."""
-    return 4.0 * box.extent.y * box.extent.z
 
 
 def _wheel(spec: Rows, k: int, wheel: Wheel) -> None:
@@ -146,18 +187,20 @@ def _wheel(spec: Rows, k: int, wheel: Wheel) -> None:
 
 
 def _loads(spec: Rows, count: int, com_m: Vector3D) -> None:
-    """Fill in how weight and accelerations load the wheels: the plane of loads that balances both moments.
+    """Fill in how the weight loads the wheels, and how far from the centre of mass it does.
 
-    Gillespie, Fundamentals of Vehicle Dynamics, eqs. 1-6 and 1-7 for two axles; least squares over any set of wheels.
+    The plane of loads that balances both moments: Gillespie, Fundamentals of Vehicle Dynamics, eq. 1-6 for two axles;
+    least squares over any set of wheels.
     """
-    for axis, com, share in (("wheel_x_m", com_m.x, "load_per_ax"), ("wheel_y_m", com_m.y, "load_per_ay")):
+    spec["load_share"][:count] = 1.0 / count
+    for axis, com in (("wheel_x_m", com_m.x), ("wheel_y_m", com_m.y)):
         arm = spec[axis][:count] - com
         spread = arm - arm.mean()
         square = float((spread**2).sum())
         if square > 1e-6:
-            spec[share][:count] = -com_m.z * spread / square
             spec["load_share"][:count] -= arm.mean() * spread / square
-    spec["load_share"][:count] += 1.0 / count
+    for axis, com, column in (("wheel_x_m", com_m.x, "pitch_arm2_m2"), ("wheel_y_m", com_m.y, "roll_arm2_m2")):
+        spec[column] = max(0.01, float((spec["load_share"][:count] * (spec[axis][:count] - com) ** 2).sum()))
 
 
 def _engine(spec: Rows, control: VehiclePhysicsControl) -> None:

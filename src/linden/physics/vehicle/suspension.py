@@ -10,8 +10,8 @@ from linden.compiled import part
 from linden.ground import Ground, surface_under, triangle_under
 from linden.physics.state import Body, Spec, Work
 
-BOUNCE_RADPS = 12.0  # 1.9 Hz: between a soft car (1.0 to 1.5 Hz, Gillespie, chapter 5) and a stiff shuttle
-DAMPING = 0.7  # of critical
+BOUNCE_RADPS = 10.0  # both as recorded: a car that is dropped settles so to half a millimetre (docs/fidelity.md)
+DAMPING = 1.05  # of critical
 DEEPEST_M = 0.15  # the bump stops: the body goes no deeper below its place
 _HANGING_M = 1.0  # a wheel over an edge hangs this much below the highest, no lower
 _STEEPEST_LEAN_RAD = 0.7
@@ -87,14 +87,14 @@ def settle(v: Body, spec: Spec, speed_x_mps: float, speed_y_mps: float, gravity_
 def _lean(v: Body, spec: Spec, stiff: float, dt_s: float) -> None:
     """Advance pitch and roll: towards the ground's, squatting under thrust and leaning out of the bend.
 
-    The angle under an acceleration a at height h is a h / (bounce² (l/2)²), of springs that sit half a wheelbase or
-    half a track l/2 away; a two-wheeler instead leans into the bend until weight and tyre force are in line with it.
+    The angle under an acceleration a with the lever h is a h / (bounce² l²), of springs a mean l away from the centre
+    of mass; Unreal's lever is how far below it the tyres push. A two-wheeler instead leans into the bend until weight
+    and tyre force are in line with it.
     """
-    lever = spec.com_height_m / (BOUNCE_RADPS * BOUNCE_RADPS)
-    ahead, right = v.felt_mps2[0], v.felt_mps2[1]
-    pitch = v.footing[1] + lever * ahead / (0.25 * spec.wheelbase_m * spec.wheelbase_m)
+    lever = spec.sway_m / (BOUNCE_RADPS * BOUNCE_RADPS)
+    pitch = v.footing[1] + lever * v.felt_mps2[0] / spec.pitch_arm2_m2
     if spec.track_m > 0.0:
-        roll = v.footing[2] - lever * right / (0.25 * spec.track_m * spec.track_m)
+        roll = v.footing[2] - lever * v.felt_mps2[1] / spec.roll_arm2_m2
     else:
         roll = v.footing[2] + math.atan(v.felt_mps2[1] / max(1.0, v.support_mps2))
     for axis, target in ((0, pitch), (1, roll)):

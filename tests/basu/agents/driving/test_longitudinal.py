@@ -40,6 +40,12 @@ def test_drag_is_learnt() -> None:
     assert control.disturbance_mps2 == pytest.approx(-0.4, abs=0.02)
 
 
+def test_in_neutral_the_throttle_is_pressed_to_set_off_and_lifted_while_it_rolls() -> None:
+    control = PedalControl(MODEL, 0.05)
+    assert control.step(0.0, 0.05, 1.0, holding=False, gear=0).throttle > 0.0
+    assert control.step(3.0, 3.05, 1.0, holding=False, gear=0).throttle == 0.0
+
+
 def test_the_pedals_are_never_pressed_together_and_stay_in_range() -> None:
     control = PedalControl(MODEL, 0.05)
     for speed, accel in ((0.0, 9.0), (5.0, -20.0), (5.0, 0.2), (9.0, -0.1)):
