@@ -1,0 +1,169 @@
+"""The caster of the CPU: Embree's trees, asked in packets from compiled code by all processors.
+
+What stands and each body is a scene of its own, built once; one scene above holds them as instances, posed anew each
+tick. Trees are built by one thread, and packets are cut alike however many threads there are: so of two triangles at
+the same distance it is always the same one that answers.
+"""
+
+import ctypes
+import weakref
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.casting.crew import in_stretches
+from linden.casting.embree_library import embree, packet_width
+from linden.casting.packets import COHERENT, INCOHERENT, build
+from linden.casting.rays import F32, I32, Hits, Instances, Rays
+from linden.meshes.mesh import Mesh
+
+_TRIANGLES, _INSTANCE = 0, 121  # RTC_GEOMETRY_TYPE_
+_INDEX, _VERTEX = 0, 1  # RTC_BUFFER_TYPE_
+_UINT3, _FLOAT3, _ROWS_3X4 = 0x5003, 0x9003, 0x9134  # RTC_FORMAT_
+_LOW, _HIGH = 0, 2  # RTC_BUILD_QUALITY_
+_DYNAMIC, _ROBUST = 1, 4  # RTC_SCENE_FLAG_
+
+_HERE = np.eye(3, 4, dtype=np.float32)
+
+
+class EmbreeCaster:
+    """Answers rays by Embree; see ``linden.casting.rays.Caster``.
+
+    Attributes:
+        width: rays in a packet.
+        scene: address of the scene above, for kernels that send packets themselves.
+        pose_of: (K, 3, 4) poses of the instances, as they were put last.
+    """
+
+    def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
+        """Build the trees.
+
+        Raises:
+            NoEmbreeError: the library cannot be used here.
+        """
+        self._library = embree()
+        self.width = packet_width()
+        self._kernels = build(self.width)
+        self._device = self._library.rtcNewDevice(b"threads=1")
+        self._kept: list[NDArray[Any]] = []  # Embree reads them in place
+        self._bodies = [self._built(mesh) for mesh in bodies]
+        self._standing = self._built(standing)
+        self.scene: int = self._library.rtcNewScene(self._device)
+        self._library.rtcSetSceneFlags(self.scene, _DYNAMIC)
+        self._library.rtcSetSceneBuildQuality(self.scene, _LOW)
+        self._instances: list[int] = []
+        self._mesh: I32 = np.zeros(0, np.int32)
+        self.pose_of: F32 = np.zeros((0, 3, 4), np.float32)
+        self._place(self._new_instance(self._standing, 0), _HERE)
+        self._library.rtcCommitScene(self.scene)
+        weakref.finalize(self, _release, self._library, self._device, [*self._bodies, self._standing, self.scene])
+        self._complain()
+
+    def _built(self, mesh: Mesh) -> int:
+        """Return a scene of the mesh's triangles."""
+        library = self._library
+        scene: int = library.rtcNewScene(self._device)
+        library.rtcSetSceneFlags(scene, _ROBUST)
+        library.rtcSetSceneBuildQuality(scene, _HIGH)
+        if len(mesh.triangles):
+            geometry = library.rtcNewGeometry(self._device, _TRIANGLES)
+            library.rtcSetGeometryBuildQuality(geometry, _HIGH)
+            # Embree reads 16 bytes of each vertex, so one more has to lie behind the last
+            vertices = np.concatenate([mesh.vertices_m, mesh.vertices_m[-1:]]).astype(np.float32, order="C")
+            triangles = np.ascontiguousarray(mesh.triangles, np.uint32)
+            self._kept += [vertices, triangles]
+            for kind, form, array, count in (
+                (_VERTEX, _FLOAT3, vertices, len(vertices) - 1),
+                (_INDEX, _UINT3, triangles, len(triangles)),
+            ):
+                library.rtcSetSharedGeometryBuffer(geometry, kind, 0, form, array.ctypes.data, 0, 12, count)
+            library.rtcCommitGeometry(geometry)
+            library.rtcAttachGeometryByID(scene, geometry, 0)
+            library.rtcReleaseGeometry(geometry)  # the scene keeps it
+        library.rtcCommitScene(scene)
+        return scene
+
+    def _new_instance(self, scene: int, number: int) -> int:
+        geometry: int = self._library.rtcNewGeometry(self._device, _INSTANCE)
+        self._library.rtcSetGeometryInstancedScene(geometry, scene)
+        self._library.rtcAttachGeometryByID(self.scene, geometry, number)
+        self._library.rtcReleaseGeometry(geometry)  # the scene keeps it
+        return geometry
+
+    def _place(self, geometry: int, pose: F32) -> None:
+        self._library.rtcSetGeometryTransform(geometry, 0, _ROWS_3X4, pose.ctypes.data)
+        self._library.rtcCommitGeometry(geometry)
+
+    def pose(self, instances: Instances) -> None:
+        """Put the bodies where they are now; who is not among them is not there."""
+        poses = np.ascontiguousarray(instances.pose, np.float32)
+        if np.array_equal(instances.mesh, self._mesh) and np.array_equal(poses, self.pose_of):
+            return
+        self._recast(instances.mesh)
+        self.pose_of = poses
+        for geometry, pose in zip(self._instances, poses, strict=False):
+            self._place(geometry, pose)
+        self._library.rtcCommitScene(self.scene)
+        self._complain()
+
+    def _recast(self, mesh: I32) -> None:
+        """Give each instance its mesh; those that nobody needs wait out of sight."""
+        library, before = self._library, self._mesh
+        for row, number in enumerate(mesh.tolist()):
+            if row == len(self._instances):
+                self._instances.append(self._new_instance(self._bodies[number], row + 1))
+                continue
+            if row >= len(before):
+                library.rtcEnableGeometry(self._instances[row])
+            library.rtcSetGeometryInstancedScene(self._instances[row], self._bodies[number])
+        for geometry in self._instances[len(mesh) : max(len(mesh), len(before))]:
+            library.rtcDisableGeometry(geometry)
+        self._mesh = np.array(mesh, np.int32)
+
+    def closest(self, rays: Rays, farthest_m: float, *, coherent: bool = False) -> Hits:
+        """Return the nearest surface of each ray; ``coherent`` where neighbours go side by side, which is faster."""
+        count = len(rays.origin_m)
+        hits = Hits(
+            np.empty(count, np.float32),
+            np.empty(count, np.int32),
+            np.empty(count, np.int32),
+            np.empty((count, 3), np.float32),
+        )
+        where = (self.scene, arguments(coherent=coherent), *_flat(rays), np.float32(farthest_m), self.pose_of)
+
+        def work(start: int, stop: int) -> None:
+            self._kernels.closest(*where, *hits, start, stop)
+
+        in_stretches(count, work, multiple=self.width)
+        return hits
+
+    def blocked(self, rays: Rays, farthest_m: float, *, coherent: bool = False) -> NDArray[np.bool_]:
+        """Return (N,) whether anything is met at all."""
+        hit = np.empty(len(rays.origin_m), np.bool_)
+        where = (self.scene, arguments(coherent=coherent), *_flat(rays), np.float32(farthest_m))
+
+        def work(start: int, stop: int) -> None:
+            self._kernels.blocked(*where, hit, start, stop)
+
+        in_stretches(len(hit), work, multiple=self.width)
+        return hit
+
+    def _complain(self) -> None:
+        if error := self._library.rtcGetDeviceError(self._device):
+            raise RuntimeError(f"Embree reports error {error} (RTCError in rtcore_device.h)")
+
+
+def arguments(*, coherent: bool) -> int:
+    """Return the address of RTCIntersectArguments for kernels."""
+    return int((COHERENT if coherent else INCOHERENT).ctypes.data)
+
+
+def _flat(rays: Rays) -> tuple[F32, F32]:
+    return np.ascontiguousarray(rays.origin_m, np.float32), np.ascontiguousarray(rays.direction, np.float32)
+
+
+def _release(library: ctypes.CDLL, device: int, scenes: list[int]) -> None:
+    for scene in reversed(scenes):
+        library.rtcReleaseScene(scene)
+    library.rtcReleaseDevice(device)
