@@ -220,3 +220,40 @@ def test_ackermann_settings_come_back_and_rule_how_a_target_speed_is_reached(wor
     car.apply_ackermann_control(carla.VehicleAckermannControl(speed=0.0))
     ticks(world, 120)
     assert car.get_velocity().length() < 0.2
+
+
+def test_a_bicycle_has_two_wheels_and_answers_four_that_come_back_as_they_were_set(world, point) -> None:
+    bike = spawned(world, "vehicle.bh.crossbike", point)
+    assert bike.attributes["number_of_wheels"] == "2"
+    control = bike.get_physics_control()
+    wheels = list(control.wheels)
+    assert len(wheels) == 4
+    for k, wheel in enumerate(wheels):
+        wheel.tire_friction = 2.0 + 0.25 * k
+    control.wheels = wheels
+    bike.apply_physics_control(control)
+    ticks(world, 1)
+    assert [wheel.tire_friction for wheel in bike.get_physics_control().wheels] == [2.0, 2.25, 2.5, 2.75]
+    assert len(bike.get_telemetry_data().wheels) == 4
+
+
+@pytest.mark.parametrize(("sticky", "kept"), [("True", 0.5), ("False", 0.0)])
+def test_a_control_acts_once_or_until_the_next_as_the_attribute_says(world, point, sticky: str, kept: float) -> None:
+    blueprint = world.get_blueprint_library().find("vehicle.tesla.model3")
+    blueprint.set_attribute("sticky_control", sticky)
+    car = world.spawn_actor(blueprint, point)
+    car.apply_control(carla.VehicleControl(throttle=0.5))
+    ticks(world, 1)
+    assert car.get_control().throttle == 0.5
+    ticks(world, 1)
+    assert car.get_control().throttle == kept
+
+
+def test_switching_an_autopilot_off_takes_the_foot_from_the_pedal(client, world, car) -> None:
+    client.apply_batch_sync([carla.command.SetAutopilot(car, True)], False)
+    car.apply_control(carla.VehicleControl(throttle=0.5))
+    ticks(world, 2)
+    assert car.get_control().throttle == 0.5
+    client.apply_batch_sync([carla.command.SetAutopilot(car, False)], False)
+    ticks(world, 1)
+    assert car.get_control().throttle == 0.0
