@@ -111,21 +111,23 @@ def main() -> None:
             [sys.executable, "-m", "linden.cli", "serve", "--port", "0", *maps],
             stdout=subprocess.PIPE, stderr=log, text=True,
         )  # fmt: skip
-        ready = next((line for line in server.stdout if line.startswith("linden: ready")), None)
-        if ready is None:
-            raise SystemExit("the server ended before it was ready")
-        ports = [int(part.split(",")[0]) for part in ready.split("port ")[1:]]
-        target = Target(psutil.Process(server.pid), *ports, Path(log.name))
-        rows.settle(target)
-        print(HEAD)
-        for name, (count, row) in ROWS.items():
-            chosen = not arguments.only or any(word in name for word in arguments.only)
-            if chosen and (name != TOWNS or arguments.towns):
-                measure(name, row, target, max(1, round(count * arguments.share)))
-        with Rude(target.port) as last:
-            assert last.call("version") == "0.9.16"
-        began_s = time.monotonic()
-        server.terminate()
+        try:
+            ready = next((line for line in server.stdout if line.startswith("linden: ready")), None)
+            if ready is None:
+                raise SystemExit("the server ended before it was ready")
+            ports = [int(part.split(",")[0]) for part in ready.split("port ")[1:]]
+            target = Target(psutil.Process(server.pid), *ports, Path(log.name))
+            rows.settle(target)
+            print(HEAD)
+            for name, (count, row) in ROWS.items():
+                chosen = not arguments.only or any(word in name for word in arguments.only)
+                if chosen and (name != TOWNS or arguments.towns):
+                    measure(name, row, target, max(1, round(count * arguments.share)))
+            with Rude(target.port) as last:
+                assert last.call("version") == "0.9.16"
+        finally:  # a row that ends the table must not leave the server behind
+            began_s = time.monotonic()
+            server.terminate()
         code = server.wait(10)
         lines = log.seek(0) or log.read().splitlines()
         bugs = sum("internal error" in line or "Traceback" in line for line in lines)
