@@ -1,7 +1,7 @@
 """How functions are compiled: one decorator, so that every kernel is built alike and keeps its type for the reader.
 
 ``error_model="numpy"``: dividing by zero gives inf or nan, as arrays do. No ``fastmath`` and no threads: the same input
-gives the same bits; what is seen has threads (``spread``), pictures both. The compiled code is kept beside the source
+gives the same bits; what is seen has threads (``unlocked``), pictures both. The compiled code is kept beside the source
 (numba's cache), so it is paid for once.
 """
 
@@ -43,6 +43,16 @@ def unlocked(function: Function) -> Function:
     return cast("Function", numba.njit(cache=True, error_model="numpy", nogil=True)(function))
 
 
+def shading(function: Function) -> Function:
+    """Compile as :func:`unlocked` does, and let sums be reordered: for light and colour, never for what is measured."""
+    return cast("Function", numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True)(function))
+
+
+def shading_part(function: Function) -> Function:
+    """Compile into the kernels that call it, as :func:`part` does, with sums reordered."""
+    return cast("Function", numba.njit(error_model="numpy", fastmath=True)(function))
+
+
 def fingerprint(*sources: Path) -> int:
     """Return 62 bits that change with the text of any file given; a kernel that closes over them is renewed with it."""
     digest = hashlib.sha256()
@@ -55,23 +65,3 @@ def machine() -> str:
     """Return what else decides the last bits of a computed number: the versions of what computes, and the processor."""
     processor = f"{llvmlite.binding.get_host_cpu_name()} {llvmlite.binding.get_host_cpu_features().flatten()}"
     return f"numpy {np.__version__}, numba {numba.__version__}, {processor}"
-
-
-def spread(function: Function) -> Function:
-    """Compile a kernel whose ``prange`` loops run on all cores; each turn of such a loop writes places of its own.
-
-    So the answer does not depend on how many cores there are. For kernels that call parts of other modules as well.
-    """
-    return cast("Function", numba.njit(cache=True, parallel=True, nogil=True, error_model="numpy")(function))
-
-
-def spread_shading(function: Function) -> Function:
-    """Compile as :func:`spread` does, and let sums be reordered: for light and colour, never for what is measured."""
-    return cast(
-        "Function", numba.njit(cache=True, parallel=True, nogil=True, fastmath=True, error_model="numpy")(function)
-    )
-
-
-def shading_part(function: Function) -> Function:
-    """Compile into the kernels that call it, as :func:`part` does, with sums reordered."""
-    return cast("Function", numba.njit(fastmath=True, error_model="numpy")(function))
