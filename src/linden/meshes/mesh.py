@@ -51,6 +51,8 @@ class LampOf(IntEnum):
     BLINKER_RIGHT = 8
     REVERSE = 9
     WINDOW = 10  # of a house, at night
+    BRAKE = 11  # shines while braking alone: the third light, in the rear window
+    BEACON = 12  # of police cars, ambulances and fire trucks: VehicleLightState.Special1
 
 
 FACE = np.dtype(

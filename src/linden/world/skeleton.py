@@ -18,7 +18,7 @@ from linden.values.space import Rotation, Transform, Vector3D
 
 F64 = NDArray[np.float64]
 
-_FULL_SWING_MPS = 0.8
+FULL_SWING_MPS = 0.8
 """From this speed on legs swing as far as they do at a natural walk; standing, they do not."""
 
 
@@ -31,6 +31,7 @@ class Skeleton(NamedTuple):
     stride: float
     gait_share: F64  # of a stride, ascending
     gait_deg: dict[str, F64]  # by the joint's name without its side
+    standing: F64  # (N,) height of each bone's beginning over the ground, upright
 
     def row(self, name: str) -> int | None:
         """Return the row of a bone, None where there is none of that name."""
@@ -42,13 +43,16 @@ def skeleton() -> Skeleton:
     """Return the skeleton of all walkers."""
     facts = json.loads(resources.files("linden").joinpath("data/skeleton.json").read_text("utf-8"))
     names = tuple(name for name, _, _ in facts["bones"])
+    parents = tuple(names.index(parent) if parent else -1 for _, parent, _ in facts["bones"])
+    offsets = np.array([offset for _, _, offset in facts["bones"]])
     return Skeleton(
         names=names,
-        parents=tuple(names.index(parent) if parent else -1 for _, parent, _ in facts["bones"]),
-        offsets=np.array([offset for _, _, offset in facts["bones"]]),
+        parents=parents,
+        offsets=offsets,
         stride=facts["stride"],
         gait_share=np.array(facts["gait"].pop("percent")) / 100.0,
         gait_deg={joint: np.array(angles) for joint, angles in facts["gait"].items()},
+        standing=_heights_standing(parents, offsets),
     )
 
 
@@ -58,7 +62,7 @@ def walking_pose(stature_m: float, walked_m: float, speed_mps: float) -> F64:
     pose = np.zeros((len(bones.names), 4, 4))
     pose[:] = np.eye(4)
     pose[:, :3, 3] = bones.offsets * stature_m
-    swing = min(1.0, speed_mps / _FULL_SWING_MPS)
+    swing = min(1.0, speed_mps / FULL_SWING_MPS)
     share = walked_m / (bones.stride * stature_m)
     for joint, angles_deg in bones.gait_deg.items():
         for side, ahead in (("R", 0.0), ("L", 0.5)):
@@ -68,17 +72,17 @@ def walking_pose(stature_m: float, walked_m: float, speed_mps: float) -> F64:
             pitch_deg = swing * float(-bend_deg if joint == "leg" else bend_deg)
             pose[row, :3, :3] = rotation_matrix(Rotation(pitch_deg, 0.0, 0.0))
     feet = [bones.names.index(f"crl_{part}__{side}") for part in ("foot", "toe") for side in "LR"]
-    standing_m = _heights_standing(bones)[feet] * stature_m
+    standing_m = bones.standing[feet] * stature_m
     sinks_m = float((in_component(pose)[feet, 2, 3] - standing_m).min())
     pose[bones.names.index("crl_hips__C"), 2, 3] -= sinks_m
     return pose
 
 
-def _heights_standing(bones: Skeleton) -> F64:
+def _heights_standing(parents: tuple[int, ...], offsets: F64) -> F64:
     """Return the height (N,) of each bone's beginning over the ground, in statures, upright."""
-    heights = np.zeros(len(bones.names))
-    for row, parent in enumerate(bones.parents):
-        heights[row] = bones.offsets[row, 2] + (heights[parent] if parent >= 0 else 0.0)
+    heights = np.zeros(len(parents))
+    for row, parent in enumerate(parents):
+        heights[row] = offsets[row, 2] + (heights[parent] if parent >= 0 else 0.0)
     return heights
 
 

@@ -1,0 +1,191 @@
+"""Closed solids as meshes: lofts, boxes, tubes, balls; how they are looked upon, moved and mirrored.
+
+Every solid is closed and its triangles point outwards, so that what is put together of them is seen from outside only.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.meshes.mesh import FACE, NO_OBJECT, LampOf, Material, Mesh
+
+F64 = NDArray[np.float64]
+Point = Sequence[float]
+
+_NO_AREA_M2 = 1e-9
+"""Triangles smaller than this have no direction: two of their corners coincide."""
+
+
+class Look(NamedTuple):
+    """How a face meets light; ``colour`` is sRGB and, where ``painted``, stands in for the actor's own."""
+
+    material: Material
+    colour: tuple[int, int, int]
+    lamp: LampOf = LampOf.NONE
+    painted: bool = False
+
+
+def faces_of(look: Look, *shape: int) -> NDArray[np.void]:
+    """Return an array of faces that look so; the tag is given to the whole body at the end (:func:`tagged`)."""
+    made = np.zeros(shape, FACE)
+    made["material"], made["colour"], made["lamp"], made["painted"], made["object"] = *look, NO_OBJECT
+    return made
+
+
+def tagged(mesh: Mesh, tag: int) -> Mesh:
+    """Return the mesh with one semantic tag on all faces."""
+    faces = mesh.faces.copy()
+    faces["tag"] = tag
+    return mesh._replace(faces=faces)
+
+
+def volume_m3(mesh: Mesh) -> float:
+    """Return the volume that a closed mesh encloses, negative where it is inside out."""
+    a, b, c = (mesh.vertices_m[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+
+
+def bounds(mesh: Mesh) -> tuple[F64, F64]:
+    """Return the least and the greatest of each coordinate, m."""
+    return mesh.vertices_m.min(0).astype(np.float64), mesh.vertices_m.max(0).astype(np.float64)
+
+
+def closed(vertices_m: F64, triangles: NDArray[np.intp], faces: NDArray[np.void]) -> Mesh:
+    """Return a solid of triangles that all turn the same way round: outwards, without those that have no area."""
+    a, b, c = (vertices_m[triangles[:, k]] for k in range(3))
+    has_area = np.linalg.norm(np.cross(b - a, c - a), axis=1) > 2.0 * _NO_AREA_M2
+    made = Mesh(vertices_m.astype(np.float32), triangles[has_area].astype(np.uint32), faces[has_area])
+    return made if volume_m3(made) >= 0.0 else inside_out(made)
+
+
+def inside_out(mesh: Mesh) -> Mesh:
+    """Return the mesh with every triangle turned round."""
+    return mesh._replace(triangles=np.ascontiguousarray(mesh.triangles[:, ::-1]))
+
+
+def loft(
+    rings_m: F64, look: Look | NDArray[np.void], first: Look | NDArray[np.void], last: Look | NDArray[np.void]
+) -> Mesh:
+    """Return the solid between rings (S, P, 3), each joined to the next; its ends are closed by strips.
+
+    ``look`` may be an array (S - 1, P): the side between points p and p + 1 of rings s and s + 1. A strip of an end
+    lies between points k, k + 1 and their partners counted from the ring's other end; arrays (P // 2,) tell them apart.
+    """
+    count, points, _ = rings_m.shape
+    ring, point = np.divmod(np.arange((count - 1) * points), points)
+    low, high = ring * points + point, ring * points + (point + 1) % points
+    sides = np.stack([low, high, high + points, low, high + points, low + points], 1).reshape(-1, 3)
+    side_faces = (faces_of(look, count - 1, points) if isinstance(look, Look) else look).reshape(-1)
+    end = _strips(points)
+    ends = [np.repeat(faces_of(x, points // 2) if isinstance(x, Look) else x, 2)[: len(end)] for x in (first, last)]
+    triangles = np.concatenate([sides, end[:, ::-1], end + (count - 1) * points])
+    return closed(rings_m.reshape(-1, 3), triangles, np.concatenate([np.repeat(side_faces, 2), *ends]))
+
+
+def _strips(points: int) -> NDArray[np.intp]:
+    """Return triangles (points - 1 or more, 3) that close a ring by strips, two for each; those too many are empty."""
+    strips = []
+    for k in range(points // 2):
+        below, partner = k + 1, points - 1 - k
+        strips += [(k, below, partner), (below, max(partner - 1, below), partner)]
+    return np.array(strips, np.intp)
+
+
+def box(low_m: Point, high_m: Point, look: Look) -> Mesh:
+    """Return an upright box between two corners."""
+    (x0, y0, z0), (x1, y1, z1) = low_m, high_m
+    ring = [(y0, z0), (y1, z0), (y1, z1), (y0, z1)]
+    return loft(np.array([[(x, y, z) for y, z in ring] for x in (x0, x1)]), look, look, look)
+
+
+def wedge(low_m: Point, high_m: Point, look: Look, *, top_x: tuple[float, float]) -> Mesh:
+    """Return a box whose upper side reaches from ``top_x[0]`` to ``top_x[1]`` instead: a ramp, a leaning board."""
+    (x0, y0, z0), (x1, y1, z1) = low_m, high_m
+    rings = [[(x0, y, z0), (x1, y, z0), (top_x[1], y, z1), (top_x[0], y, z1)] for y in (y0, y1)]
+    return loft(np.array(rings), look, look, look)
+
+
+def tube(path_m: Sequence[Point], radii_m: Sequence[float], sides: int, look: Look) -> Mesh:
+    """Return a round rod along a path, a radius at each of its points; its ends are closed."""
+    path = np.asarray(path_m, np.float64)
+    along = np.gradient(path, axis=0) if len(path) > 1 else path
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    rings = []
+    start = _across(along[0])
+    for point, ahead, radius_m in zip(path, along, radii_m, strict=True):
+        start = start - ahead * (start @ ahead)
+        start /= np.linalg.norm(start)
+        rings.append(point + radius_m * _circle(start, np.cross(ahead, start), sides))
+    return loft(np.array(rings), look, look, look)
+
+
+def rod(start_m: Point, end_m: Point, radius_m: float, look: Look, *, sides: int = 6) -> Mesh:
+    """Return a straight rod of one thickness."""
+    return tube([start_m, end_m], [radius_m, radius_m], sides, look)
+
+
+def lathe(heights_m: Sequence[float], radii_m: Sequence[float], sides: int, look: Look | Sequence[Look]) -> Mesh:
+    """Return what turns about the z axis: a radius at each height; ``look`` may differ from band to band."""
+    circle = _circle(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), sides)
+    rings = np.array([r * circle + (0.0, 0.0, z) for z, r in zip(heights_m, radii_m, strict=True)])
+    if isinstance(look, Look):
+        return loft(rings, look, look, look)
+    return loft(rings, np.stack([faces_of(band, sides) for band in look]), look[0], look[-1])
+
+
+def ball(centre_m: Point, radii_m: Point, look: Look, *, sides: int = 8, bands: int = 6) -> Mesh:
+    """Return an ellipsoid."""
+    angles = np.linspace(-0.5 * math.pi, 0.5 * math.pi, bands + 1)
+    made = lathe(np.sin(angles).tolist(), np.cos(angles).tolist(), sides, look)
+    return stretched(made, radii_m, centre_m)
+
+
+def prism(outline_m: Sequence[tuple[float, float]], low_m: float, high_m: float, look: Look, *, along: int) -> Mesh:
+    """Return an outline pulled along an axis (0, 1, 2) from ``low_m`` to ``high_m``; in the other two it lies.
+
+    The outline must be such that strips between its points and their partners from its other end fill it.
+    """
+    flat = np.asarray(outline_m, np.float64)
+    rings = np.empty((2, len(flat), 3))
+    rings[:, :, [axis for axis in range(3) if axis != along]] = flat
+    rings[0, :, along], rings[1, :, along] = low_m, high_m
+    return loft(rings, look, look, look)
+
+
+def _across(direction: F64) -> F64:
+    """Return a unit vector square to a direction, level where it can be."""
+    side = np.cross(direction, (0.0, 0.0, 1.0) if abs(direction[2]) < 0.9 else (1.0, 0.0, 0.0))
+    unit: F64 = side / np.linalg.norm(side)
+    return unit
+
+
+def _circle(first: F64, second: F64, sides: int) -> F64:
+    angles = (np.arange(sides) + 0.5) * (math.tau / sides)
+    circle: F64 = np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * second
+    return circle
+
+
+def moved(mesh: Mesh, by_m: Point) -> Mesh:
+    """Return the mesh elsewhere."""
+    return mesh._replace(vertices_m=(mesh.vertices_m + np.asarray(by_m)).astype(np.float32))
+
+
+def stretched(mesh: Mesh, factors: Point, by_m: Point = (0.0, 0.0, 0.0)) -> Mesh:
+    """Return the mesh scaled along each axis (a negative factor mirrors it), then moved."""
+    vertices = mesh.vertices_m.astype(np.float64) * np.asarray(factors) + np.asarray(by_m)
+    made = mesh._replace(vertices_m=vertices.astype(np.float32))
+    return made if math.prod(factors) > 0.0 else inside_out(made)
+
+
+def turned(mesh: Mesh, rotation: F64, about_m: Point = (0.0, 0.0, 0.0)) -> Mesh:
+    """Return the mesh turned by a (3, 3) rotation about a point."""
+    about = np.asarray(about_m)
+    return mesh._replace(vertices_m=((mesh.vertices_m - about) @ rotation.T + about).astype(np.float32))
+
+
+def both_sides(mesh: Mesh) -> list[Mesh]:
+    """Return the mesh and its mirror image on the other side of the xz plane, left where y is negative."""
+    return [mesh, stretched(mesh, (1.0, -1.0, 1.0))]
