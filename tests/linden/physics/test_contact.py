@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet import BOX, FLAT, NOTHING, OFFSETS, at, one, run, sedan, slick, wall
+from fleet import BOX, FLAT, NOTHING, OFFSETS, at, one, run, sedan, slick, slope, wall
 from linden.physics.bodies import Bodies
 from linden.physics.contact.boxes import overlap
 from linden.physics.contact.pairs import find_pairs
@@ -187,6 +187,17 @@ def test_wheels_roll_over_what_is_lower_than_the_clearance() -> None:
     bodies.set_target_velocity(car, (10.0, 0.0, 0.0))
     run(bodies, 2.0, statics=wall(10.0, half=(0.5, 5.0, 0.05)))
     assert bodies.velocity[car, 0] > 9.0
+
+
+def test_wheels_roll_over_low_things_on_a_hill_too() -> None:
+    rise = 0.1
+    bodies, slot = one(pose=at(pitch=math.degrees(math.atan(rise))))
+    ahead_m = 14.0
+    debris = at(ahead_m, 0.0, rise * ahead_m, pitch=math.degrees(math.atan(rise)))
+    bodies.add_prop(debris, BoundingBox(Vector3D(0.0, 0.0, 0.075), Vector3D(0.93, 0.75, 0.075)), None)
+    bodies.velocity[slot] = 10.0, 0.0, 10.0 * rise
+    run(bodies, 4.0, ground=slope(rise))
+    assert bodies.position[slot][0] > ahead_m + 5.0
 
 
 def test_without_collisions_bodies_pass_through_each_other() -> None:

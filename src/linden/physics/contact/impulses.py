@@ -43,6 +43,9 @@ def part_bodies(rows: Rows, pairs: I32, statics: Statics, account: F64) -> None:
             continue
         _write_box(rows[pairs[n, 0]], a)
         _write_other(rows, pairs[n, 1], statics, b)
+        _follow_slope(rows[pairs[n, 0]], a, b)
+        if pairs[n, 1] >= 0:
+            _follow_slope(rows[pairs[n, 1]], b, a)
         depth, normal_x, normal_y, x, y = overlap(a, b)
         if depth > 0.0:
             hits[count, 0], hits[count, 1] = n, depth
@@ -77,6 +80,27 @@ def _write_box(v: Body, box: F64) -> None:
     box[LOW], box[HIGH] = middle - v.half_extent[2], middle + v.half_extent[2]
     if v.kind == VEHICLE:
         box[LOW] = max(box[LOW], v.position[2] + CLEARANCE_M)
+
+
+@part
+def _follow_slope(v: Body, box: F64, other: F64) -> None:
+    """Raise or lower a body's box by the slope it stands on, where it is nearest to the other box.
+
+    On a hill the road at the bumper is higher than under the middle, and so is what lies there for wheels to roll over.
+    A vehicle's slope is that of the ground under its wheels: it does not hit more when it dives under the brakes.
+    """
+    if v.tumbling:
+        return
+    if v.kind == VEHICLE:
+        rise, fall = math.tan(v.footing[1]), math.tan(v.footing[2])
+    else:
+        rise, fall = math.sin(v.rotation[0]), math.sin(v.rotation[2])
+    away_x, away_y = other[X] - box[X], other[Y] - box[Y]
+    ahead = max(-box[HALF_X], min(box[HALF_X], away_x * box[COS] + away_y * box[SIN]))
+    right = max(-box[HALF_Y], min(box[HALF_Y], away_y * box[COS] - away_x * box[SIN]))
+    higher = rise * ahead - fall * right
+    box[LOW] += higher
+    box[HIGH] += higher
 
 
 @part
