@@ -1,0 +1,151 @@
+"""What is painted across the lanes: crosswalks, stop lines, yield lines; and the islands of roundabouts."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.ground import Ground
+from linden.meshes.markings import PAINT_HEIGHT_M, WHITE
+from linden.meshes.mesh import Material, Mesh, join
+from linden.meshes.patches import Look, polygons
+from linden.meshes.road import GRASS, KERB_STONE
+from linden.opendrive.evaluate.tables import Tables, tables_of
+from linden.opendrive.furniture import RoadObject
+from linden.opendrive.model import OpenDrive
+from linden.values.enums import SemanticTag
+
+F64 = NDArray[np.float64]
+
+_BAR_M, _BAR_GAP_M = 0.6, 0.6  # of a crosswalk: 12 to 24 inches each, MUTCD 2009, section 3B.18
+_TOOTH_M, _TOOTH_GAP_M = 0.45, 0.2  # of a yield line, section 3B.16
+_ISLAND_M = 0.15  # how high islands rise above the road
+_PAINT = Look(Material.PAINT, SemanticTag.ROAD_LINES, WHITE)
+_UP = (0.0, 0.0, 1.0)
+_HIGH_M = 1e6
+
+
+def across_lanes(opendrive: OpenDrive, ground: Ground) -> Mesh:
+    """Return everything painted that the map gives as an object with an outline, and its islands."""
+    tables = tables_of(opendrive)
+    found: list[Mesh] = []
+    for index, road in enumerate(tables.roads):
+        for thing in road.objects:
+            outline = _outline(tables, index, thing)
+            if len(outline) < 3:
+                continue
+            kind = thing.type.lower()
+            if thing.is_crosswalk:
+                found += [_flat(piece, ground) for piece in _bars(outline)]
+            elif kind == "roadmark" and "yield" in thing.name.lower():
+                found += [_flat(piece, ground) for piece in _teeth(outline, _towards(tables, index, thing))]
+            elif kind == "roadmark":
+                found.append(_flat(outline, ground))
+            elif kind == "trafficisland":
+                found.append(_island(outline, ground))
+    return join(found)
+
+
+def _outline(tables: Tables, road_index: int, thing: RoadObject) -> F64:
+    """Return an object's outline in CARLA's frame, (N, 2) in m, without a last corner that repeats the first."""
+    if not thing.outline:
+        return np.empty((0, 2))
+    along_m = [corner.first_m if corner.is_along_road else thing.s_m for corner in thing.outline]
+    aside_m = np.array([corner.second_m if corner.is_along_road else thing.t_m for corner in thing.outline])
+    s_m = np.clip(along_m, 0.0, tables.road_length_m[road_index])
+    pose = tables.curves.pose(np.full(len(s_m), road_index), s_m)
+    local = np.array([(0.0, 0.0) if corner.is_along_road else corner[:2] for corner in thing.outline])
+    cos, sin = np.cos(pose.heading_rad + thing.heading_rad), np.sin(pose.heading_rad + thing.heading_rad)
+    x_m = pose.x_m - np.sin(pose.heading_rad) * aside_m + cos * local[:, 0] - sin * local[:, 1]
+    y_m = pose.y_m + np.cos(pose.heading_rad) * aside_m + sin * local[:, 0] + cos * local[:, 1]
+    outline = np.stack([x_m, -y_m], axis=1)
+    return outline[:-1] if len(outline) > 1 and np.allclose(outline[0], outline[-1], atol=1e-3) else outline
+
+
+def _towards(tables: Tables, road_index: int, thing: RoadObject) -> F64:
+    """Return the direction, (2,) in CARLA's frame, in which those come whom a yield line concerns."""
+    road = tables.roads[road_index]
+    s_m = np.clip([thing.s_m], 0.0, tables.road_length_m[road_index])
+    heading = float(tables.curves.pose(np.array([road_index]), s_m).heading_rad[0])
+    forward = 1.0 if (thing.t_m <= 0.0) == road.is_right_hand else -1.0
+    return forward * np.array([math.cos(heading), -math.sin(heading)])
+
+
+def _bars(outline: F64) -> list[F64]:
+    """Return the bars of a crosswalk: they lie the way the cars go, one beside the other along its longest side."""
+    sides = np.roll(outline, -1, axis=0) - outline
+    lengths = np.hypot(*sides.T)
+    longest = int(np.argmax(lengths))
+    along = sides[longest] / lengths[longest]
+    at = (outline - outline[longest]) @ along
+    count = max(1, math.floor((at.max() - at.min() + _BAR_GAP_M) / (_BAR_M + _BAR_GAP_M)))
+    rest = at.max() - at.min() - count * _BAR_M - (count - 1) * _BAR_GAP_M
+    first = at.min() + 0.5 * rest
+    begins = [first + nth * (_BAR_M + _BAR_GAP_M) for nth in range(count)]
+    cut = (
+        _clipped(
+            _clipped(outline, outline[longest] + b * along, along), outline[longest] + (b + _BAR_M) * along, -along
+        )
+        for b in begins
+    )
+    return [piece for piece in cut if len(piece) >= 3]
+
+
+def _teeth(outline: F64, coming: F64) -> list[F64]:
+    """Return the triangles of a yield line, which point at those who come."""
+    sides = np.roll(outline, -1, axis=0) - outline
+    lengths = np.hypot(*sides.T)
+    longest = int(np.argmax(lengths))
+    along = sides[longest] / lengths[longest]
+    across = np.array([-along[1], along[0]])
+    across = across if across @ coming > 0.0 else -across
+    at, depth = (outline - outline[longest]) @ along, (outline - outline[longest]) @ across
+    count = max(1, math.floor((at.max() - at.min() + _TOOTH_GAP_M) / (_TOOTH_M + _TOOTH_GAP_M)))
+    pitch = (at.max() - at.min()) / count
+    teeth = []
+    for nth in range(count):
+        middle = outline[longest] + (at.min() + (nth + 0.5) * pitch) * along
+        base, tip = middle + depth.max() * across, middle + depth.min() * across
+        teeth.append(np.stack([base - 0.5 * _TOOTH_M * along, base + 0.5 * _TOOTH_M * along, tip]))
+    return teeth
+
+
+def _clipped(polygon: F64, at: F64, inward: F64) -> F64:
+    """Return the part of a convex polygon on one side of a line (Sutherland and Hodgman 1974)."""
+    if len(polygon) == 0:
+        return polygon
+    side = (polygon - at) @ inward
+    kept: list[F64] = []
+    for k in range(len(polygon)):
+        n = (k + 1) % len(polygon)
+        if side[k] >= 0.0:
+            kept.append(polygon[k])
+        if (side[k] >= 0.0) != (side[n] >= 0.0):
+            kept.append(polygon[k] + side[k] / (side[k] - side[n]) * (polygon[n] - polygon[k]))
+    return np.array(kept).reshape(-1, 2)
+
+
+def _flat(outline: F64, ground: Ground) -> Mesh:
+    """Return a painted area that lies on the road."""
+    height, _ = ground.surfaces_under(np.column_stack([outline, np.full(len(outline), _HIGH_M)]))
+    return polygons(np.column_stack([outline, height + PAINT_HEIGHT_M])[None], _PAINT, _UP)
+
+
+def _island(outline: F64, ground: Ground) -> Mesh:
+    """Return a kerb round an island and the grass within."""
+    height, _ = ground.surfaces_under(np.column_stack([outline, np.full(len(outline), _HIGH_M)]))
+    foot = np.column_stack([outline, height])
+    middle = foot.mean(axis=0)
+    top = foot + (0.0, 0.0, _ISLAND_M)
+    inner = top + 0.08 * (middle + (0.0, 0.0, _ISLAND_M) - top)
+    stone = Look(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
+    following = np.roll(np.arange(len(foot)), -1)
+    walls = np.stack([foot, foot[following], top[following], top], axis=1)
+    rim = np.stack([top, top[following], inner[following], inner], axis=1)
+    return join(
+        [
+            polygons(walls, stone, foot - middle),
+            polygons(rim, stone, _UP),
+            polygons(inner[None], Look(Material.GRASS, SemanticTag.TERRAIN, GRASS), _UP),
+        ]
+    )

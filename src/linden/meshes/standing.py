@@ -1,0 +1,117 @@
+"""Everything that stands on a map, as one mesh: the streets, the land, and the things of the scene in their places."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.meshes.houses import houses, plans
+from linden.meshes.markings import lines
+from linden.meshes.mesh import Material, Mesh, join
+from linden.meshes.painted import across_lanes
+from linden.meshes.patches import ALL_SIDES, Frames, Look, boxes
+from linden.meshes.posts import signs, street_lamps, traffic_lights
+from linden.meshes.road import CONCRETE, kerbs, surface
+from linden.meshes.terrain import land
+from linden.meshes.trees import trees
+from linden.opendrive.model import OpenDrive
+from linden.scene.objects import Kind, Scene
+from linden.values.enums import SemanticTag
+from linden.world.map_facts import MapFacts
+
+F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
+
+_SEED = 880
+
+
+def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:
+    """Return what stands: triangles of things name their box in ``scene``, those of the streets and the land none."""
+    return join([streets(opendrive, facts), things(facts, scene)])
+
+
+def streets(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
+    """Return the roads with their kerbs and paint, and the land around them."""
+    return join(
+        [
+            surface(opendrive),
+            kerbs(opendrive),
+            lines(opendrive),
+            across_lanes(opendrive, facts.ground),
+            land(opendrive, facts.ground),
+        ]
+    )
+
+
+def things(facts: MapFacts, scene: Scene) -> Mesh:
+    """Return the things of the scene."""
+    parts = []
+    for kind, make in _MAKERS.items():
+        rows = np.flatnonzero(scene.things["kind"] == kind)
+        if len(rows):
+            parts.append(make(_Of(facts, scene, rows)))
+    return join(parts)
+
+
+class _Of:
+    """The things of one kind: where they stand and what their boxes are."""
+
+    def __init__(self, facts: MapFacts, scene: Scene, rows: NDArray[np.intp]) -> None:
+        self.facts = facts
+        self.things = scene.things[rows]
+        self.frames = Frames(self.things["base"], self.things["yaw_rad"])
+        self._first = np.searchsorted(scene.boxes["thing"], rows).astype(np.int32)
+        self._boxes = scene.boxes
+        kind = int(self.things["kind"][0])
+        self.draw = np.random.default_rng([_SEED, kind]).random((len(rows), 8))
+
+    def box(self, nth: int) -> I32:
+        """Return the row of the nth box of each thing."""
+        return self._first + np.int32(nth)
+
+    def half_m(self, nth: int) -> F64:
+        """Return half the size (N, 3) of the nth box of each thing."""
+        half: F64 = self._boxes["half"][self.box(nth)]
+        return half
+
+
+def _lights(of: _Of) -> Mesh:
+    return traffic_lights(of.frames, of.box(0), of.box(1))
+
+
+def _signs(of: _Of) -> Mesh:
+    known = {signal.transform.location[:2]: (signal.type, signal.value) for signal in of.facts.signals}
+    kinds = [known.get((x, y), ("", None)) for x, y, _ in of.things["base"].tolist()]
+    return signs(of.frames, kinds, of.box(0), of.box(1))
+
+
+def _houses(of: _Of) -> Mesh:
+    return houses(of.frames, plans(of.half_m(0), of.draw, of.box(0)))
+
+
+def _trees(of: _Of) -> Mesh:
+    half = of.half_m(0)
+    return trees(of.frames, half[:, 0], 2.0 * half[:, 2], of.draw, of.box(0))
+
+
+def _lamps(of: _Of) -> Mesh:
+    return street_lamps(of.frames, of.box(0), of.box(1))
+
+
+def _walls(of: _Of) -> Mesh:
+    half = of.half_m(0)
+    return boxes(
+        of.frames,
+        half * (0.0, 0.0, 1.0),
+        half,
+        Look(Material.CONCRETE, SemanticTag.WALLS, CONCRETE, of.box(0)),
+        ALL_SIDES,
+    )
+
+
+_MAKERS = {
+    Kind.TRAFFIC_LIGHT: _lights,
+    Kind.TRAFFIC_SIGN: _signs,
+    Kind.HOUSE: _houses,
+    Kind.TREE: _trees,
+    Kind.STREET_LAMP: _lamps,
+    Kind.WALL: _walls,
+}
