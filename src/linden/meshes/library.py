@@ -1,0 +1,65 @@
+"""The standing mesh of a map, kept in the user's cache beside what else was derived from it: made once, read after."""
+
+import hashlib
+import json
+from functools import cache as once
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.compiled import fingerprint, machine
+from linden.meshes.mesh import FACE, Mesh
+from linden.scene.objects import Scene
+from linden.world.map_cache import MapCache
+from linden.world.maps import LoadedMap
+
+_PACKAGE = Path(__file__).parent.parent
+_MAKING = ("meshes/*.py", "opendrive/**/*.py", "values/enums.py", "scene/*.py", "ground.py", "geometry.py")
+_DTYPES = (np.dtype(np.float32), np.dtype(np.uint32), FACE)
+
+
+def standing_of(world_map: LoadedMap, scene: Scene, cache: MapCache) -> Mesh:
+    """Return everything that stands on a map with this scene, out of the cache or made; seconds if it has to be made.
+
+    Its arrays may be read-only.
+    """
+    return _read(cache.kept(f"{_key(world_map, scene)}.mesh", lambda: _written(_made(world_map, scene))))
+
+
+def _made(world_map: LoadedMap, scene: Scene) -> Mesh:
+    # here, not above: a start that finds the mesh in the cache does not pay for them
+    from linden.meshes.standing import standing  # noqa: PLC0415 - see above
+    from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
+
+    return standing(parse(world_map.text), world_map, scene)
+
+
+def _key(world_map: LoadedMap, scene: Scene) -> str:
+    """Return a name that tells all that decides the mesh: the map, what stands on it, the sources, the machine."""
+    digest = hashlib.sha256(f"{_sources()} {machine()}\n".encode())
+    for part in (world_map.text.encode(), scene.things.tobytes(), scene.boxes.tobytes()):
+        digest.update(hashlib.sha256(part).digest())
+    return digest.hexdigest()[:32]
+
+
+@once
+def _sources() -> int:
+    return fingerprint(*(file for pattern in _MAKING for file in _PACKAGE.glob(pattern)))
+
+
+def _written(mesh: Mesh) -> bytes:
+    """Return the lengths of the arrays as a line of JSON, padded to 64 bytes, and the arrays one after the other."""
+    head = json.dumps([len(part) for part in mesh]).encode().ljust(64)
+    return b"".join([head, *(np.ascontiguousarray(part).tobytes() for part in mesh)])
+
+
+def _read(content: bytes) -> Mesh:
+    counts = json.loads(content[:64])
+    at, parts = 64, list[NDArray[Any]]()
+    for count, dtype, width in zip(counts, _DTYPES, (3, 3, 1), strict=True):
+        parts.append(np.frombuffer(content, dtype, count * width, at))
+        at += count * width * dtype.itemsize
+    vertices, triangles, faces = parts
+    return Mesh(vertices.reshape(-1, 3), triangles.reshape(-1, 3), faces)
