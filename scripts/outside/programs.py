@@ -21,6 +21,7 @@ class Program(NamedTuple):
     """Whether the user ends it, so that still running at the limit is right."""
     needs_driver: bool = False
     """Whether somebody else has to drive the vehicle whose role is hero."""
+    port: int = 2000
     tells_failure: str = "Traceback"
     """What stands in its output when it failed without an exit status."""
 
@@ -123,7 +124,7 @@ UTILITIES = (
 
 
 def _smoke(name: str, limit_s: float = 200.0) -> Program:
-    return Program("test", ("-m", "unittest", "-v", f"smoke.test_{name}"), limit_s=limit_s)
+    return Program("test", ("-m", "unittest", "-v", f"smoke.test_{name}"), limit_s=limit_s, port=3654)
 
 
 SMOKE = (
@@ -154,6 +155,14 @@ def _scenario(*arguments: str, town: str, limit_s: float = 150.0, needs_driver: 
     )
 
 
+def _endless_scenario(row: Program) -> Program:
+    return row._replace(limit_s=ENDLESS_S, is_endless=True)
+
+
+NEVER_ENDING = ("ChangingWeather", "LaneOffsetActionExample")
+"""The first has no stop trigger, that of the second comes after 20 km."""
+
+
 def _scenarios(folders: Folders) -> list[Program]:
     """ScenarioRunner's own examples in all its three languages, one in asynchronous mode, and one of its routes."""
     examples = folders.of("scenario_runner") / "srunner" / "examples"
@@ -163,11 +172,12 @@ def _scenarios(folders: Folders) -> list[Program]:
             name, town = scenario.get("name", ""), scenario.get("town", "")
             row = _scenario("--sync", "--reloadWorld", "--scenario", name, town=town)
             is_endless = scenario.get("type") == "FreeRide"  # the user drives for as long as they like
-            rows.append(row._replace(limit_s=ENDLESS_S, is_endless=True) if is_endless else row)
+            rows.append(_endless_scenario(row) if is_endless else row)
     for path in sorted(examples.glob("*.xosc")):
         logic = ET.parse(path).getroot().find(".//LogicFile")
         town = "" if logic is None else logic.get("filepath", "")
-        rows.append(_scenario("--sync", "--reloadWorld", "--openscenario", f"srunner/examples/{path.name}", town=town))
+        row = _scenario("--sync", "--reloadWorld", "--openscenario", f"srunner/examples/{path.name}", town=town)
+        rows.append(_endless_scenario(row) if path.stem in NEVER_ENDING else row)
     rows += [
         _scenario("--sync", "--reloadWorld", "--openscenario2", f"srunner/examples/{path.name}", town="Town04")
         for path in sorted(examples.glob("*.osc"))

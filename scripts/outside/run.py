@@ -75,10 +75,10 @@ def main() -> int:
 
 def _run(program: Program, folders: Folders, python: str) -> Outcome:
     """Start a server and the program, and wait for the end of it."""
-    name = re.sub(r"[^A-Za-z0-9.=-]+", "_", "_".join((program.town, *program.arguments)))[:120]
+    name = f"{program.town}_" + re.sub(r"[^A-Za-z0-9.=-]+", "_", "_".join(program.arguments))[-90:]
     log, output = folders.out / f"{name}.server.txt", folders.out / f"{name}.txt"
     command = [python, "-u", *(folders.filled(argument) for argument in program.arguments)]
-    with _server(program.town, folders, log), _driver(program, python, folders, folders.out / f"{name}.driver.txt"):
+    with _server(program, folders, log), _driver(program, python, folders, folders.out / f"{name}.driver.txt"):
         began_s = time.monotonic()
         with output.open("w", encoding="utf-8") as file:
             process = subprocess.Popen(
@@ -116,10 +116,10 @@ def _wait(process: "subprocess.Popen[bytes]", limit_s: float) -> str:
 
 
 @contextmanager
-def _server(town: str, folders: Folders, log: Path) -> Iterator[None]:
-    """A server on CARLA's own port 2000, as an outside program expects it."""
-    command = [sys.executable, "-m", "linden.cli", "serve", "--map", town, "--maps", str(folders.towns)]
-    command += ["--recordings", str(folders.out / "recordings")]
+def _server(program: Program, folders: Folders, log: Path) -> Iterator[None]:
+    """A server on the port on which an outside program expects it."""
+    command = [sys.executable, "-m", "linden.cli", "serve", "--map", program.town, "--maps", str(folders.towns)]
+    command += ["--port", str(program.port), "--recordings", str(folders.out / "recordings")]
     with log.open("w", encoding="utf-8") as file:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=file, text=True)
     try:
