@@ -8,7 +8,7 @@ from linden.meshes.mesh import FACE, NO_OBJECT, Material, Mesh, join
 from linden.meshes.patches import Look, strips
 from linden.opendrive.evaluate.strips import Strips, edges_of, strips_of
 from linden.opendrive.evaluate.tables import Tables, tables_of
-from linden.opendrive.mesh import road_mesh
+from linden.opendrive.mesh import RoadMesh
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import LaneType, SemanticTag
 
@@ -40,9 +40,13 @@ _SKIRT_M = 0.12
 """How far the outermost edge of a raised lane reaches down: to where the terrain touches it, and a little more."""
 
 
-def surface(opendrive: OpenDrive) -> Mesh:
+def is_paved(type_bits: NDArray[np.uint32]) -> NDArray[np.bool_]:
+    """Return which lanes are of asphalt."""
+    return np.array([_LOOKS.get(LaneType(bits), _ROAD)[0] is Material.ASPHALT for bits in type_bits.tolist()], bool)
+
+
+def surface(mesh: RoadMesh) -> Mesh:
     """Return the surface of all lanes, triangle for triangle what the wheels roll on."""
-    mesh = road_mesh(opendrive)
     made = np.zeros(len(mesh.lanes), FACE)
     made["object"], made["tag"] = NO_OBJECT, mesh.lanes["tag"]
     for row, bits in enumerate(mesh.lanes["type_bits"].tolist()):

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.meshes.floors import floors
 from linden.meshes.houses import houses, plans
 from linden.meshes.markings import lines
 from linden.meshes.mesh import Material, Mesh, join
@@ -12,6 +13,7 @@ from linden.meshes.posts import signs, street_lamps, traffic_lights
 from linden.meshes.road import CONCRETE, kerbs, surface
 from linden.meshes.terrain import land
 from linden.meshes.trees import trees
+from linden.opendrive.mesh import road_mesh
 from linden.opendrive.model import OpenDrive
 from linden.scene.objects import Kind, Scene
 from linden.values.enums import SemanticTag
@@ -30,13 +32,16 @@ def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:
 
 def streets(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
     """Return the roads with their kerbs and paint, and the land around them."""
+    road = road_mesh(opendrive)
+    under = floors(road, facts.ground)
     return join(
         [
-            surface(opendrive),
+            surface(road),
+            under.mesh,
             kerbs(opendrive),
             lines(opendrive),
             across_lanes(opendrive, facts.ground),
-            land(opendrive, facts.ground),
+            land(opendrive, facts.ground, under),
         ]
     )
 

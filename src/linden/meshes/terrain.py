@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from linden.geometry import points_from_opendrive
 from linden.ground import Ground
+from linden.meshes.floors import Floors
 from linden.meshes.mesh import Material, Mesh, faces
 from linden.meshes.road import GRASS
 from linden.opendrive.evaluate.strips import edges_of, strips_of
@@ -28,7 +29,7 @@ _FAR_M = 2500.0  # to where a last ring of land reaches, so that the horizon is 
 _HIGH_M = 1e6
 
 
-def land(opendrive: OpenDrive, ground: Ground) -> Mesh:
+def land(opendrive: OpenDrive, ground: Ground, floors: Floors) -> Mesh:
     """Return the land of a map; flat and empty where the map has no roads."""
     from matplotlib.tri import Triangulation  # noqa: PLC0415 - a server whose maps are kept never pays for it
 
@@ -40,7 +41,8 @@ def land(opendrive: OpenDrive, ground: Ground) -> Mesh:
     a, b, c = (points[triangles[:, k]] for k in range(3))
     turned = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) < (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     triangles[turned] = triangles[turned][:, [0, 2, 1]]
-    triangles = triangles[~_on_roads((a + b + c) / 3.0, ground)]
+    middle = (a + b + c) / 3.0
+    triangles = triangles[~(_on_roads(middle, ground) | floors.take(middle[:, :2]))]
     return Mesh(
         points.astype(np.float32),
         triangles.astype(np.uint32),
