@@ -121,8 +121,8 @@ class EmbreeCaster:
             library.rtcDisableGeometry(geometry)
         self._mesh = np.array(mesh, np.int32)
 
-    def closest(self, rays: Rays, farthest_m: float, *, coherent: bool = False) -> Hits:
-        """Return the nearest surface of each ray; ``coherent`` where neighbours go side by side, which is faster."""
+    def closest(self, rays: Rays, farthest_m: float, *, coherent: bool = False, outer: bool = False) -> Hits:
+        """Return the nearest surface of each ray."""
         count = len(rays.origin_m)
         hits = Hits(
             np.empty(count, np.float32),
@@ -130,7 +130,7 @@ class EmbreeCaster:
             np.empty(count, np.int32),
             np.empty((count, 3), np.float32),
         )
-        where = (self.scene, arguments(coherent=coherent), *_flat(rays), np.float32(farthest_m), self.pose_of)
+        where = (self.scene, arguments(coherent=coherent), *_flat(rays), np.float32(farthest_m), outer, self.pose_of)
 
         def work(start: int, stop: int) -> None:
             self._kernels.closest(*where, *hits, start, stop)
@@ -139,7 +139,7 @@ class EmbreeCaster:
         return hits
 
     def blocked(self, rays: Rays, farthest_m: float, *, coherent: bool = False) -> NDArray[np.bool_]:
-        """Return (N,) whether anything is met at all."""
+        """Return (N,) whether anything is met at all, whichever its side."""
         hit = np.empty(len(rays.origin_m), np.bool_)
         where = (self.scene, arguments(coherent=coherent), *_flat(rays), np.float32(farthest_m))
 

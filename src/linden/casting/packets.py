@@ -22,6 +22,11 @@ NORMAL, U, V, TRIANGLE, GEOMETRY, INSTANCE = 12, 15, 16, 17, 18, 19
 """Columns of a packet; where a column is a vector's, y and z follow. Of a hit, GEOMETRY is -1 where there is none."""
 
 _COLUMNS = 21  # INSTANCE is followed by a column for instance arrays
+INNER_SIDES = 16
+"""How many inner sides of bodies a ray goes out through at most: those of the car it starts in, its seats, a rider."""
+ON_M = np.float32(1e-3)
+"""How far behind an inner side it goes on."""
+
 _ALIGNED = 64  # bytes
 _ALL_BITS = -1
 
@@ -34,6 +39,9 @@ def _external(name: str) -> Callable[[int, int, int, int], None]:
 
 
 _intersect4, _intersect8, _intersect16 = (_external(f"rtcIntersect{width}") for width in (4, 8, 16))
+_intersect1 = cast(
+    "Callable[[int, int, int], None]", types.ExternalFunction("rtcIntersect1", types.void(_intp, _intp, _intp))
+)
 _occluded4, _occluded8, _occluded16 = (_external(f"rtcOccluded{width}") for width in (4, 8, 16))
 
 COHERENT = np.array([1 << 16, 0xFFFF_FFFF, 0, 0, 0, 0, 0, 0], np.uint32)
@@ -101,7 +109,7 @@ def occlude(packet: Packet, width: int, scene: int, arguments: int) -> None:
 
 
 @part
-def _turned(pose: F32, row: int, x: float, y: float, z: float, out: F32, at: int) -> None:
+def _write_turned(pose: F32, row: int, x: float, y: float, z: float, out: F32, at: int) -> None:
     """Write the vector, turned as instance ``row`` is (not at all where that is negative), with length 1."""
     if row >= 0:
         x, y, z = (
@@ -111,6 +119,30 @@ def _turned(pose: F32, row: int, x: float, y: float, z: float, out: F32, at: int
         )
     scale = np.float32(1.0) / np.sqrt(x * x + y * y + z * z)
     out[at, 0], out[at, 1], out[at, 2] = x * scale, y * scale, z * scale
+
+
+@part
+def _read(
+    packet: Packet, width: int, k: int, pose: F32, distance: F32, instance: I32, triangle: I32, normal: F32, ray: int
+) -> None:
+    """Write what ray ``k`` met as the answer of ray number ``ray``."""
+    floats, ints = packet.floats, packet.ints
+    if ints[GEOMETRY * width + k] == -1:
+        distance[ray], instance[ray], triangle[ray] = np.inf, -2, -1
+        normal[ray, 0], normal[ray, 1], normal[ray, 2] = 0.0, 0.0, 0.0
+        return
+    distance[ray] = floats[FAR * width + k]
+    instance[ray] = ints[INSTANCE * width + k] - 1
+    triangle[ray] = ints[TRIANGLE * width + k]
+    x, y, z = floats[NORMAL * width + k], floats[(NORMAL + 1) * width + k], floats[(NORMAL + 2) * width + k]
+    _write_turned(pose, instance[ray], x, y, z, normal, ray)
+
+
+@part
+def _is_inner(direction: F32, instance: I32, normal: F32, ray: int) -> bool:
+    along = direction[ray, 0] * normal[ray, 0] + direction[ray, 1] * normal[ray, 1] + direction[ray, 2] * normal[ray, 2]
+    inner: bool = instance[ray] >= 0 and along > 0.0
+    return inner
 
 
 class Kernels(NamedTuple):
@@ -130,6 +162,7 @@ def build(width: int) -> Kernels:
         origin: F32,
         direction: F32,
         far_m: float,
+        outer: bool,  # noqa: FBT001 - numba knows no keywords
         pose: F32,
         distance: F32,
         instance: I32,
@@ -139,8 +172,7 @@ def build(width: int) -> Kernels:
         stop: int,
     ) -> None:
         _fingerprint = sources
-        packet = new_packet(width)
-        floats, ints = packet.floats, packet.ints
+        packet, single = new_packet(width), new_packet(1)
         for first in range(start, stop, width):
             count = min(width, stop - first)
             packet.valid[:] = 0
@@ -150,15 +182,15 @@ def build(width: int) -> Kernels:
             intersect(packet, width, scene, arguments)
             for k in range(count):
                 ray = first + k
-                if ints[GEOMETRY * width + k] == -1:
-                    distance[ray], instance[ray], triangle[ray] = np.inf, -2, -1
-                    normal[ray, 0], normal[ray, 1], normal[ray, 2] = 0.0, 0.0, 0.0
-                    continue
-                distance[ray] = floats[FAR * width + k]
-                instance[ray] = ints[INSTANCE * width + k] - 1
-                triangle[ray] = ints[TRIANGLE * width + k]
-                x, y, z = floats[NORMAL * width + k], floats[(NORMAL + 1) * width + k], floats[(NORMAL + 2) * width + k]
-                _turned(pose, instance[ray], x, y, z, normal, ray)
+                _read(packet, width, k, pose, distance, instance, triangle, normal, ray)
+                passed = 0
+                while outer and passed < INNER_SIDES and _is_inner(direction, instance, normal, ray):
+                    o, d, near_m = origin[ray], direction[ray], distance[ray] + ON_M
+                    put_ray(single, 1, 0, o[0], o[1], o[2], d[0], d[1], d[2], far_m)
+                    single.floats[NEAR] = near_m
+                    _intersect1(scene, single.at, arguments)
+                    _read(single, 1, 0, pose, distance, instance, triangle, normal, ray)
+                    passed += 1
 
     def blocked(
         scene: int,

@@ -56,10 +56,18 @@ class Caster(Protocol):
         """Put the bodies where they are now; who is not among them is not there."""
         ...
 
-    def closest(self, rays: Rays, farthest_m: float) -> Hits:
-        """Return the nearest surface of each ray; faces count from either side."""
+    def closest(self, rays: Rays, farthest_m: float, *, coherent: bool = False, outer: bool = False) -> Hits:
+        """Return the nearest surface of each ray; faces count from either side.
+
+        Args:
+            rays: as many as there are.
+            farthest_m: nothing is met beyond.
+            coherent: whether neighbours go side by side, as a camera's; changes no answer, only how fast it comes.
+            outer: whether rays go out through the inner sides of bodies, as if those were not there: then who sits in
+                a car looks out of it, as in Unreal, which draws one side of a face.
+        """
         ...
 
-    def blocked(self, rays: Rays, farthest_m: float) -> NDArray[np.bool_]:
-        """Return (N,) whether anything is met at all."""
+    def blocked(self, rays: Rays, farthest_m: float, *, coherent: bool = False) -> NDArray[np.bool_]:
+        """Return (N,) whether anything is met at all, whichever its side."""
         ...

@@ -2,6 +2,7 @@
 
 import msgpack
 
+from linden.handlers.readings import ENCODERS
 from linden.sensors.collision import SCENERY, Collision
 from linden.sensors.imu import ImuMeasurement
 from linden.simulation import Simulation
@@ -37,10 +38,12 @@ def sensor_payloads(simulation: Simulation, listened: set[int]) -> list[tuple[in
 
 
 def _payload(simulation: Simulation, measurement: Measurement) -> bytes:
-    kind, body = _encoded(simulation, measurement)
-    header = sensor_header(kind, simulation.frame, simulation.elapsed_s, measurement.pose)
-    packed: bytes = msgpack.packb(body)
-    return header + packed
+    if (encode := ENCODERS.get(type(measurement.reading))) is not None:
+        kind, packed = encode(simulation, measurement, measurement.reading)
+    else:
+        kind, body = _encoded(simulation, measurement)
+        packed = msgpack.packb(body)
+    return sensor_header(kind, simulation.frame, simulation.elapsed_s, measurement.pose) + packed
 
 
 def _encoded(simulation: Simulation, measurement: Measurement) -> tuple[SensorType, object]:

@@ -84,6 +84,10 @@ class Poses:
         """Show the custom pose: 0 not at all, 1 alone."""
         self._blend[actor_id] = finite(share, 0.0, 1.0)
 
+    def is_posed(self, actor_id: int) -> bool:
+        """Whether a walker shows anything of a custom pose."""
+        return actor_id in self._custom and self._blend.get(actor_id, 0.0) != 0.0
+
     def forget(self, actor_id: int) -> None:
         """Forget a walker that is gone."""
         self._custom.pop(actor_id, None)

@@ -11,6 +11,7 @@ from linden.sensors.instrument import Instrument
 from linden.simulation import rows
 from linden.simulation.bones import Poses
 from linden.simulation.doors import Doors
+from linden.simulation.eyes import Eye
 from linden.simulation.grip import Grip
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
@@ -56,6 +57,7 @@ class Episode:
         poses: of walkers, as clients set them.
         sockets: what is attached to a bone.
         instruments: sensors that measure by themselves, by actor id.
+        eyes: sensors that look around, by actor id.
     """
 
     def __init__(self, world_map: LoadedMap, *, first_frame: int) -> None:
@@ -82,6 +84,7 @@ class Episode:
         self._limit_of_lane_kmh = np.where(lanes["junction"] < 0, lanes["speed_limit_mps"] * _MPS_TO_KMH, np.nan)
         self.contacts: NDArray[np.void] = np.zeros(0, CONTACT)
         self.instruments: dict[int, Instrument] = {}
+        self.eyes: dict[int, Eye] = {}
         self._speed_limit_kmh: dict[int, float] = {}
         self._seen_version = -1
 

@@ -4,9 +4,10 @@ from collections import defaultdict
 from collections.abc import Container
 from typing import NamedTuple, TypeAlias
 
-from linden.sensors.collision import Collision, collisions
-from linden.sensors.instrument import Moment, Reading, observe
+from linden.sensors.collision import collisions
+from linden.sensors.instrument import Moment, observe
 from linden.simulation.episode import Episode
+from linden.simulation.eyes import Now, look_around
 from linden.values.space import Transform, Vector3D
 from linden.world.actors import NO_BODY, ActorRecord
 
@@ -18,13 +19,14 @@ class Measurement(NamedTuple):
 
     sensor: ActorRecord
     pose: Transform
-    reading: "Reading | Collision"
+    reading: object
+    """A Reading, a Collision, or what a sensor that looks around returned."""
 
 
 Measurements: TypeAlias = list[Measurement]
 
 
-def measure(episode: Episode, listened: Container[int]) -> Measurements:
+def measure(episode: Episode, listened: Container[int], now: Now) -> Measurements:
     """Return what is due in this frame of the sensors whose streams somebody reads, in the order of the sensors."""
     found: Measurements = []
     for sensor_id, instrument in episode.instruments.items():
@@ -42,6 +44,8 @@ def measure(episode: Episode, listened: Container[int]) -> Measurements:
             found.append(Measurement(sensor, moment.pose, reading))
     if len(episode.contacts):
         found += _collisions(episode, listened)
+    if episode.eyes:
+        found += [Measurement(*seen) for seen in look_around(episode, now, listened)]
     return found
 
 

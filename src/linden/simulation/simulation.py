@@ -4,9 +4,11 @@ import math
 from collections.abc import Container
 
 from linden.simulation.episode import Episode
+from linden.simulation.eyes import Now
 from linden.simulation.measuring import Measurements, measure
 from linden.simulation.recorder import Recorder
 from linden.simulation.replayer import Replayer
+from linden.simulation.seeing import Seeing
 from linden.simulation.spawning import destroy, refuse_idle, spawn
 from linden.simulation.step import step
 from linden.values.actors import ActorDescription
@@ -32,6 +34,7 @@ class Simulation:
         episode: everything that a load of a map begins anew.
         recorder: writes what happens into a file, where asked to; a load of a map ends the recording.
         replayer: lets happen again what a file says; a load of a map ends that too.
+        seeing: what sensors that look around see; it stays when a map is loaded again.
     """
 
     def __init__(self, world_map: LoadedMap, settings: EpisodeSettings = EpisodeSettings()) -> None:  # noqa: B008 - frozen
@@ -43,6 +46,7 @@ class Simulation:
         self._next_stream = FIRST_SENSOR_STREAM
         self.recorder = Recorder()
         self.replayer = Replayer()
+        self.seeing = Seeing(self.library)
         self._begin(world_map)
 
     def load(self, world_map: LoadedMap, *, reset_settings: bool) -> None:
@@ -125,4 +129,4 @@ class Simulation:
 
     def measure(self, listened: Container[int]) -> Measurements:
         """Return what the sensors measured in this frame; to be called once a frame, ``listened`` being stream ids."""
-        return measure(self.episode, listened)
+        return measure(self.episode, listened, Now(self.seeing, self.frame, self.delta_s))

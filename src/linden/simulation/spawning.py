@@ -7,6 +7,7 @@ from linden.geometry import compose
 from linden.sensors.collision import scenery_type
 from linden.sensors.instrument import instrument
 from linden.simulation.episode import Episode
+from linden.simulation.eyes import MAKERS, eye_of
 from linden.simulation.grip import FRICTION_TRIGGER, trigger
 from linden.simulation.overlap import touching, world_centres
 from linden.simulation.props import solid
@@ -31,7 +32,7 @@ NOT_YET = {
     "sensor.other.rss": "it is computed in a client that is built with the ad-rss library; the wheel is not",
     "sensor.other.v2x": "it would need a model of the radio channel between vehicles",
     "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
-    "sensor.": "this version has gnss, imu, collision and lane_invasion; what sees comes with the scene",
+    "sensor.": "other sensors are there, see docs/supported.md",
 }
 """Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
 
@@ -42,7 +43,7 @@ def refuse_idle(blueprint_id: str) -> None:
     Raises:
         Refusal: CARLA has it, this server not yet.
     """
-    if blueprint_id in MEASURING:
+    if blueprint_id in MEASURING or blueprint_id in MAKERS:
         return
     for beginning, instead in NOT_YET.items():
         if blueprint_id.startswith(beginning):
@@ -82,6 +83,8 @@ def spawn(
         episode.grip.add(record.id, made_trigger)
     if (made := instrument(description)) is not None:
         episode.instruments[record.id] = made
+    if (eye := eye_of(description)) is not None:
+        episode.eyes[record.id] = eye
     return record
 
 
@@ -159,6 +162,7 @@ def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
     if record.slot != NO_BODY:
         episode.bodies.remove(record.slot)
     episode.instruments.pop(actor_id, None)
+    episode.eyes.pop(actor_id, None)
     episode.doors.forget(actor_id)
     episode.grip.forget(actor_id)
     episode.poses.forget(actor_id)

@@ -1,0 +1,99 @@
+"""The sensors that look around: which there are, and what they see in a frame."""
+
+from collections.abc import Callable, Container, Hashable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from linden.sensors.description import interval_s
+from linden.sensors.lidar import Lidar, SemanticLidar
+from linden.sensors.looking import F64, Look, LookingSensor
+from linden.sensors.schedule import Schedule, advance
+from linden.simulation.seeing import Seeing
+from linden.values.actors import ActorDescription
+from linden.values.space import Transform
+from linden.world.actors import NO_BODY, ActorRecord
+
+if TYPE_CHECKING:
+    from linden.simulation.episode import Episode
+
+MAKERS: dict[str, Callable[[ActorDescription], LookingSensor]] = {
+    "sensor.lidar.ray_cast": Lidar,
+    "sensor.lidar.ray_cast_semantic": SemanticLidar,
+}
+"""What makes a sensor of a complete description, by its blueprint."""
+
+
+class Eye:
+    """A sensor that looks, between two frames."""
+
+    def __init__(self, description: ActorDescription) -> None:
+        self.sensor = MAKERS[description.id](description)
+        self._schedule = Schedule(interval_s(description))
+        self._last_s: float | None = None
+        self._pose: Transform | None = None
+
+    def see(self, episode: "Episode", sensor: ActorRecord, now: "Now", *, wanted: bool) -> object | None:
+        """Return the reading, None where there is none in this frame; to be called once in every frame."""
+        number = self._schedule.made
+        due, self._schedule = advance(self._schedule, episode.elapsed_s)
+        pose = episode.actors.transform(sensor.id)
+        before, self._pose = self._pose or pose, pose
+        if not due:
+            return None
+        passed_s = now.frame_s if self._last_s is None else episode.elapsed_s - self._last_s
+        self._last_s = episode.elapsed_s
+        if not wanted:
+            self.sensor.skip(passed_s)
+            return None
+        return self.sensor.measure(
+            Look(
+                seen=now.seeing.look(episode, now.frame),
+                shared=now.shared,
+                pose=pose,
+                before=before,
+                velocity_mps=_velocity(episode, sensor, pose),
+                carrier_id=sensor.parent_id,
+                number=number,
+                interval_s=passed_s,
+            )
+        )
+
+
+class Now:
+    """What all sensors of a frame have in common."""
+
+    def __init__(self, seeing: Seeing, frame: int, frame_s: float) -> None:
+        self.seeing, self.frame, self.frame_s = seeing, frame, frame_s
+        self.shared: dict[Hashable, object] = {}
+
+
+def eye_of(description: ActorDescription) -> Eye | None:
+    """Return the sensor that a complete description asks for, None where it is no sensor that looks."""
+    return Eye(description) if description.id in MAKERS else None
+
+
+def look_around(episode: "Episode", now: Now, listened: Container[int]) -> list[tuple[ActorRecord, Transform, object]]:
+    """Return what is due of the sensors whose streams somebody reads: sensor, its pose, reading."""
+    sensors = [(episode.actors.get(sensor_id), eye) for sensor_id, eye in episode.eyes.items()]
+    if any(sensor.stream_id in listened for sensor, _ in sensors):
+        now.seeing.follow(episode, now.frame)
+    found = []
+    for sensor, eye in sensors:
+        reading = eye.see(episode, sensor, now, wanted=sensor.stream_id in listened)
+        if reading is not None:
+            found.append((sensor, episode.actors.transform(sensor.id), reading))
+    return found
+
+
+def _velocity(episode: "Episode", sensor: ActorRecord, pose: Transform) -> F64:
+    """Return how fast (3,) the body that carries a sensor moves it, m/s in the world."""
+    carrier = episode.actors.find(sensor.parent_id)
+    while carrier is not None and carrier.slot == NO_BODY:
+        carrier = episode.actors.find(carrier.parent_id)
+    if carrier is None:
+        return np.zeros(3)
+    bodies, slot = episode.bodies, carrier.slot
+    arm_m = np.asarray(pose.location) - bodies.position[slot]
+    velocity: F64 = bodies.velocity[slot] + np.cross(bodies.angular_velocity[slot], arm_m)
+    return velocity

@@ -1,0 +1,158 @@
+"""What the sensors of a simulation look at: the caster of the map, built when somebody first looks, and its bodies."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.casting.choose import caster_of
+from linden.casting.rays import Caster, Instances
+from linden.meshes.bodies import Bodies
+from linden.meshes.mesh import NO_OBJECT, LampOf, Mesh
+from linden.meshes.standing import standing
+from linden.opendrive.parse import parse
+from linden.physics.contact.statics import Statics
+from linden.scene.lamps import is_night
+from linden.scene.objects import Kind as Thing
+from linden.scene.objects import Scene
+from linden.sensors.seen import Faces, Seen, table_of
+from linden.simulation.company import Company
+from linden.values.enums import TrafficLightState
+from linden.world.blueprints import BlueprintLibrary, Kind
+from linden.world.maps import LoadedMap
+
+if TYPE_CHECKING:
+    from linden.simulation.episode import Episode
+
+U32 = NDArray[np.uint32]
+
+OBJECTS_FROM = 0x8000_8000
+"""Ids of objects that are no actors begin here: no actor has one, nor one that is the same in its lowest 16 bits."""
+
+_OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
+_LENS = {
+    TrafficLightState.RED: LampOf.TRAFFIC_RED,
+    TrafficLightState.YELLOW: LampOf.TRAFFIC_YELLOW,
+    TrafficLightState.GREEN: LampOf.TRAFFIC_GREEN,
+}
+
+
+def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
+    """Return what stands on a map; made anew each time."""
+    return standing(parse(world_map.text), world_map, scene)
+
+
+class _Stage(NamedTuple):
+    """What is built once and asked often, and what it was built for."""
+
+    scene: Scene
+    statics: Statics
+    standing: Mesh
+    faces: Faces
+    caster: Caster
+
+
+class Seeing:
+    """Lets sensors see an episode; outlives it, since most loads load the same map again.
+
+    Nothing is built, and no body gathered, before somebody looks.
+
+    Attributes:
+        standing_on: gives the mesh of what stands on a map, anew or out of a cache.
+    """
+
+    def __init__(self, library: BlueprintLibrary) -> None:
+        self.standing_on: Callable[[LoadedMap, Scene], Mesh] = standing_on
+        self._library = library
+        self._bodies: Bodies | None = None
+        self._company: Company | None = None
+        self._whole: tuple[Scene, Mesh] | None = None
+        self._stage: _Stage | None = None
+        self._episode: Episode | None = None
+        self._frame = -1
+        self._instances: Instances | None = None
+
+    def follow(self, episode: "Episode", frame: int) -> Instances:
+        """Note where the bodies are in a frame; to be called in every frame while a sensor that looks is listened to.
+
+        So the next frame knows where they came from, whether or not a sensor measures in this one.
+        """
+        if self._instances is None or episode is not self._episode or frame != self._frame:
+            if self._company is None or episode is not self._episode:
+                self._company = Company(self._all_bodies())
+            self._instances = self._company.gather(episode, goes_on=frame == self._frame + 1)
+            self._episode, self._frame = episode, frame
+        return self._instances
+
+    def look(self, episode: "Episode", frame: int) -> Seen:
+        """Return the moment as it is seen, the bodies posed; builds what is not built yet."""
+        instances, stage = self.follow(episode, frame), self._stage_of(episode)
+        stage.caster.pose(instances)
+        lights, colour = _object_lights(episode)
+        return Seen(
+            caster=stage.caster,
+            standing=stage.standing,
+            bodies=self._all_bodies().meshes,
+            faces=stage.faces,
+            instances=instances,
+            object_id=_object_ids(episode),
+            object_lights=lights,
+            object_light_colour=colour,
+            weather=episode.weather,
+            now_s=episode.elapsed_s,
+        )
+
+    def _all_bodies(self) -> Bodies:
+        if self._bodies is None:
+            self._bodies = Bodies(self._library)
+        return self._bodies
+
+    def _stage_of(self, episode: "Episode") -> _Stage:
+        """Return the stage; what does not stand any more (layers, single objects) is left out of it."""
+        scene, statics = episode.surroundings.scene, episode.surroundings.statics
+        if self._stage is not None and self._stage.scene is scene and self._stage.statics is statics:
+            return self._stage
+        if self._whole is None or self._whole[0] is not scene:
+            self._whole = scene, self.standing_on(episode.map, scene)
+        mesh, bodies = _present(self._whole[1], episode.surroundings.present), self._all_bodies().meshes
+        self._stage = None  # before the next is built: two of them at once would take twice the memory
+        self._stage = _Stage(scene, statics, mesh, table_of(mesh, bodies), caster_of(mesh, bodies))
+        return self._stage
+
+
+def _present(mesh: Mesh, present: NDArray[np.bool_]) -> Mesh:
+    """Return the mesh without the triangles of boxes that are not there."""
+    thing = mesh.faces["object"]
+    stays = np.append(present, [True])[np.where(thing == NO_OBJECT, len(present), thing)]
+    return mesh if stays.all() else Mesh(mesh.vertices_m, mesh.triangles[stays], mesh.faces[stays])
+
+
+def _object_ids(episode: "Episode") -> U32:
+    """Return the id of each box of the scene: its actor's, where lights and signs are actors, or one above them all."""
+    things = episode.surroundings.scene.boxes["thing"]
+    signal_ids = np.array([record.id for record in episode.actors if record.kind in _OF_SIGNALS], np.uint32)
+    ids = (OBJECTS_FROM + np.arange(len(things))).astype(np.uint32)
+    of_actors = things < len(signal_ids)
+    ids[of_actors] = signal_ids[things[of_actors]]
+    return ids
+
+
+def _object_lights(episode: "Episode") -> tuple[U32, NDArray[np.uint8]]:
+    """Return what shines of each box (O,), LampOf bits, and what colour (O, 3) a street lamp has."""
+    scene = episode.surroundings.scene
+    shining, colour = np.zeros(len(scene.things), np.uint32), np.zeros((len(scene.things), 3), np.uint8)
+    kinds = scene.things["kind"]
+    lights = np.flatnonzero(kinds == Thing.TRAFFIC_LIGHT)
+    bits = np.zeros(max(TrafficLightState) + 1, np.uint32)
+    for state, lens in _LENS.items():
+        bits[state] = 1 << lens
+    shining[lights] = bits[episode.traffic.state.colour[: len(lights)]]
+    lamps = episode.surroundings.lamps.states()
+    standing_lamps = np.flatnonzero(kinds == Thing.STREET_LAMP)
+    shining[standing_lamps] = [int(lamp.active) << LampOf.STREET for lamp in lamps]
+    colour[standing_lamps] = np.array([lamp.color for lamp in lamps], np.uint8).reshape(-1, 3)
+    if is_night(episode.weather):
+        shining[kinds == Thing.HOUSE] = 1 << LampOf.WINDOW
+    things = scene.boxes["thing"]
+    return shining[things], colour[things]
