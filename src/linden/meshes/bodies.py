@@ -5,7 +5,7 @@ from typing import NamedTuple
 from linden.meshes.actors.person import person
 from linden.meshes.actors.shape import Shape
 from linden.meshes.actors.solids import Look, box, tagged
-from linden.meshes.actors.vehicle import vehicle
+from linden.meshes.actors.vehicles import vehicle
 from linden.meshes.mesh import Material, Mesh
 from linden.values.actors import ActorDescription
 from linden.values.enums import SemanticTag

@@ -129,11 +129,17 @@ def rod(start_m: Point, end_m: Point, radius_m: float, look: Look, *, sides: int
 
 def lathe(heights_m: Sequence[float], radii_m: Sequence[float], sides: int, look: Look | Sequence[Look]) -> Mesh:
     """Return what turns about the z axis: a radius at each height; ``look`` may differ from band to band."""
-    circle = _circle(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), sides)
-    rings = np.array([r * circle + (0.0, 0.0, z) for z, r in zip(heights_m, radii_m, strict=True)])
+    rings = np.array([ring_of(radius_m, z, sides) for z, radius_m in zip(heights_m, radii_m, strict=True)])
     if isinstance(look, Look):
         return loft(rings, look, look, look)
     return loft(rings, np.stack([faces_of(band, sides) for band in look]), look[0], look[-1])
+
+
+def ring_of(radius_m: float, height_m: float, sides: int) -> F64:
+    """Return a circle (sides, 3) about the z axis."""
+    circle: F64 = radius_m * _circle(np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), sides)
+    circle[:, 2] = height_m
+    return circle
 
 
 def ball(centre_m: Point, radii_m: Point, look: Look, *, sides: int = 8, bands: int = 6) -> Mesh:

@@ -1,0 +1,26 @@
+"""Which vehicle is built how."""
+
+from collections.abc import Callable
+
+from linden.meshes.actors.cars import car, wheels
+from linden.meshes.actors.heavy import ambulance, bus, firetruck, freight_truck
+from linden.meshes.actors.shape import Shape
+from linden.meshes.actors.shuttle import shuttle
+from linden.world.blueprints import Blueprint
+
+_OF_ITS_OWN: dict[str, Callable[[Blueprint], list[Shape]]] = {
+    "vehicle.carlamotors.carlacola": freight_truck,
+    "vehicle.carlamotors.european_hgv": freight_truck,
+    "vehicle.carlamotors.firetruck": firetruck,
+    "vehicle.easymile.ez10": shuttle,
+    "vehicle.ford.ambulance": ambulance,
+    "vehicle.mitsubishi.fusorosa": bus,
+}
+
+
+def vehicle(blueprint: Blueprint) -> list[Shape]:
+    """Return the parts of a vehicle: the body first, then its wheels."""
+    assert blueprint.vehicle is not None
+    if len(blueprint.vehicle.wheel_offsets_m) == 2:
+        return wheels(blueprint, 0.05)
+    return _OF_ITS_OWN.get(blueprint.definition.id, car)(blueprint)
