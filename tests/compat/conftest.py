@@ -23,8 +23,8 @@ def server() -> Iterator[RunningServer]:
 def client(server: RunningServer) -> carla.Client:
     """A client of a fresh episode: asynchronous mode, default settings, nobody spawned.
 
-    The episode is begun before the client comes: the official one drops its stream when it reloads, and one time in a
-    thousand that ends its process, which is this one.
+    The episode is begun before the client comes: the official one drops its stream when it reloads, and on a busy
+    machine one time in a hundred that ends its process, which is this one (soak.py counts it).
     """
     with RawClient(server.port) as raw:
         raw.call("load_new_episode", "Linden", True, 0xFFFF)
