@@ -159,8 +159,8 @@ def _endless_scenario(row: Program) -> Program:
     return row._replace(limit_s=ENDLESS_S, is_endless=True)
 
 
-NEVER_ENDING = ("ChangingWeather", "LaneOffsetActionExample")
-"""The first has no stop trigger, that of the second comes after 20 km."""
+NEVER_ENDING = ("ChangingWeather", "LaneOffsetActionExample", "OscControllerExample")
+"""The first has no stop trigger, those of the others come after 20 km."""
 
 
 def _scenarios(folders: Folders) -> list[Program]:
