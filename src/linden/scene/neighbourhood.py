@@ -50,12 +50,12 @@ def furnish(lots: NDArray[np.void], ground: Ground) -> Scene:
 def _houses(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
     built = draw[:, 0] >= VACANT
     lots, draw = lots[built], draw[built]
-    width, depth = _between(HOUSE_WIDTH_M, draw[:, 1]), _between(HOUSE_DEPTH_M, draw[:, 2])
+    width, depth = between(HOUSE_WIDTH_M, draw[:, 1]), between(HOUSE_DEPTH_M, draw[:, 2])
     height = np.where(
-        draw[:, 3] < BUNGALOWS, _between(BUNGALOW_HEIGHT_M, draw[:, 4]), _between(HOUSE_HEIGHT_M, draw[:, 4])
+        draw[:, 3] < BUNGALOWS, between(BUNGALOW_HEIGHT_M, draw[:, 4]), between(HOUSE_HEIGHT_M, draw[:, 4])
     )
-    inwards = _between(SETBACK_M, draw[:, 5]) + 0.5 * depth
-    things = things_with(Kind.HOUSE, _on_lots(lots, ground, inwards, np.zeros(len(lots))), lots["yaw_rad"])
+    inwards = between(SETBACK_M, draw[:, 5]) + 0.5 * depth
+    things = things_with(Kind.HOUSE, on_lots(lots, ground, inwards, np.zeros(len(lots))), lots["yaw_rad"])
     half = 0.5 * np.column_stack([depth, width, height])
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.BUILDINGS))
 
@@ -64,16 +64,16 @@ def _trees(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
     planted = draw[:, 6] < WITH_TREE
     lots, draw = lots[planted], draw[planted]
     aside = (draw[:, 7] - 0.5) * (LOT_WIDTH_M - 3.0)
-    things = things_with(Kind.TREE, _on_lots(lots, ground, _between(TREE_DEPTH_M, draw[:, 8]), aside), lots["yaw_rad"])
+    things = things_with(Kind.TREE, on_lots(lots, ground, between(TREE_DEPTH_M, draw[:, 8]), aside), lots["yaw_rad"])
     half = np.full((len(lots), 3), 0.5 * TRUNK_HEIGHT_M)
-    half[:, :2] = _between(TRUNK_HALF_M, draw[:, 1])[:, None]
+    half[:, :2] = between(TRUNK_HALF_M, draw[:, 1])[:, None]
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))
 
 
 def _lamps(lots: NDArray[np.void], ground: Ground) -> Scene:
     lots = lots[::LOTS_A_LAMP]
     aside = np.full(len(lots), 0.5 * LOT_WIDTH_M - 0.5)
-    base = _on_lots(lots, ground, np.full(len(lots), LAMP_DEPTH_M), aside)
+    base = on_lots(lots, ground, np.full(len(lots), LAMP_DEPTH_M), aside)
     things = things_with(Kind.STREET_LAMP, base, lots["yaw_rad"])
     half = np.array([LAMP_HALF_WIDTH_M, LAMP_HALF_WIDTH_M, 0.5 * LAMP_HEIGHT_M])
     arm = np.array([-LAMP_ARM_HALF_M[0], 0.0, LAMP_HEIGHT_M])
@@ -84,7 +84,7 @@ def _lamps(lots: NDArray[np.void], ground: Ground) -> Scene:
     )
 
 
-def _on_lots(lots: NDArray[np.void], ground: Ground, inwards_m: F64, aside_m: F64) -> F64:
+def on_lots(lots: NDArray[np.void], ground: Ground, inwards_m: F64, aside_m: F64) -> F64:
     """Return places (N, 3) on the ground, so far into the lots and to the right of their middle."""
     cosine, sine = np.cos(lots["yaw_rad"]), np.sin(lots["yaw_rad"])
     x = lots["front_m"][:, 0] + cosine * inwards_m - sine * aside_m
@@ -93,5 +93,6 @@ def _on_lots(lots: NDArray[np.void], ground: Ground, inwards_m: F64, aside_m: F6
     return np.column_stack([x, y, height])
 
 
-def _between(bounds: tuple[float, float], share: F64) -> F64:
+def between(bounds: tuple[float, float], share: F64) -> F64:
+    """Return numbers so far along between two bounds."""
     return bounds[0] + (bounds[1] - bounds[0]) * share

@@ -26,6 +26,12 @@ class Kind(IntEnum):
     TREE = 3
     STREET_LAMP = 4
     WALL = 5
+    PORCH = 6
+    HEDGE = 7
+    FENCE = 8
+    PARKED_CAR = 9
+    UTILITY_POLE = 10
+    SHELTER = 11
 
 
 _NAMES = {
@@ -35,6 +41,12 @@ _NAMES = {
     Kind.TREE: "Tree",
     Kind.STREET_LAMP: "StreetLamp",
     Kind.WALL: "Wall",
+    Kind.PORCH: "Porch",
+    Kind.HEDGE: "Hedge",
+    Kind.FENCE: "Fence",
+    Kind.PARKED_CAR: "ParkedCar",
+    Kind.UTILITY_POLE: "UtilityPole",
+    Kind.SHELTER: "BusStop",
 }
 _TAG_NAMES: dict[int, str] = {SemanticTag.POLES: "Poles", SemanticTag.TRAFFIC_LIGHT: "TrafficLight"}
 """How CARLA writes the tags of a traffic light's parts into their names (Tagger.cpp, GetTagAsString)."""
@@ -46,6 +58,12 @@ LAYER = {
     Kind.TREE: MapLayer.FOLIAGE,
     Kind.STREET_LAMP: MapLayer.STREET_LIGHTS,
     Kind.WALL: MapLayer.WALLS,
+    Kind.PORCH: MapLayer.BUILDINGS,
+    Kind.HEDGE: MapLayer.FOLIAGE,
+    Kind.FENCE: MapLayer.WALLS,
+    Kind.PARKED_CAR: MapLayer.PARKED_VEHICLES,
+    Kind.UTILITY_POLE: MapLayer.PROPS,
+    Kind.SHELTER: MapLayer.PROPS,
 }
 """The layer that a thing is loaded and unloaded with."""
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.physics.contact.statics import STATIC_BOX, Statics
-from linden.scene.neighbourhood import furnish
+from linden.scene.home import home
 from linden.scene.objects import Scene, join
 from linden.scene.signs import Post, posts
 from linden.scene.walls import walls
@@ -39,7 +39,7 @@ def scenery_of(world_map: LoadedMap) -> Scenery:
     if len(world_map.walls.feet_m):
         scene = join([scene, walls(*world_map.walls)])
     if world_map.name == HOME_MAP:
-        scene = join([scene, furnish(world_map.lots, world_map.ground)])
+        scene = join([scene, home(world_map.lots, world_map.ground, world_map.geo_origin_deg)])
     return Scenery(signals, scene, solid(scene, np.ones(len(scene.boxes), bool)))
 
 
