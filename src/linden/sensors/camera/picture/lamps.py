@@ -1,0 +1,132 @@
+"""Lamps that light what is near them: street lamps, and the head and tail lamps of vehicles, found on their meshes.
+
+Their strengths are chosen to go with the moonlight of ``atmosphere``, which is far brighter than the true one: no
+picture of 8 bits could hold both.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.compiled import kernel
+from linden.meshes.mesh import LampOf, Mesh
+from linden.sensors.seen import LINEAR, Seen
+
+F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
+
+CELL_M = 8.0
+_CELLS = 40
+_REACH_M = CELL_M * _CELLS / 2.0
+
+LAMPLIGHT = np.dtype(
+    [
+        ("place", "f4", 3),  # m, world
+        ("towards", "f4", 3),  # direction of its middle, length 1
+        ("light", "f4", 3),  # of a white surface square to it one metre away
+        ("reach", "f4"),  # m; no light goes further
+        ("low", "f4"),  # cosine from which it gives light, and
+        ("high", "f4"),  # from which it gives all of it
+        ("cut", "?"),  # whether it is a low beam, dimmed above its middle
+    ]
+)
+
+_STREET, _HEAD, _TAIL = int(LampOf.STREET), int(LampOf.HEAD), int(LampOf.TAIL)
+_STRENGTH = {_STREET: 6.5, _HEAD: 26.0, _TAIL: 0.10}
+_COLOUR = {_HEAD: (1.0, 0.95, 0.86), _TAIL: (1.0, 0.06, 0.03)}
+_FORM = {_STREET: (26.0, 0.05, 0.75, False), _HEAD: (55.0, 0.80, 0.97, True), _TAIL: (6.0, 0.0, 0.8, False)}
+_DIP = math.radians(1.5)
+
+
+class LampGroup(NamedTuple):
+    """One lamp of a mesh: what it is, its middle in the mesh's frame (m), and its object where it stands."""
+
+    lamp: int
+    middle_m: tuple[float, float, float]
+    object: int
+
+
+class LampGrid(NamedTuple):
+    """Lamps near a camera, and which reach into each cell of a square around it."""
+
+    west_m: float
+    north_m: float
+    first: I32  # (cells + 1,) rows of ``number``, cell after cell along x
+    number: I32
+    lamps: NDArray[np.void]  # of LAMPLIGHT
+
+
+def groups(mesh: Mesh, *, standing: bool) -> tuple[LampGroup, ...]:
+    """Return the lamps of a mesh that light their surroundings.
+
+    Faces of one kind belong together by their object where they stand, on a body by the side they are on.
+    """
+    found = []
+    for lamp in (_STREET,) if standing else (_HEAD, _TAIL):
+        rows = np.flatnonzero(mesh.faces["lamp"] == lamp)
+        middles = mesh.vertices_m[mesh.triangles[rows]].mean(axis=1) if len(rows) else np.zeros((0, 3))
+        keys = mesh.faces["object"][rows] if standing else np.sign(np.round(middles[:, 1], 1)).astype(np.int64)
+        for key in np.unique(keys).tolist():
+            x, y, z = middles[keys == key].mean(axis=0).tolist()
+            found.append(LampGroup(lamp, (x, y, z), key if standing else -1))
+    return tuple(found)
+
+
+def lamps_near(
+    place_m: F64, seen: Seen, standing: Sequence[LampGroup], bodies: Sequence[Sequence[LampGroup]]
+) -> LampGrid:
+    """Return the lamps that shine within reach of a camera at ``place_m`` (3,)."""
+    rows: list[tuple[object, ...]] = []
+    for group in standing:
+        near = math.dist(group.middle_m[:2], place_m[:2]) < _REACH_M
+        if near and group.object >= 0 and seen.object_lights[group.object] >> group.lamp & 1:
+            colour = LINEAR[seen.object_light_colour[group.object]]
+            rows.append(_row(group.lamp, group.middle_m, (0.0, 0.0, -1.0), colour))
+    moving = seen.instances
+    for mesh, pose, lights in zip(moving.mesh.tolist(), moving.pose, moving.lights.tolist(), strict=True):
+        if not lights or abs(pose[:2, 3] - place_m[:2]).max() > _REACH_M:
+            continue
+        for group in bodies[mesh]:
+            if lights >> group.lamp & 1:
+                forward = pose[:, :3] @ ((math.cos(_DIP), 0.0, -math.sin(_DIP)) if group.lamp == _HEAD else (-1, 0, 0))
+                middle = pose[:, :3] @ np.array(group.middle_m) + pose[:, 3]
+                rows.append(_row(group.lamp, middle, forward, np.array(_COLOUR[group.lamp])))
+    lamps = np.array(rows, LAMPLIGHT) if rows else np.zeros(0, LAMPLIGHT)
+    west, north = (math.floor(value / CELL_M) * CELL_M - _REACH_M for value in place_m[:2].tolist())
+    first, number = _sorted_into_cells(
+        lamps["place"].astype(np.float64), lamps["reach"].astype(np.float64), west, north
+    )
+    return LampGrid(west, north, first, number, lamps)
+
+
+def _row(lamp: int, place: object, towards: object, colour: NDArray[np.floating]) -> tuple[object, ...]:
+    return (tuple(place), tuple(towards), tuple(_STRENGTH[lamp] * colour), *_FORM[lamp])  # type: ignore[arg-type] # three numbers each
+
+
+@kernel
+def _sorted_into_cells(place: F64, reach: F64, west: float, north: float) -> tuple[I32, I32]:
+    first = np.zeros(_CELLS * _CELLS + 1, np.int32)
+    number: I32 = np.empty(0, np.int32)
+    for turn in range(2):  # count, then fill
+        filled = first.copy()
+        for lamp in range(len(place)):
+            x0 = max(0, int((place[lamp, 0] - reach[lamp] - west) // CELL_M))
+            x1 = min(_CELLS - 1, int((place[lamp, 0] + reach[lamp] - west) // CELL_M))
+            y0 = max(0, int((place[lamp, 1] - reach[lamp] - north) // CELL_M))
+            y1 = min(_CELLS - 1, int((place[lamp, 1] + reach[lamp] - north) // CELL_M))
+            for y in range(y0, y1 + 1):
+                for x in range(x0, x1 + 1):
+                    cell = y * _CELLS + x
+                    if turn == 0:
+                        first[cell + 1] += 1
+                    else:
+                        number[filled[cell]] = lamp
+                        filled[cell] += 1
+        if turn == 0:
+            first = np.cumsum(first).astype(np.int32)
+            number = np.empty(first[-1], np.int32)
+    return first, number

@@ -1,0 +1,104 @@
+"""The colour picture of one view, stage after stage."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.casting.rays import Hits, Rays
+from linden.meshes.mesh import Mesh
+from linden.sensors.camera.labels import FAR_M
+from linden.sensors.camera.picture.atmosphere import Air, air
+from linden.sensors.camera.picture.develop import developed
+from linden.sensors.camera.picture.edges import SAMPLES, edge_rays, finer
+from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, groups, lamps_near
+from linden.sensors.camera.picture.relief import Relief, relief
+from linden.sensors.camera.picture.shade import Places, shaded
+from linden.sensors.camera.picture.shadows import sunny
+from linden.sensors.camera.rays import aim
+from linden.sensors.camera.spec import CameraSpec, Film
+from linden.sensors.seen import LINEAR, Seen, first_of_places
+from linden.values.space import Transform
+
+F32 = NDArray[np.float32]
+
+
+class Looks(NamedTuple):
+    """What pictures need to know of the meshes besides their faces; made once for a map."""
+
+    relief: Relief
+    standing_lamps: tuple[LampGroup, ...]
+    body_lamps: tuple[tuple[LampGroup, ...], ...]
+
+
+_made: list[tuple[Mesh, Sequence[Mesh], Looks]] = []
+"""The last one made, for the meshes it was made of."""
+
+
+def looks_of(standing: Mesh, bodies: Sequence[Mesh]) -> Looks:
+    """Return the looks of meshes; those of the last ones are kept."""
+    if not _made or _made[0][0] is not standing or _made[0][1] is not bodies:
+        made = Looks(
+            relief((standing, *bodies)),
+            groups(standing, standing=True),
+            tuple(groups(mesh, standing=False) for mesh in bodies),
+        )
+        _made[:] = [(standing, bodies, made)]
+    return _made[0][2]
+
+
+class Light(NamedTuple):
+    """What lights a moment, and where what it lights is."""
+
+    air: Air
+    looks: Looks
+    places: Places
+    lamps: LampGrid
+
+
+def picture(spec: CameraSpec, film: Film, pose: Transform, rays: Rays, hits: Hits, seen: Seen) -> NDArray[np.uint8]:
+    """Return (height, width, 4) bytes B, G, R, A of what a camera at ``pose`` sees along its rays."""
+    lit = _light(pose, seen)
+    pixel_rad = 1.0 / spec.focal_px
+    light = _shone(rays, hits, pixel_rad, lit, seen)
+    rows = edge_rays(spec, hits, light)
+    if len(rows):
+        fine = aim(finer(spec, rows), pose)
+        met = seen.caster.closest(fine, FAR_M, coherent=True, outer=True)
+        light[rows] = _mean(_shone(fine, met, 0.5 * pixel_rad, lit, seen))
+    return developed(spec, film, light, lit.air)
+
+
+def _mean(samples: F32) -> F32:
+    """Return the mean of each pixel's samples; light above 2 counts as 2, or edges would glitter."""
+    grouped = np.minimum(samples, np.float32(2.0)).reshape(-1, SAMPLES, 3)
+    mean: F32 = grouped.mean(axis=1, dtype=np.float32)
+    return mean
+
+
+def _shone(rays: Rays, hits: Hits, pixel_rad: float, lit: Light, seen: Seen) -> F32:
+    sun = sunny(seen.caster, rays, hits, lit.air)
+    return shaded(rays, hits, sun, pixel_rad, seen.faces, lit.looks.relief, lit.places, lit.air, lit.lamps)
+
+
+def _light(pose: Transform, seen: Seen) -> Light:
+    looks = looks_of(seen.standing, seen.bodies)
+    lamps = lamps_near(np.array(pose.location), seen, looks.standing_lamps, looks.body_lamps)
+    return Light(air(seen.weather, seen.now_s), looks, _places(seen), lamps)
+
+
+def _places(seen: Seen) -> Places:
+    bodies = seen.instances
+    world = np.concatenate([np.eye(3, 4, dtype=np.float32)[None], bodies.pose])
+    back = np.empty_like(world)
+    turned = np.linalg.inv(world[:, :, :3])
+    back[:, :, :3], back[:, :, 3] = turned, -np.einsum("kij,kj->ki", turned, world[:, :, 3])
+    return Places(
+        first_of_places(seen.faces, bodies),
+        np.ascontiguousarray(world),
+        back,
+        np.concatenate([np.zeros((1, 3), np.float32), LINEAR[bodies.colour]]),
+        np.concatenate([np.zeros(1, np.uint32), bodies.lights]),
+        seen.object_lights,
+    )

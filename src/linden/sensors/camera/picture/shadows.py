@@ -1,0 +1,74 @@
+"""Which of the spots that a camera sees are lit by the sun."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.casting.crew import in_stretches
+from linden.casting.rays import NOTHING, Caster, Hits, Rays
+from linden.compiled import unlocked
+from linden.sensors.camera.picture.atmosphere import Air
+
+F32 = NDArray[np.float32]
+
+LONGEST_SHADOW_M = 250.0
+
+_OFF_M = 2e-3
+"""How far from its surface a ray to the sun begins, and"""
+_OFF_SHARE = 2e-5
+"""how much further for each metre that the surface is away: what a float of 32 bits may be wrong by."""
+
+_DARK = 0.01
+
+
+def sunny(caster: Caster, rays: Rays, hits: Hits, air: Air) -> F32:
+    """Return (N,) 1 where the sun reaches what a ray meets, 0 where it does not or looks the other way."""
+    lit = np.zeros(len(hits.instance), np.float32)
+    if max(air.sun) < _DARK or air.sun_z <= 0.0:
+        return lit
+    sun = np.array([air.sun_x, air.sun_y, air.sun_z], np.float32)
+    facing = np.empty(len(lit), np.bool_)
+
+    def mark(start: int, stop: int) -> None:
+        _mark_facing(hits.instance, hits.normal, rays.direction, sun, facing, start, stop)
+
+    in_stretches(len(lit), mark, multiple=16)
+    rows = np.flatnonzero(facing)
+    origin, direction = np.empty((len(rows), 3), np.float32), np.empty((len(rows), 3), np.float32)
+
+    def gather(start: int, stop: int) -> None:
+        _gather(rows, rays.origin_m, rays.direction, hits.distance_m, hits.normal, sun, origin, direction, start, stop)
+
+    in_stretches(len(rows), gather, multiple=16)
+    lit[rows] = ~caster.blocked(Rays(origin, direction), LONGEST_SHADOW_M, coherent=True)
+    return lit
+
+
+@unlocked
+def _mark_facing(
+    instance: NDArray[np.int32], normal: F32, direction: F32, sun: F32, facing: NDArray[np.bool_], start: int, stop: int
+) -> None:
+    """Mark what is seen from the side that the sun shines on."""
+    for i in range(start, stop):
+        if instance[i] == NOTHING:
+            facing[i] = False
+            continue
+        seen = normal[i, 0] * direction[i, 0] + normal[i, 1] * direction[i, 1] + normal[i, 2] * direction[i, 2]
+        shone = normal[i, 0] * sun[0] + normal[i, 1] * sun[1] + normal[i, 2] * sun[2]
+        facing[i] = seen * shone < 0.0
+
+
+@unlocked
+def _gather(
+    rows: NDArray[np.intp], origin: F32, direction: F32, distance_m: F32, normal: F32, sun: F32, from_m: F32,
+    towards: F32, start: int, stop: int,
+) -> None:  # fmt: skip
+    """Write the rays to the sun of the hits in ``rows``."""
+    for k in range(start, stop):
+        i = rows[k]
+        side = normal[i, 0] * sun[0] + normal[i, 1] * sun[1] + normal[i, 2] * sun[2]
+        off_m = _OFF_M + _OFF_SHARE * distance_m[i]
+        if side < 0.0:
+            off_m = -off_m
+        for axis in range(3):
+            from_m[k, axis] = origin[i, axis] + direction[i, axis] * distance_m[i] + normal[i, axis] * off_m
+            towards[k, axis] = sun[axis]
