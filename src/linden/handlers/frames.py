@@ -2,15 +2,13 @@
 
 import msgpack
 
-from linden.handlers.readings import ENCODERS
+from linden.handlers.readings import ENCODERS, described, scenery
 from linden.sensors.collision import SCENERY, Collision
 from linden.sensors.imu import ImuMeasurement
 from linden.simulation import Simulation
 from linden.simulation.measuring import Measurement
-from linden.values.actors import Actor, ActorDescription
-from linden.values.space import BoundingBox, Transform
+from linden.values.space import Transform
 from linden.wire.headers import SensorType, SimulationState, episode_header, sensor_header
-from linden.world.actors import ActorRecord
 
 
 def world_payload(simulation: Simulation) -> bytes:
@@ -51,15 +49,10 @@ def _encoded(simulation: Simulation, measurement: Measurement) -> tuple[SensorTy
     reading = measurement.reading
     if isinstance(reading, Collision):
         actors = simulation.episode.actors
-        own = _described(actors.of_slot(reading.slot))
+        own = described(actors.of_slot(reading.slot))
         if reading.other_slot == SCENERY:
-            other = Actor(0, 0, ActorDescription(0, reading.scenery_type), BoundingBox())
+            other = scenery(reading.scenery_type)
         else:
-            other = _described(actors.of_slot(reading.other_slot))
+            other = described(actors.of_slot(reading.other_slot))
         return SensorType.COLLISION, (own, other, reading.impulse_ns)
     return SensorType.IMU if isinstance(reading, ImuMeasurement) else SensorType.GNSS, reading
-
-
-def _described(record: ActorRecord) -> Actor:
-    """Return an actor that takes part in a collision as the client learns of it; it has a body, thus no stream."""
-    return Actor(record.id, record.parent_id, record.description, record.box, record.semantic_tags)

@@ -29,9 +29,13 @@ def gaussian(seed: int, number: int, deviations: Sequence[float]) -> tuple[float
     return tuple(draw * deviation for draw, deviation in zip(draws, deviations, strict=True))
 
 
+def dice_of(seed: int, number: int) -> np.random.Generator:
+    """Return the dice of one measurement, for sensors that need many draws for each."""
+    return np.random.Generator(np.random.Philox(key=np.array([seed & _WORD, number & _WORD], np.uint64)))
+
+
 @lru_cache(maxsize=256)
 def _block(seed: int, block: int, count: int) -> list[list[float]]:
     """Return ``count`` standard normal draws for each measurement of a block."""
-    stream = np.random.Generator(np.random.Philox(key=np.array([seed & _WORD, block & _WORD], np.uint64)))
-    draws: list[list[float]] = stream.standard_normal((BLOCK, count)).tolist()
+    draws: list[list[float]] = dice_of(seed, block).standard_normal((BLOCK, count)).tolist()
     return draws

@@ -17,6 +17,9 @@ U8 = NDArray[np.uint8]
 STREETS = 0
 """What cameras and lidars call the object of a face that belongs to none."""
 
+NO_ACTOR_FROM = 0x8000_0000
+"""``Seen.object_id`` from here on are no actors'."""
+
 
 class Faces(NamedTuple):
     """Columns of the faces (F,) of what stands and then of each body's mesh, in the order of their numbers.
@@ -71,6 +74,13 @@ def first_of_places(faces: Faces, instances: Instances) -> I64:
 def id_of_places(instances: Instances) -> NDArray[np.uint32]:
     """Return (1 + K,) the actor of each place, in the order of :func:`first_of_places`; 0 for what stands."""
     return np.concatenate([np.zeros(1, np.uint32), instances.actor_id])
+
+
+def actor_of_objects(seen: Seen) -> NDArray[np.uint32]:
+    """Return (O + 1,) the actor of each object, 0 where it is none; the last is for NO_OBJECT."""
+    actors = np.append(seen.object_id, np.uint32(0))
+    actors[actors >= NO_ACTOR_FROM] = 0
+    return actors
 
 
 def _linear() -> F32:

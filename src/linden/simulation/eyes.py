@@ -5,9 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from linden.sensors.camera.cameras import CAMERAS
 from linden.sensors.description import interval_s
 from linden.sensors.lidar import Lidar, SemanticLidar
 from linden.sensors.looking import F64, Look, LookingSensor
+from linden.sensors.obstacle import ObstacleDetector
+from linden.sensors.radar import Radar
 from linden.sensors.schedule import Schedule, advance
 from linden.simulation.seeing import Seeing
 from linden.values.actors import ActorDescription
@@ -18,8 +21,11 @@ if TYPE_CHECKING:
     from linden.simulation.episode import Episode
 
 MAKERS: dict[str, Callable[[ActorDescription], LookingSensor]] = {
+    **CAMERAS,
     "sensor.lidar.ray_cast": Lidar,
     "sensor.lidar.ray_cast_semantic": SemanticLidar,
+    "sensor.other.obstacle": ObstacleDetector,
+    "sensor.other.radar": Radar,
 }
 """What makes a sensor of a complete description, by its blueprint."""
 

@@ -16,7 +16,7 @@ from linden.physics.contact.statics import Statics
 from linden.scene.lamps import is_night
 from linden.scene.objects import Kind as Thing
 from linden.scene.objects import Scene
-from linden.sensors.seen import Faces, Seen, table_of
+from linden.sensors.seen import NO_ACTOR_FROM, Faces, Seen, table_of
 from linden.simulation.company import Company
 from linden.values.enums import TrafficLightState
 from linden.world.blueprints import BlueprintLibrary, Kind
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 U32 = NDArray[np.uint32]
 
-OBJECTS_FROM = 0x8000_8000
+OBJECTS_FROM = NO_ACTOR_FROM + 0x8000
 """Ids of objects that are no actors begin here: no actor has one, nor one that is the same in its lowest 16 bits."""
 
 _OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
