@@ -143,3 +143,15 @@ class EventCamera:
     def skip(self, _interval_s: float) -> None:
         """Forget the last picture: to remember one that nobody listens to would mean to make it."""
         self._retina = None
+
+
+CAMERAS: dict[str, type[Camera] | type[EventCamera]] = {
+    "sensor.camera.depth": DepthCamera,
+    "sensor.camera.dvs": EventCamera,
+    "sensor.camera.instance_segmentation": InstanceCamera,
+    "sensor.camera.normals": NormalsCamera,
+    "sensor.camera.optical_flow": FlowCamera,
+    "sensor.camera.rgb": ColourCamera,
+    "sensor.camera.semantic_segmentation": SemanticCamera,
+}
+"""What makes a camera of a complete description, by its blueprint."""
