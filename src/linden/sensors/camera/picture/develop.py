@@ -74,7 +74,7 @@ def filmic(light: F64) -> F64:
     low = -black + 2.0 * toe_scale / (1.0 + np.exp(-2.0 * slope / toe_scale * (stops - toe_at)))
     high = 1.0 + white - 2.0 * shoulder_scale / (1.0 + np.exp(2.0 * slope / shoulder_scale * (stops - shoulder_at)))
     low, high = np.where(stops < toe_at, low, straight), np.where(stops > shoulder_at, high, straight)
-    share = np.clip((stops - toe_at) / (shoulder_at - toe_at), 0.0, 1.0)
+    share = np.clip((stops - shoulder_at) / (toe_at - shoulder_at), 0.0, 1.0)  # the two overlap
     share = share * share * (3.0 - 2.0 * share)
     shown: F64 = np.clip(low + (high - low) * share, 0.0, 1.0)
     return shown
