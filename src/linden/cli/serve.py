@@ -6,6 +6,7 @@ import logging
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -70,10 +71,12 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     # here, not above: these bring in the compiler, which other commands of this program do not need
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
+    from linden.meshes.library import standing_of  # noqa: PLC0415 - see above
     from linden.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
     from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
     from linden.recording.folder import RecordingFolder  # noqa: PLC0415 - see above
     from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
+    from linden.sensors.warming import warm_up as warm_eyes  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
@@ -92,8 +95,11 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
             raise UserError(f"--map: {refusal}") from refusal
         warm_up()
         warm_rays()
+        warm_eyes()
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
         simulation.episode.warm_up()
+        simulation.seeing.standing_on = partial(standing_of, cache=cache)
+        simulation.seeing.prepare(simulation.episode)  # seconds, if it is not in the cache
         mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
     server = Server(simulation, maps, frames, ports)
     server.context.recordings = RecordingFolder(arguments.recordings)
