@@ -8,14 +8,20 @@ from linden.meshes.houses import houses, plans
 from linden.meshes.markings import lines
 from linden.meshes.mesh import Material, Mesh, join
 from linden.meshes.painted import across_lanes
+from linden.meshes.parked import parked_cars
 from linden.meshes.patches import ALL_SIDES, Frames, Look, boxes
 from linden.meshes.posts import signs, street_lamps, traffic_lights
+from linden.meshes.railroad import railroad
 from linden.meshes.road import CONCRETE, kerbs, surface
 from linden.meshes.terrain import land
 from linden.meshes.trees import trees
+from linden.meshes.wires import shelters, utility_poles
+from linden.meshes.yards import fences, hedges, paved_yards, porches
 from linden.opendrive.mesh import road_mesh
 from linden.opendrive.model import OpenDrive
 from linden.scene.objects import Kind, Scene
+from linden.scene.streetside import clear_of
+from linden.scene.surveyed import surveyed
 from linden.values.enums import SemanticTag
 from linden.world.map_facts import MapFacts
 
@@ -27,7 +33,15 @@ _SEED = 880
 
 def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:
     """Return what stands: triangles of things name their box in ``scene``, those of the streets and the land none."""
-    return join([streets(opendrive, facts), things(facts, scene)])
+    return join([streets(opendrive, facts), _beside(facts, scene), things(facts, scene)])
+
+
+def _beside(facts: MapFacts, scene: Scene) -> Mesh:
+    """Return what only Linden has and what is nothing to run into: drives, paths, the railroad."""
+    if not (scene.things["kind"] == Kind.SHELTER).any():
+        return join([])
+    line = surveyed(facts.geo_origin_deg).railroad_m
+    return join([paved_yards(clear_of(facts.lots, line), scene, facts.ground), railroad(line, facts.ground)])
 
 
 def streets(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
@@ -112,6 +126,30 @@ def _walls(of: _Of) -> Mesh:
     )
 
 
+def _porches(of: _Of) -> Mesh:
+    return porches(of.frames, of.half_m(0), of.box(0))
+
+
+def _hedges(of: _Of) -> Mesh:
+    return hedges(of.frames, of.half_m(0), of.draw, of.box(0))
+
+
+def _fences(of: _Of) -> Mesh:
+    return fences(of.frames, of.half_m(0), of.draw, of.box(0))
+
+
+def _parked(of: _Of) -> Mesh:
+    return parked_cars(of.frames, of.half_m(0), of.draw, of.box(0))
+
+
+def _poles(of: _Of) -> Mesh:
+    return utility_poles(of.frames, of.box(0))
+
+
+def _shelters(of: _Of) -> Mesh:
+    return shelters(of.frames, of.box(0))
+
+
 _MAKERS = {
     Kind.TRAFFIC_LIGHT: _lights,
     Kind.TRAFFIC_SIGN: _signs,
@@ -119,4 +157,10 @@ _MAKERS = {
     Kind.TREE: _trees,
     Kind.STREET_LAMP: _lamps,
     Kind.WALL: _walls,
+    Kind.PORCH: _porches,
+    Kind.HEDGE: _hedges,
+    Kind.FENCE: _fences,
+    Kind.PARKED_CAR: _parked,
+    Kind.UTILITY_POLE: _poles,
+    Kind.SHELTER: _shelters,
 }

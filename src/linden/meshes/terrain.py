@@ -20,7 +20,7 @@ from linden.values.enums import SemanticTag
 F64 = NDArray[np.float64]
 
 _EDGE_STEP_M = 5.0
-_GRAIN_M = 14.0
+_GRAIN_M = 21.0
 _CLEAR_M = 5.5  # no corner of the open land lies nearer to a road
 _BELOW_EDGE_M = 0.015
 _PROBE_M = 0.08

@@ -17,7 +17,7 @@ from linden.world.map_lots import LOT_DEPTH_M, LOT_WIDTH_M
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
 
-PORCHES, HEDGES, SIDE_FENCES, BACK_FENCES, DRIVES, CARS = 0.65, 0.28, 0.35, 0.5, 0.55, 0.6
+PORCHES, HEDGES, SIDE_FENCES, BACK_FENCES, DRIVES, CARS = 0.55, 0.28, 0.3, 0.4, 0.55, 0.5
 """How many houses have one, and how many drives a car."""
 
 PORCH_DEPTH_M = 1.7
@@ -46,7 +46,7 @@ class Drive(NamedTuple):
 
 def yards(lots: NDArray[np.void], houses: Scene, ground: Ground) -> Scene:
     """Return what lies around the houses that stand on the lots."""
-    lot_of_house = _lots_of(lots, houses)
+    lot_of_house = lots_of(lots, houses)
     draw = _draw(lots)
     box = houses.boxes[np.searchsorted(houses.boxes["thing"], _house_rows(houses))]
     return join(
@@ -61,7 +61,7 @@ def yards(lots: NDArray[np.void], houses: Scene, ground: Ground) -> Scene:
 
 def drives(lots: NDArray[np.void], houses: Scene) -> Drive:
     """Return the drives of the lots that have one."""
-    lot, rows = _lots_of(lots, houses), _house_rows(houses)
+    lot, rows = lots_of(lots, houses), _house_rows(houses)
     has_porch = _draw(lots)[lot, 0] < PORCHES
     draw = np.random.default_rng([SEED, 2]).random((len(lots), 2))[lot]
     box = houses.boxes[np.searchsorted(houses.boxes["thing"], rows)]
@@ -81,7 +81,7 @@ def _house_rows(houses: Scene) -> I64:
     return np.flatnonzero(houses.things["kind"] == Kind.HOUSE).astype(np.int64)
 
 
-def _lots_of(lots: NDArray[np.void], houses: Scene, kind: Kind = Kind.HOUSE) -> I64:
+def lots_of(lots: NDArray[np.void], houses: Scene, kind: Kind = Kind.HOUSE) -> I64:
     """Return the lot that each thing of a kind stands on: they come in the order of the lots, right behind them."""
     things = houses.things[houses.things["kind"] == kind]
     found, at = np.empty(len(things), np.int64), 0
@@ -96,7 +96,7 @@ def _lots_of(lots: NDArray[np.void], houses: Scene, kind: Kind = Kind.HOUSE) -> 
 
 def _tree_side(lots: NDArray[np.void], scene: Scene) -> F64:
     """Return for each lot on which hand its tree stands, 0 where it has none."""
-    rows = _lots_of(lots, scene, Kind.TREE)
+    rows = lots_of(lots, scene, Kind.TREE)
     base = scene.things["base"][scene.things["kind"] == Kind.TREE]
     away = base[:, :2] - lots["front_m"][rows]
     yaw = lots["yaw_rad"][rows]
@@ -142,7 +142,7 @@ def _fences(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
         some = lots[chosen]
         base = on_lots(some, ground, np.full(len(some), depth), np.full(len(some), aside))
         things = things_with(Kind.FENCE, base, some["yaw_rad"])
-        tall = np.where(draw[chosen, 4] < 0.5, *FENCE_HEIGHT_M)
+        tall = np.where(draw[chosen, 4] < 0.4, *FENCE_HEIGHT_M)
         half = np.column_stack([np.full(len(some), half_x), np.full(len(some), half_y), 0.5 * tall])
         scenes.append(assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.FENCES)))
     return join(scenes)
