@@ -1,4 +1,4 @@
-"""``linden map``: build OpenDRIVE from streets, check it, draw it, count it."""
+"""``linden map``: build OpenDRIVE from streets, check it, draw it, count it, export what is seen of it."""
 
 import argparse
 import json
@@ -31,6 +31,10 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     show_parser = _add(actions, "show", show, "draw a map")
     _add_file(show_parser)
     show_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .svg file")
+
+    export_parser = _add(actions, "export", export, "write all that stands on a map as glTF, for any 3D viewer")
+    _add_file(export_parser)
+    export_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .glb file")
 
     info_parser = _add(actions, "info", info, "count roads, junctions, signals, lanes")
     _add_file(info_parser)
@@ -77,6 +81,27 @@ def show(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def export(arguments: argparse.Namespace) -> int:
+    """Write the standing mesh of the map as binary glTF."""
+    from linden.meshes.gltf import glb  # noqa: PLC0415 - the server's start does not pay for it
+    from linden.meshes.standing import standing  # noqa: PLC0415 - see above
+    from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
+    from linden.simulation.scenery import scenery_of  # noqa: PLC0415 - see above
+    from linden.world.map_facts import derive  # noqa: PLC0415 - see above
+    from linden.world.maps import LoadedMap  # noqa: PLC0415 - see above
+
+    try:
+        text = _content(arguments.file).decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise UserError(f"{arguments.file} is no text in UTF-8: {error.reason} at byte {error.start}") from None
+    name = Path(arguments.file).name.removesuffix(".xodr")
+    world_map = LoadedMap(name=name, text=text, **vars(derive(text)))
+    mesh = standing(parse(text), world_map, scenery_of(world_map).scene)
+    _write(arguments.output, glb(mesh, name))
+    _say(f"{arguments.output}: {len(mesh.triangles):,} triangles, {arguments.output.stat().st_size:,} bytes")
+    return 0
+
+
 def info(arguments: argparse.Namespace) -> int:
     """Print what the map has, one count a line."""
     from linden.opendrive.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
@@ -109,11 +134,20 @@ def _read(name: str) -> "OpenDrive":
     """
     from linden.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
 
+    return parse(_content(name))
+
+
+def _content(name: str) -> bytes:
+    """Return the bytes of a file, or else of the built-in map of that name.
+
+    Raises:
+        UserError: there is neither.
+    """
     path = Path(name)
     built_in = resources.files("linden") / "data" / f"{name.removesuffix('.xodr')}.xodr"
     if not path.is_file() and path.name == name and built_in.is_file():
-        return parse(built_in.read_bytes())
-    return parse(_bytes_of(path))
+        return built_in.read_bytes()
+    return _bytes_of(path)
 
 
 def _streets(path: Path | None) -> dict[str, Any]:

@@ -17,7 +17,18 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 _SIDING = np.array(
-    [(214, 210, 198), (196, 188, 160), (150, 164, 170), (176, 190, 172), (204, 196, 178), (132, 142, 150), (188, 160, 128), (226, 222, 214), (160, 132, 112), (120, 140, 124)]
+    [
+        (214, 210, 198),
+        (196, 188, 160),
+        (150, 164, 170),
+        (176, 190, 172),
+        (204, 196, 178),
+        (132, 142, 150),
+        (188, 160, 128),
+        (226, 222, 214),
+        (160, 132, 112),
+        (120, 140, 124),
+    ]
 )
 _BRICKS = np.array([(142, 78, 60), (126, 68, 54), (156, 96, 72), (116, 72, 62)])
 _ROOFS = np.array([(74, 70, 68), (92, 80, 72), (66, 72, 78), (104, 76, 62), (84, 84, 82)])
@@ -45,7 +56,16 @@ class Plan(NamedTuple):
 
     def of(self, rows: NDArray[np.intp]) -> "Plan":
         """Return the measures of those of the houses."""
-        return Plan(*(column[rows] for column in self))
+        return Plan(
+            self.half_x[rows],
+            self.half_y[rows],
+            self.height[rows],
+            self.eaves[rows],
+            self.storeys[rows],
+            self.gable_ahead[rows],
+            self.draw[rows],
+            self.objects[rows],
+        )
 
 
 def plans(half_m: F64, draw: F64, objects: I32) -> Plan:
@@ -53,9 +73,7 @@ def plans(half_m: F64, draw: F64, objects: I32) -> Plan:
     height = 2.0 * half_m[:, 2]
     storeys = np.where(height > 5.3, 2, 1)
     pitch = np.where(storeys == 2, 0.30 + 0.10 * draw[:, 0], 0.34 + 0.06 * draw[:, 0])
-    return Plan(
-        half_m[:, 0], half_m[:, 1], height, height * (1.0 - pitch), storeys, draw[:, 1] < 0.62, draw, objects
-    )
+    return Plan(half_m[:, 0], half_m[:, 1], height, height * (1.0 - pitch), storeys, draw[:, 1] < 0.62, draw, objects)
 
 
 def houses(frames: Frames, plan: Plan) -> Mesh:
@@ -161,21 +179,25 @@ def _windows(frames: Frames, plan: Plan) -> Mesh:
     for storey in (1, 2):
         rows = np.flatnonzero(plan.storeys >= storey)
         some, at = plan.of(rows), frames.of(rows)
-        sill = np.full(len(rows), 1.15 if storey == 1 else 3.75)
-        room = some.eaves - sill
-        tall = np.minimum(1.35, room - 0.2)
-        for side, half_run in (("front", some.half_y), ("back", some.half_y), ("left", some.half_x), ("right", some.half_x)):
+        sill = np.full(len(rows), 1.15) if storey == 1 else np.maximum(3.1, some.eaves - 1.65)
+        tall = np.minimum(1.35, some.eaves - sill - 0.25)
+        for side, half_run in (
+            ("front", some.half_y),
+            ("back", some.half_y),
+            ("left", some.half_x),
+            ("right", some.half_x),
+        ):
             for share in (-0.5, 0.5):
                 if side == "front" and storey == 1 and share > 0.0:
                     continue  # the door
-                parts.append(_panes(at, some, side, share * half_run, sill, tall, rows))
+                parts.append(_panes(at, some, side, share * half_run, sill, tall))
     return join(parts)
 
 
 _FACING = {"front": (-1.0, 0.0), "back": (1.0, 0.0), "left": (0.0, -1.0), "right": (0.0, 1.0)}
 
 
-def _panes(frames: Frames, plan: Plan, side: str, run: F64, sill: F64, tall: F64, rows: NDArray[np.intp]) -> Mesh:
+def _panes(frames: Frames, plan: Plan, side: str, run: F64, sill: F64, tall: F64) -> Mesh:
     """Return one window of each house: a frame on the wall and a pane in front of it."""
     fits = np.flatnonzero(tall > 0.5)
     frames, plan, run, sill, tall = frames.of(fits), plan.of(fits), run[fits], sill[fits], tall[fits]
@@ -183,7 +205,9 @@ def _panes(frames: Frames, plan: Plan, side: str, run: F64, sill: F64, tall: F64
     pane = Look(Material.GLASS, _TAG, _PANE, plan.objects, LampOf.WINDOW)
     return join(
         [
-            polygons(_on_wall(frames, plan, side, run, sill - 0.1, sill + tall + 0.1, 0.6, 0.025), frame, _out(frames, side)),
+            polygons(
+                _on_wall(frames, plan, side, run, sill - 0.1, sill + tall + 0.1, 0.6, 0.025), frame, _out(frames, side)
+            ),
             polygons(_on_wall(frames, plan, side, run, sill, sill + tall, 0.48, 0.035), pane, _out(frames, side)),
         ]
     )

@@ -48,5 +48,5 @@ def letters(text: str, tall_m: float) -> list[F64]:
             side = np.array([-along[1], along[0]]) * 0.5 * _BREADTH
             begin, end = begin - 0.5 * _BREADTH * along, end + 0.5 * _BREADTH * along
             corners = np.stack([begin - side, end - side, end + side, begin + side])
-            found.append((corners + (_ADVANCE * nth - 0.5 * wide, -3.0)) * unit)
+            found.append((corners + np.array([_ADVANCE * nth - 0.5 * wide, -3.0])) * unit)
     return found

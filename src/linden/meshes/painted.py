@@ -136,8 +136,9 @@ def _island(outline: F64, ground: Ground) -> Mesh:
     height, _ = ground.surfaces_under(np.column_stack([outline, np.full(len(outline), _HIGH_M)]))
     foot = np.column_stack([outline, height])
     middle = foot.mean(axis=0)
-    top = foot + (0.0, 0.0, _ISLAND_M)
-    inner = top + 0.08 * (middle + (0.0, 0.0, _ISLAND_M) - top)
+    raised = np.array([0.0, 0.0, _ISLAND_M])
+    top = foot + raised
+    inner = top + 0.08 * (middle + raised - top)
     stone = Look(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
     following = np.roll(np.arange(len(foot)), -1)
     walls = np.stack([foot, foot[following], top[following], top], axis=1)

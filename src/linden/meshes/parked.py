@@ -1,5 +1,6 @@
-"""Cars that stand: fewer triangles than one that is driven, for there are a thousand; each fills its box in the scene."""
+"""Cars that stand: of fewer triangles than those that are driven, for there are a thousand; each fills its box."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +13,10 @@ from linden.values.enums import SemanticTag
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
-_COLOURS = np.array(
-    [(188, 190, 192), (32, 34, 38), (226, 226, 224), (96, 100, 106), (118, 26, 30), (34, 52, 92), (60, 74, 62), (150, 132, 104)]
-)  # fmt: skip
+_COLOURS = np.array([
+    (188, 190, 192), (32, 34, 38), (226, 226, 224), (96, 100, 106),
+    (118, 26, 30), (34, 52, 92), (60, 74, 62), (150, 132, 104),
+])  # fmt: skip
 _PANE, _TYRE, _RIM = (34, 42, 50), (26, 26, 27), (150, 152, 156)
 _HEAD, _TAIL = (230, 232, 226), (150, 24, 24)
 _TAG = SemanticTag.CAR
@@ -67,17 +69,29 @@ def _cars(frames: Frames, half_m: F64, outline: _Outline, paint: NDArray[np.uint
     put = _Put(frames, half_m)
     parts = []
     lower = [(-0.98, _BELLY), *outline.lower, (0.98, _BELLY)]
-    for (x0, z0), (x1, z1) in zip(lower[:-1], lower[1:], strict=True):
+    for (x0, z0), (x1, z1) in pairwise(lower):
         y0, y1 = _INSET * _taper(x0), _INSET * _taper(x1)
-        parts.append(put.quad([(x0, -y0, z0), (x0, y0, z0), (x1, y1, z1), (x1, -y1, z1)], painted, (x0 + x1, 0.0, z0 + z1 - 0.9)))
+        parts.append(
+            put.quad([(x0, -y0, z0), (x0, y0, z0), (x1, y1, z1), (x1, -y1, z1)], painted, (x0 + x1, 0.0, z0 + z1 - 0.9))
+        )
     for side in (-1.0, 1.0):
         ring = [(x, side * _INSET * _taper(x), z) for x, z in lower]
-        for (x0, y0, z0), (x1, y1, z1) in zip(ring[:-1], ring[1:], strict=True):
+        for (x0, y0, z0), (x1, y1, z1) in pairwise(ring):
             low = min(_SILL, z0, z1)
-            parts.append(put.quad([(x0, y0, low), (x0, y0, z0), (x1, y1, z1), (x1, y1, low)], painted, (0.0, side, 0.0)))
-    parts.append(put.quad([(-0.98, -0.9, _BELLY), (-0.98, 0.9, _BELLY), (0.98, 0.9, _BELLY), (0.98, -0.9, _BELLY)], dark, (0.0, 0.0, -1.0)))
+            parts.append(
+                put.quad([(x0, y0, low), (x0, y0, z0), (x1, y1, z1), (x1, y1, low)], painted, (0.0, side, 0.0))
+            )
+    parts.append(
+        put.quad(
+            [(-0.98, -0.9, _BELLY), (-0.98, 0.9, _BELLY), (0.98, 0.9, _BELLY), (0.98, -0.9, _BELLY)],
+            dark,
+            (0.0, 0.0, -1.0),
+        )
+    )
     for side in (-1.0, 1.0):
-        parts.append(put.quad([(-0.98, side * 0.9, _BELLY), (-0.98, side * 0.93, _SILL), (0.98, side * 0.93, _SILL), (0.98, side * 0.9, _BELLY)], dark, (0.0, side, 0.0)))
+        ends = [(x, side * y, z) for x, y, z in ((-0.98, 0.9, _BELLY), (-0.98, 0.93, _SILL))]
+        sill = [*ends, *((-x, y, z) for x, y, z in reversed(ends))]
+        parts += [put.quad(sill, dark, (0.0, side, 0.0))]
     parts += _cabin(put, outline, painted, glass)
     parts += _lamps(put, outline, objects)
     parts += [_wheel(frames, half_m, x, side, objects) for x in (-0.6, 0.62) for side in (-1.0, 1.0)]
@@ -102,9 +116,17 @@ def _cabin(put: "_Put", outline: _Outline, painted: Look, glass: Look) -> list[M
         wall = [(rx, side * low, rz), (fx, side * low, fz), (bx, side * high, bz), (ax, side * high, az)]
         parts.append(put.quad(wall, painted, (0.0, side, 0.2)))
         middle = 0.5 * (ax + bx)
-        for x0, x1, t0, t1 in ((rx + 0.08, middle - 0.03, ax + 0.02, middle - 0.03), (middle + 0.03, fx - 0.1, middle + 0.03, bx - 0.03)):
+        for x0, x1, t0, t1 in (
+            (rx + 0.08, middle - 0.03, ax + 0.02, middle - 0.03),
+            (middle + 0.03, fx - 0.1, middle + 0.03, bx - 0.03),
+        ):
             y0, y1, z0, z1 = low - 0.01, high + 0.02, 0.04 + max(rz, fz), min(az, bz) - 0.04
-            pane = [(x0, side * (y0 + 0.01), z0), (x1, side * (y0 + 0.01), z0), (t1, side * (y1 + 0.01), z1), (t0, side * (y1 + 0.01), z1)]
+            pane = [
+                (x0, side * (y0 + 0.01), z0),
+                (x1, side * (y0 + 0.01), z0),
+                (t1, side * (y1 + 0.01), z1),
+                (t0, side * (y1 + 0.01), z1),
+            ]
             parts.append(put.quad(pane, glass, (0.0, side, 0.2)))
     return parts
 
@@ -116,7 +138,11 @@ def _lamps(put: "_Put", outline: _Outline, objects: I32) -> list[Mesh]:
         for x, z, colour, way in ((1.002, front, _HEAD, 1.0), (-1.002, rear, _TAIL, -1.0)):
             look = Look(Material.GLASS, _TAG, colour, objects)
             y0, y1 = side * 0.42, side * 0.8
-            parts.append(put.quad([(x, y0, z - 0.02), (x, y1, z - 0.02), (x, y1, z - 0.11), (x, y0, z - 0.11)], look, (way, 0.0, 0.0)))
+            parts.append(
+                put.quad(
+                    [(x, y0, z - 0.02), (x, y1, z - 0.02), (x, y1, z - 0.11), (x, y0, z - 0.11)], look, (way, 0.0, 0.0)
+                )
+            )
     return parts
 
 
@@ -131,7 +157,7 @@ def _wheel(frames: Frames, half_m: F64, x: float, side: float, objects: I32) -> 
     tyre, rim = Look(Material.RUBBER, _TAG, _TYRE, objects), Look(Material.METAL, _TAG, _RIM, objects)
     out = frames.turned(np.broadcast_to(np.array([0.0, side, 0.0]), (len(frames), 1, 3)))[:, 0]
     parts = [polygons(frames.world(outer), tyre, out)]
-    cap = hub[:, None] + 0.6 * ring[:: 2] * radius[:, None, None] + (0.0, side * 0.006, 0.0)
+    cap = hub[:, None] + 0.6 * ring[::2] * radius[:, None, None] + (0.0, side * 0.006, 0.0)
     parts.append(polygons(frames.world(cap), rim, out))
     for k in _TREADS:
         n = (k + 1) % _WHEEL_SIDES

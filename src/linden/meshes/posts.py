@@ -23,7 +23,11 @@ _BLACK = (28, 30, 30)
 _SIGN_RED = (170, 28, 34)
 _SIGN_WHITE = (236, 236, 232)
 _LENS_M = 0.1524  # 12 inches across, MUTCD 2009, section 4D.07
-_LENSES = ((LampOf.TRAFFIC_RED, 0.345, (220, 36, 32)), (LampOf.TRAFFIC_YELLOW, 0.0, (240, 180, 32)), (LampOf.TRAFFIC_GREEN, -0.345, (36, 200, 110)))
+_LENSES = (
+    (LampOf.TRAFFIC_RED, 0.345, (220, 36, 32)),
+    (LampOf.TRAFFIC_YELLOW, 0.0, (240, 180, 32)),
+    (LampOf.TRAFFIC_GREEN, -0.345, (36, 200, 110)),
+)
 _ROUND = 10
 _PLATE_MIDDLE_M = PLATE_BOTTOM_M + PLATE_HALF_M[2]
 
@@ -33,23 +37,36 @@ def traffic_lights(frames: Frames, poles: I32, heads: I32) -> Mesh:
     middle = POST_HEIGHT_M + HEAD_HALF_M[2]
     housing = Look(Material.METAL, SemanticTag.TRAFFIC_LIGHT, _BLACK, heads)
     parts = [
-        _upright(frames, POST_HALF_WIDTH_M, 0.0, POST_HEIGHT_M, Look(Material.METAL, SemanticTag.POLES, _GALVANISED, poles)),
-        boxes(frames, (0.0, -0.03, middle), (HEAD_HALF_M[0], HEAD_HALF_M[1] - 0.05, HEAD_HALF_M[2]), housing, ALL_SIDES),
+        _upright(
+            frames, POST_HALF_WIDTH_M, 0.0, POST_HEIGHT_M, Look(Material.METAL, SemanticTag.POLES, _GALVANISED, poles)
+        ),
+        boxes(
+            frames, (0.0, -0.03, middle), (HEAD_HALF_M[0], HEAD_HALF_M[1] - 0.05, HEAD_HALF_M[2]), housing, ALL_SIDES
+        ),
     ]
     face_y = HEAD_HALF_M[1] - 0.08
     for lamp, up, colour in _LENSES:
         look = Look(Material.LAMP, SemanticTag.TRAFFIC_LIGHT, colour, heads, lamp)
-        lens = _disc(_ROUND, _LENS_M) + (0.0, face_y + 0.005, middle + up)
+        lens = _disc(_ROUND, _LENS_M) + np.array([0.0, face_y + 0.005, middle + up])
         parts.append(_facing(frames, lens, look))
-        visor = _disc(_ROUND, _LENS_M + 0.012)[: _ROUND // 2 + 1] + (0.0, face_y, middle + up)
-        hood = np.stack([visor[:-1], visor[1:], visor[1:] + (0.0, 0.07, 0.0), visor[:-1] + (0.0, 0.07, 0.0)], axis=1)
+        visor = _disc(_ROUND, _LENS_M + 0.012)[: _ROUND // 2 + 1] + np.array([0.0, face_y, middle + up])
+        brim = visor + np.array([0.0, 0.07, 0.0])
+        hood = np.stack([visor[:-1], visor[1:], brim[1:], brim[:-1]], axis=1)
         parts += [polygons(frames.world(quad), housing) for quad in hood]
     return join(parts)
 
 
 def signs(frames: Frames, kinds: list[tuple[str, float | None]], poles: I32, plates: I32) -> Mesh:
     """Return signs; ``kinds`` (N) are their OpenDRIVE type and value. What has no face of its own is a plain plate."""
-    parts = [_upright(frames, POST_HALF_WIDTH_M * 0.7, 0.0, PLATE_BOTTOM_M + 2.0 * PLATE_HALF_M[2] - 0.1, Look(Material.METAL, SemanticTag.POLES, _STEEL, poles))]
+    parts = [
+        _upright(
+            frames,
+            POST_HALF_WIDTH_M * 0.7,
+            0.0,
+            PLATE_BOTTOM_M + 2.0 * PLATE_HALF_M[2] - 0.1,
+            Look(Material.METAL, SemanticTag.POLES, _STEEL, poles),
+        )
+    ]
     for kind, value in dict.fromkeys(kinds):
         rows = np.array([row for row, other in enumerate(kinds) if other == (kind, value)])
         parts.append(_plate(frames.of(rows), kind, value, plates[rows]))
@@ -61,7 +78,9 @@ def _plate(frames: Frames, kind: str, value: float | None, objects: I32) -> Mesh
     half = PLATE_HALF_M[0]
     if kind == STOP_SIGN_TYPE:
         outer = _regular(8, half / np.cos(np.pi / 8.0), np.pi / 8.0)
-        return _layers(frames, objects, [(outer, _SIGN_WHITE), (0.94 * outer, _SIGN_RED)], [("STOP", 0.26, 0.0, _SIGN_WHITE)])
+        return _layers(
+            frames, objects, [(outer, _SIGN_WHITE), (0.94 * outer, _SIGN_RED)], [("STOP", 0.26, 0.0, _SIGN_WHITE)]
+        )
     if kind == YIELD_SIGN_TYPE:
         outer = np.array([(-half, 0.0, half * 0.85), (half, 0.0, half * 0.85), (0.0, 0.0, -half)])
         inner = (outer - outer.mean(axis=0)) * 0.52 + outer.mean(axis=0)
@@ -72,8 +91,13 @@ def _plate(frames: Frames, kind: str, value: float | None, objects: I32) -> Mesh
     return _layers(frames, objects, [(outer, _BLACK), (0.94 * outer, _SIGN_WHITE)], text if shows_speed else [])
 
 
-def _layers(frames: Frames, objects: I32, sheets: list[tuple[F64, tuple[int, int, int]]], text: list[tuple[str, float, float, tuple[int, int, int]]]) -> Mesh:
-    """Return sheets, each 2 mm in front of the one before, the back of the first one in bare metal, and what is written."""
+def _layers(
+    frames: Frames,
+    objects: I32,
+    sheets: list[tuple[F64, tuple[int, int, int]]],
+    text: list[tuple[str, float, float, tuple[int, int, int]]],
+) -> Mesh:
+    """Return sheets, each 2 mm in front of the one before, a back of bare metal, and what is written in front."""
     tag = SemanticTag.TRAFFIC_SIGNS
     at = np.array([0.0, 0.0, _PLATE_MIDDLE_M])
     back = Look(Material.METAL, tag, _STEEL, objects)
@@ -88,7 +112,9 @@ def _layers(frames: Frames, objects: I32, sheets: list[tuple[F64, tuple[int, int
         look = Look(Material.SIGN_FACE, tag, colour, objects)
         for stroke in strokes:
             # who looks at the face sees the thing's x run to the left: the face looks along y, x is on its right hand
-            corners = np.stack([-stroke[:, 0], np.full(len(stroke), depth + 0.002 * len(sheets)), stroke[:, 1] + up], axis=1)
+            corners = np.stack(
+                [-stroke[:, 0], np.full(len(stroke), depth + 0.002 * len(sheets)), stroke[:, 1] + up], axis=1
+            )
             parts.append(polygons(frames.world(corners + at), look, front))
     return join(parts)
 

@@ -1,4 +1,4 @@
-"""A railroad across the land: a bed of gravel, ties, two rails; where it meets a street the rails lie in the asphalt."""
+"""A railroad across the land: a bed of gravel, ties, two rails; across a street the rails lie in the asphalt."""
 
 import numpy as np
 from numpy.typing import NDArray

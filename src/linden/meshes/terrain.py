@@ -80,7 +80,8 @@ def _edges(opendrive: OpenDrive, ground: Ground) -> F64:
         both = np.concatenate([found, end[last]])
         outward = np.concatenate([away[rows][piece], away[rows + 1][last]])
         places.append(both[~_on_roads(both + _PROBE_M * outward, ground)])
-    return np.concatenate(places) - (0.0, 0.0, _BELOW_EDGE_M)
+    edges: F64 = np.concatenate(places) - np.array([0.0, 0.0, _BELOW_EDGE_M])
+    return edges
 
 
 def _thinned(points: F64) -> F64:

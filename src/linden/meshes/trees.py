@@ -35,7 +35,11 @@ def trees(frames: Frames, trunk_half_m: F64, trunk_height_m: F64, draw: F64, obj
     shape = (draw[:, 5] * _CROWNS).astype(int)
     for number in range(_CROWNS):
         chosen = rows[~conifer & (shape == number)]
-        parts.append(_crowns(number, frames.of(chosen), trunk_half_m[chosen], trunk_height_m[chosen], draw[chosen], objects[chosen]))
+        parts.append(
+            _crowns(
+                number, frames.of(chosen), trunk_half_m[chosen], trunk_height_m[chosen], draw[chosen], objects[chosen]
+            )
+        )
     chosen = rows[conifer]
     parts.append(_cones(frames.of(chosen), draw[chosen], objects[chosen]))
     return join(parts)
@@ -85,7 +89,7 @@ def _blob(number: int) -> tuple[F64, NDArray[np.int64]]:
     lumps = rng.normal(size=(5, 3))
     lumps /= np.linalg.norm(lumps, axis=1)[:, None]
     swell = np.exp(3.0 * (corners @ lumps.T - 1.0)).sum(axis=1)
-    radius = 0.72 + 0.28 * swell + rng.uniform(-0.1, 0.1, len(corners))
+    radius = 0.72 + 0.28 * swell + rng.uniform(-0.15, 0.15, len(corners))
     shaped = corners * radius[:, None]
     shaped[:, 2] = np.where(shaped[:, 2] < 0.0, 0.75 * shaped[:, 2], shaped[:, 2])
     return shaped, triangles

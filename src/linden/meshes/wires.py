@@ -1,5 +1,7 @@
 """Utility poles with their cross-arms and the wires between them, and shelters at stops."""
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,7 +24,7 @@ _WIRE_HALF_M = 0.012
 
 
 def utility_poles(frames: Frames, objects: I32) -> Mesh:
-    """Return wooden poles with arms along x, a transformer on some, and wires from each to the next one that is near."""
+    """Return wooden poles with arms along x, transformers on some, and wires from each to the next if that is near."""
     wood = Look(Material.WOOD, SemanticTag.POLES, _WOOD, objects)
     up = np.array([0.0, 0.0, 1.0])
     top = frames.base_m + POLE_HEIGHT_M * up
@@ -53,10 +55,7 @@ def _wires(frames: Frames) -> Mesh:
             begin + share * (end - begin) - np.outer(4.0 * share * (1.0 - share) * _SAG * apart[spans], (0.0, 0.0, 1.0))
             for share in np.linspace(0.0, 1.0, _PIECES + 1)
         ]
-        parts += [
-            prisms(first, second, (_WIRE_HALF_M, _WIRE_HALF_M), 3, look)
-            for first, second in zip(nodes[:-1], nodes[1:], strict=True)
-        ]
+        parts += [prisms(first, second, (_WIRE_HALF_M, _WIRE_HALF_M), 3, look) for first, second in pairwise(nodes)]
     return join(parts)
 
 
@@ -89,5 +88,3 @@ def _posts(frames: Frames, centre: tuple[float, float, float], half: tuple[float
     along = (half[0], 0.0) if half[0] > half[1] else (0.0, half[1])
     size = (0.035, 0.035, z)
     return join([boxes(frames, (x + s * along[0], y + s * along[1], z), size, look) for s in (-1.0, 1.0)])
-
-

@@ -1,5 +1,7 @@
 """What lies around houses: porches on posts, hedges, fences of boards or mesh, drives and paths of concrete."""
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,7 +31,7 @@ _HIGH_M = 1e6
 
 
 def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
-    """Return porches that fill boxes of these half sizes: a floor with steps, posts, a roof that slopes to the street."""
+    """Return porches that fill boxes of these half sizes: a floor, posts, a rail, a roof that slopes to the street."""
     tag = SemanticTag.BUILDINGS
     trim = Look(Material.WOOD, tag, _TRIM, objects)
     roof = Look(Material.SHINGLES, tag, _ROOF, objects)
@@ -45,7 +47,9 @@ def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
     high = 0.5 * (top - 0.35 + _FLOOR_M)
     for share in (-1.0, -0.15, 1.0):
         centre = np.column_stack([-x + _POST_M + 0.05, share * (y - _POST_M - 0.05), high])
-        parts.append(boxes(frames, centre, np.column_stack([zero + _POST_M, zero + _POST_M, high - _FLOOR_M]), trim, _WALLS))
+        parts.append(
+            boxes(frames, centre, np.column_stack([zero + _POST_M, zero + _POST_M, high - _FLOOR_M]), trim, _WALLS)
+        )
     front, back = top - 0.35, top
     ends = [(-x, -y, front), (-x, y, front), (x, y, back), (x, -y, back)]
     slope = np.stack([np.column_stack(corner) for corner in ends], axis=1)
@@ -57,7 +61,9 @@ def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
         middle = frames.turned((0.5 * (slope[:, a] + slope[:, b]) * (1.0, 1.0, 0.0))[:, None])[:, 0]
         parts.append(polygons(frames.world(edge), trim, middle))
     rail = np.column_stack([-x + 0.08, -0.55 * y, np.full(len(x), _FLOOR_M + 0.75)])
-    parts.append(boxes(frames, rail, np.column_stack([zero + 0.03, 0.42 * y, zero + 0.04]), trim, ("top", "ahead", "behind")))
+    parts.append(
+        boxes(frames, rail, np.column_stack([zero + 0.03, 0.42 * y, zero + 0.04]), trim, ("top", "ahead", "behind"))
+    )
     return join(parts)
 
 
@@ -70,7 +76,9 @@ def hedges(frames: Frames, half_m: F64, draw: F64, objects: I32) -> Mesh:
     parts = [lower, polygons(frames.world(half_m[:, None] * crest), look, _UP)]
     for k in range(4):
         n = (k + 1) % 4
-        parts.append(polygons(frames.world(half_m[:, None] * np.stack([foot[k], foot[n], crest[n], crest[k]])), look, _UP))
+        parts.append(
+            polygons(frames.world(half_m[:, None] * np.stack([foot[k], foot[n], crest[n], crest[k]])), look, _UP)
+        )
     return join(parts)
 
 
@@ -132,7 +140,7 @@ def _lengths(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], gr
     """Return slabs in two lengths, so that they follow the ground."""
     shares = (0.0, 0.5, 1.0)
     places = [along[0] + share * (along[1] - along[0]) for share in shares]
-    return [_slab(frames, pair, across, ground, 0.0) for pair in zip(places[:-1], places[1:], strict=True)]
+    return [_slab(frames, pair, across, ground, 0.0) for pair in pairwise(places)]
 
 
 def _slab(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], ground: Ground, above_m: float) -> Mesh:
