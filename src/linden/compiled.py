@@ -44,13 +44,18 @@ def unlocked(function: Function) -> Function:
 
 
 def shading(function: Function) -> Function:
-    """Compile as :func:`unlocked` does, and let sums be reordered: for light and colour, never for what is measured."""
-    return cast("Function", numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True)(function))
+    """Compile as :func:`unlocked` does, and let sums be reordered: for light and colour, never for what is measured.
+
+    It makes no arrays, so that numba need not count who uses those it is given: that took as long as all the rest.
+    """
+    return cast(
+        "Function", numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True, _nrt=False)(function)
+    )
 
 
 def shading_part(function: Function) -> Function:
     """Compile into the kernels that call it, as :func:`part` does, with sums reordered."""
-    return cast("Function", numba.njit(error_model="numpy", fastmath=True)(function))
+    return cast("Function", numba.njit(error_model="numpy", fastmath=True, _nrt=False)(function))
 
 
 def fingerprint(*sources: Path) -> int:

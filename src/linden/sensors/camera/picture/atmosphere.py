@@ -22,8 +22,8 @@ _SKY = np.array(
         (-90.0, 0.0011, 0.0016, 0.0036, 0.0028, 0.0032, 0.0052),
         (-14.0, 0.0013, 0.0020, 0.0048, 0.0040, 0.0042, 0.0065),
         (-6.0, 0.0120, 0.0210, 0.0520, 0.0900, 0.0680, 0.0720),
-        (0.0, 0.0700, 0.1250, 0.2500, 0.4600, 0.3300, 0.2400),
-        (6.0, 0.1200, 0.2300, 0.4300, 0.7000, 0.5900, 0.4700),
+        (0.0, 0.0700, 0.1150, 0.2300, 0.5200, 0.3000, 0.1700),
+        (6.0, 0.1200, 0.2300, 0.4300, 0.7200, 0.5400, 0.3800),
         (20.0, 0.1500, 0.3200, 0.6300, 0.7200, 0.7800, 0.8400),
         (45.0, 0.1500, 0.3500, 0.7100, 0.7600, 0.8500, 0.9500),
         (90.0, 0.1600, 0.3800, 0.7700, 0.8000, 0.9000, 1.0000),
@@ -74,16 +74,16 @@ def air(weather: WeatherParameters, now_s: float) -> Air:
     sun = sunlight(height_deg) * (1.0 - 0.97 * cover**1.5) * (1.0 - 0.6 * rain)
     light_of_day = float(day[3:].mean())
     towards = _direction(given.sun_azimuth_angle, height_deg)
-    above = 0.42 * zenith + 0.22 * horizon + 0.9 * _MOONLIGHT
+    above = 0.50 * zenith + 0.26 * horizon + 0.9 * _MOONLIGHT
     fog = 0.85 * horizon + 0.10 * zenith + 0.06 * sun
     return Air(
         *towards,
         sun=_colour(sun),
-        glow=_colour(np.array([1.1, 0.42, 0.12]) * _bump(height_deg, 1.0, 7.0) * (1.0 - 0.8 * grey)),
+        glow=_colour(np.array([1.3, 0.42, 0.06]) * _bump(height_deg, 1.0, 7.0) * (1.0 - 0.8 * grey)),
         zenith=_colour(zenith),
         horizon=_colour(horizon),
         above=_colour(above * (1.0 + 0.35 * grey)),
-        below=_colour(0.16 * above + 0.09 * max(0.0, towards[2]) * sun),
+        below=_colour(0.22 * above + 0.11 * max(0.0, towards[2]) * sun),
         cloud=_colour(_cloud(day, sun, cover)),
         cloud_cover=cover,
         cloud_shift_m=0.0004 * given.wind_intensity * now_s,

@@ -31,11 +31,12 @@ _NOON = 1.75
 _ADAPTION = 0.72
 """How much of a darker or brighter day an automatic exposure makes up for: night stays darker than day."""
 _DARKEST = 0.02
-_GREY = 0.62
+_GREY = 0.90
 """What a white surface in half the noon's sun becomes before the film's curve."""
 _DEFAULT = Film()
 
-_BLOOM_FROM, _BLOOM_BLOCK, _BLOOM_SHARE = 1.6, 4, 0.10
+_BLOOM_FROM, _BLOOM_MOST, _BLOOM_SHARE = 2.2, 4.0, 0.10
+"""Light, once exposed, that spreads around it: from, up to, and how much of it."""
 
 
 def exposure(film: Film, light: Air) -> float:
@@ -109,8 +110,13 @@ def white_balance(film: Film) -> F32:
 def bloom(spec: CameraSpec, light: F32, factor: F32) -> F32:
     """Return the light that the brightest spots spread around them, (tiles down, tiles across, 3), exposed."""
     across, down = tile_counts(spec)
-    tiles = light.reshape(down, across, TILE_PX**2, 3)
-    over: F32 = np.minimum(np.maximum(tiles.max(axis=2) * factor - np.float32(_BLOOM_FROM), 0.0), np.float32(4.0))
+    over = np.empty((down * across, 3), np.float32)
+
+    def work(start: int, stop: int) -> None:
+        _excess(light, factor, over, start, stop)
+
+    in_stretches(len(over), work, multiple=1)
+    over = over.reshape(down, across, 3)
     if not over.any():
         return over
     weights = np.exp(-0.5 * (np.arange(-6, 7) / 2.4) ** 2).astype(np.float32)
@@ -121,6 +127,17 @@ def bloom(spec: CameraSpec, light: F32, factor: F32) -> F32:
         length = spread.shape[axis]
         spread = sum(weight * np.take(padded, np.arange(k, k + length), axis=axis) for k, weight in enumerate(weights))
     return spread * np.float32(weights.sum())
+
+
+@shading
+def _excess(light: F32, factor: F32, over: F32, start: int, stop: int) -> None:
+    """Write how far the brightest spot of each tile is above what a picture can hold."""
+    for tile in range(start, stop):
+        for channel in range(3):
+            most = np.float32(0.0)
+            for ray in range(tile * TILE_PX * TILE_PX, (tile + 1) * TILE_PX * TILE_PX):
+                most = max(most, light[ray, channel])
+            over[tile, channel] = min(max(most * factor[channel] - _BLOOM_FROM, 0.0), _BLOOM_MOST)
 
 
 @shading_part

@@ -1,13 +1,17 @@
 """Where a picture has edges: pixels that need more than one ray, and the rays they get."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.casting.crew import in_stretches
-from linden.casting.rays import NOTHING, Hits
+from linden.casting.rays import NOTHING, Hits, Rays
 from linden.compiled import unlocked
-from linden.sensors.camera.rays import TILE_PX, distorted, pixels, tile_counts, towards
+from linden.geometry import rotation_matrix
+from linden.sensors.camera.rays import TILE_PX, directions, tile_counts
 from linden.sensors.camera.spec import CameraSpec
+from linden.values.space import Transform
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
@@ -25,22 +29,41 @@ def edge_rays(spec: CameraSpec, hits: Hits, light: F32) -> NDArray[np.intp]:
     """Return the rays whose pixels differ from one of their four neighbours, in order."""
     across, down = tile_counts(spec)
     edge = np.empty(len(light), np.bool_)
-    flat = light.sum(axis=1, dtype=np.float32)
 
     def work(start: int, stop: int) -> None:
-        _mark(hits.instance, hits.distance_m, hits.normal, flat, across, down, edge, start, stop)
+        _mark(hits.instance, hits.distance_m, hits.normal, light, across, down, edge, start, stop)
 
     in_stretches(len(edge), work, multiple=TILE_PX**2)
     return np.flatnonzero(edge)
 
 
-def finer(spec: CameraSpec, rows: NDArray[np.intp]) -> F32:
-    """Return unit vectors (SAMPLES M, 3), in the camera's frame, of the rays that the pixels of ``rows`` (M,) get."""
-    across_px, down_px = (values[rows] for values in pixels(spec))
-    places = np.array(_PLACES)
-    right = (across_px[:, None] + places[:, 0] - spec.width_px / 2.0).ravel() / spec.focal_px
-    below = (down_px[:, None] + places[:, 1] - spec.height_px / 2.0).ravel() / spec.focal_px
-    return towards(*distorted(spec, right, below))
+def finer(spec: CameraSpec, rows: NDArray[np.intp], pose: Transform) -> Rays:
+    """Return the rays (SAMPLES M) in the world that the pixels of ``rows`` (M,) get."""
+    origin, direction = (np.empty((SAMPLES * len(rows), 3), np.float32) for _ in range(2))
+    turn, place = rotation_matrix(pose.rotation).astype(np.float32), np.array(pose.location, np.float32)
+    vectors, offsets = directions(spec), ((np.array(_PLACES) - 0.5) / spec.focal_px).astype(np.float32)
+
+    def work(start: int, stop: int) -> None:
+        _split(vectors, rows, offsets, turn, place, origin, direction, start, stop)
+
+    in_stretches(len(rows), work, multiple=TILE_PX)
+    return Rays(origin, direction)
+
+
+@unlocked
+def _split(
+    vectors: F32, rows: NDArray[np.intp], offsets: F32, turn: F32, place: F32, origin: F32, direction: F32,
+    start: int, stop: int,
+) -> None:  # fmt: skip
+    for k in range(start, stop):
+        ahead, right, up = vectors[rows[k]]
+        for sample in range(SAMPLES):
+            y, z = right / ahead + offsets[sample, 0], up / ahead - offsets[sample, 1]
+            length = math.sqrt(1.0 + y * y + z * z)
+            for axis in range(3):
+                origin[SAMPLES * k + sample, axis] = place[axis]
+                along = turn[axis, 0] + turn[axis, 1] * y + turn[axis, 2] * z
+                direction[SAMPLES * k + sample, axis] = along / length
 
 
 @unlocked
@@ -53,6 +76,7 @@ def _mark(
         tile, within = ray // (TILE_PX * TILE_PX), ray % (TILE_PX * TILE_PX)
         y = tile // across * TILE_PX + within // TILE_PX
         x = tile % across * TILE_PX + within % TILE_PX
+        here = light[ray, 0] + light[ray, 1] + light[ray, 2]
         found = False
         for side in range(4):
             row, column = y + (side == 0) - (side == 1), x + (side == 2) - (side == 3)
@@ -63,7 +87,8 @@ def _mark(
             if instance[ray] != instance[other]:
                 found = True
                 break
-            if abs(light[ray] - light[other]) > _CONTRAST * (light[ray] + light[other] + 0.1):
+            there = light[other, 0] + light[other, 1] + light[other, 2]
+            if abs(here - there) > _CONTRAST * (here + there + 0.1):
                 found = True
                 break
             if instance[ray] != NOTHING and (

@@ -67,45 +67,48 @@ def _seen(part_m: float, pixel_m: float) -> float:
 
 @shading_part
 def _ground(material: int, x: float, y: float, pixel_m: float) -> Look:
-    wide = smooth_noise(0.23 * x, 0.23 * y, 1)
-    fine = smooth_noise(1.4 * x, 1.4 * y, 2)
-    grain = (smooth_noise(11.0 * x, 11.0 * y, 3) - 0.5) * _seen(0.15, pixel_m)
-    stones = (hashed(math.floor(70.0 * x), math.floor(70.0 * y), 4) - 0.5) * _seen(0.02, pixel_m)
-    if material == CONCRETE:
-        k = 0.86 + 0.14 * wide + 0.10 * fine + 0.14 * grain + 0.06 * stones
-        return Look(k, k, 0.985 * k, 0.02, 0.0)
+    fine = smooth_noise(1.4 * x, 1.4 * y, 2) if pixel_m < 1.0 else 0.5
+    grain = (smooth_noise(11.0 * x, 11.0 * y, 3) - 0.5) * _seen(0.15, pixel_m) if pixel_m < 0.11 else 0.0
+    stones = 0.0
+    if pixel_m < 0.015:
+        stones = (hashed(math.floor(70.0 * x), math.floor(70.0 * y), 4) - 0.5) * _seen(0.02, pixel_m)
     if material == PAINT:
-        worn = 0.90 + 0.10 * fine + 0.16 * grain
-        worn *= 1.0 - 0.35 * max(0.0, smooth_noise(3.1 * x, 3.1 * y, 5) - 0.62)
-        return Look(worn, worn, worn, 0.03, 0.0)
+        worn = 0.92 + 0.10 * fine + 0.16 * grain
+        return Look(worn, worn, worn, 0.0, 0.0)
     if material == GRAVEL:
         k = 0.78 + 0.2 * fine + 0.5 * grain + 0.5 * stones
         return Look(k, k, k, 0.0, 0.3 * grain)
+    wide = smooth_noise(0.23 * x, 0.23 * y, 1)
+    if material == CONCRETE:
+        k = 0.86 + 0.14 * wide + 0.10 * fine + 0.14 * grain + 0.06 * stones
+        return Look(k, k, 0.985 * k, 0.0, 0.0)
     k = 0.80 + 0.22 * wide + 0.16 * fine + 0.30 * grain + 0.30 * stones
-    if pixel_m < 0.06:  # sealed cracks: narrow bands where a noise crosses its middle
-        crack = abs(smooth_noise(0.31 * x + 40.0, 0.31 * y, 6) + 0.25 * fine - 0.62)
-        k *= 1.0 - 0.45 * max(0.0, 1.0 - crack / 0.006) * _seen(0.06, pixel_m)
-    return Look(k, k, 1.02 * k, 0.03, 0.0)
+    return Look(k, k, 1.02 * k, 0.0, 0.0)
 
 
 @shading_part
 def _grown(material: int, x: float, y: float, z: float, pixel_m: float) -> Look:
     if material == GRASS:
         wide, patch = smooth_noise(0.11 * x, 0.11 * y, 11), smooth_noise(0.7 * x, 0.7 * y, 12)
-        tuft = (smooth_noise(6.0 * x, 6.0 * y, 13) - 0.5) * _seen(0.3, pixel_m)
-        blade = (hashed(math.floor(38.0 * x), math.floor(38.0 * y), 14) - 0.5) * _seen(0.035, pixel_m)
+        tuft = (smooth_noise(6.0 * x, 6.0 * y, 13) - 0.5) * _seen(0.3, pixel_m) if pixel_m < 0.22 else 0.0
+        blade = 0.0
+        if pixel_m < 0.026:
+            blade = (hashed(math.floor(38.0 * x), math.floor(38.0 * y), 14) - 0.5) * _seen(0.035, pixel_m)
         k = 0.70 + 0.26 * wide + 0.26 * patch + 0.38 * tuft + 0.34 * blade
         dry = 0.10 * (wide - 0.5) + 0.08 * patch
         return Look(k * (1.0 + 1.6 * dry), k, k * (0.95 - dry), 0.0, 0.12 * tuft)
     if material == LEAVES:
         clump = smooth_noise(1.7 * (x + 0.6 * z), 1.7 * (y - 0.7 * z), 15)
-        leaf = smooth_noise(8.0 * (x + 0.7 * z), 8.0 * (y - 0.8 * z), 16) - 0.5
-        speck = hashed(math.floor(17.0 * (x + 0.3 * z)), math.floor(17.0 * (y + z)), 17) - 0.5
-        leaf, speck = leaf * _seen(0.25, pixel_m), speck * _seen(0.06, pixel_m)
+        leaf, speck = 0.0, 0.0
+        if pixel_m < 0.18:
+            leaf = (smooth_noise(8.0 * (x + 0.7 * z), 8.0 * (y - 0.8 * z), 16) - 0.5) * _seen(0.25, pixel_m)
+        if pixel_m < 0.045:
+            speck = hashed(math.floor(17.0 * (x + 0.3 * z)), math.floor(17.0 * (y + z)), 17) - 0.5
+            speck *= _seen(0.06, pixel_m)
         k = 0.62 + 0.5 * clump + 0.75 * leaf + 0.35 * speck
         return Look(k * (0.94 + 0.16 * clump), k, 0.9 * k, 0.0, 0.9 * (clump - 0.5) + 1.1 * leaf)
-    groove = smooth_noise(9.0 * (x + y), 1.6 * z, 18) - 0.5
-    k = 0.9 + 0.5 * groove * _seen(0.12, pixel_m)
+    groove = (smooth_noise(9.0 * (x + y), 1.6 * z, 18) - 0.5) * _seen(0.12, pixel_m)
+    k = 0.9 + 0.5 * groove
     return Look(k, k, k, 0.0, 0.3 * groove)
 
 

@@ -16,7 +16,6 @@ from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, groups, lam
 from linden.sensors.camera.picture.relief import Relief, relief
 from linden.sensors.camera.picture.shade import Places, shaded
 from linden.sensors.camera.picture.shadows import sunny
-from linden.sensors.camera.rays import aim
 from linden.sensors.camera.spec import CameraSpec, Film
 from linden.sensors.seen import LINEAR, Seen, first_of_places
 from linden.values.space import Transform
@@ -64,7 +63,7 @@ def picture(spec: CameraSpec, film: Film, pose: Transform, rays: Rays, hits: Hit
     light = _shone(rays, hits, pixel_rad, lit, seen)
     rows = edge_rays(spec, hits, light)
     if len(rows):
-        fine = aim(finer(spec, rows), pose)
+        fine = finer(spec, rows, pose)
         met = seen.caster.closest(fine, FAR_M, coherent=True, outer=True)
         light[rows] = _mean(_shone(fine, met, 0.5 * pixel_rad, lit, seen))
     return developed(spec, film, light, lit.air)

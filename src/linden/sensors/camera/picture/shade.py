@@ -17,7 +17,7 @@ from linden.sensors.camera.picture.lamps import CELL_M, LampGrid
 from linden.sensors.camera.picture.noise import ramp, smooth_noise
 from linden.sensors.camera.picture.patterns import look_of
 from linden.sensors.camera.picture.relief import Relief
-from linden.sensors.camera.picture.sky import sky
+from linden.sensors.camera.picture.sky import clear_sky, sky
 from linden.sensors.seen import Faces
 
 F32 = NDArray[np.float32]
@@ -94,6 +94,30 @@ def _rounded(relief: Relief, row: int, x: float, y: float, z: float) -> tuple[fl
 
 
 @shading_part
+def _glow(lamp: int, place: int, of_object: int, places: Places, shine: F32) -> float:
+    """Return how bright a lamp is: 0 where it is off."""
+    bits = places.lights[place]
+    if place == 0 and of_object >= 0:
+        bits = places.object_lights[of_object]
+    return shine[lamp] if bits >> np.uint32(lamp) & np.uint32(1) else 0.0
+
+
+@shading_part
+def _wetted(spot: Spot, air: Air) -> Spot:
+    """Return a spot of the ground in the rain: darker, smoother, and under water where the ground is low."""
+    depth = 0.6 * smooth_noise(0.31 * spot.x, 0.31 * spot.y, 51) + 0.4 * smooth_noise(1.3 * spot.x, 1.3 * spot.y, 52)
+    pool = ramp(1.0 - 0.62 * air.puddles, 1.1 - 0.62 * air.puddles, depth)
+    dark = 1.0 - air.wet * (0.42 + 0.25 * pool)
+    tilt = 1.0 - pool
+    nx, ny = tilt * spot.nx, tilt * spot.ny
+    length = math.sqrt(nx * nx + ny * ny + spot.nz * spot.nz)
+    return Spot(
+        spot.x, spot.y, spot.z, nx / length, ny / length, spot.nz / length,
+        spot.red * dark, spot.green * dark, spot.blue * dark, max(spot.gloss, 0.16 * air.wet + 0.65 * pool), spot.shine,
+    )  # fmt: skip
+
+
+@shading_part
 def _spot(
     x: float, y: float, z: float, dx: float, dy: float, dz: float, nx: float, ny: float, nz: float,
     pixel_m: float, place: int, face: int, faces: Faces, relief: Relief, places: Places, shine: F32, air: Air,
@@ -112,15 +136,9 @@ def _spot(
     red, green, blue = faces.colour[face, 0], faces.colour[face, 1], faces.colour[face, 2]
     if faces.painted[face]:
         red, green, blue = places.colour[place, 0], places.colour[place, 1], places.colour[place, 2]
-    glow = 0.0
-    if lamp > 0:
-        bits = places.lights[place]
-        if place == 0 and faces.object[face] >= 0:
-            bits = places.object_lights[faces.object[face]]
-        if bits >> np.uint32(lamp) & np.uint32(1):
-            glow = shine[lamp]
-        elif lamp == _WINDOW:
-            material = _GLASS
+    glow = _glow(lamp, place, faces.object[face], places, shine) if lamp > 0 else 0.0
+    if lamp == _WINDOW and glow == 0.0:
+        material = _GLASS
     look = look_of(material, bx, by, bz, fx, fy, fz, pixel_m)
     gloss = look.gloss
     red, green, blue = red * look.red, green * look.green, blue * look.blue
@@ -130,23 +148,16 @@ def _spot(
         nx, ny, nz = nx + 0.7 * look.bend, ny - 0.5 * look.bend, nz + 0.4 * look.bend
         length = max(math.sqrt(nx * nx + ny * ny + nz * nz), 1e-9)
         nx, ny, nz = nx / length, ny / length, nz / length
-    if air.wet > 0.0 and nz > 0.8 and material in _WETTED:
-        pool = ramp(1.0 - 0.62 * air.puddles, 1.1 - 0.62 * air.puddles, 0.6 * smooth_noise(0.31 * x, 0.31 * y, 51)
-                    + 0.4 * smooth_noise(1.3 * x, 1.3 * y, 52))  # fmt: skip
-        dark = 1.0 - air.wet * (0.42 + 0.25 * pool)
-        red, green, blue = red * dark, green * dark, blue * dark
-        gloss = max(gloss, 0.16 * air.wet + 0.65 * pool)
-        if pool > 0.5 or air.puddles == 0.0:
-            nx, ny, nz = 0.3 * nx, 0.3 * ny, 1.0
-            length = math.sqrt(nx * nx + ny * ny + nz * nz)
-            nx, ny, nz = nx / length, ny / length, nz / length
-    return Spot(x, y, z, nx, ny, nz, red, green, blue, gloss, glow)
+    spot = Spot(x, y, z, nx, ny, nz, red, green, blue, gloss, glow)
+    return _wetted(spot, air) if air.wet > 0.0 and nz > 0.8 and material in _WETTED else spot
 
 
 @shading_part
 def _lamplight(spot: Spot, rx: float, ry: float, rz: float, grid: LampGrid) -> tuple[float, float, float, float]:
     """Return the light that lamps give to a spot, and what of it goes on along (rx, ry, rz) where it is smooth."""
     red, green, blue, glint = 0.0, 0.0, 0.0, 0.0
+    if not len(grid.number):
+        return red, green, blue, glint
     column, row = int((spot.x - grid.west_m) / CELL_M), int((spot.y - grid.north_m) / CELL_M)
     if column < 0 or row < 0 or column >= _CELLS or row >= _CELLS:
         return red, green, blue, glint
@@ -177,13 +188,13 @@ def _lamplight(spot: Spot, rx: float, ry: float, rz: float, grid: LampGrid) -> t
 
 @shading_part
 def _lit(
-    spot: Spot, dx: float, dy: float, dz: float, sunny: float, leaf: bool, air: Air, grid: LampGrid
+    spot: Spot, dx: float, dy: float, dz: float, sunny: float, material: int, air: Air, grid: LampGrid
 ) -> tuple[float, float, float]:
     """Return the light that goes from a spot to the eye, before the air between."""
     nx, ny, nz = spot.nx, spot.ny, spot.nz
     facing = nx * air.sun_x + ny * air.sun_y + nz * air.sun_z
     direct = max(facing, 0.0) * sunny
-    if leaf:  # light comes through leaves, and they shade one another
+    if material == _LEAVES:  # light comes through leaves, and they shade one another
         direct = (0.75 * max(facing, 0.0) + 0.25 * (0.5 - 0.5 * facing)) * sunny
     upward = 0.5 + 0.5 * nz
     across = nx * dx + ny * dy + nz * dz
@@ -195,7 +206,7 @@ def _lit(
     if spot.gloss > 0.0:  # Schlick 1994, "An Inexpensive BRDF Model", eq. 15
         share = spot.gloss * (0.10 + 0.90 * max(1.0 + across, 0.0) ** 5)
         if rz > 0.0:
-            sr, sg, sb = sky(rx, ry, rz, air)
+            sr, sg, sb = clear_sky(rx, ry, rz, air)
             low = ramp(0.0, 0.25, rz)  # near the horizon stand houses and trees
             sr, sg, sb = (
                 sr * (0.45 + 0.55 * low),
@@ -270,8 +281,7 @@ def _build(built_of: int) -> Shade:
                 spot = _spot(
                     x, y, z, dx, dy, dz, nx, ny, nz, pixel_m, instance + 1, face, faces, relief, places, shine, air
                 )
-                leaf = faces.material[face] == _LEAVES
-                red, green, blue = _lit(spot, dx, dy, dz, np.float64(sunny[i]), leaf, air, grid)
+                red, green, blue = _lit(spot, dx, dy, dz, np.float64(sunny[i]), faces.material[face], air, grid)
                 kept = _clear(far, dz, air)
             light[i, 0] = air.fog[0] + (red - air.fog[0]) * kept
             light[i, 1] = air.fog[1] + (green - air.fog[1]) * kept

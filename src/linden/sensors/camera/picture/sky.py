@@ -10,8 +10,8 @@ _STAR_CELLS = 220.0  # to a radian
 
 
 @shading_part
-def sky(dx: float, dy: float, dz: float, air: Air) -> tuple[float, float, float]:
-    """Return what is seen in a direction of length 1 where nothing stands; below the horizon, the horizon's haze."""
+def clear_sky(dx: float, dy: float, dz: float, air: Air) -> tuple[float, float, float]:
+    """Return what is seen in a direction of length 1 between the clouds; below the horizon, the horizon's haze."""
     up = max(dz, 0.0)
     rise = 1.0 - math.exp(-3.6 * up)
     red = air.horizon[0] + rise * (air.zenith[0] - air.horizon[0])
@@ -23,11 +23,21 @@ def sky(dx: float, dy: float, dz: float, air: Air) -> tuple[float, float, float]
         wide = wide * wide
         haze = wide * math.exp(-5.0 * up)
         near = wide * wide * wide
-        halo, disk = 0.10 * near * near, 9.0 * ramp(0.99985, 0.99993, towards) + 0.5 * near**24
+        halo, disk = 0.10 * near * near, 9.0 * ramp(0.99985, 0.99993, towards)
+        if towards > 0.97:
+            disk += 0.5 * math.exp(-1100.0 * (1.0 - towards))
         red += haze * air.glow[0] + (halo + disk) * air.sun[0]
         green += haze * air.glow[1] + (halo + disk) * air.sun[1]
         blue += haze * air.glow[2] + (halo + disk) * air.sun[2]
+    return red, green, blue
+
+
+@shading_part
+def sky(dx: float, dy: float, dz: float, air: Air) -> tuple[float, float, float]:
+    """Return what is seen in a direction of length 1 where nothing stands."""
+    red, green, blue = clear_sky(dx, dy, dz, air)
     if dz > 0.02:
+        towards = dx * air.sun_x + dy * air.sun_y + dz * air.sun_z
         cover = _clouds(dx, dy, dz, air)
         if air.stars > 0.0:
             star = _stars(dx, dy, dz) * air.stars * (1.0 - cover)
@@ -47,9 +57,11 @@ def _clouds(dx: float, dy: float, dz: float, air: Air) -> float:
         return 0.0
     stretch = 1.5 / (dz + 0.08)
     x, y = dx * stretch + air.cloud_shift_m, dy * stretch + 0.3 * air.cloud_shift_m
-    n = 0.5 * smooth_noise(x, y, 7) + 0.26 * smooth_noise(2.1 * x + 5.0, 2.1 * y, 8)
-    n += 0.15 * smooth_noise(4.3 * x, 4.3 * y + 9.0, 9) + 0.09 * smooth_noise(9.1 * x + 3.0, 9.1 * y, 10)
+    n = 0.52 * smooth_noise(x, y, 7) + 0.27 * smooth_noise(2.1 * x + 5.0, 2.1 * y, 8)
     edge = 0.80 - 0.62 * air.cloud_cover
+    if n + 0.21 < edge:  # whatever the finer octaves add
+        return 0.0
+    n += 0.15 * smooth_noise(4.3 * x, 4.3 * y + 9.0, 9) + 0.06 * smooth_noise(9.1 * x + 3.0, 9.1 * y, 10)
     thick = ramp(edge, edge + 0.22, n)
     return thick * ramp(0.0, 0.18, dz) * (0.70 + 0.28 * air.cloud_cover)
 
