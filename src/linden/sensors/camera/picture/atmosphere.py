@@ -130,7 +130,8 @@ def _overcast(clear: F64, grey: float) -> F64:
 def _cloud(day: F64, sun: F64, cover: float) -> F64:
     lit: F64 = 0.95 * day[3:] + 0.10 * sun * (1.0 - cover)
     grey = np.full(3, 0.60 * day[3:].mean()) * np.array([0.97, 1.0, 1.05])
-    return lit + (grey - lit) * cover**1.5
+    mixed: F64 = lit + (grey - lit) * cover**1.5
+    return mixed
 
 
 def _dust(light_of_day: float) -> F64:

@@ -110,13 +110,13 @@ def white_balance(film: Film) -> F32:
 def bloom(spec: CameraSpec, light: F32, factor: F32) -> F32:
     """Return the light that the brightest spots spread around them, (tiles down, tiles across, 3), exposed."""
     across, down = tile_counts(spec)
-    over = np.empty((down * across, 3), np.float32)
+    tiles = np.empty((down * across, 3), np.float32)
 
     def work(start: int, stop: int) -> None:
-        _excess(light, factor, over, start, stop)
+        _excess(light, factor, tiles, start, stop)
 
-    in_stretches(len(over), work, multiple=1)
-    over = over.reshape(down, across, 3)
+    in_stretches(len(tiles), work, multiple=1)
+    over: F32 = tiles.reshape(down, across, 3)
     if not over.any():
         return over
     weights = np.exp(-0.5 * (np.arange(-6, 7) / 2.4) ** 2).astype(np.float32)

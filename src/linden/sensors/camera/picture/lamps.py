@@ -5,7 +5,7 @@ picture of 8 bits could hold both.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -103,30 +103,29 @@ def lamps_near(
     return LampGrid(west, north, first, number, lamps)
 
 
-def _row(lamp: int, place: object, towards: object, colour: NDArray[np.floating]) -> tuple[object, ...]:
-    return (tuple(place), tuple(towards), tuple(_STRENGTH[lamp] * colour), *_FORM[lamp])  # type: ignore[arg-type] # three numbers each
+def _row(lamp: int, place: Iterable[float], towards: Iterable[float], colour: Iterable[float]) -> tuple[object, ...]:
+    """Return a row of LAMPLIGHT."""
+    return (tuple(place), tuple(towards), tuple(_STRENGTH[lamp] * value for value in colour), *_FORM[lamp])
 
 
 @kernel
 def _sorted_into_cells(place: F64, reach: F64, west: float, north: float) -> tuple[I32, I32]:
-    first = np.zeros(_CELLS * _CELLS + 1, np.int32)
-    number: I32 = np.empty(0, np.int32)
-    for turn in range(2):  # count, then fill
-        filled = first.copy()
-        for lamp in range(len(place)):
-            x0 = max(0, int((place[lamp, 0] - reach[lamp] - west) // CELL_M))
-            x1 = min(_CELLS - 1, int((place[lamp, 0] + reach[lamp] - west) // CELL_M))
-            y0 = max(0, int((place[lamp, 1] - reach[lamp] - north) // CELL_M))
-            y1 = min(_CELLS - 1, int((place[lamp, 1] + reach[lamp] - north) // CELL_M))
-            for y in range(y0, y1 + 1):
-                for x in range(x0, x1 + 1):
-                    cell = y * _CELLS + x
-                    if turn == 0:
-                        first[cell + 1] += 1
-                    else:
-                        number[filled[cell]] = lamp
-                        filled[cell] += 1
-        if turn == 0:
-            first = np.cumsum(first).astype(np.int32)
-            number = np.empty(first[-1], np.int32)
+    """Return which lamps reach into which cell, as ``LampGrid`` has it."""
+    low, high = np.empty((len(place), 2), np.int64), np.empty((len(place), 2), np.int64)
+    counts = np.zeros(_CELLS * _CELLS + 1, np.int32)
+    for lamp in range(len(place)):
+        for axis in range(2):
+            middle = place[lamp, axis] - (west if axis == 0 else north)
+            low[lamp, axis] = max(0, int((middle - reach[lamp]) // CELL_M))
+            high[lamp, axis] = min(_CELLS - 1, int((middle + reach[lamp]) // CELL_M))
+        for y in range(low[lamp, 1], high[lamp, 1] + 1):
+            for x in range(low[lamp, 0], high[lamp, 0] + 1):
+                counts[y * _CELLS + x + 1] += 1
+    first = np.cumsum(counts).astype(np.int32)
+    filled, number = first.copy(), np.empty(first[-1], np.int32)
+    for lamp in range(len(place)):
+        for y in range(low[lamp, 1], high[lamp, 1] + 1):
+            for x in range(low[lamp, 0], high[lamp, 0] + 1):
+                number[filled[y * _CELLS + x]] = lamp
+                filled[y * _CELLS + x] += 1
     return first, number

@@ -67,7 +67,7 @@ def _differ(normals: F32) -> NDArray[np.bool_]:
 def _corner_normals(vertices: F32, triangles: NDArray[np.int64], crease: F32) -> F32:
     count = len(triangles)
     flat = np.empty((count, 3), np.float32)
-    around = np.zeros(len(vertices) + 1, np.int64)
+    counts = np.zeros(len(vertices) + 1, np.int64)
     for i in range(count):
         a, b, c = vertices[triangles[i, 0]], vertices[triangles[i, 1]], vertices[triangles[i, 2]]
         x = (b[1] - a[1]) * (c[2] - a[2]) - (b[2] - a[2]) * (c[1] - a[1])
@@ -76,8 +76,8 @@ def _corner_normals(vertices: F32, triangles: NDArray[np.int64], crease: F32) ->
         length = math.sqrt(x * x + y * y + z * z) + 1e-20
         flat[i, 0], flat[i, 1], flat[i, 2] = x / length, y / length, z / length
         for k in range(3):
-            around[triangles[i, k] + 1] += 1
-    around = np.cumsum(around)
+            counts[triangles[i, k] + 1] += 1
+    around = np.cumsum(counts)
     filled, faces = around.copy(), np.empty(3 * count, np.int64)
     for i in range(count):
         for k in range(3):
