@@ -2,8 +2,15 @@
 
 import numpy as np
 
+from linden.casting.choose import caster_of
 from linden.casting.rays import Instances
 from linden.meshes.mesh import NO_OBJECT, Material, Mesh, faces
+from linden.scene.weather import CLEAR_NOON
+from linden.sensors.looking import Look
+from linden.sensors.seen import Seen, table_of
+from linden.values.actors import ActorDescription, AttributeValue
+from linden.values.space import Transform
+from linden.world.blueprints import BlueprintLibrary
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32)
 _SIDES = [
@@ -45,3 +52,37 @@ def instances(*placed: tuple[int, int, np.ndarray], velocity=(0.0, 0.0, 0.0), tu
 def at(x: float, y: float, z: float, turn: np.ndarray | None = None) -> np.ndarray:
     """The pose (3, 4) of a body there."""
     return np.column_stack([np.eye(3) if turn is None else turn, [x, y, z]])
+
+
+def seen_of(standing: Mesh, bodies: list[Mesh], moving: Instances, *, object_id: tuple[int, ...] = ()) -> Seen:
+    """A moment in a world of these meshes."""
+    caster = caster_of(standing, bodies)
+    caster.pose(moving)
+    objects = len(object_id)
+    return Seen(
+        caster,
+        standing,
+        bodies,
+        table_of(standing, bodies),
+        moving,
+        np.array(object_id, np.uint32),
+        np.zeros(objects, np.uint32),
+        np.zeros((objects, 3), np.uint8),
+        CLEAR_NOON,
+        0.0,
+    )
+
+
+def look_at(seen: Seen, pose: Transform, *, number: int = 0, interval_s: float = 0.1, **known) -> Look:
+    """One frame of a sensor at a pose, at rest and on its own unless told otherwise."""
+    known = {"velocity_mps": np.zeros(3), "carrier_id": 0, **known}
+    return Look(seen, {}, pose, pose, number=number, interval_s=interval_s, **known)
+
+
+def described(blueprint_id: str, **chosen: object) -> ActorDescription:
+    """A complete description of what the library has, with some attributes chosen."""
+    library = BlueprintLibrary.load()
+    values = tuple(AttributeValue(name, 0, str(value)) for name, value in chosen.items())
+    types = {item.id: item.type for item in library.find(blueprint_id).definition.attributes}
+    values = tuple(value._replace(type=types[value.id]) for value in values)
+    return library.validate(ActorDescription(0, blueprint_id, values))

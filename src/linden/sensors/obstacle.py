@@ -68,7 +68,11 @@ class ObstacleDetector:
         origin = np.asarray(look.pose.location) + across @ turn[:, 1:].T
         direction = np.broadcast_to(turn[:, 0], origin.shape)
         ignored = np.append(look.seen.instances.actor_id == look.carrier_id, spec.only_dynamics)
-        hits = _first(look.seen, Rays(origin.astype(np.float32), direction.astype(np.float32)), spec, ignored)
+        touched = _first(look.seen, _rays(np.broadcast_to(origin[0], SPOKES.shape), SPOKES), spec.radius_m, ignored)
+        nearest = int(np.argmin(touched.distance_m))
+        if touched.instance[nearest] != NOTHING:  # before it goes anywhere
+            return Obstacle(*_identity(look.seen, touched, nearest), 0.0)
+        hits = _first(look.seen, _rays(origin, direction), spec.distance_m + spec.radius_m, ignored)
         way_m = np.where(hits.instance == NOTHING, np.inf, np.maximum(0.0, hits.distance_m - ahead_m))
         nearest = int(np.argmin(way_m))
         if way_m[nearest] > spec.distance_m:
@@ -79,7 +83,7 @@ class ObstacleDetector:
 @lru_cache(maxsize=16)
 def bundle(radius_m: float) -> tuple[F64, F64]:
     """Return where rays (N, 2) lie beside the middle (to the right, upwards), and how far ahead the ball is there."""
-    rings = [np.zeros((1, 2))]
+    rings: list[F64] = [np.zeros((1, 2))]
     for ring in range(1, RINGS + 1):
         angle = math.tau * np.arange(6 * ring) / (6 * ring)
         rings.append(np.column_stack([np.cos(angle), np.sin(angle)]) * radius_m * ring / RINGS)
@@ -87,9 +91,24 @@ def bundle(radius_m: float) -> tuple[F64, F64]:
     return across, np.sqrt(np.maximum(0.0, radius_m**2 - (across**2).sum(1)))
 
 
-def _first(seen: Seen, rays: Rays, spec: ObstacleSpec, ignored: NDArray[np.bool_]) -> Hits:
+def _spread(count: int) -> F64:
+    """Return unit vectors (count, 3) all over a sphere: Saff and Kuijlaars 1997, "Distributing Many Points"."""
+    height = np.linspace(-1.0, 1.0, count)
+    angle = np.arange(count) * math.pi * (3.0 - math.sqrt(5.0))
+    level = np.sqrt(1.0 - height**2)
+    return np.column_stack([level * np.cos(angle), level * np.sin(angle), height])
+
+
+SPOKES = _spread(400)
+"""From the middle of the ball outwards, straight up and down among them."""
+
+
+def _rays(origin: F64, direction: F64) -> Rays:
+    return Rays(origin.astype(np.float32), direction.astype(np.float32))
+
+
+def _first(seen: Seen, rays: Rays, reach_m: float, ignored: NDArray[np.bool_]) -> Hits:
     """Return what the rays meet first that is not ``ignored`` (K + 1,): the last says whether what stands is."""
-    reach_m = spec.distance_m + spec.radius_m
     hits = seen.caster.closest(rays, reach_m)
     passed_m = np.zeros(len(rays.origin_m), np.float32)
     while len(rows := np.flatnonzero((hits.instance != NOTHING) & ignored[np.maximum(hits.instance, STATIC)])):
@@ -99,6 +118,7 @@ def _first(seen: Seen, rays: Rays, spec: ObstacleSpec, ignored: NDArray[np.bool_
         for column, found in zip(hits, beyond, strict=True):
             column[rows] = found
         hits.distance_m[rows] += passed_m[rows]
+    hits.instance[hits.distance_m > reach_m] = NOTHING
     return hits
 
 
