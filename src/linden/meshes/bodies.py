@@ -2,23 +2,25 @@
 
 from typing import NamedTuple
 
-from linden.meshes.actors.person import person
+from linden.meshes.actors.people import in_wheelchair, walker
+from linden.meshes.actors.props import prop
 from linden.meshes.actors.shape import Shape
-from linden.meshes.actors.solids import Look, box, tagged
+from linden.meshes.actors.two_wheelers import wheelchair
 from linden.meshes.actors.vehicles import vehicle
-from linden.meshes.mesh import Material, Mesh
+from linden.meshes.mesh import Mesh
 from linden.values.actors import ActorDescription
-from linden.values.enums import SemanticTag
 from linden.world.blueprints import Blueprint, BlueprintLibrary, Kind
 
 SCALED = "static.prop.mesh"
+"""The one blueprint whose actors are as large as whoever spawns them says."""
 
 
 class Part(NamedTuple):
-    """A mesh of an actor, and the frame that it stands in."""
+    """A mesh of an actor, the frame that it stands in, and its own colour where it has one."""
 
     mesh: int  # row of Bodies.meshes
     frame: int  # of posing.VEHICLE_FRAMES or WALKER_FRAMES; 0 is the actor's own
+    colour: tuple[int, int, int] | None = None  # of painted faces; None where they have the actor's
     scale: float = 1.0  # how many times larger it is seen
 
 
@@ -31,34 +33,43 @@ class Bodies:
 
     def __init__(self, library: BlueprintLibrary) -> None:
         self.meshes: list[Mesh] = []
-        self._parts: dict[str, tuple[Part, ...]] = {}
+        self._row_of: dict[int, int] = {}  # by the mesh's own identity, so that nothing is compared
+        self._parts: dict[tuple[str, str], tuple[Part, ...]] = {}
         for blueprint in library:
-            if blueprint.kind in (Kind.VEHICLE, Kind.WALKER, Kind.PROP):
-                self._parts[blueprint.definition.id] = tuple(map(self._add, _shapes(blueprint)))
+            for choice, shapes in _shapes(blueprint):
+                self._parts[blueprint.definition.id, choice] = tuple(map(self._part, shapes))
 
-    def _add(self, shape: Shape) -> Part:
-        for row, mesh in enumerate(self.meshes):
-            if mesh is shape.mesh:
-                return Part(row, shape.frame)
-        self.meshes.append(shape.mesh)
-        return Part(len(self.meshes) - 1, shape.frame)
+    def _part(self, shape: Shape) -> Part:
+        row = self._row_of.setdefault(id(shape.mesh), len(self.meshes))
+        if row == len(self.meshes):
+            self.meshes.append(shape.mesh)
+        return Part(row, shape.frame, shape.colour)
 
     def parts(self, description: ActorDescription) -> tuple[Part, ...]:
         """Return the parts of an actor that was spawned so; none for what cannot be seen (sensors, controllers)."""
-        parts = self._parts.get(description.id, ())
+        chosen = description.attribute("driver_id") or description.attribute("use_wheelchair")
+        plain = self._parts.get((description.id, ""), ())
+        parts = self._parts.get((description.id, chosen), plain)
         if description.id != SCALED:
             return parts
         scale = float(description.attribute("scale"))
         return tuple(part._replace(scale=scale) for part in parts)
 
 
-def _shapes(blueprint: Blueprint) -> list[Shape]:
+def _shapes(blueprint: Blueprint) -> list[tuple[str, list[Shape]]]:
+    """Return the parts of a blueprint's actors by the value of the attribute that tells them apart, "" the plain one."""
+    if blueprint.kind is Kind.PROP:
+        return [("", prop(blueprint))]
+    choices = {attribute.id: attribute.recommended_values for attribute in blueprint.definition.attributes}
     if blueprint.kind is Kind.VEHICLE:
-        return vehicle(blueprint)
+        drivers = choices.get("driver_id", ()) if len(_hubs(blueprint)) == 2 else ()
+        riders = [(driver, vehicle(blueprint, driver)) for driver in drivers]
+        return [("", riders[0][1] if riders else vehicle(blueprint)), *riders]
     if blueprint.kind is Kind.WALKER:
-        return person(blueprint)
-    middle, half = blueprint.box.location, blueprint.box.extent
-    low = (middle.x - half.x, middle.y - half.y, middle.z - half.z)
-    high = (middle.x + half.x, middle.y + half.y, middle.z + half.z)
-    tag = blueprint.semantic_tags[0] if blueprint.semantic_tags else SemanticTag.STATIC
-    return [Shape(tagged(box(low, high, Look(Material.PLAIN, (150, 150, 150))), tag), 0)]
+        seated = [("true", in_wheelchair(blueprint, wheelchair()))] if "true" in choices["use_wheelchair"] else []
+        return [("", walker(blueprint)), *seated]
+    return []
+
+
+def _hubs(blueprint: Blueprint) -> tuple[object, ...]:
+    return blueprint.vehicle.wheel_offsets_m if blueprint.vehicle is not None else ()

@@ -10,3 +10,4 @@ class Shape(NamedTuple):
 
     mesh: Mesh
     frame: int
+    colour: tuple[int, int, int] | None = None  # of faces that are painted; None leaves them the actor's own

@@ -2,10 +2,11 @@
 
 from collections.abc import Callable
 
-from linden.meshes.actors.cars import car, wheels
+from linden.meshes.actors.cars import car
 from linden.meshes.actors.heavy import ambulance, bus, firetruck, freight_truck
 from linden.meshes.actors.shape import Shape
 from linden.meshes.actors.shuttle import shuttle
+from linden.meshes.actors.two_wheelers import two_wheeler
 from linden.world.blueprints import Blueprint
 
 _OF_ITS_OWN: dict[str, Callable[[Blueprint], list[Shape]]] = {
@@ -18,9 +19,9 @@ _OF_ITS_OWN: dict[str, Callable[[Blueprint], list[Shape]]] = {
 }
 
 
-def vehicle(blueprint: Blueprint) -> list[Shape]:
+def vehicle(blueprint: Blueprint, driver_id: str = "1") -> list[Shape]:
     """Return the parts of a vehicle: the body first, then its wheels."""
     assert blueprint.vehicle is not None
     if len(blueprint.vehicle.wheel_offsets_m) == 2:
-        return wheels(blueprint, 0.05)
+        return two_wheeler(blueprint, driver_id)
     return _OF_ITS_OWN.get(blueprint.definition.id, car)(blueprint)

@@ -1,0 +1,190 @@
+"""The parts of a human body, each in its bone's frame and as large as the body's stature asks.
+
+Lengths follow ``world.skeleton``; girths are drawn by eye, in statures. Legs and arms are a little nearer to the middle
+than their bones, whose distances (Drillis and Contini) are those of a body's outline.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from typing import NamedTuple, ParamSpec, cast
+
+import numpy as np
+
+from linden.meshes.actors.solids import Look, ball, box, loft, ring_of, stretched, tagged, tube
+from linden.meshes.mesh import Material, Mesh, join
+from linden.values.enums import SemanticTag
+
+Colour = tuple[int, int, int]
+Parameters = ParamSpec("Parameters")
+
+CLOTH = Look(Material.CLOTH, (120, 120, 125), painted=True)
+"""Clothes; what colour, the part says that the mesh belongs to."""
+
+_DARK = Look(Material.PLAIN, (30, 26, 24))
+_LEGS_IN = 0.032
+ARMS_IN = 0.026
+"""How much nearer to the middle than their bones the limbs are, in statures."""
+
+_SIDES = 8
+
+
+class Build(NamedTuple):
+    """How a body is made, apart from the colours of its clothes."""
+
+    stature_m: float
+    female: bool
+    child: bool
+    skin: Colour
+    hair: Colour
+    shoes: Colour
+    skirt: bool
+    long_sleeves: bool
+    helmet: Colour | None = None
+
+
+def _limb(make: Callable[Parameters, Mesh]) -> Callable[Parameters, Mesh]:
+    """Let a function give the same mesh to all who are made alike, tagged as a pedestrian's."""
+
+    @lru_cache(maxsize=256)
+    def made(*args: Parameters.args, **named: Parameters.kwargs) -> Mesh:
+        return tagged(make(*args, **named), SemanticTag.PEDESTRIANS)
+
+    return cast("Callable[Parameters, Mesh]", made)
+
+
+def _skin(build: Build) -> Look:
+    return Look(Material.SKIN, build.skin)
+
+
+def _ovals(rows: Sequence[tuple[float, float, float, float]], size_m: float, look: Look) -> Mesh:
+    """Return a solid of ovals one over the other, each (height, half depth, half width, how far ahead)."""
+    rings = []
+    for height, depth, width, ahead in rows:
+        rings.append(ring_of(1.0, 0.0, _SIDES) * (depth, width, 0.0) + (ahead, 0.0, height))
+    return loft(np.array(rings) * size_m, look, look, look)
+
+
+@_limb
+def hips(build: Build) -> Mesh:
+    """Return the pelvis, or the skirt over it."""
+    wide = 0.093 if build.female else 0.087
+    rows = [
+        (-0.045, 0.045, 0.06, 0.0),
+        (-0.01, 0.063, wide + 0.004, -0.004),
+        (0.04, 0.06, wide, 0.0),
+        (0.085, 0.05, 0.074, 0.0),
+    ]
+    if build.skirt:
+        rows = [(-0.23, 0.075, 0.115, 0.005), *rows[1:]]
+    return _ovals(rows, build.stature_m, CLOTH)
+
+
+@_limb
+def chest(build: Build) -> Mesh:
+    """Return what is between waist and neck, with the neck."""
+    wide = 0.084 if build.female else 0.094
+    front = 0.012 if build.female and not build.child else 0.0
+    shirt = [
+        (-0.125, 0.051, 0.075, 0.0),
+        (-0.06, 0.056, 0.078, 0.0),
+        (0.02, 0.062 + front, wide, front),
+        (0.07, 0.056 + 0.5 * front, wide + 0.006, 0.3 * front),
+        (0.1, 0.045, 0.07, -0.006),
+        (0.115, 0.034, 0.036, -0.004),
+    ]
+    neck = _ovals([(0.1, 0.027, 0.026, -0.002), (0.19, 0.026, 0.025, 0.004)], build.stature_m, _skin(build))
+    return join([_ovals(shirt, build.stature_m, CLOTH), neck])
+
+
+@_limb
+def head(build: Build) -> Mesh:
+    """Return the head; its crown is a whole stature above the ground when the body stands."""
+    size, crown = build.stature_m, 0.115
+    tall, deep, wide = (0.074, 0.066, 0.06) if build.child else (0.062, 0.052, 0.042)
+    centre = crown - tall - 0.004
+    parts = [ball((0.006, 0.0, centre), (deep, wide, tall), _skin(build), sides=10, bands=8)]
+    parts.append(box((deep - 0.002, -0.006, centre - 0.02), (deep + 0.016, 0.006, centre + 0.002), _skin(build)))
+    for y in (-0.4 * wide, 0.4 * wide):
+        parts.append(box((0.85 * deep, y - 0.006, centre + 0.004), (0.975 * deep, y + 0.006, centre + 0.012), _DARK))
+    if build.helmet is not None:
+        cover = Look(Material.PLAIN, build.helmet)
+        parts.append(
+            ball((-0.004, 0.0, centre + 0.016), (deep + 0.014, wide + 0.014, crown - centre - 0.016), cover, sides=10)
+        )
+        return stretched(join(parts), (size, size, size))
+    hair = Look(Material.CLOTH, build.hair)
+    top = crown - centre - 0.022
+    parts.append(ball((-0.006, 0.0, centre + 0.022), (deep - 0.001, wide + 0.005, top), hair, sides=10, bands=6))
+    parts.append(ball((-0.016, 0.0, centre + 0.004), (deep - 0.008, wide + 0.004, 0.8 * tall), hair, sides=8, bands=6))
+    if build.female:
+        parts.append(
+            _ovals(
+                [
+                    (centre - 0.09, 0.012, 0.03, -0.045),
+                    (centre - 0.02, 0.026, wide, -0.035),
+                    (centre + 0.03, 0.02, wide, -0.03),
+                ],
+                1.0,
+                hair,
+            )
+        )
+    return stretched(join(parts), (size, size, size))
+
+
+@_limb
+def arm(build: Build, side: float) -> Mesh:
+    """Return the upper arm of the right (1) or left (-1) side, with the shoulder."""
+    y, size = -side * ARMS_IN, build.stature_m
+    path = [(0.0, y, 0.018), (0.0, y, 0.0), (0.0, y, -0.09), (0.0, y, -0.19)]
+    return _scaled_tube(path, [0.016, 0.029, 0.026, 0.021], size, CLOTH)
+
+
+@_limb
+def forearm(build: Build, side: float) -> Mesh:
+    """Return the forearm with the hand."""
+    y, size = -side * ARMS_IN, build.stature_m
+    lower = _scaled_tube(
+        [(0.0, y, 0.012), (0.0, y, -0.05), (0.0, y, -0.15)],
+        [0.02, 0.02, 0.014],
+        size,
+        CLOTH if build.long_sleeves else _skin(build),
+    )
+    hand = ball((0.004, y, -0.19), (0.02, 0.011, 0.044), _skin(build), sides=6, bands=4)
+    return join([lower, stretched(hand, (size, size, size))])
+
+
+@_limb
+def thigh(build: Build, side: float) -> Mesh:
+    """Return the thigh."""
+    y, size = -side * _LEGS_IN, build.stature_m
+    path = [(0.0, 0.8 * y, 0.02), (0.0, y, -0.06), (0.002, y, -0.16), (0.002, y, -0.25)]
+    return _scaled_tube(path, [0.046, 0.05, 0.042, 0.033], size, _skin(build) if build.skirt else CLOTH)
+
+
+@_limb
+def shin(build: Build, side: float) -> Mesh:
+    """Return what is between knee and ankle."""
+    y, size = -side * _LEGS_IN, build.stature_m
+    path = [(0.004, y, 0.015), (-0.002, y, -0.07), (0.0, y, -0.16), (0.0, y, -0.235)]
+    return _scaled_tube(path, [0.031, 0.033, 0.026, 0.022], size, _skin(build) if build.skirt else CLOTH)
+
+
+@_limb
+def foot(build: Build, side: float) -> Mesh:
+    """Return a shoe; its sole is as low as the skeleton's feet stand over the ground."""
+    y, look = -side * _LEGS_IN, Look(Material.CLOTH, build.shoes)
+    rings = [
+        [(x, y - wide, -0.039), (x, y + wide, -0.039), (x, y + 0.8 * wide, high), (x, y - 0.8 * wide, high)]
+        for x, wide, high in (
+            (-0.034, 0.018, 0.0),
+            (0.012, 0.024, 0.004),
+            (0.05, 0.026, -0.012),
+            (0.092, 0.026, -0.022),
+            (0.112, 0.016, -0.028),
+        )
+    ]
+    return loft(np.array(rings) * build.stature_m, look, look, look)
+
+
+def _scaled_tube(path: list[tuple[float, float, float]], radii: list[float], size_m: float, look: Look) -> Mesh:
+    return tube((np.array(path) * size_m).tolist(), [size_m * radius for radius in radii], _SIDES, look)

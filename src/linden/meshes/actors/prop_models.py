@@ -1,0 +1,112 @@
+"""Which prop is built how."""
+
+from collections.abc import Callable
+
+from linden.meshes.actors import props_garden as garden
+from linden.meshes.actors import props_small as small
+from linden.meshes.actors import props_street as street
+from linden.meshes.mesh import Mesh
+from linden.values.space import BoundingBox
+
+Model = Callable[[float, float, float], list[Mesh]]
+
+_MODELS: dict[str, Model] = {
+    "advertisement": street.advertisement,
+    "aporosatree": garden.broad_tree,
+    "atm": street.machine((60, 90, 140)),
+    "barbeque": garden.barbecue,
+    "barrel": small.barrel,
+    "bench01": street.bench(back=True),
+    "bench02": street.bench(back=False),
+    "bench03": street.bench(back=False),
+    "bike helmet": small.helmet((200, 60, 40)),
+    "bin": street.wheeled_bin((40, 90, 60)),
+    "box01": small.cardboard(open_lid=False),
+    "box02": small.cardboard(open_lid=False),
+    "box03": small.cardboard(open_lid=True),
+    "briefcase": small.case((70, 44, 28)),
+    "busstop": street.shelter(along_x=True),
+    "busstoplb": street.shelter(along_x=False),
+    "calibrator": small.boards,
+    "chainbarrier": street.chain_barrier,
+    "chainbarrierend": street.bollard,
+    "clothcontainer": street.container((150, 160, 170)),
+    "clothesline": garden.clothes_line,
+    "coconutpalm": garden.palm,
+    "colacan": small.can((190, 20, 24)),
+    "constructioncone": street.cone,
+    "container": street.container((60, 110, 70)),
+    "creasedbox01": small.cardboard(open_lid=True),
+    "creasedbox02": small.cardboard(open_lid=True),
+    "creasedbox03": small.boards,
+    "cypresstree": garden.cypress,
+    "doghouse": garden.dog_house,
+    "foodcart": street.food_cart,
+    "fountain": garden.fountain,
+    "gardenlamp": garden.lamp,
+    "glasscontainer": street.container((40, 120, 80)),
+    "gnome": garden.gnome,
+    "guitarcase": small.case((30, 28, 30)),
+    "haybale": small.hay,
+    "haybalelb": small.hay,
+    "ironplank": small.boards,
+    "kiosk_01": street.kiosk,
+    "mailbox": street.mailbox,
+    "maptable": street.map_table,
+    "mobile": small.case((20, 22, 26)),
+    "motorhelmet": small.helmet((30, 32, 40)),
+    "pergola": garden.pergola,
+    "plantpot06": garden.round_pot,
+    "plantpot05": garden.round_pot,
+    "plantpot07": garden.round_pot,
+    "plantpot08": garden.round_pot,
+    "plasticchair": garden.chair,
+    "plastictable": garden.parasol_table,
+    "purse": small.bag((120, 50, 60), handles=True),
+    "shoppingbag": small.bag((220, 210, 190), handles=True),
+    "shoppingcart": small.shopping_cart,
+    "shoppingtrolley": small.trolley((60, 80, 120)),
+    "slide": garden.slide,
+    "streetbarrier": street.barrier,
+    "streetfountain": street.drinking_fountain,
+    "streetsign": street.sign_board,
+    "streetsign01": street.sign_board,
+    "streetsign04": street.sign_board,
+    "swing": garden.swing,
+    "swingcouch": garden.swing_couch,
+    "table": garden.table,
+    "trafficcone01": street.cone,
+    "trafficcone02": street.cone,
+    "trafficwarning": street.arrow_board,
+    "trampoline": garden.trampoline,
+    "travelcase": small.trolley((40, 60, 70)),
+    "vendingmachine": street.machine((170, 30, 34)),
+    "warningaccident": street.warning_sign,
+    "warningconstruction": street.warning_sign,
+    "wateringcan": garden.watering_can,
+}
+
+_BEGINNING: dict[str, Model] = {
+    "brokentile": small.boards,
+    "dirtdebris": small.heap((104, 86, 64)),
+    "garbage": small.heap((150, 146, 138)),
+    "plantpot": garden.planter,
+    "plasticbag": small.bag((226, 228, 230), handles=True),
+    "platformgarbage": small.heap((120, 112, 96)),
+    "trashbag": small.bag((28, 28, 32), handles=False),
+    "trashcan": street.litter_bin,
+    "mesh": small.cube,
+}
+"""Those of several numbers, by how their names begin."""
+
+
+def model(name: str, box: BoundingBox) -> list[Mesh]:
+    """Return the solids of a prop about as large as its box, standing on the origin.
+
+    Raises:
+        KeyError: nobody has drawn it; a test sees to it that every blueprint has been.
+    """
+    size_m = (2.0 * box.extent.x, 2.0 * box.extent.y, 2.0 * box.extent.z)
+    if name in _MODELS:
+        return _MODELS[name](*size_m)
+    return next(make for start, make in _BEGINNING.items() if name.startswith(start))(*size_m)
