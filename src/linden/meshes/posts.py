@@ -29,6 +29,7 @@ _LENSES = (
     (LampOf.TRAFFIC_GREEN, -0.345, (36, 200, 110)),
 )
 _ROUND = 10
+_FASTEST = 1000.0  # what has more digits is no limit, and would not fit
 _PLATE_MIDDLE_M = PLATE_BOTTOM_M + PLATE_HALF_M[2]
 
 
@@ -86,8 +87,8 @@ def _plate(frames: Frames, kind: str, value: float | None, objects: I32) -> Mesh
         inner = (outer - outer.mean(axis=0)) * 0.52 + outer.mean(axis=0)
         return _layers(frames, objects, [(outer, _SIGN_RED), (inner, _SIGN_WHITE)], [("YIELD", 0.07, 0.12, _SIGN_RED)])
     outer = np.array([(-0.8, 0.0, -1.0), (0.8, 0.0, -1.0), (0.8, 0.0, 1.0), (-0.8, 0.0, 1.0)]) * half
-    text = [("SPEED", 0.1, 0.24, _BLACK), ("LIMIT", 0.1, 0.1, _BLACK), (f"{value:g}", 0.3, -0.17, _BLACK)]
-    shows_speed = kind == SPEED_LIMIT_TYPE and value is not None
+    shows_speed = kind == SPEED_LIMIT_TYPE and value is not None and 0.0 <= value < _FASTEST
+    text = [("SPEED", 0.1, 0.24, _BLACK), ("LIMIT", 0.1, 0.1, _BLACK), (str(round(value or 0.0)), 0.3, -0.17, _BLACK)]
     return _layers(frames, objects, [(outer, _BLACK), (0.94 * outer, _SIGN_WHITE)], text if shows_speed else [])
 
 

@@ -62,6 +62,13 @@ def test_a_built_in_map_is_known_by_its_name(name: str, capsys: pytest.CaptureFi
     assert "junctions" in capsys.readouterr().out
 
 
+def test_export_writes_what_is_seen_as_gltf(good_map: Path, tmp_path: Path, capsys) -> None:
+    scene = tmp_path / "map.glb"
+    assert main(["map", "export", str(good_map), "-o", str(scene)]) == 0
+    assert scene.read_bytes()[:4] == b"glTF"
+    assert "triangles" in capsys.readouterr().out
+
+
 def test_show_writes_a_picture(good_map: Path, tmp_path: Path) -> None:
     picture = tmp_path / "map.svg"
     assert main(["map", "show", str(good_map), "-o", str(picture)]) == 0
