@@ -45,13 +45,13 @@ class _Cast(NamedTuple):
     records: list[ActorRecord]
     row: I32  # in the actor table
     slot: I32  # of the body that moves it: its own, or that of what it is attached to; NO_BODY where nothing does
-    colour: NDArray[np.uint8]
     vehicles: NDArray[np.intp]
     walkers: NDArray[np.intp]
 
     actor: NDArray[np.intp]
     mesh: I32
     frame: NDArray[np.intp]
+    paint: NDArray[np.uint8]  # (K, 3) the part's own colour, or the actor's
     scale: F64
 
 
@@ -80,7 +80,7 @@ class Company:
             pose=pose,
             before=self._before(cast, pose, goes_on=goes_on),
             actor_id=actor_id[cast.actor],
-            colour=cast.colour[cast.actor],
+            colour=cast.paint,
             lights=_lights(cast.records, episode.elapsed_s)[cast.actor],
             velocity_mps=(velocity[cast.actor] + np.cross(turning[cast.actor], arm_m)).astype(np.float32),
             turning_radps=turning[cast.actor].astype(np.float32),
@@ -142,17 +142,18 @@ def _survey(episode: "Episode", bodies: Bodies) -> _Cast:
     records = [record for record in actors if record.kind in _VISIBLE and bodies.parts(record.description)]
     embodied = [record.slot != NO_BODY for record in records]
     parts = [(who, part) for who, record in enumerate(records) for part in bodies.parts(record.description)]
+    colours = [_colour(record) for record in records]
     kinds = np.array([record.kind if own else Kind.PROP for record, own in zip(records, embodied, strict=True)], int)
     return _Cast(
         records=records,
         row=np.array([actors.row(record.id) for record in records], np.int32),
         slot=np.array([_carrying_slot(episode, record) for record in records], np.int32),
-        colour=np.array([_colour(record) for record in records], np.uint8).reshape(-1, 3),
         vehicles=np.flatnonzero(kinds == Kind.VEHICLE),
         walkers=np.flatnonzero(kinds == Kind.WALKER),
         actor=np.array([who for who, _ in parts], np.intp),
         mesh=np.array([part.mesh for _, part in parts], np.int32),
         frame=np.array([part.frame for _, part in parts], np.intp),
+        paint=np.array([part.colour or colours[who] for who, part in parts], np.uint8).reshape(-1, 3),
         scale=np.array([part.scale for _, part in parts], np.float64),
     )
 
@@ -164,8 +165,8 @@ def _carrying_slot(episode: "Episode", record: ActorRecord) -> int:
     return NO_BODY if bearer is None else bearer.slot
 
 
-def _colour(record: ActorRecord) -> list[int]:
-    return [int(part) for part in record.description.attribute("color", _UNPAINTED).split(",")]
+def _colour(record: ActorRecord) -> tuple[int, ...]:
+    return tuple(int(part) for part in record.description.attribute("color", _UNPAINTED).split(","))
 
 
 def _motion(episode: "Episode", slot: I32) -> tuple[F64, F64]:
