@@ -36,7 +36,7 @@ class Bodies:
         self._row_of: dict[int, int] = {}  # by the mesh's own identity, so that nothing is compared
         self._parts: dict[tuple[str, str], tuple[Part, ...]] = {}
         for blueprint in library:
-            for choice, shapes in _shapes(blueprint):
+            for choice, shapes in _shapes(blueprint).items():
                 self._parts[blueprint.definition.id, choice] = tuple(map(self._part, shapes))
 
     def _part(self, shape: Shape) -> Part:
@@ -56,20 +56,14 @@ class Bodies:
         return tuple(part._replace(scale=scale) for part in parts)
 
 
-def _shapes(blueprint: Blueprint) -> list[tuple[str, list[Shape]]]:
-    """Return the parts of a blueprint's actors by the value of the attribute that tells them apart, "" the plain one."""
-    if blueprint.kind is Kind.PROP:
-        return [("", prop(blueprint))]
-    choices = {attribute.id: attribute.recommended_values for attribute in blueprint.definition.attributes}
+def _shapes(blueprint: Blueprint) -> dict[str, list[Shape]]:
+    """Return the parts of a blueprint's actors by the value of what tells them apart, "" the plain ones."""
     if blueprint.kind is Kind.VEHICLE:
-        drivers = choices.get("driver_id", ()) if len(_hubs(blueprint)) == 2 else ()
-        riders = [(driver, vehicle(blueprint, driver)) for driver in drivers]
-        return [("", riders[0][1] if riders else vehicle(blueprint)), *riders]
+        return vehicle(blueprint)
     if blueprint.kind is Kind.WALKER:
-        seated = [("true", in_wheelchair(blueprint, wheelchair()))] if "true" in choices["use_wheelchair"] else []
-        return [("", walker(blueprint)), *seated]
-    return []
-
-
-def _hubs(blueprint: Blueprint) -> tuple[object, ...]:
-    return blueprint.vehicle.wheel_offsets_m if blueprint.vehicle is not None else ()
+        can_sit = any(
+            "true" in a.recommended_values for a in blueprint.definition.attributes if a.id == "use_wheelchair"
+        )
+        seated = {"true": in_wheelchair(blueprint, wheelchair())} if can_sit else {}
+        return {"": walker(blueprint), **seated}
+    return {"": prop(blueprint)} if blueprint.kind is Kind.PROP else {}

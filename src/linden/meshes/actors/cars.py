@@ -40,11 +40,11 @@ def car(blueprint: Blueprint) -> list[Shape]:
 def wheels(blueprint: Blueprint, half_width_m: float) -> list[Shape]:
     """Return the wheels of a vehicle, their outer sides just within its flanks."""
     assert blueprint.vehicle is not None
-    made = []
+    made, tag = [], blueprint.semantic_tags[0]
     for number, hub in enumerate(blueprint.vehicle.wheel_offsets_m):
         side = 1.0 if hub.y > 0.0 else -1.0
         outer_m = side * (0.975 * half_width_m) - hub.y
         wide_m = 0.62 * hub.z
-        mesh = wheel(round(hub.z, 4), round(outer_m - side * wide_m, 4), round(outer_m, 4))
-        made.append(Shape(tagged(mesh, blueprint.semantic_tags[0]), 1 + number))
+        mesh = wheel(round(hub.z, 4), round(outer_m - side * wide_m, 4), round(outer_m, 4), tag)
+        made.append(Shape(mesh, 1 + number))
     return made

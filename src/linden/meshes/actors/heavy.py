@@ -78,7 +78,7 @@ def _over_axle(whole: Frame, look: Look) -> list[Mesh]:
 
 def freight_truck(blueprint: Blueprint) -> list[Shape]:
     """Return the parts of a truck with a closed box behind a cab over its engine."""
-    shape, half, top_m = silhouettes()[blueprint.definition.id], blueprint.box.extent, blueprint.box.extent.z * 2.0
+    shape, top_m = silhouettes()[blueprint.definition.id], blueprint.box.location.z + blueprint.box.extent.z
     whole = frame_of(blueprint, roof_m=top_m, mirrors_m=_MIRRORS_M)
     cab = _cab(whole, 0.26 * (whole.front - whole.rear) + 0.1, 0.9 * top_m)
     wide, floor = whole.half_width, 2.12 * whole.wheel_radius
@@ -99,7 +99,6 @@ def freight_truck(blueprint: Blueprint) -> list[Shape]:
         box((whole.axles[0] + 0.7, wide - 0.05, 0.45), (whole.axles[1] - 0.75, wide, 0.95 * floor), TRIM)
     )
     load = [cargo, *doors, stripe, spoiler, *guards, *_over_axle(whole, BLACK)]
-    assert half.z > 0.0
     return _truck(blueprint, shape, cab, whole, load)
 
 
@@ -137,8 +136,7 @@ def _ladder(rear_m: float, front_m: float, low_m: float, top_m: float) -> list[M
     for n in range(count):
         x = rear_m + 0.1 + n * (front_m - rear_m - 0.2) / (count - 1)
         made.append(box((x - 0.02, -0.42, low_m + 0.06), (x + 0.02, 0.42, low_m + 0.1), CHROME))
-        for y in (-0.42, 0.42):
-            made.append(box((x - 0.02, y - 0.02, low_m + 0.08), (x + 0.02, y + 0.02, top_m - 0.05), CHROME))
+        made += both_sides(box((x - 0.02, 0.4, low_m + 0.08), (x + 0.02, 0.44, top_m - 0.05), CHROME))
     made.append(box((rear_m, -0.47, low_m + 0.03), (rear_m + 0.06, 0.47, top_m), CHROME))
     return made
 

@@ -6,16 +6,16 @@ than their bones, whose distances (Drillis and Contini) are those of a body's ou
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import NamedTuple, ParamSpec, cast
+from typing import NamedTuple, TypeVar, cast
 
 import numpy as np
 
-from linden.meshes.actors.solids import Look, ball, box, loft, ring_of, stretched, tagged, tube
+from linden.meshes.actors.solids import Look, ball, both_sides, box, loft, ring_of, stretched, tagged, tube
 from linden.meshes.mesh import Material, Mesh, join
 from linden.values.enums import SemanticTag
 
 Colour = tuple[int, int, int]
-Parameters = ParamSpec("Parameters")
+Make = TypeVar("Make", bound=Callable[..., Mesh])
 
 CLOTH = Look(Material.CLOTH, (120, 120, 125), painted=True)
 """Clothes; what colour, the part says that the mesh belongs to."""
@@ -37,23 +37,39 @@ class Build(NamedTuple):
     skin: Colour
     hair: Colour
     shoes: Colour
-    skirt: bool
+    bare_legs: Colour | None  # their skin, under a skirt
     long_sleeves: bool
     helmet: Colour | None = None
 
 
-def _limb(make: Callable[Parameters, Mesh]) -> Callable[Parameters, Mesh]:
-    """Let a function give the same mesh to all who are made alike, tagged as a pedestrian's."""
+_BLACK = (0, 0, 0)
+_NOBODY = Build(
+    1.0, female=False, child=False, skin=_BLACK, hair=_BLACK, shoes=_BLACK, bare_legs=None, long_sleeves=False
+)
 
-    @lru_cache(maxsize=256)
-    def made(*args: Parameters.args, **named: Parameters.kwargs) -> Mesh:
-        return tagged(make(*args, **named), SemanticTag.PEDESTRIANS)
 
-    return cast("Callable[Parameters, Mesh]", made)
+def _limb(*matters: str) -> Callable[[Make], Make]:
+    """Let a function give the same mesh to all bodies that are alike in what ``matters``, tagged as a pedestrian's."""
+
+    def remember(make: Make) -> Make:
+        @lru_cache(maxsize=256)
+        def made(build: Build, *side: float) -> Mesh:
+            return tagged(make(build, *side), SemanticTag.PEDESTRIANS)
+
+        def recall(build: Build, *side: float) -> Mesh:
+            return made(_NOBODY._replace(**{name: getattr(build, name) for name in matters}), *side)
+
+        return cast("Make", recall)
+
+    return remember
 
 
 def _skin(build: Build) -> Look:
     return Look(Material.SKIN, build.skin)
+
+
+def _leg(build: Build) -> Look:
+    return CLOTH if build.bare_legs is None else Look(Material.SKIN, build.bare_legs)
 
 
 def _ovals(rows: Sequence[tuple[float, float, float, float]], size_m: float, look: Look) -> Mesh:
@@ -64,7 +80,7 @@ def _ovals(rows: Sequence[tuple[float, float, float, float]], size_m: float, loo
     return loft(np.array(rings) * size_m, look, look, look)
 
 
-@_limb
+@_limb("stature_m", "female", "bare_legs")
 def hips(build: Build) -> Mesh:
     """Return the pelvis, or the skirt over it."""
     wide = 0.093 if build.female else 0.087
@@ -74,12 +90,12 @@ def hips(build: Build) -> Mesh:
         (0.04, 0.06, wide, 0.0),
         (0.085, 0.05, 0.074, 0.0),
     ]
-    if build.skirt:
+    if build.bare_legs is not None:
         rows = [(-0.23, 0.075, 0.115, 0.005), *rows[1:]]
     return _ovals(rows, build.stature_m, CLOTH)
 
 
-@_limb
+@_limb("stature_m", "female", "child", "skin")
 def chest(build: Build) -> Mesh:
     """Return what is between waist and neck, with the neck."""
     wide = 0.084 if build.female else 0.094
@@ -96,7 +112,7 @@ def chest(build: Build) -> Mesh:
     return join([_ovals(shirt, build.stature_m, CLOTH), neck])
 
 
-@_limb
+@_limb("stature_m", "female", "child", "skin", "hair", "helmet")
 def head(build: Build) -> Mesh:
     """Return the head; its crown is a whole stature above the ground when the body stands."""
     size, crown = build.stature_m, 0.115
@@ -104,8 +120,11 @@ def head(build: Build) -> Mesh:
     centre = crown - tall - 0.004
     parts = [ball((0.006, 0.0, centre), (deep, wide, tall), _skin(build), sides=10, bands=8)]
     parts.append(box((deep - 0.002, -0.006, centre - 0.02), (deep + 0.016, 0.006, centre + 0.002), _skin(build)))
-    for y in (-0.4 * wide, 0.4 * wide):
-        parts.append(box((0.85 * deep, y - 0.006, centre + 0.004), (0.975 * deep, y + 0.006, centre + 0.012), _DARK))
+    parts += both_sides(
+        box(
+            (0.85 * deep, 0.4 * wide - 0.006, centre + 0.004), (0.975 * deep, 0.4 * wide + 0.006, centre + 0.012), _DARK
+        )
+    )
     if build.helmet is not None:
         cover = Look(Material.PLAIN, build.helmet)
         parts.append(
@@ -131,7 +150,7 @@ def head(build: Build) -> Mesh:
     return stretched(join(parts), (size, size, size))
 
 
-@_limb
+@_limb("stature_m")
 def arm(build: Build, side: float) -> Mesh:
     """Return the upper arm of the right (1) or left (-1) side, with the shoulder."""
     y, size = -side * ARMS_IN, build.stature_m
@@ -139,7 +158,7 @@ def arm(build: Build, side: float) -> Mesh:
     return _scaled_tube(path, [0.016, 0.029, 0.026, 0.021], size, CLOTH)
 
 
-@_limb
+@_limb("stature_m", "skin", "long_sleeves")
 def forearm(build: Build, side: float) -> Mesh:
     """Return the forearm with the hand."""
     y, size = -side * ARMS_IN, build.stature_m
@@ -153,23 +172,23 @@ def forearm(build: Build, side: float) -> Mesh:
     return join([lower, stretched(hand, (size, size, size))])
 
 
-@_limb
+@_limb("stature_m", "bare_legs")
 def thigh(build: Build, side: float) -> Mesh:
     """Return the thigh."""
     y, size = -side * _LEGS_IN, build.stature_m
     path = [(0.0, 0.8 * y, 0.02), (0.0, y, -0.06), (0.002, y, -0.16), (0.002, y, -0.25)]
-    return _scaled_tube(path, [0.046, 0.05, 0.042, 0.033], size, _skin(build) if build.skirt else CLOTH)
+    return _scaled_tube(path, [0.046, 0.05, 0.042, 0.033], size, _leg(build))
 
 
-@_limb
+@_limb("stature_m", "bare_legs")
 def shin(build: Build, side: float) -> Mesh:
     """Return what is between knee and ankle."""
     y, size = -side * _LEGS_IN, build.stature_m
     path = [(0.004, y, 0.015), (-0.002, y, -0.07), (0.0, y, -0.16), (0.0, y, -0.235)]
-    return _scaled_tube(path, [0.031, 0.033, 0.026, 0.022], size, _skin(build) if build.skirt else CLOTH)
+    return _scaled_tube(path, [0.031, 0.033, 0.026, 0.022], size, _leg(build))
 
 
-@_limb
+@_limb("stature_m", "shoes")
 def foot(build: Build, side: float) -> Mesh:
     """Return a shoe; its sole is as low as the skeleton's feet stand over the ground."""
     y, look = -side * _LEGS_IN, Look(Material.CLOTH, build.shoes)

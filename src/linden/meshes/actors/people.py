@@ -47,15 +47,16 @@ class Outfit(NamedTuple):
 
 def outfit(number: int, stature_m: float, *, female: bool, helmet: Colour | None = None) -> Outfit:
     """Return what the person of a number looks like; numbers next to each other look different."""
+    skin = _SKINS[number * 2 % len(_SKINS)]
     skirt = female and number % 3 == 0 and helmet is None
     build = Build(
         stature_m=stature_m,
         female=female,
         child=stature_m < _CHILD_M,
-        skin=_SKINS[number * 2 % len(_SKINS)],
+        skin=skin,
         hair=_HAIR[number * 5 % len(_HAIR)],
         shoes=_SHOES[number % len(_SHOES)],
-        skirt=skirt,
+        bare_legs=skin if skirt else None,
         long_sleeves=number % 2 == 0,
         helmet=helmet,
     )

@@ -1,6 +1,5 @@
 """Things that can be spawned, each filling its blueprint's box."""
 
-
 import numpy as np
 
 from linden.meshes.actors.prop_models import model

@@ -1,4 +1,4 @@
-"""Small props: boxes, bags, barrels, cases; each about as large as (length, width, height) in m, standing at the origin."""
+"""Small props, each about as large as (length, width, height) in m and standing at the origin."""
 
 import math
 from collections.abc import Callable

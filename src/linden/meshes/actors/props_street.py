@@ -1,4 +1,4 @@
-"""Props of the street: cones, barriers, signs, bins, benches, shelters; each (length, width, height) in m at the origin."""
+"""Props of the street, each about as large as (length, width, height) in m and standing at the origin."""
 
 from collections.abc import Callable
 

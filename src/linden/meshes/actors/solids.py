@@ -5,6 +5,7 @@ Every solid is closed and its triangles point outwards, so that what is put toge
 
 import math
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -44,8 +45,15 @@ def tagged(mesh: Mesh, tag: int) -> Mesh:
 
 def volume_m3(mesh: Mesh) -> float:
     """Return the volume that a closed mesh encloses, negative where it is inside out."""
-    a, b, c = (mesh.vertices_m[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+    corner, normal = _normals(mesh.vertices_m.astype(np.float64), mesh.triangles)
+    return float((corner * normal).sum() / 6.0)
+
+
+def _normals(vertices_m: F64, triangles: NDArray[np.integer]) -> tuple[F64, F64]:
+    """Return the first corner and the normal (T, 3) of triangles, twice their area long."""
+    a = vertices_m[triangles[:, 0]]
+    (ux, uy, uz), (vx, vy, vz) = (vertices_m[triangles[:, 1]] - a).T, (vertices_m[triangles[:, 2]] - a).T
+    return a, np.stack([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx], 1)
 
 
 def bounds(mesh: Mesh) -> tuple[F64, F64]:
@@ -55,10 +63,10 @@ def bounds(mesh: Mesh) -> tuple[F64, F64]:
 
 def closed(vertices_m: F64, triangles: NDArray[np.intp], faces: NDArray[np.void]) -> Mesh:
     """Return a solid of triangles that all turn the same way round: outwards, without those that have no area."""
-    a, b, c = (vertices_m[triangles[:, k]] for k in range(3))
-    has_area = np.linalg.norm(np.cross(b - a, c - a), axis=1) > 2.0 * _NO_AREA_M2
-    made = Mesh(vertices_m.astype(np.float32), triangles[has_area].astype(np.uint32), faces[has_area])
-    return made if volume_m3(made) >= 0.0 else inside_out(made)
+    corner, normal = _normals(vertices_m, triangles)
+    has_area = (normal * normal).sum(1) > (2.0 * _NO_AREA_M2) ** 2
+    kept = triangles[has_area] if (corner * normal).sum() >= 0.0 else triangles[has_area, ::-1]
+    return Mesh(vertices_m.astype(np.float32), kept.astype(np.uint32), faces[has_area])
 
 
 def inside_out(mesh: Mesh) -> Mesh:
@@ -80,11 +88,16 @@ def loft(
     sides = np.stack([low, high, high + points, low, high + points, low + points], 1).reshape(-1, 3)
     side_faces = (faces_of(look, count - 1, points) if isinstance(look, Look) else look).reshape(-1)
     end = _strips(points)
-    ends = [np.repeat(faces_of(x, points // 2) if isinstance(x, Look) else x, 2)[: len(end)] for x in (first, last)]
     triangles = np.concatenate([sides, end[:, ::-1], end + (count - 1) * points])
-    return closed(rings_m.reshape(-1, 3), triangles, np.concatenate([np.repeat(side_faces, 2), *ends]))
+    faces = np.empty(len(triangles), FACE)
+    faces[: len(sides)] = np.repeat(side_faces, 2)
+    for start, strips in ((len(sides), first), (len(sides) + len(end), last)):
+        looks = faces_of(strips, points // 2) if isinstance(strips, Look) else strips
+        faces[start : start + len(end)] = np.repeat(looks, 2)
+    return closed(rings_m.reshape(-1, 3), triangles, faces)
 
 
+@lru_cache(maxsize=64)
 def _strips(points: int) -> NDArray[np.intp]:
     """Return triangles (points - 1 or more, 3) that close a ring by strips, two for each; those too many are empty."""
     strips = []
@@ -169,9 +182,15 @@ def _across(direction: F64) -> F64:
 
 
 def _circle(first: F64, second: F64, sides: int) -> F64:
-    angles = (np.arange(sides) + 0.5) * (math.tau / sides)
-    circle: F64 = np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * second
+    cosine, sine = _round(sides)
+    circle: F64 = cosine * first + sine * second
     return circle
+
+
+@lru_cache(maxsize=64)
+def _round(sides: int) -> tuple[F64, F64]:
+    angles = (np.arange(sides)[:, None] + 0.5) * (math.tau / sides)
+    return np.cos(angles), np.sin(angles)
 
 
 def moved(mesh: Mesh, by_m: Point) -> Mesh:

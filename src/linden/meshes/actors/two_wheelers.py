@@ -11,7 +11,6 @@ from linden.meshes.actors.looks import (
     HEAD,
     PAINT,
     PLATE,
-    RIM,
     RUBBER,
     STEEL,
     TAIL,
@@ -34,13 +33,12 @@ _RIDERS = {"1": (4, False), "2": (11, True), "3": (25, False)}
 """Number and sex of the outfit of each ``driver_id``."""
 
 
-def two_wheeler(blueprint: Blueprint, driver_id: str = "1") -> list[Shape]:
-    """Return the parts of a vehicle on two wheels with its rider."""
+def two_wheeler(blueprint: Blueprint) -> dict[str, list[Shape]]:
+    """Return the parts of a vehicle on two wheels with each of its riders, by ``driver_id``."""
     base = next(attribute.value for attribute in blueprint.definition.attributes if attribute.id == "base_type")
     if base == "bicycle":
-        return _bicycle(blueprint, driver_id)
-    make = _scooter if blueprint.definition.id == "vehicle.vespa.zx125" else _motorcycle
-    return make(blueprint, driver_id)
+        return _bicycle(blueprint)
+    return _scooter(blueprint) if blueprint.definition.id == "vehicle.vespa.zx125" else _motorcycle(blueprint)
 
 
 def _hubs(blueprint: Blueprint) -> tuple[Vector3D, Vector3D]:
@@ -64,61 +62,67 @@ def _bars(blueprint: Blueprint, hub: Vector3D, head: tuple[float, float], look: 
     return [*legs, stem, *both_sides(bar), *both_sides(grip)]
 
 
-class Rider(NamedTuple):
-    """Who sits where: ``saddle_m`` is the height of the seat, what else is as in ``people.figure``."""
+class _Riders(NamedTuple):
+    """Who may sit on it, by ``driver_id``, and how high the saddle is."""
 
-    mesh: Mesh
+    meshes: dict[str, Mesh]
     saddle_m: float
 
 
-def _rider(
+def _riders(
     blueprint: Blueprint,
-    driver_id: str,
     *,
     hips_x_m: float,
     lean_deg: float,
     hand_m: tuple[float, float],
     feet_m: tuple[tuple[float, float], tuple[float, float]],
-) -> Rider:
-    """Return a rider whose helmet is as high as the box."""
-    number, female = _RIDERS[driver_id]
-    who = outfit(number, _RIDER_M, female=female, helmet=(228, 228, 224))
-    trial = figure(who, hips_m=(0.0, 0.0), lean_deg=lean_deg, hand_m=(0.0, 0.0), feet_m=((0.0, -0.5), (0.0, -0.5)))
-    hips_z = blueprint.box.location.z + blueprint.box.extent.z - float(trial.vertices_m[:, 2].max())
-    made = figure(
-        who,
-        hips_m=(hips_x_m, hips_z),
-        lean_deg=lean_deg,
-        hand_m=hand_m,
-        feet_m=feet_m,
-        hands_apart_m=1.55 * blueprint.box.extent.y,
-    )
-    return Rider(tagged(made, SemanticTag.RIDER), hips_z - 0.05 * _RIDER_M)
+) -> _Riders:
+    """Return riders whose helmets are as high as the box; the rest is as in ``people.figure``."""
+    top_m, hips_z = blueprint.box.location.z + blueprint.box.extent.z, 0.0
+    meshes: dict[str, Mesh] = {}
+    for driver_id, (number, female) in _RIDERS.items():
+        who = outfit(number, _RIDER_M, female=female, helmet=(228, 228, 224))
+        if not meshes:  # all are of one size
+            trial = figure(
+                who, hips_m=(0.0, 0.0), lean_deg=lean_deg, hand_m=(0.0, 0.0), feet_m=((0.0, -0.5), (0.0, -0.5))
+            )
+            hips_z = top_m - float(trial.vertices_m[:, 2].max())
+        made = figure(
+            who,
+            hips_m=(hips_x_m, hips_z),
+            lean_deg=lean_deg,
+            hand_m=hand_m,
+            feet_m=feet_m,
+            hands_apart_m=1.55 * blueprint.box.extent.y,
+        )
+        meshes[driver_id] = tagged(made, SemanticTag.RIDER)
+    return _Riders(meshes, hips_z - 0.05 * _RIDER_M)
 
 
 def _assembled(
-    blueprint: Blueprint, body: list[Mesh], fork: list[Mesh], rider: Rider, wheels: list[Mesh]
-) -> list[Shape]:
-    tag = blueprint.semantic_tags[0]
-    shapes = [Shape(tagged(join(body), tag), 0), Shape(rider.mesh, 0), Shape(tagged(join(fork), tag), FORK)]
-    return [*shapes, *(Shape(tagged(mesh, tag), 1 + number) for number, mesh in enumerate(wheels))]
+    blueprint: Blueprint, body: list[Mesh], fork: list[Mesh], riders: _Riders, tyres_m: tuple[float, float], spokes: int
+) -> dict[str, list[Shape]]:
+    """Return the parts with each rider; ``tyres_m`` are the widths of the front and the rear one."""
+    tag, radius_m = blueprint.semantic_tags[0], _hubs(blueprint)[0].z
+    shapes = [Shape(tagged(join(body), tag), 0), Shape(tagged(join(fork), tag), FORK)]
+    shapes += [Shape(spoked_wheel(radius_m, tyre_m, spokes, tag), 1 + n) for n, tyre_m in enumerate(tyres_m)]
+    return {driver_id: [*shapes, Shape(mesh, 0)] for driver_id, mesh in riders.meshes.items()}
 
 
-def _bicycle(blueprint: Blueprint, driver_id: str) -> list[Shape]:
+def _bicycle(blueprint: Blueprint) -> dict[str, list[Shape]]:
     front, rear = _hubs(blueprint)
     upright = blueprint.definition.id == "vehicle.gazelle.omafiets"
     pedals = (0.5 * (front.x + rear.x) - 0.06, front.z - 0.06)
     hips_x = pedals[0] - 0.2
     grips = (front.x - (0.32 if upright else 0.12), 0.98)
-    rider = _rider(
+    riders = _riders(
         blueprint,
-        driver_id,
         hips_x_m=hips_x,
         lean_deg=12.0 if upright else 38.0,
         hand_m=(grips[0] - 0.03, grips[1] + 0.03),
         feet_m=((pedals[0] - 0.04, pedals[1] - _CRANK_M + 0.09), (pedals[0] + 0.06, pedals[1] + _CRANK_M + 0.07)),
     )
-    seat = (hips_x + 0.02, 0.0, rider.saddle_m - 0.05)
+    seat = (hips_x + 0.02, 0.0, riders.saddle_m - 0.05)
     bottom, axle = (pedals[0], 0.0, pedals[1]), (rear.x, 0.0, rear.z)
     head_top, head_low = (grips[0] + 0.08, 0.0, grips[1] - 0.14), (grips[0] + 0.12, 0.0, grips[1] - 0.27)
     joint = (seat[0] + 0.06, 0.0, seat[2] - 0.16)
@@ -149,26 +153,24 @@ def _bicycle(blueprint: Blueprint, driver_id: str) -> list[Shape]:
     fork.append(
         box((0.55 * (grips[0] - front.x), -0.035, 0.42), (0.55 * (grips[0] - front.x) + 0.05, 0.035, 0.49), HEAD)
     )
-    wheel = spoked_wheel(front.z, 0.045, 12, RIM)
-    return _assembled(blueprint, body, fork, rider, [wheel, wheel])
+    return _assembled(blueprint, body, fork, riders, (0.045, 0.045), 12)
 
 
-def _motorcycle(blueprint: Blueprint, driver_id: str) -> list[Shape]:
+def _motorcycle(blueprint: Blueprint) -> dict[str, list[Shape]]:
     front, rear = _hubs(blueprint)
     half, r = blueprint.box.extent, front.z
     tail, ahead = blueprint.box.location.x - half.x, blueprint.box.location.x + half.x - front.x
     low_rider = "harley" in blueprint.definition.id
     hips_x, pegs = (-0.32, (0.3, 0.38)) if low_rider else (-0.25, (-0.22, 0.42))
     grips = (front.x - (0.62 if low_rider else 0.42), 1.02 if low_rider else 0.9)
-    rider = _rider(
+    riders = _riders(
         blueprint,
-        driver_id,
         hips_x_m=hips_x,
         lean_deg=4.0 if low_rider else 38.0,
         hand_m=(grips[0] - 0.03, grips[1] + 0.03),
         feet_m=(pegs, pegs),
     )
-    seat = rider.saddle_m
+    seat = riders.saddle_m
     body = [
         ball((0.1, 0.0, seat + 0.02), (0.3, 0.17, 0.15), PAINT, sides=10),
         wedge((hips_x - 0.42, -0.13, seat - 0.12), (0.0, 0.13, seat + 0.01), BLACK, top_x=(hips_x - 0.45, -0.05)),
@@ -195,7 +197,7 @@ def _motorcycle(blueprint: Blueprint, driver_id: str) -> list[Shape]:
             )
         )
         body += both_sides(wedge((-0.2, 0.12, 0.28), (0.4, 0.2, seat - 0.02), PAINT, top_x=(0.0, 0.36)))
-    return _assembled(blueprint, body, fork, rider, [spoked_wheel(r, 0.13, 7, RIM), spoked_wheel(r, 0.16, 7, RIM)])
+    return _assembled(blueprint, body, fork, riders, (0.13, 0.16), 7)
 
 
 def _blinkers(x_m: float, y_m: float, z_m: float) -> list[Mesh]:
@@ -206,19 +208,18 @@ def _blinkers(x_m: float, y_m: float, z_m: float) -> list[Mesh]:
     return [stalk, left, right]
 
 
-def _scooter(blueprint: Blueprint, driver_id: str) -> list[Shape]:
-    front, rear = _hubs(blueprint)
+def _scooter(blueprint: Blueprint) -> dict[str, list[Shape]]:
+    front, _ = _hubs(blueprint)
     half, r = blueprint.box.extent, front.z
     grips = (front.x - 0.22, 0.98)
-    rider = _rider(
+    riders = _riders(
         blueprint,
-        driver_id,
         hips_x_m=-0.3,
         lean_deg=3.0,
         hand_m=(grips[0] - 0.03, grips[1] + 0.02),
         feet_m=((0.18, 0.37), (0.22, 0.37)),
     )
-    seat = rider.saddle_m
+    seat = riders.saddle_m
     body = [
         box((-0.2, -0.2, 0.24), (0.4, 0.2, 0.3), PAINT),
         ball((-0.48, 0.0, 0.48), (0.42, 0.22, 0.26), PAINT, sides=10),
@@ -235,12 +236,12 @@ def _scooter(blueprint: Blueprint, driver_id: str) -> list[Shape]:
     fork.append(moved(ball((0.0, 0.0, 0.0), (0.04, 0.06, 0.06), HEAD), (at + 0.11, 0.0, lamp_z)))
     fork.append(wedge((-0.24, -0.1, 0.3 * r), (half.x - front.x, 0.1, r + 0.06), PAINT, top_x=(-0.16, 0.12)))
     fork += _blinkers(at + 0.08, 0.2, lamp_z - 0.14)
-    return _assembled(blueprint, body, fork, rider, [spoked_wheel(r, 0.1, 5, RIM), spoked_wheel(r, 0.1, 5, RIM)])
+    return _assembled(blueprint, body, fork, riders, (0.1, 0.1), 5)
 
 
 def wheelchair() -> Mesh:
     """Return a wheelchair that stands on the ground around the origin and looks along x."""
-    wheel = moved(spoked_wheel(0.3, 0.035, 10, STEEL), (-0.08, 0.29, 0.3))
+    wheel = moved(spoked_wheel(0.3, 0.035, 10, SemanticTag.PEDESTRIANS), (-0.08, 0.29, 0.3))
     caster = moved(hoop(0.07, 0.02, RUBBER), (0.3, 0.24, 0.09))
     sides = [
         wheel,

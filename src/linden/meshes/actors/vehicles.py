@@ -19,9 +19,9 @@ _OF_ITS_OWN: dict[str, Callable[[Blueprint], list[Shape]]] = {
 }
 
 
-def vehicle(blueprint: Blueprint, driver_id: str = "1") -> list[Shape]:
-    """Return the parts of a vehicle: the body first, then its wheels."""
+def vehicle(blueprint: Blueprint) -> dict[str, list[Shape]]:
+    """Return the parts of a vehicle: by ``driver_id`` where there is a rider to be seen, otherwise under ""."""
     assert blueprint.vehicle is not None
     if len(blueprint.vehicle.wheel_offsets_m) == 2:
-        return two_wheeler(blueprint, driver_id)
-    return _OF_ITS_OWN.get(blueprint.definition.id, car)(blueprint)
+        return two_wheeler(blueprint)
+    return {"": _OF_ITS_OWN.get(blueprint.definition.id, car)(blueprint)}
