@@ -22,8 +22,8 @@ _SKY = np.array(
         (-90.0, 0.0011, 0.0016, 0.0036, 0.0028, 0.0032, 0.0052),
         (-14.0, 0.0013, 0.0020, 0.0048, 0.0040, 0.0042, 0.0065),
         (-6.0, 0.0120, 0.0210, 0.0520, 0.0900, 0.0680, 0.0720),
-        (0.0, 0.0700, 0.1150, 0.2300, 0.5200, 0.3000, 0.1700),
-        (6.0, 0.1200, 0.2300, 0.4300, 0.7200, 0.5400, 0.3800),
+        (0.0, 0.0750, 0.1100, 0.2200, 0.6200, 0.3000, 0.1300),
+        (6.0, 0.1300, 0.2100, 0.3800, 0.7800, 0.5000, 0.2800),
         (20.0, 0.1500, 0.3200, 0.6300, 0.7200, 0.7800, 0.8400),
         (45.0, 0.1500, 0.3500, 0.7100, 0.7600, 0.8500, 0.9500),
         (90.0, 0.1600, 0.3800, 0.7700, 0.8000, 0.9000, 1.0000),
@@ -70,7 +70,8 @@ def air(weather: WeatherParameters, now_s: float) -> Air:
     cover, rain = _share(given.cloudiness), _share(given.precipitation)
     day = _mixed(height_deg)
     grey = cover**2
-    zenith, horizon = _overcast(day[:3], grey), _overcast(day[3:], grey)
+    gloom = 1.0 - 0.4 * rain
+    zenith, horizon = gloom * _overcast(day[:3], grey), gloom * _overcast(day[3:], grey)
     sun = sunlight(height_deg) * (1.0 - 0.97 * cover**1.5) * (1.0 - 0.6 * rain)
     light_of_day = float(day[3:].mean())
     towards = _direction(given.sun_azimuth_angle, height_deg)
@@ -84,7 +85,7 @@ def air(weather: WeatherParameters, now_s: float) -> Air:
         horizon=_colour(horizon),
         above=_colour(above * (1.0 + 0.35 * grey)),
         below=_colour(0.22 * above + 0.11 * max(0.0, towards[2]) * sun),
-        cloud=_colour(_cloud(day, sun, cover)),
+        cloud=_colour(gloom * _cloud(day, sun, cover)),
         cloud_cover=cover,
         cloud_shift_m=0.0004 * given.wind_intensity * now_s,
         stars=max(0.0, min(1.0, (-4.0 - height_deg) / 8.0)) * (1.0 - cover),

@@ -28,10 +28,10 @@ _MOST = 8.0
 
 _NOON = 1.75
 """Light on level ground on a clear noon, which is exposed with 1."""
-_ADAPTION = 0.72
+_ADAPTION = 0.62
 """How much of a darker or brighter day an automatic exposure makes up for: night stays darker than day."""
 _DARKEST = 0.02
-_GREY = 0.90
+_GREY = 0.84
 """What a white surface in half the noon's sun becomes before the film's curve."""
 _DEFAULT = Film()
 
@@ -87,7 +87,7 @@ def developed(spec: CameraSpec, film: Film, light: F32, air: Air) -> U8:
     image = np.empty((spec.height_px * spec.width_px, 4), np.uint8)
     table, factor = curve(film), white_balance(film) * np.float32(exposure(film, air))
     halo = bloom(spec, light, factor) * np.float32(film.bloom / _DEFAULT.bloom if film.postprocess else 0.0)
-    rain = (air.rain, math.fmod(air.now_s, 1000.0), 0.35 * brightness(air))
+    rain = (air.rain, math.fmod(air.now_s, 1000.0), 0.16 * brightness(air))
 
     def work(start: int, stop: int) -> None:
         _develop(light, factor, halo, tile_counts(spec)[0], pixel, spec.width_px, *rain, table, image, start, stop)
@@ -151,7 +151,7 @@ def _streak(x: int, y: int, rain: float, now_s: float) -> float:
         shift = hashed(number, 3, 61 + sheet) * 977.0
         row = (y - fall * now_s) / tall + shift
         chance = hashed(number, math.floor(row), 71 + sheet)
-        if chance < 0.05 + 0.10 * rain:
+        if chance < 0.02 + 0.07 * rain:
             along = row - math.floor(row)
             bright += (0.9 if sheet == 0 else 0.55) * along * (1.0 - along) * 4.0
     return bright

@@ -14,7 +14,7 @@ from linden.compiled import fingerprint, shading, shading_part
 from linden.meshes.mesh import LampOf, Material
 from linden.sensors.camera.picture.atmosphere import Air
 from linden.sensors.camera.picture.lamps import CELL_M, LampGrid
-from linden.sensors.camera.picture.noise import ramp, smooth_noise
+from linden.sensors.camera.picture.noise import hashed, ramp, smooth_noise
 from linden.sensors.camera.picture.patterns import look_of
 from linden.sensors.camera.picture.relief import Relief
 from linden.sensors.camera.picture.sky import clear_sky, sky
@@ -29,6 +29,8 @@ _LAMP, _LEAVES, _GLASS = int(Material.LAMP), int(Material.LEAVES), int(Material.
 _WETTED = (int(Material.ASPHALT), int(Material.CONCRETE), int(Material.PAINT), int(Material.GRAVEL))
 _WINDOW = int(LampOf.WINDOW)
 _CELLS = 40
+_STOREY_M, _AT_HOME = 2.8, 0.65
+"""By night as many of all storeys are lit."""
 
 SHINE = np.ones(32, np.float32)
 """How bright a lamp that is on looks itself, by LampOf; 1 is a white wall in half the noon's sun."""
@@ -137,8 +139,13 @@ def _spot(
     if faces.painted[face]:
         red, green, blue = places.colour[place, 0], places.colour[place, 1], places.colour[place, 2]
     glow = _glow(lamp, place, faces.object[face], places, shine) if lamp > 0 else 0.0
-    if lamp == _WINDOW and glow == 0.0:
-        material = _GLASS
+    if lamp == _WINDOW:
+        if hashed(faces.object[face], math.floor(bz / _STOREY_M), 81) > _AT_HOME:
+            glow = 0.0
+        if glow == 0.0:
+            material = _GLASS
+        else:  # a lamp of 2700 K within
+            green, blue = 0.72 * green, 0.38 * blue
     look = look_of(material, bx, by, bz, fx, fy, fz, pixel_m)
     gloss = look.gloss
     red, green, blue = red * look.red, green * look.green, blue * look.blue
