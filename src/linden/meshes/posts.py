@@ -80,7 +80,7 @@ def _plate(frames: Frames, kind: str, value: float | None, objects: I32) -> Mesh
     if kind == STOP_SIGN_TYPE:
         outer = _regular(8, half / np.cos(np.pi / 8.0), np.pi / 8.0)
         return _layers(
-            frames, objects, [(outer, _SIGN_WHITE), (0.94 * outer, _SIGN_RED)], [("STOP", 0.26, 0.0, _SIGN_WHITE)]
+            frames, objects, [(outer, _SIGN_WHITE), (0.94 * outer, _SIGN_RED)], [("STOP", 0.2, 0.0, _SIGN_WHITE)]
         )
     if kind == YIELD_SIGN_TYPE:
         outer = np.array([(-half, 0.0, half * 0.85), (half, 0.0, half * 0.85), (0.0, 0.0, -half)])
@@ -112,9 +112,9 @@ def _layers(
         strokes = letters(words, tall)  # (K, 4, 2), read from the front: x to the reader's right
         look = Look(Material.SIGN_FACE, tag, colour, objects)
         for stroke in strokes:
-            # who looks at the face sees the thing's x run to the left: the face looks along y, x is on its right hand
-            corners = np.stack(
-                [-stroke[:, 0], np.full(len(stroke), depth + 0.002 * len(sheets)), stroke[:, 1] + up], axis=1
+            # y points south: who looks against it, at the face, has x on the right hand
+            corners = np.column_stack(
+                [stroke[:, 0], np.full(len(stroke), depth + 0.002 * len(sheets)), stroke[:, 1] + up]
             )
             parts.append(polygons(frames.world(corners + at), look, front))
     return join(parts)

@@ -47,14 +47,15 @@ class Drive(NamedTuple):
 def yards(lots: NDArray[np.void], houses: Scene, ground: Ground) -> Scene:
     """Return what lies around the houses that stand on the lots."""
     lot_of_house = lots_of(lots, houses)
-    draw = _draw(lots)
+    draw, drive = _draw(lots), drives(lots, houses)
+    open_left = np.setdiff1d(lot_of_house, drive.lot[drive.side < 0.0])
     box = houses.boxes[np.searchsorted(houses.boxes["thing"], _house_rows(houses))]
     return join(
         [
             _porches(box, houses.things[_house_rows(houses)], draw[lot_of_house]),
-            _hedges(lots[lot_of_house], ground, draw[lot_of_house]),
+            _hedges(lots[open_left], ground, draw[open_left]),
             _fences(lots[lot_of_house], ground, draw[lot_of_house]),
-            _cars(lots, ground, drives(lots, houses), draw),
+            _cars(lots, ground, drive, draw),
         ]
     )
 

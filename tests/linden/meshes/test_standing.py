@@ -109,6 +109,20 @@ def test_a_stop_sign_is_red_with_white_letters(street: LoadedMap) -> None:
     assert any(red > 2 * green for red, green, _ in colours)
 
 
+def test_a_stop_sign_reads_from_the_left_to_the_right(street: LoadedMap) -> None:
+    scene = scenery_of(street).scene
+    mesh = things(street, scene)
+    white = (mesh.faces["material"] == Material.SIGN_FACE) & (mesh.faces["colour"][:, 1] > 200)
+    plate = scene.boxes[scene.boxes["tag"] == SemanticTag.TRAFFIC_SIGNS][0]
+    away = mesh.vertices_m[mesh.triangles[white]].reshape(-1, 3) - plate["centre"]
+    # who reads the face looks against its y, and has its x on the right
+    right = away[:, :2] @ [np.cos(plate["yaw_rad"]), np.sin(plate["yaw_rad"])]
+    written = np.abs(away[:, 2]) < 0.11  # not the white edge
+    first, last = (away[written & (side * right > 0.24) & (side * right < 0.33), 2] for side in (-1.0, 1.0))
+    assert first.min() < -0.09  # an S has a foot
+    assert last.min() > -0.03  # of a P only the bowl is there
+
+
 def test_the_surface_is_what_wheels_feel(street: LoadedMap) -> None:
     mesh = surface(road_mesh(parse(STREET)))
     middle = mesh.vertices_m[mesh.triangles].mean(axis=1).astype(np.float64)
