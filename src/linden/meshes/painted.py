@@ -36,11 +36,11 @@ def across_lanes(opendrive: OpenDrive, ground: Ground) -> Mesh:
                 continue
             kind = thing.type.lower()
             if thing.is_crosswalk:
-                found += [_flat(piece, ground) for piece in _bars(outline)]
+                found += [flat(piece, ground) for piece in _bars(outline)]
             elif kind == "roadmark" and "yield" in thing.name.lower():
-                found += [_flat(piece, ground) for piece in _teeth(outline, _towards(tables, index, thing))]
+                found += [flat(piece, ground) for piece in _teeth(outline, _towards(tables, index, thing))]
             elif kind == "roadmark":
-                found.append(_flat(outline, ground))
+                found.append(flat(outline, ground))
             elif kind == "trafficisland":
                 found.append(_island(outline, ground))
     return join(found)
@@ -125,7 +125,7 @@ def _clipped(polygon: F64, at: F64, inward: F64) -> F64:
     return np.array(kept).reshape(-1, 2)
 
 
-def _flat(outline: F64, ground: Ground) -> Mesh:
+def flat(outline: F64, ground: Ground) -> Mesh:
     """Return a painted area that lies on the road."""
     height, _ = ground.surfaces_under(np.column_stack([outline, np.full(len(outline), _HIGH_M)]))
     return polygons(np.column_stack([outline, height + PAINT_HEIGHT_M])[None], _PAINT, _UP)

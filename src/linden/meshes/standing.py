@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.meshes.arrows import arrows
 from linden.meshes.floors import floors
 from linden.meshes.houses import houses, plans
 from linden.meshes.markings import lines
@@ -55,6 +56,7 @@ def streets(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
             kerbs(opendrive),
             lines(opendrive),
             across_lanes(opendrive, facts.ground),
+            arrows(opendrive, facts.ground),
             land(opendrive, facts.ground, under),
         ]
     )
