@@ -28,7 +28,7 @@ _MOST = 8.0
 
 _NOON = 1.75
 """Light on level ground on a clear noon, which is exposed with 1."""
-_ADAPTION = 0.62
+_ADAPTION = 0.66
 """How much of a darker or brighter day an automatic exposure makes up for: night stays darker than day."""
 _DARKEST = 0.02
 _GREY = 0.84
