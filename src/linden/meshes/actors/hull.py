@@ -51,13 +51,18 @@ class Frame(NamedTuple):
         return np.interp((np.asarray(x) - self.rear) / (self.front - self.rear), line[:, 0], line[:, 1])
 
 
-def hull(shape: Silhouette, frame: Frame) -> Mesh:
-    """Return the body of a car without what is put upon it."""
+def hull(shape: Silhouette, frame: Frame, *, is_cab: bool = False) -> Mesh:
+    """Return the body of a car, or a truck's cab, which has no lamps behind, without what is put upon it."""
     x = _stations(shape, frame)
     rear, front = (_end(look) for look in (TAIL, HEAD))
+    sides = _panes(shape, frame, x)
     if not shape.wide_lamps:
-        rear[_LAMPS] = front[_LAMPS] = faces_of(PAINT)
-    return loft(_rings(shape, frame, x), _panes(shape, frame, x), rear, front)
+        front[_LAMPS] = faces_of(PAINT)
+    if not shape.wide_lamps or is_cab:
+        rear[_LAMPS] = faces_of(PAINT)
+    if is_cab:
+        sides[sides["lamp"] == TAIL.lamp] = faces_of(PAINT)
+    return loft(_rings(shape, frame, x), sides, rear, front)
 
 
 def _end(lamps: Look) -> NDArray[np.void]:
