@@ -58,14 +58,14 @@ class Light(NamedTuple):
 
 def picture(spec: CameraSpec, film: Film, pose: Transform, rays: Rays, hits: Hits, seen: Seen) -> NDArray[np.uint8]:
     """Return (height, width, 4) bytes B, G, R, A of what a camera at ``pose`` sees along its rays."""
-    lit = _light(pose, seen)
+    lit = light_of(pose, seen)
     pixel_rad = 1.0 / spec.focal_px
-    light = _shone(rays, hits, pixel_rad, lit, seen)
+    light = shone(rays, hits, pixel_rad, lit, seen)
     rows = edge_rays(spec, hits, light)
     if len(rows):
         fine = finer(spec, rows, pose)
         met = seen.caster.closest(fine, FAR_M, coherent=True, outer=True)
-        light[rows] = _mean(_shone(fine, met, 0.5 * pixel_rad, lit, seen))
+        light[rows] = _mean(shone(fine, met, 0.5 * pixel_rad, lit, seen))
     return developed(spec, film, light, lit.air)
 
 
@@ -76,12 +76,14 @@ def _mean(samples: F32) -> F32:
     return mean
 
 
-def _shone(rays: Rays, hits: Hits, pixel_rad: float, lit: Light, seen: Seen) -> F32:
+def shone(rays: Rays, hits: Hits, pixel_rad: float, lit: Light, seen: Seen) -> F32:
+    """Return the light (N, 3) that comes along each ray; ``pixel_rad`` is how wide a ray's pixel is."""
     sun = sunny(seen.caster, rays, hits, lit.air)
     return shaded(rays, hits, sun, pixel_rad, seen.faces, lit.looks.relief, lit.places, lit.air, lit.lamps)
 
 
-def _light(pose: Transform, seen: Seen) -> Light:
+def light_of(pose: Transform, seen: Seen) -> Light:
+    """Return what lights what a camera at ``pose`` sees."""
     looks = looks_of(seen.standing, seen.bodies)
     lamps = lamps_near(np.array(pose.location), seen, looks.standing_lamps, looks.body_lamps)
     return Light(air(seen.weather, seen.now_s), looks, _places(seen), lamps)
