@@ -75,9 +75,9 @@ class Frames(NamedTuple):
         return len(self.base_m)
 
     def world(self, points_m: ArrayLike) -> F64:
-        """Return points of the things' own frames, (..., 3) or (N, ..., 3), in the world (N, ..., 3)."""
+        """Return points of the things' own frames in the world: (K, 3), the same for all, or (N, K, 3) of each."""
         points = np.asarray(points_m, np.float64)
-        if points.ndim < 3 and (points.ndim == 1 or len(points) != len(self.base_m)):
+        if points.ndim < 3:
             points = np.broadcast_to(points, (len(self.base_m), *points.shape))
         return self.turned(points) + self.base_m.reshape(-1, *([1] * (points.ndim - 2)), 3)
 

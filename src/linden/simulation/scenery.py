@@ -8,11 +8,12 @@ from numpy.typing import NDArray
 
 from linden.physics.contact.statics import STATIC_BOX, Statics
 from linden.scene.home import home
+from linden.scene.neighbourhood import furnish
 from linden.scene.objects import Scene, join
 from linden.scene.signs import Post, posts
 from linden.scene.walls import walls
 from linden.traffic.actors import NO_LIGHT, Signals
-from linden.world.maps import HOME_MAP, LoadedMap
+from linden.world.maps import GENERATED_MAP, HOME_MAP, LoadedMap
 
 
 class Scenery(NamedTuple):
@@ -30,8 +31,8 @@ class Scenery(NamedTuple):
 def scenery_of(world_map: LoadedMap) -> Scenery:
     """Return the scenery of a map; the last one is kept, for most loads load the same map again.
 
-    Only of Linden it is known what stands beside its streets; elsewhere there are lights, signs and what walls a client
-    has asked for.
+    Of Linden it is known what stands beside its streets; other maps have plainer houses where there is room. What a
+    client sent as OpenDRIVE has none, as in CARLA: lights, signs, and the walls it asked for.
     """
     signals = Signals.of(world_map.signals, world_map.controllers, world_map.give_way)
     standing = [Post(actor.transform, actor.light != NO_LIGHT) for actor in signals.actors]
@@ -40,6 +41,8 @@ def scenery_of(world_map: LoadedMap) -> Scenery:
         scene = join([scene, walls(*world_map.walls)])
     if world_map.name == HOME_MAP:
         scene = join([scene, home(world_map.lots, world_map.ground, world_map.geo_origin_deg)])
+    elif world_map.name != GENERATED_MAP:
+        scene = join([scene, furnish(world_map.lots, world_map.ground)])
     return Scenery(signals, scene, solid(scene, np.ones(len(scene.boxes), bool)))
 
 

@@ -52,3 +52,9 @@ def test_colours_and_objects_go_with_their_patches() -> None:
     mesh = boxes(FRAMES, np.zeros(3), np.ones(3), look)
     assert mesh.faces["object"].tolist() == [7] * 10 + [9] * 10
     assert (mesh.faces["colour"][mesh.faces["object"] == 9] == 2).all()
+
+
+def test_a_shape_for_all_is_not_taken_for_one_point_of_each() -> None:
+    frames = Frames(np.arange(12.0).reshape(4, 3), np.zeros(4))
+    square = np.array([(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)], np.float64)
+    np.testing.assert_allclose(frames.world(square), frames.base_m[:, None] + square[None])

@@ -1,5 +1,7 @@
 """What stands on a map: made once a map, the same for every episode on it, and begun anew by each."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from linden.simulation import Simulation
 from linden.simulation.scenery import scenery_of
 from linden.values.enums import SemanticTag, TrafficLightState
 from linden.world.map_facts import derive
-from linden.world.maps import LoadedMap
+from linden.world.maps import GENERATED_MAP, LoadedMap
 from opendrive_texts import signal, street_through_junction
 
 PAVEMENT_M = 0.15
@@ -18,7 +20,7 @@ STREET = street_through_junction(signals=signal("7", 30.0, -5.0, "1000001") + si
 
 @pytest.fixture
 def street() -> LoadedMap:
-    return LoadedMap(name="street", text=STREET, **vars(derive(STREET)))
+    return LoadedMap(name=GENERATED_MAP, text=STREET, **vars(derive(STREET)))
 
 
 def test_every_light_and_sign_stands_on_a_post(street: LoadedMap) -> None:
@@ -56,3 +58,10 @@ def test_each_map_has_its_own(street: LoadedMap) -> None:
     text = street_through_junction()
     assert scenery_of(LoadedMap(name="bare", text=text, **vars(derive(text)))).signals.actors == ()
     assert len(scenery_of(street).signals.actors) == 2
+
+
+def test_a_map_of_one_s_own_has_houses_where_there_is_room_but_what_a_client_sent_has_none(street: LoadedMap) -> None:
+    own = scenery_of(replace(street, name="own")).scene
+    assert len(street.lots) > 0
+    assert (own.things["kind"] == Kind.HOUSE).any()
+    assert not (scenery_of(street).scene.things["kind"] == Kind.HOUSE).any()
