@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 from linden.meshes.actors.people import in_wheelchair, walker
-from linden.meshes.actors.props import prop
 from linden.meshes.actors.shape import Shape
 from linden.meshes.actors.two_wheelers import wheelchair
 from linden.meshes.actors.vehicles import vehicle
 from linden.meshes.mesh import Mesh
+from linden.meshes.props.fitted import prop
 from linden.values.actors import ActorDescription
 from linden.world.blueprints import Blueprint, BlueprintLibrary, Kind
 

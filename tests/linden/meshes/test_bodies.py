@@ -1,4 +1,4 @@
-"""Actors are seen as large as their boxes say, closed and from outside, with lamps, tags and colours where they belong."""
+"""Actors are seen as large as their boxes say, closed, with lamps, tags and colours where they belong."""
 
 import numpy as np
 import pytest

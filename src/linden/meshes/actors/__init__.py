@@ -1,1 +1,1 @@
-"""What actors look like: solids put together to cars, people and things, true to their blueprints' boxes."""
+"""What vehicles and people look like: solids put together, true to their blueprints' boxes."""

@@ -49,7 +49,14 @@ def _truck(blueprint: Blueprint, shape: Silhouette, cab: Frame, whole: Frame, lo
     """Return the parts of a truck: cab, chassis, load, wheels with mudguards, lamps."""
     half_y, hub_m = blueprint.box.extent.y, whole.wheel_radius
     chassis = box((whole.rear + 0.1, -0.45, 0.8 * hub_m), (cab.rear + 0.2, 0.45, 1.9 * hub_m), BLACK)
-    parts = [hull(shape, cab, is_cab=True), underside(cab), *front(shape, cab), *mirrors(shape, cab, half_y), chassis, *load]
+    parts = [
+        hull(shape, cab, is_cab=True),
+        underside(cab),
+        *front(shape, cab),
+        *mirrors(shape, cab, half_y),
+        chassis,
+        *load,
+    ]
     parts += _tail(whole)
     return [Shape(tagged(join(parts), blueprint.semantic_tags[0]), 0), *wheels(blueprint, whole.half_width)]
 

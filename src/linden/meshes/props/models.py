@@ -2,17 +2,15 @@
 
 from collections.abc import Callable
 
-from linden.meshes.actors import props_garden as garden
-from linden.meshes.actors import props_small as small
-from linden.meshes.actors import props_street as street
 from linden.meshes.mesh import Mesh
+from linden.meshes.props import garden, plants, signs, small, street
 from linden.values.space import BoundingBox
 
 Model = Callable[[float, float, float], list[Mesh]]
 
 _MODELS: dict[str, Model] = {
-    "advertisement": street.advertisement,
-    "aporosatree": garden.broad_tree,
+    "advertisement": signs.advertisement,
+    "aporosatree": plants.broad_tree,
     "atm": street.machine((60, 90, 140)),
     "barbeque": garden.barbecue,
     "barrel": small.barrel,
@@ -32,14 +30,14 @@ _MODELS: dict[str, Model] = {
     "chainbarrierend": street.bollard,
     "clothcontainer": street.container((150, 160, 170)),
     "clothesline": garden.clothes_line,
-    "coconutpalm": garden.palm,
+    "coconutpalm": plants.palm,
     "colacan": small.can((190, 20, 24)),
-    "constructioncone": street.cone,
+    "constructioncone": signs.cone,
     "container": street.container((60, 110, 70)),
     "creasedbox01": small.cardboard(open_lid=True),
     "creasedbox02": small.cardboard(open_lid=True),
     "creasedbox03": small.boards,
-    "cypresstree": garden.cypress,
+    "cypresstree": plants.cypress,
     "doghouse": garden.dog_house,
     "foodcart": street.food_cart,
     "fountain": garden.fountain,
@@ -55,14 +53,14 @@ _MODELS: dict[str, Model] = {
     "ironplank": small.boards,
     "kiosk_01": street.kiosk,
     "mailbox": street.mailbox,
-    "maptable": street.map_table,
+    "maptable": signs.map_table,
     "mobile": small.case((20, 22, 26)),
     "motorhelmet": small.helmet((30, 32, 40)),
     "pergola": garden.pergola,
-    "plantpot06": garden.round_pot,
-    "plantpot05": garden.round_pot,
-    "plantpot07": garden.round_pot,
-    "plantpot08": garden.round_pot,
+    "plantpot06": plants.round_pot,
+    "plantpot05": plants.round_pot,
+    "plantpot07": plants.round_pot,
+    "plantpot08": plants.round_pot,
     "plasticchair": garden.chair,
     "plastictable": garden.parasol_table,
     "purse": small.bag((120, 50, 60), handles=True),
@@ -70,22 +68,22 @@ _MODELS: dict[str, Model] = {
     "shoppingcart": small.shopping_cart,
     "shoppingtrolley": small.trolley((60, 80, 120)),
     "slide": garden.slide,
-    "streetbarrier": street.barrier,
+    "streetbarrier": signs.barrier,
     "streetfountain": street.drinking_fountain,
-    "streetsign": street.sign_board,
-    "streetsign01": street.sign_board,
-    "streetsign04": street.sign_board,
+    "streetsign": signs.sign_board,
+    "streetsign01": signs.sign_board,
+    "streetsign04": signs.sign_board,
     "swing": garden.swing,
     "swingcouch": garden.swing_couch,
     "table": garden.table,
-    "trafficcone01": street.cone,
-    "trafficcone02": street.cone,
-    "trafficwarning": street.arrow_board,
+    "trafficcone01": signs.cone,
+    "trafficcone02": signs.cone,
+    "trafficwarning": signs.arrow_board,
     "trampoline": garden.trampoline,
     "travelcase": small.trolley((40, 60, 70)),
     "vendingmachine": street.machine((170, 30, 34)),
-    "warningaccident": street.warning_sign,
-    "warningconstruction": street.warning_sign,
+    "warningaccident": signs.warning_sign,
+    "warningconstruction": signs.warning_sign,
     "wateringcan": garden.watering_can,
 }
 
@@ -93,7 +91,7 @@ _BEGINNING: dict[str, Model] = {
     "brokentile": small.boards,
     "dirtdebris": small.heap((104, 86, 64)),
     "garbage": small.heap((150, 146, 138)),
-    "plantpot": garden.planter,
+    "plantpot": plants.planter,
     "plasticbag": small.bag((226, 228, 230), handles=True),
     "platformgarbage": small.heap((120, 112, 96)),
     "trashbag": small.bag((28, 28, 32), handles=False),

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from linden.meshes.actors.prop_models import model
 from linden.meshes.actors.shape import Shape
 from linden.meshes.actors.solids import bounds, stretched, tagged
 from linden.meshes.mesh import Mesh, join
+from linden.meshes.props.models import model
 from linden.values.enums import SemanticTag
 from linden.values.space import BoundingBox
 from linden.world.blueprints import Blueprint
