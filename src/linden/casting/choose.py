@@ -1,17 +1,43 @@
 """Which caster answers on this machine."""
 
+import importlib.util
 import logging
 
 from linden.casting.embree import EmbreeCaster
 from linden.casting.embree_library import NoEmbreeError
 from linden.casting.rays import Caster
+from linden.errors import UserError
 from linden.meshes.mesh import Mesh
 
 log = logging.getLogger("linden")
 
 
-def caster_of(standing: Mesh, bodies: list[Mesh]) -> Caster:
-    """Return a caster for what stands and the meshes that bodies may have: the fastest that works here."""
+CPU = "cpu"
+
+
+def check_device(device: str) -> None:
+    """Refuse a device on which nothing could be cast.
+
+    Raises:
+        UserError: it is no GPU, or what drives it is not installed.
+    """
+    if device == CPU:
+        return
+    if importlib.util.find_spec("warp") is None:
+        raise UserError(f"--device {device} needs NVIDIA's Warp: pip install 'linden[gpu]'")
+    import warp  # noqa: PLC0415 - half a second that only users of a GPU pay
+
+    known = [CPU, *(gpu.alias for gpu in warp.get_cuda_devices())]
+    if device not in (*known, *(["cuda"] if len(known) > 1 else [])):
+        raise UserError(f"--device {device}: here there is {', '.join(known)}")
+
+
+def caster_of(standing: Mesh, bodies: list[Mesh], device: str = CPU) -> Caster:
+    """Return a caster for what stands and the meshes that bodies may have: the fastest that works on the device."""
+    if device != CPU:
+        from linden.casting.warp_caster import WarpCaster  # noqa: PLC0415 - see check_device
+
+        return WarpCaster(standing, bodies, device)
     try:
         return EmbreeCaster(standing, bodies)
     except NoEmbreeError as error:

@@ -46,6 +46,12 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
         action="store_true",
         help="begin in synchronous mode with steps of 0.05 s: no frame before the first tick",
     )
+    serve.add_argument(
+        "--device",
+        default="cpu",
+        metavar="NAME",
+        help="where rays of cameras, lidars, radars are cast: cpu, or cuda with the extra gpu (default: %(default)s)",
+    )
     serve.add_argument("--log-level", choices=LOG_LEVELS, default="warning", help="(default: %(default)s)")
     serve.set_defaults(command=run)
 
@@ -69,6 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _make_server(arguments: argparse.Namespace) -> "Server":
     # here, not above: these bring in the compiler, which other commands of this program do not need
+    from linden.casting.choose import check_device  # noqa: PLC0415 - see above
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
     from linden.meshes.library import standing_of  # noqa: PLC0415 - see above
@@ -84,6 +91,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
     from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
 
+    check_device(arguments.device)
     registry.load_handlers()
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
     cache = MapCache.of_user()
@@ -98,6 +106,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         warm_eyes()
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
         simulation.episode.warm_up()
+        simulation.seeing.device = arguments.device
         simulation.seeing.standing_on = partial(standing_of, cache=cache)
         simulation.seeing.prepare(simulation.episode)  # seconds, if it is not in the cache
         mesh_file(simulation.episode, meshes)  # every client asks for it before anything else

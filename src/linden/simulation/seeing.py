@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.choose import caster_of
+from linden.casting.choose import CPU, caster_of
 from linden.casting.rays import Caster, Instances
 from linden.meshes.bodies import Bodies
 from linden.meshes.mesh import NO_OBJECT, LampOf, Mesh
@@ -60,10 +60,12 @@ class Seeing:
 
     Attributes:
         standing_on: gives the mesh of what stands on a map, anew or out of a cache.
+        device: where rays are cast: "cpu", or a GPU as Warp names it, "cuda".
     """
 
     def __init__(self, library: BlueprintLibrary) -> None:
         self.standing_on: Callable[[LoadedMap, Scene], Mesh] = standing_on
+        self.device = CPU
         self._library = library
         self._bodies: Bodies | None = None
         self._company: Company | None = None
@@ -121,7 +123,7 @@ class Seeing:
             self._whole = scene, self.standing_on(episode.map, scene)
         mesh, bodies = _present(self._whole[1], episode.surroundings.present), self._all_bodies().meshes
         self._stage = None  # before the next is built: two of them at once would take twice the memory
-        self._stage = _Stage(scene, statics, mesh, table_of(mesh, bodies), caster_of(mesh, bodies))
+        self._stage = _Stage(scene, statics, mesh, table_of(mesh, bodies), caster_of(mesh, bodies, self.device))
         return self._stage
 
 

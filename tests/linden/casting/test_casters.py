@@ -1,20 +1,28 @@
 """Every caster against the obvious one, on scenes that are drawn at random."""
 
+import importlib.util
+from functools import partial
+
 import numpy as np
 import pytest
 
 from fakes.plain_caster import PlainCaster
 from fakes.solids import at, box, floor, instances
 from linden.casting import embree_library
-from linden.casting.choose import caster_of
+from linden.casting.choose import caster_of, check_device
 from linden.casting.embree import EmbreeCaster
 from linden.casting.embreex_caster import EmbreexCaster
 from linden.casting.rays import NOTHING, STATIC, Rays
+from linden.errors import UserError
 from linden.geometry import rotation_matrix
 from linden.meshes.mesh import Material, Mesh, faces, join
 from linden.values.space import Rotation
 
-CASTERS = (EmbreeCaster, EmbreexCaster)
+CASTERS = [EmbreeCaster, EmbreexCaster]
+if importlib.util.find_spec("warp") is not None:  # the extra gpu; Warp's own processor will do
+    from linden.casting.warp_caster import WarpCaster
+
+    CASTERS.append(partial(WarpCaster, device="cpu"))
 
 
 def rubble(dice: np.random.Generator, count: int, spread_m: float) -> Mesh:
@@ -137,3 +145,10 @@ def test_an_unknown_version_of_embree_is_not_called(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(embree_library, "_KNOWN_VERSIONS", range(0))
     with pytest.raises(embree_library.NoEmbreeError, match="versions 4"):
         embree_library.embree.__wrapped__()
+
+
+def test_a_device_that_is_not_there_is_refused_with_what_there_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    check_device("cpu")
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(UserError, match="linden\\[gpu\\]"):
+        check_device("cuda")

@@ -1,0 +1,186 @@
+"""The caster for a GPU: NVIDIA's Warp, the same answers as Embree's. Needs the extra ``gpu``.
+
+What stands is one mesh. All bodies together are another, whose corners are moved each tick and whose tree is then
+refitted, for Warp knows no instances. Of two surfaces at one distance what stands answers.
+"""
+
+from typing import Any
+
+import numpy as np
+import warp as wp
+from numpy.typing import NDArray
+
+from linden.casting.rays import Hits, Instances, Rays
+from linden.meshes.mesh import Mesh
+
+AGAIN = 200
+"""Poses after which the tree of the bodies is built anew: refitted ever again, it would fit worse and worse."""
+
+wp.config.quiet = True
+wp.config.enable_backward = False
+
+
+@wp.kernel  # type: ignore[untyped-decorator]
+def _place(
+    local: wp.array(dtype=wp.vec3),  # type: ignore[valid-type] # Warp's types are values
+    owner: wp.array(dtype=wp.int32),  # type: ignore[valid-type]
+    pose: wp.array(dtype=wp.mat44),  # type: ignore[valid-type]
+    points: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+) -> None:
+    i = wp.tid()
+    points[i] = wp.transform_point(pose[owner[i]], local[i])
+
+
+@wp.kernel  # type: ignore[untyped-decorator]
+def _closest(
+    standing: wp.uint64,
+    moving: wp.uint64,
+    owner: wp.array(dtype=wp.int32),  # type: ignore[valid-type] # of the triangles of the bodies
+    first: wp.array(dtype=wp.int32),  # type: ignore[valid-type] # where the triangles of each instance begin
+    origin: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+    direction: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+    far_m: float,
+    inner_sides: int,
+    distance: wp.array(dtype=float),  # type: ignore[valid-type]
+    instance: wp.array(dtype=wp.int32),  # type: ignore[valid-type]
+    triangle: wp.array(dtype=wp.int32),  # type: ignore[valid-type]
+    normal: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+) -> None:
+    i = wp.tid()
+    o = origin[i]
+    d = direction[i]
+    distance[i] = wp.inf
+    instance[i] = -2
+    triangle[i] = -1
+    normal[i] = wp.vec3(0.0, 0.0, 0.0)
+    nearest = float(far_m)
+    if standing != wp.uint64(0):
+        hit = wp.mesh_query_ray(standing, o, d, far_m)
+        if hit.result:
+            nearest = hit.t
+            distance[i] = hit.t
+            instance[i] = -1
+            triangle[i] = hit.face
+            normal[i] = wp.mesh_eval_face_normal(standing, hit.face)
+    if moving == wp.uint64(0):
+        return
+    passed = float(0.0)  # noqa: UP018 - so Warp knows a variable from a constant
+    tries = int(0)  # noqa: UP018, RUF046 - likewise
+    while tries <= inner_sides and passed < nearest:
+        tries += 1
+        met = wp.mesh_query_ray(moving, o + d * passed, d, nearest - passed)
+        if not met.result:
+            return
+        side = wp.mesh_eval_face_normal(moving, met.face)
+        if tries <= inner_sides and wp.dot(side, d) > 0.0:
+            passed += met.t + 1.0e-3  # packets.ON_M
+            continue
+        body = owner[met.face]
+        distance[i] = passed + met.t
+        instance[i] = body
+        triangle[i] = met.face - first[body]
+        normal[i] = side
+        return
+
+
+@wp.kernel  # type: ignore[untyped-decorator]
+def _blocked(
+    standing: wp.uint64,
+    moving: wp.uint64,
+    origin: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+    direction: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+    far_m: float,
+    hit: wp.array(dtype=wp.bool),  # type: ignore[valid-type]
+) -> None:
+    i = wp.tid()
+    met = False
+    if standing != wp.uint64(0):
+        met = wp.mesh_query_ray_anyhit(standing, origin[i], direction[i], far_m)
+    if moving != wp.uint64(0) and not met:
+        met = wp.mesh_query_ray_anyhit(moving, origin[i], direction[i], far_m)
+    hit[i] = met
+
+
+class WarpCaster:
+    """Answers rays by Warp; see ``linden.casting.rays.Caster``."""
+
+    def __init__(self, standing: Mesh, bodies: list[Mesh], device: str = "cuda") -> None:
+        """Build the tree of what stands, on a device of Warp's: "cuda", "cuda:1" or, slowly, "cpu"."""
+        self._device = device
+        self._bodies = bodies
+        self._standing = self._tree(self._vectors(standing.vertices_m), standing.triangles)
+        self._mesh: NDArray[np.int32] = np.zeros(0, np.int32)
+        self._poses = 0
+        self._assemble(self._mesh)
+
+    def _vectors(self, values: NDArray[Any]) -> Any:  # noqa: ANN401 - an array of Warp's
+        return wp.array(np.ascontiguousarray(values, np.float32), dtype=wp.vec3, device=self._device)
+
+    def _whole(self, values: NDArray[Any]) -> Any:  # noqa: ANN401 - an array of Warp's
+        return wp.array(np.ascontiguousarray(values, np.int32), dtype=wp.int32, device=self._device)
+
+    def _tree(self, points: Any, triangles: NDArray[np.uint32]) -> Any:  # noqa: ANN401 - Warp's
+        """Return a mesh of Warp's, None where there are no triangles."""
+        return wp.Mesh(points, self._whole(triangles.ravel())) if len(triangles) else None
+
+    def _assemble(self, mesh: NDArray[np.int32]) -> None:
+        """Put the triangles of these bodies together, each about its own origin."""
+        bodies = [self._bodies[number] for number in mesh.tolist()]
+        corners = np.array([len(body.vertices_m) for body in bodies], np.int64)
+        faces = np.array([len(body.triangles) for body in bodies], np.int64)
+        before = np.concatenate([[0], np.cumsum(corners)]).astype(np.uint32)
+        self._mesh = np.array(mesh, np.int32)
+        self._local = self._vectors(np.concatenate([np.zeros((0, 3)), *(body.vertices_m for body in bodies)]))
+        self._points = wp.zeros(int(corners.sum()), dtype=wp.vec3, device=self._device)
+        self._triangles = np.concatenate(
+            [np.zeros((0, 3), np.uint32), *(body.triangles + before[row] for row, body in enumerate(bodies))]
+        )
+        self._owner_of_point = self._whole(np.repeat(np.arange(len(bodies)), corners))
+        self._owner = self._whole(np.repeat(np.arange(len(bodies)), faces))
+        self._first = self._whole(np.concatenate([[0], np.cumsum(faces)])[:-1])
+        self._moving: Any = None
+        self._poses = 0
+
+    def pose(self, instances: Instances) -> None:
+        """Put the bodies where they are now; who is not among them is not there."""
+        if not np.array_equal(instances.mesh, self._mesh):
+            self._assemble(instances.mesh)
+        if not len(self._triangles):
+            return
+        matrices = np.zeros((len(instances.pose), 4, 4), np.float32)
+        matrices[:, :3], matrices[:, 3, 3] = instances.pose, 1.0
+        pose = wp.array(matrices, dtype=wp.mat44, device=self._device)
+        arrays = [self._local, self._owner_of_point, pose, self._points]
+        wp.launch(_place, dim=len(self._points), inputs=arrays, device=self._device)
+        if self._poses % AGAIN == 0:
+            self._moving = self._tree(self._points, self._triangles)
+        else:
+            self._moving.refit()
+        self._poses += 1
+
+    def closest(self, rays: Rays, farthest_m: float, *, coherent: bool = False, outer: bool = False) -> Hits:
+        """Return the nearest surface of each ray."""
+        del coherent  # threads of a GPU go side by side as they come
+        count = len(rays.origin_m)
+        answers = [
+            wp.empty(count, dtype=kind, device=self._device) for kind in (wp.float32, wp.int32, wp.int32, wp.vec3)
+        ]
+        sides = 16 if outer else 0  # packets.INNER_SIDES
+        where = [*self._ids(), self._owner, self._first, *self._sent(rays), float(farthest_m), sides]
+        wp.launch(_closest, dim=count, inputs=[*where, *answers], device=self._device)
+        return Hits(*(answer.numpy() for answer in answers))
+
+    def blocked(self, rays: Rays, farthest_m: float, *, coherent: bool = False) -> NDArray[np.bool_]:
+        """Return (N,) whether anything is met at all, whichever its side."""
+        del coherent
+        hit = wp.empty(len(rays.origin_m), dtype=wp.bool, device=self._device)
+        where = [*self._ids(), *self._sent(rays), float(farthest_m), hit]
+        wp.launch(_blocked, dim=len(rays.origin_m), inputs=where, device=self._device)
+        answer: NDArray[np.bool_] = hit.numpy()
+        return answer
+
+    def _ids(self) -> list[Any]:
+        return [wp.uint64(0 if tree is None else tree.id) for tree in (self._standing, self._moving)]
+
+    def _sent(self, rays: Rays) -> list[Any]:
+        return [self._vectors(rays.origin_m), self._vectors(rays.direction)]
