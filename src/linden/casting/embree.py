@@ -14,17 +14,15 @@ from numpy.typing import NDArray
 
 from linden.casting.crew import in_stretches
 from linden.casting.embree_library import embree, packet_width
-from linden.casting.packets import COHERENT, INCOHERENT, build
+from linden.casting.packets import COHERENT, INCOHERENT, build, place
 from linden.casting.rays import F32, I32, Hits, Instances, Rays
 from linden.meshes.mesh import Mesh
 
 _TRIANGLES, _INSTANCE = 0, 121  # RTC_GEOMETRY_TYPE_
 _INDEX, _VERTEX = 0, 1  # RTC_BUFFER_TYPE_
-_UINT3, _FLOAT3, _ROWS_3X4 = 0x5003, 0x9003, 0x9134  # RTC_FORMAT_
+_UINT3, _FLOAT3 = 0x5003, 0x9003  # RTC_FORMAT_
 _LOW, _HIGH = 0, 2  # RTC_BUILD_QUALITY_
 _DYNAMIC, _ROBUST = 1, 4  # RTC_SCENE_FLAG_
-
-_HERE = np.eye(3, 4, dtype=np.float32)
 
 
 class EmbreeCaster:
@@ -55,7 +53,8 @@ class EmbreeCaster:
         self._instances: list[int] = []
         self._mesh: I32 = np.zeros(0, np.int32)
         self.pose_of: F32 = np.zeros((0, 3, 4), np.float32)
-        self._place(self._new_instance(self._standing, 0), _HERE)
+        here = np.array([self._new_instance(self._standing, 0)], np.int64)
+        place(here, np.eye(3, 4, dtype=np.float32)[None], self.pose_of)
         self._library.rtcCommitScene(self.scene)
         weakref.finalize(self, _release, self._library, self._device, [*self._bodies, self._standing, self.scene])
         self._complain()
@@ -91,19 +90,16 @@ class EmbreeCaster:
         self._library.rtcReleaseGeometry(geometry)  # the scene keeps it
         return geometry
 
-    def _place(self, geometry: int, pose: F32) -> None:
-        self._library.rtcSetGeometryTransform(geometry, 0, _ROWS_3X4, pose.ctypes.data)
-        self._library.rtcCommitGeometry(geometry)
-
     def pose(self, instances: Instances) -> None:
         """Put the bodies where they are now; who is not among them is not there."""
         poses = np.ascontiguousarray(instances.pose, np.float32)
         if np.array_equal(instances.mesh, self._mesh) and np.array_equal(poses, self.pose_of):
             return
-        self._recast(instances.mesh)
+        if not np.array_equal(instances.mesh, self._mesh):
+            self._recast(instances.mesh)
+            self.pose_of = poses[:0]  # who has another mesh is to be placed, wherever it was
+        place(np.array(self._instances[: len(poses)], np.int64), poses, self.pose_of)
         self.pose_of = poses
-        for geometry, pose in zip(self._instances, poses, strict=False):
-            self._place(geometry, pose)
         self._library.rtcCommitScene(self.scene)
         self._complain()
 

@@ -33,7 +33,6 @@ _FUNCTIONS = {
     "rtcSetGeometryBuildQuality": (None, _HANDLE, _INT),
     "rtcSetSharedGeometryBuffer": (None, _HANDLE, _INT, _UINT, _INT, _HANDLE, _SIZE, _SIZE, _SIZE),
     "rtcSetGeometryInstancedScene": (None, _HANDLE, _HANDLE),
-    "rtcSetGeometryTransform": (None, _HANDLE, _UINT, _INT, _HANDLE),
     "rtcEnableGeometry": (None, _HANDLE),
     "rtcDisableGeometry": (None, _HANDLE),
     "rtcCommitGeometry": (None, _HANDLE),

@@ -44,6 +44,13 @@ _intersect1 = cast(
 )
 _occluded4, _occluded8, _occluded16 = (_external(f"rtcOccluded{width}") for width in (4, 8, 16))
 
+_set_transform = cast(
+    "Callable[[int, int, int, int], None]",
+    types.ExternalFunction("rtcSetGeometryTransform", types.void(_intp, types.uint32, types.int32, _intp)),
+)
+_commit_geometry = cast("Callable[[int], None]", types.ExternalFunction("rtcCommitGeometry", types.void(_intp)))
+_ROWS_3X4 = 0x9134  # RTC_FORMAT_FLOAT3X4_ROW_MAJOR
+
 COHERENT = np.array([1 << 16, 0xFFFF_FFFF, 0, 0, 0, 0, 0, 0], np.uint32)
 INCOHERENT = np.array([0, 0xFFFF_FFFF, 0, 0, 0, 0, 0, 0], np.uint32)
 """RTCIntersectArguments for rays that go side by side, as a camera's, and for others; all features, no callbacks."""
@@ -143,6 +150,20 @@ def _is_inner(direction: F32, instance: I32, normal: F32, ray: int) -> bool:
     along = direction[ray, 0] * normal[ray, 0] + direction[ray, 1] * normal[ray, 1] + direction[ray, 2] * normal[ray, 2]
     inner: bool = instance[ray] >= 0 and along > 0.0
     return inner
+
+
+@unlocked
+def place(geometry: NDArray[np.int64], pose: F32, before: F32) -> None:
+    """Give instances (K,) their poses (K, 3, 4), those that have another one than ``before`` had."""
+    start = pose.ctypes.data
+    for row in range(len(pose)):
+        moved = row >= len(before)
+        for i in range(3):
+            for j in range(4):
+                moved = moved or pose[row, i, j] != before[row, i, j]
+        if moved:
+            _set_transform(geometry[row], 0, _ROWS_3X4, start + row * 48)
+            _commit_geometry(geometry[row])
 
 
 class Kernels(NamedTuple):

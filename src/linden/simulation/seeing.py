@@ -1,6 +1,7 @@
 """What the sensors of a simulation look at: the caster of the map, built when somebody first looks, and its bodies."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from linden.scene.objects import Scene
 from linden.sensors.seen import NO_ACTOR_FROM, Faces, Seen, table_of
 from linden.simulation.company import Company
 from linden.values.enums import TrafficLightState
+from linden.values.episode import LightState
 from linden.world.blueprints import BlueprintLibrary, Kind
 from linden.world.maps import LoadedMap
 
@@ -72,6 +74,7 @@ class Seeing:
         self._whole: tuple[Scene, Mesh] | None = None
         self._stage: _Stage | None = None
         self._episode: Episode | None = None
+        self._signals: tuple[Episode, U32] | None = None
         self._frame = -1
         self._instances: Instances | None = None
 
@@ -95,6 +98,8 @@ class Seeing:
         """Return the moment as it is seen, the bodies posed; builds what is not built yet."""
         instances, stage = self.follow(episode, frame), self._stage_of(episode)
         stage.caster.pose(instances)
+        if self._signals is None or self._signals[0] is not episode:
+            self._signals = episode, _object_ids(episode)  # lights and signs are there as long as the episode
         lights, colour = _object_lights(episode)
         return Seen(
             caster=stage.caster,
@@ -102,7 +107,7 @@ class Seeing:
             bodies=self._all_bodies().meshes,
             faces=stage.faces,
             instances=instances,
-            object_id=_object_ids(episode),
+            object_id=self._signals[1],
             object_lights=lights,
             object_light_colour=colour,
             weather=episode.weather,
@@ -154,11 +159,16 @@ def _object_lights(episode: "Episode") -> tuple[U32, NDArray[np.uint8]]:
     for state, lens in _LENS.items():
         bits[state] = 1 << lens
     shining[lights] = bits[episode.traffic.state.colour[: len(lights)]]
-    lamps = episode.surroundings.lamps.states()
-    standing_lamps = np.flatnonzero(kinds == Thing.STREET_LAMP)
-    shining[standing_lamps] = [int(lamp.active) << LampOf.STREET for lamp in lamps]
-    colour[standing_lamps] = np.array([lamp.color for lamp in lamps], np.uint8).reshape(-1, 3)
+    lamps = kinds == Thing.STREET_LAMP
+    shining[lamps], colour[lamps] = _lamps(episode.surroundings.lamps.states())
     if is_night(episode.weather):
         shining[kinds == Thing.HOUSE] = 1 << LampOf.WINDOW
     things = scene.boxes["thing"]
     return shining[things], colour[things]
+
+
+@lru_cache(maxsize=1)
+def _lamps(states: tuple[LightState, ...]) -> tuple[U32, NDArray[np.uint8]]:
+    """Return what shines of each street lamp (N,), LampOf bits, and its colour (N, 3)."""
+    shining = np.array([int(lamp.active) << LampOf.STREET for lamp in states], np.uint32)
+    return shining, np.array([lamp.color for lamp in states], np.uint8).reshape(-1, 3)
