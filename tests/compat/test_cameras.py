@@ -30,7 +30,8 @@ def array(image: carla.Image) -> NDArray[np.uint8]:
 
 
 @pytest.fixture
-def rig(world: carla.World) -> Iterator[Rig]:
+def rig(client: carla.Client, world: carla.World) -> Iterator[Rig]:
+    client.set_timeout(60.0)  # who looks first waits for the scene, and this machine may be busy
     library = world.get_blueprint_library()
     start = world.get_map().get_spawn_points()[100]
     car = world.spawn_actor(library.find("vehicle.tesla.model3"), start)

@@ -22,6 +22,11 @@ _CREASE = 0.72  # cosine of 44 degrees
 _LEAVES_CREASE = -0.5
 _ALIKE = 0.9999
 
+_EVEN = np.zeros(max(Material) + 1, np.bool_)
+"""Materials of which nothing round is made, by their number: most of a street's faces need not be looked at."""
+_EVEN[[Material.ASPHALT, Material.CONCRETE, Material.PAINT, Material.BRICK, Material.SIDING, Material.SHINGLES]] = True
+_EVEN[[Material.GRAVEL, Material.GRASS, Material.WOOD, Material.SIGN_FACE]] = True
+
 
 class Relief(NamedTuple):
     """Rounded faces of all meshes, in the order of ``Faces``; corners in the frame of their mesh."""
@@ -35,14 +40,15 @@ def relief(meshes: Sequence[Mesh]) -> Relief:
     """Return which faces of the meshes are rounded."""
     rows, corners, normals, count = [], [], [], 0
     for mesh in meshes:
-        triangles = mesh.triangles.astype(np.int64)
-        leaves = mesh.faces["material"] == Material.LEAVES
+        curved = np.flatnonzero(~_EVEN[mesh.faces["material"]])
+        triangles = mesh.triangles[curved].astype(np.int64)
+        leaves = mesh.faces["material"][curved] == Material.LEAVES
         crease = np.where(leaves, _LEAVES_CREASE, _CREASE).astype(np.float32)
         vertices = np.ascontiguousarray(mesh.vertices_m, np.float32)
         made = _corner_normals(vertices, triangles, crease)
         bent = np.flatnonzero(_differ(made))
-        row = np.full(len(triangles), FLAT, np.int32)
-        row[bent] = count + np.arange(len(bent))
+        row = np.full(len(mesh.triangles), FLAT, np.int32)
+        row[curved[bent]] = count + np.arange(len(bent))
         count += len(bent)
         rows.append(row)
         corners.append(vertices[triangles[bent]])
