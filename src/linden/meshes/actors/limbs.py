@@ -86,12 +86,12 @@ def hips(build: Build) -> Mesh:
     wide = 0.093 if build.female else 0.087
     rows = [
         (-0.045, 0.045, 0.06, 0.0),
-        (-0.01, 0.063, wide + 0.004, -0.004),
+        (-0.01, 0.064, wide + 0.01, -0.004),
         (0.04, 0.06, wide, 0.0),
         (0.085, 0.05, 0.074, 0.0),
     ]
     if build.bare_legs is not None:
-        rows = [(-0.23, 0.075, 0.115, 0.005), *rows[1:]]
+        rows = [(-0.23, 0.082, 0.122, 0.005), (-0.03, 0.068, 0.116, 0.0), (0.02, 0.062, 0.1, 0.0), rows[-1]]
     return _ovals(rows, build.stature_m, CLOTH)
 
 
@@ -105,7 +105,7 @@ def chest(build: Build) -> Mesh:
         (-0.06, 0.056, 0.078, 0.0),
         (0.02, 0.062 + front, wide, front),
         (0.07, 0.056 + 0.5 * front, wide + 0.006, 0.3 * front),
-        (0.1, 0.045, 0.07, -0.006),
+        (0.098, 0.046, 0.088, -0.006),
         (0.115, 0.034, 0.036, -0.004),
     ]
     neck = _ovals([(0.1, 0.027, 0.026, -0.002), (0.19, 0.026, 0.025, 0.004)], build.stature_m, _skin(build))
@@ -154,8 +154,8 @@ def head(build: Build) -> Mesh:
 def arm(build: Build, side: float) -> Mesh:
     """Return the upper arm of the right (1) or left (-1) side, with the shoulder."""
     y, size = -side * ARMS_IN, build.stature_m
-    path = [(0.0, y, 0.018), (0.0, y, 0.0), (0.0, y, -0.09), (0.0, y, -0.19)]
-    return _scaled_tube(path, [0.016, 0.029, 0.026, 0.021], size, CLOTH)
+    path = [(0.0, 1.9 * y, -0.002), (0.0, 1.3 * y, -0.01), (0.0, y, -0.035), (0.0, y, -0.09), (0.0, y, -0.19)]
+    return _scaled_tube(path, [0.008, 0.022, 0.028, 0.026, 0.021], size, CLOTH)
 
 
 @_limb("stature_m", "skin", "long_sleeves")
@@ -176,8 +176,8 @@ def forearm(build: Build, side: float) -> Mesh:
 def thigh(build: Build, side: float) -> Mesh:
     """Return the thigh."""
     y, size = -side * _LEGS_IN, build.stature_m
-    path = [(0.0, 0.8 * y, 0.02), (0.0, y, -0.06), (0.002, y, -0.16), (0.002, y, -0.25)]
-    return _scaled_tube(path, [0.046, 0.05, 0.042, 0.033], size, _leg(build))
+    path = [(0.0, 1.6 * y, 0.04), (0.0, 1.3 * y, 0.015), (0.0, 1.05 * y, -0.06), (0.002, y, -0.16), (0.002, y, -0.25)]
+    return _scaled_tube(path, [0.018, 0.038, 0.048, 0.042, 0.033], size, _leg(build))
 
 
 @_limb("stature_m", "bare_legs")

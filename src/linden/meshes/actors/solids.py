@@ -130,8 +130,8 @@ def tube(path_m: Sequence[Point], radii_m: Sequence[float], sides: int, look: Lo
     start = _across(along[0])
     for point, ahead, radius_m in zip(path, along, radii_m, strict=True):
         start = start - ahead * (start @ ahead)
-        start /= np.linalg.norm(start)
-        rings.append(point + radius_m * _circle(start, np.cross(ahead, start), sides))
+        start /= math.sqrt(start @ start)
+        rings.append(point + radius_m * _circle(start, _cross(ahead, start), sides))
     return loft(np.array(rings), look, look, look)
 
 
@@ -176,9 +176,15 @@ def prism(outline_m: Sequence[tuple[float, float]], low_m: float, high_m: float,
 
 def _across(direction: F64) -> F64:
     """Return a unit vector square to a direction, level where it can be."""
-    side = np.cross(direction, (0.0, 0.0, 1.0) if abs(direction[2]) < 0.9 else (1.0, 0.0, 0.0))
-    unit: F64 = side / np.linalg.norm(side)
+    side = _cross(direction, np.array((0.0, 0.0, 1.0) if abs(direction[2]) < 0.9 else (1.0, 0.0, 0.0)))
+    unit: F64 = side / math.sqrt(side @ side)
     return unit
+
+
+def _cross(a: F64, b: F64) -> F64:
+    """Return the cross product of two vectors; numpy's takes its time over single ones."""
+    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
+    return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
 
 
 def _circle(first: F64, second: F64, sides: int) -> F64:
