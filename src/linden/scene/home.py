@@ -17,4 +17,4 @@ def home(lots: NDArray[np.void], ground: Ground, origin_deg: tuple[float, float]
     free = clear_of(lots, known.railroad_m)
     houses = furnish(free, ground)
     standing = join([houses, yards(free, houses, ground), poles(free, ground)])
-    return join([standing, shelters(known.stops_m, standing, ground)])
+    return join([standing, shelters(known.stops_m, known.kerbs, standing, ground)])

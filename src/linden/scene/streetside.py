@@ -24,6 +24,7 @@ PANEL_HALF_M = 0.03
 _SEARCH_M = 18.0
 _CLEAR_M = 4.5  # between the middle of a shelter and that of anything else
 _BEHIND_M = 0.3  # the pavement
+_SAME_SIDE = 0.25  # cosine of the widest angle to the named point of the compass
 
 RAILROAD_CLEAR_M = 10.0
 _HIGH_M = 1e9
@@ -42,12 +43,13 @@ def poles(lots: NDArray[np.void], ground: Ground) -> Scene:
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.POLES))
 
 
-def shelters(stops_m: F64, others: Scene, ground: Ground) -> Scene:
+def shelters(stops_m: F64, kerbs: F64, others: Scene, ground: Ground) -> Scene:
     """Return shelters behind the pavement beside each stop (N, 2), their backs to the land; x looks away from the road.
 
-    A stop beside which everything is taken has none.
+    ``kerbs`` (N, 2) point roughly to the side of the street they are on. Where all is taken there is none.
     """
-    places = [place for stop in stops_m if (place := _beside(stop, others, ground)) is not None]
+    found = [_beside(stop, kerb, others, ground) for stop, kerb in zip(stops_m, kerbs, strict=True)]
+    places = [place for place in found if place is not None]
     base = np.array([place[0] for place in places]).reshape(-1, 3)
     things = things_with(Kind.SHELTER, base, np.array([place[1] for place in places]))
     x, y, z = SHELTER_HALF_M
@@ -60,10 +62,11 @@ def shelters(stops_m: F64, others: Scene, ground: Ground) -> Scene:
     return assembled(things, back, *ends, roof)
 
 
-def _beside(stop: F64, others: Scene, ground: Ground) -> tuple[F64, float] | None:
+def _beside(stop: F64, kerb: F64, others: Scene, ground: Ground) -> tuple[F64, float] | None:
     """Return place and direction of the shelter of one stop."""
     angles = np.arange(72) * (math.tau / 72)
     ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    ways = ways[ways @ kerb > _SAME_SIDE]
     for away in np.arange(0.5, _SEARCH_M, 0.25).tolist():
         free = ~_on_road(stop + away * ways, ground)
         if free.any():

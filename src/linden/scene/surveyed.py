@@ -17,10 +17,14 @@ F64 = NDArray[np.float64]
 _EQUATOR_M, _FLATTENING = 6378137.0, 1.0 / 298.257223563  # WGS 84
 
 
+_COMPASS = {"north": (0.0, -1.0), "south": (0.0, 1.0), "east": (1.0, 0.0), "west": (-1.0, 0.0)}
+
+
 class Surveyed(NamedTuple):
     """Places in CARLA's frame, m."""
 
     stops_m: F64  # (N, 2)
+    kerbs: F64  # (N, 2): from the middle of the street to the side on which the shuttle stops, length 1
     railroad_m: F64  # (M, 2)
 
 
@@ -29,9 +33,13 @@ def surveyed(origin_deg: tuple[float, float]) -> Surveyed:
     """Return the places on a map whose origin lies at this latitude and longitude."""
     text = (resources.files("linden") / "data" / "linden.geojson").read_text("utf-8")
     features = json.loads(text)["features"]
-    stops = [f["geometry"]["coordinates"] for f in features if f["properties"]["feature"] == "shuttle_stop"]
+    stops = [f for f in features if f["properties"]["feature"] == "shuttle_stop"]
     lines = [f["geometry"]["coordinates"] for f in features if f["properties"]["feature"] == "railroad"]
-    return Surveyed(_placed(stops, origin_deg), _placed(lines[0] if lines else [], origin_deg))
+    return Surveyed(
+        _placed([stop["geometry"]["coordinates"] for stop in stops], origin_deg),
+        np.array([_COMPASS[stop["properties"]["side"].split()[0]] for stop in stops]).reshape(-1, 2),
+        _placed(lines[0] if lines else [], origin_deg),
+    )
 
 
 def _placed(longitude_latitude: list[list[float]], origin_deg: tuple[float, float]) -> F64:

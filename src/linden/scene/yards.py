@@ -86,9 +86,13 @@ def lots_of(lots: NDArray[np.void], houses: Scene, kind: Kind = Kind.HOUSE) -> I
     """Return the lot that each thing of a kind stands on: they come in the order of the lots, right behind them."""
     things = houses.things[houses.things["kind"] == kind]
     found, at = np.empty(len(things), np.int64), 0
-    fronts, yaws = lots["front_m"], lots["yaw_rad"]
+    cosine, sine, fronts = np.cos(lots["yaw_rad"]), np.sin(lots["yaw_rad"]), lots["front_m"]
     for row, (base, yaw) in enumerate(zip(things["base"], things["yaw_rad"], strict=True)):
-        while yaws[at] != yaw or np.hypot(*(fronts[at] - base[:2])) > LOT_DEPTH_M:
+        while True:
+            x, y = base[:2] - fronts[at]
+            aside, inwards = cosine[at] * y - sine[at] * x, cosine[at] * x + sine[at] * y
+            if lots["yaw_rad"][at] == yaw and abs(aside) < 0.5 * LOT_WIDTH_M and 0.0 < inwards < LOT_DEPTH_M:
+                break
             at += 1
         found[row] = at
         at += 1
