@@ -45,7 +45,7 @@ def rig(client: carla.Client, world: carla.World) -> Iterator[Rig]:
         blueprint = library.find(f"sensor.camera.{kind}")
         for name, value in (("image_size_x", WIDTH), ("image_size_y", HEIGHT), ("fov", FOV)):
             blueprint.set_attribute(name, str(value))
-        sensor = world.spawn_actor(blueprint, carla.Transform(carla.Location(x=0.5, z=1.8)), attach_to=car)
+        sensor = world.spawn_actor(blueprint, carla.Transform(carla.Location(x=2.4, z=1.8)), attach_to=car)
         sensor.listen(lambda image, kind=kind: arrived.put((kind, image.frame, image.transform, array(image))))
         sensors.append(sensor)
     yield Rig(car, other, *one_frame(world, arrived))
