@@ -19,7 +19,7 @@ _WIRES_M = ((-0.85, -0.15), (-0.3, -0.15), (0.85, -0.15), (0.0, -2.2))
 """Where they hang: along the arm, and how far below the pole's top; the lowest is the telephone's."""
 _LONGEST_SPAN_M = 75.0
 _SAG = 0.018
-_PIECES = 4
+_PIECES = 3
 _WIRE_HALF_M = 0.012
 
 

@@ -1,9 +1,10 @@
-"""What stands in South Linden besides its signals: houses and their yards, trees, lamps, utility poles, shelters."""
+"""What stands in South Linden besides its signals: houses and their yards, trees, lamps, poles, shelters."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.ground import Ground
+from linden.scene.groves import groves
 from linden.scene.neighbourhood import furnish
 from linden.scene.objects import Scene, join
 from linden.scene.streetside import clear_of, poles, shelters
@@ -17,4 +18,5 @@ def home(lots: NDArray[np.void], ground: Ground, origin_deg: tuple[float, float]
     free = clear_of(lots, known.railroad_m)
     houses = furnish(free, ground)
     standing = join([houses, yards(free, houses, ground), poles(free, ground)])
-    return join([standing, shelters(known.stops_m, known.kerbs, standing, ground)])
+    standing = join([standing, shelters(known.stops_m, known.kerbs, standing, ground)])
+    return join([standing, groves(free, standing, known.railroad_m, ground)])

@@ -83,17 +83,19 @@ def _house_rows(houses: Scene) -> I64:
 
 
 def lots_of(lots: NDArray[np.void], houses: Scene, kind: Kind = Kind.HOUSE) -> I64:
-    """Return the lot that each thing of a kind stands on: they come in the order of the lots, right behind them."""
+    """Return the lot that each thing of a kind stands on; they come in the order of the lots, then those on none."""
     things = houses.things[houses.things["kind"] == kind]
     found, at = np.empty(len(things), np.int64), 0
     cosine, sine, fronts = np.cos(lots["yaw_rad"]), np.sin(lots["yaw_rad"]), lots["front_m"]
     for row, (base, yaw) in enumerate(zip(things["base"], things["yaw_rad"], strict=True)):
-        while True:
+        while at < len(lots):
             x, y = base[:2] - fronts[at]
             aside, inwards = cosine[at] * y - sine[at] * x, cosine[at] * x + sine[at] * y
             if lots["yaw_rad"][at] == yaw and abs(aside) < 0.5 * LOT_WIDTH_M and 0.0 < inwards < LOT_DEPTH_M:
                 break
             at += 1
+        else:
+            return found[:row]  # the others stand on the open land
         found[row] = at
         at += 1
     return found
@@ -102,7 +104,7 @@ def lots_of(lots: NDArray[np.void], houses: Scene, kind: Kind = Kind.HOUSE) -> I
 def _tree_side(lots: NDArray[np.void], scene: Scene) -> F64:
     """Return for each lot on which hand its tree stands, 0 where it has none."""
     rows = lots_of(lots, scene, Kind.TREE)
-    base = scene.things["base"][scene.things["kind"] == Kind.TREE]
+    base = scene.things["base"][scene.things["kind"] == Kind.TREE][: len(rows)]
     away = base[:, :2] - lots["front_m"][rows]
     yaw = lots["yaw_rad"][rows]
     side = np.zeros(len(lots))
