@@ -4,11 +4,11 @@
 
 Linden with vehicles on its spawn points; rays from one of them. "raw" is Embree's own packet call on packets that lie
 ready in memory, by as many threads and in packets as wide: nothing is filled in, read out or allocated. "caster" is
-``closest`` or ``blocked``, arrays in and arrays out; "embreex" its own call. Times are medians in ms.
+``closest`` or ``blocked``, arrays in and arrays out; "embreex" its own call. Times are the best of
+all rounds in ms: what the machine does beside is not in them.
 """
 
 import argparse
-import statistics
 import time
 from collections.abc import Callable
 from typing import NamedTuple
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from linden.casting.crew import in_stretches, processors
 from linden.casting.embree import EmbreeCaster, arguments
 from linden.casting.embreex_caster import EmbreexCaster
-from linden.casting.packets import Packet, intersect, new_packet, occlude, put_ray
+from linden.casting.packets import Packet, intersect, new_packet, occlude, put_rays
 from linden.casting.rays import Rays
 from linden.compiled import unlocked
 from linden.meshes.library import standing_of
@@ -47,9 +47,7 @@ class RaySet(NamedTuple):
 def fill(packets: NDArray[np.float32], width: int, origin: NDArray[np.float32], direction: NDArray[np.float32]) -> None:
     for first in range(0, len(origin), width):
         packet = new_packet(width)
-        for k in range(min(width, len(origin) - first)):
-            o, d = origin[first + k], direction[first + k]
-            put_ray(packet, width, k, o[0], o[1], o[2], d[0], d[1], d[2], FAR_M)
+        put_rays(packet, width, origin, direction, first, min(width, len(origin) - first), FAR_M)
         packets[first // width] = packet.floats
 
 
@@ -132,7 +130,7 @@ def timed(work: Callable[[], object], rounds: int, before: Callable[[], object] 
         began = time.perf_counter()
         work()
         taken.append(time.perf_counter() - began)
-    return 1000.0 * statistics.median(taken)
+    return 1000.0 * min(taken)
 
 
 def town(vehicles: int) -> Simulation:

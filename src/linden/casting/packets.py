@@ -5,6 +5,7 @@ those of the hit. A kernel that wants more than distances (a camera's) is built 
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple, cast
 
@@ -79,18 +80,19 @@ def new_packet(width: int) -> Packet:
 
 
 @part
-def put_ray(
-    packet: Packet, width: int, k: int, x: float, y: float, z: float, dx: float, dy: float, dz: float, far_m: float
-) -> None:
-    """Make ray ``k`` one from a place (m) in a direction (length 1) up to a distance."""
-    floats, ints = packet.floats, packet.ints
-    floats[ORIGIN * width + k], floats[(ORIGIN + 1) * width + k], floats[(ORIGIN + 2) * width + k] = x, y, z
-    floats[DIRECTION * width + k], floats[(DIRECTION + 1) * width + k] = dx, dy
-    floats[(DIRECTION + 2) * width + k] = dz
-    floats[FAR * width + k] = far_m
-    ints[GEOMETRY * width + k] = -1
-    ints[INSTANCE * width + k] = -1
-    packet.valid[k] = _ALL_BITS
+def put_rays(packet: Packet, width: int, origin: F32, direction: F32, first: int, count: int, far_m: float) -> None:
+    """Fill a packet with ``count`` rays from number ``first`` on, up to a distance."""
+    floats, ints, valid = packet.floats, packet.ints, packet.valid
+    for axis in range(3):
+        for k in range(count):
+            floats[(ORIGIN + axis) * width + k] = origin[first + k, axis]
+            floats[(DIRECTION + axis) * width + k] = direction[first + k, axis]
+    for k in range(width):
+        floats[NEAR * width + k] = 0.0
+        floats[FAR * width + k] = far_m
+        ints[GEOMETRY * width + k] = -1
+        ints[INSTANCE * width + k] = -1
+        valid[k] = _ALL_BITS if k < count else 0
 
 
 @part
@@ -116,33 +118,44 @@ def occlude(packet: Packet, width: int, scene: int, arguments: int) -> None:
 
 
 @part
-def _write_turned(pose: F32, row: int, x: float, y: float, z: float, out: F32, at: int) -> None:
-    """Write the vector, turned as instance ``row`` is (not at all where that is negative), with length 1."""
-    if row >= 0:
-        x, y, z = (
-            pose[row, 0, 0] * x + pose[row, 0, 1] * y + pose[row, 0, 2] * z,
-            pose[row, 1, 0] * x + pose[row, 1, 1] * y + pose[row, 1, 2] * z,
-            pose[row, 2, 0] * x + pose[row, 2, 1] * y + pose[row, 2, 2] * z,
-        )
-    scale = np.float32(1.0) / np.sqrt(x * x + y * y + z * z)
-    out[at, 0], out[at, 1], out[at, 2] = x * scale, y * scale, z * scale
+def _read(
+    packet: Packet,
+    width: int,
+    count: int,
+    pose: F32,
+    distance: F32,
+    instance: I32,
+    triangle: I32,
+    normal: F32,
+    first: int,
+) -> None:
+    """Write what the rays of a packet met as the answers from number ``first`` on."""
+    floats, ints = packet.floats, packet.ints
+    for k in range(count):
+        ray, met = first + k, ints[GEOMETRY * width + k] != -1
+        distance[ray] = floats[FAR * width + k] if met else np.float32(np.inf)
+        instance[ray] = ints[INSTANCE * width + k] - 1 if met else -2
+        triangle[ray] = ints[TRIANGLE * width + k] if met else -1
+        x, y, z = floats[NORMAL * width + k], floats[(NORMAL + 1) * width + k], floats[(NORMAL + 2) * width + k]
+        scale = np.float32(1.0) / np.sqrt(x * x + y * y + z * z) if met else np.float32(0.0)
+        normal[ray, 0] = x * scale if met else np.float32(0.0)
+        normal[ray, 1] = y * scale if met else np.float32(0.0)
+        normal[ray, 2] = z * scale if met else np.float32(0.0)
+    for ray in range(first, first + count):
+        row = instance[ray]
+        if row >= 0:
+            _turn(pose, row, normal, ray)
 
 
 @part
-def _read(
-    packet: Packet, width: int, k: int, pose: F32, distance: F32, instance: I32, triangle: I32, normal: F32, ray: int
-) -> None:
-    """Write what ray ``k`` met as the answer of ray number ``ray``."""
-    floats, ints = packet.floats, packet.ints
-    if ints[GEOMETRY * width + k] == -1:
-        distance[ray], instance[ray], triangle[ray] = np.inf, -2, -1
-        normal[ray, 0], normal[ray, 1], normal[ray, 2] = 0.0, 0.0, 0.0
-        return
-    distance[ray] = floats[FAR * width + k]
-    instance[ray] = ints[INSTANCE * width + k] - 1
-    triangle[ray] = ints[TRIANGLE * width + k]
-    x, y, z = floats[NORMAL * width + k], floats[(NORMAL + 1) * width + k], floats[(NORMAL + 2) * width + k]
-    _write_turned(pose, instance[ray], x, y, z, normal, ray)
+def _turn(pose: F32, row: int, normal: F32, ray: int) -> None:
+    """Turn a normal from the frame of instance ``row`` to the world, its length 1 again where the body is scaled."""
+    x, y, z = normal[ray, 0], normal[ray, 1], normal[ray, 2]
+    u = pose[row, 0, 0] * x + pose[row, 0, 1] * y + pose[row, 0, 2] * z
+    v = pose[row, 1, 0] * x + pose[row, 1, 1] * y + pose[row, 1, 2] * z
+    w = pose[row, 2, 0] * x + pose[row, 2, 1] * y + pose[row, 2, 2] * z
+    scale = np.float32(1.0) / np.sqrt(u * u + v * v + w * w)
+    normal[ray, 0], normal[ray, 1], normal[ray, 2] = u * scale, v * scale, w * scale
 
 
 @part
@@ -173,8 +186,9 @@ class Kernels(NamedTuple):
     blocked: Any
 
 
+@lru_cache(maxsize=3)
 def build(width: int) -> Kernels:
-    """Return the kernels for packets of a width."""
+    """Return the kernels for packets of a width; once, for compiled code is never given back."""
     sources = fingerprint(Path(__file__))
 
     def closest(
@@ -196,21 +210,18 @@ def build(width: int) -> Kernels:
         packet, single = new_packet(width), new_packet(1)
         for first in range(start, stop, width):
             count = min(width, stop - first)
-            packet.valid[:] = 0
-            for k in range(count):
-                o, d = origin[first + k], direction[first + k]
-                put_ray(packet, width, k, o[0], o[1], o[2], d[0], d[1], d[2], far_m)
+            put_rays(packet, width, origin, direction, first, count, far_m)
             intersect(packet, width, scene, arguments)
-            for k in range(count):
-                ray = first + k
-                _read(packet, width, k, pose, distance, instance, triangle, normal, ray)
+            _read(packet, width, count, pose, distance, instance, triangle, normal, first)
+            if not outer:
+                continue
+            for ray in range(first, first + count):
                 passed = 0
-                while outer and passed < INNER_SIDES and _is_inner(direction, instance, normal, ray):
-                    o, d, near_m = origin[ray], direction[ray], distance[ray] + ON_M
-                    put_ray(single, 1, 0, o[0], o[1], o[2], d[0], d[1], d[2], far_m)
-                    single.floats[NEAR] = near_m
+                while passed < INNER_SIDES and _is_inner(direction, instance, normal, ray):
+                    put_rays(single, 1, origin, direction, ray, 1, far_m)
+                    single.floats[NEAR] = distance[ray] + ON_M
                     _intersect1(scene, single.at, arguments)
-                    _read(single, 1, 0, pose, distance, instance, triangle, normal, ray)
+                    _read(single, 1, 1, pose, distance, instance, triangle, normal, ray)
                     passed += 1
 
     def blocked(
@@ -227,10 +238,7 @@ def build(width: int) -> Kernels:
         packet = new_packet(width)
         for first in range(start, stop, width):
             count = min(width, stop - first)
-            packet.valid[:] = 0
-            for k in range(count):
-                o, d = origin[first + k], direction[first + k]
-                put_ray(packet, width, k, o[0], o[1], o[2], d[0], d[1], d[2], far_m)
+            put_rays(packet, width, origin, direction, first, count, far_m)
             occlude(packet, width, scene, arguments)
             for k in range(count):
                 hit[first + k] = packet.floats[FAR * width + k] < 0.0
