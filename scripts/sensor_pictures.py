@@ -66,6 +66,10 @@ def furnish(world: carla.World, client: carla.Client) -> Stage:
     batch = [
         carla.command.SpawnActor(cars[number % len(cars)], point) for number, point in enumerate(points[5::9][:120])
     ]
+    for place in poses(world.get_map()):  # somebody ahead at each of them
+        ahead = world.get_map().get_waypoint(place.location).next(18.0)[0].transform
+        ahead.location.z += 0.3
+        batch.append(carla.command.SpawnActor(cars[len(batch) % len(cars)], ahead))
     people = library.filter("walker.pedestrian.*")
     for number in range(80):
         place = world.get_random_location_from_navigation()
@@ -87,6 +91,10 @@ def picture(stage: Stage, kind: str) -> Picture:
     sensor.listen(lambda image: arrived.put(shown(kind, image)))
     try:
         for _ in range(20):
+            if kind == "optical_flow":  # drive, for there to be any
+                pose = stage.shuttle.get_transform()
+                pose.location += 0.4 * pose.get_forward_vector()
+                stage.shuttle.set_transform(pose)
             stage.world.tick()
             try:
                 return arrived.get(timeout=1.0)
@@ -124,7 +132,7 @@ def make(stage: Stage, folder: Path) -> None:
         for weather in WEATHERS.values():
             stage.world.set_weather(weather)
             dark = weather.sun_altitude_angle < 0.0
-            for car in stage.others:
+            for car in (stage.shuttle, *stage.others):
                 car.set_light_state(LIT if dark else carla.VehicleLightState.NONE)
             row.append(picture(stage, "rgb"))
         rows.append(np.concatenate(row, axis=1))

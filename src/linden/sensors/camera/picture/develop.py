@@ -141,8 +141,8 @@ def _excess(light: F32, factor: F32, over: F32, start: int, stop: int) -> None:
 
 
 @shading_part
-def _streak(x: int, y: int, rain: float, now_s: float) -> float:
-    """Return how bright a falling drop is before a pixel: two sheets of slanting streaks, nearer and further."""
+def _streak(x: float, y: float, rain: float, now_s: float) -> float:
+    """Return how bright a falling drop is before a pixel of a picture 600 high: two sheets of slanting streaks."""
     bright = 0.0
     for sheet in range(2):
         wide, tall, fall = (1.6, 46.0, 1500.0) if sheet == 0 else (3.2, 95.0, 2300.0)
@@ -168,6 +168,7 @@ def _build(built_of: int) -> Callable[..., None]:
         if built_of < 0:
             return
         scale = (len(table) - 1) / math.sqrt(_MOST)
+        finer = 600.0 * width / len(image)
         for ray in range(start, stop):
             at = pixel[ray]
             if at < 0:
@@ -175,7 +176,7 @@ def _build(built_of: int) -> Callable[..., None]:
             tile = ray // (TILE_PX * TILE_PX)
             drop = 0.0
             if rain > 0.0:
-                drop = rain * rain_light * _streak(at % width, at // width, rain, now_s)
+                drop = rain * rain_light * _streak(finer * (at % width), finer * (at // width), rain, now_s)
             for channel in range(3):
                 value = (light[ray, channel] + drop) * factor[channel] + halo[tile // across, tile % across, channel]
                 step = int(math.sqrt(min(max(value, 0.0), _MOST)) * scale)
