@@ -1,6 +1,6 @@
 """Cars and vans: a hull, what is mounted on it, and four wheels."""
 
-from linden.meshes.actors.fittings import front, handles, mirrors, on_the_roof, rear, underside
+from linden.meshes.actors.fittings import cockpit, front, handles, mirrors, on_the_roof, rear, underside
 from linden.meshes.actors.hull import PROUD_M, Frame, hull
 from linden.meshes.actors.shape import Shape
 from linden.meshes.actors.silhouettes import silhouettes
@@ -31,7 +31,7 @@ def car(blueprint: Blueprint) -> list[Shape]:
     mirrors_m = min(max(box.extent.y - 0.93, 0.03), 0.16)
     frame = frame_of(blueprint, roof_m=roof_m, mirrors_m=mirrors_m)
     parts = [hull(shape, frame), underside(frame), *front(shape, frame), *rear(shape, frame)]
-    parts += [*mirrors(shape, frame, box.extent.y), *handles(shape, frame)]
+    parts += [*mirrors(shape, frame, box.extent.y), *handles(shape, frame), *cockpit(shape, frame)]
     if carries:
         parts += on_the_roof(shape, frame, _BAR_M, taxi=special == "taxi")
     return [Shape(tagged(join(parts), blueprint.semantic_tags[0]), 0), *wheels(blueprint, frame.half_width)]

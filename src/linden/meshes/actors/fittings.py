@@ -19,12 +19,13 @@ from linden.meshes.actors.looks import (
     TAIL,
     TRIM,
 )
-from linden.meshes.actors.silhouettes import Silhouette
-from linden.meshes.actors.solids import Look, both_sides, box, lathe, moved, turned
+from linden.meshes.actors.silhouettes import F64, Silhouette
+from linden.meshes.actors.solids import Look, both_sides, box, lathe, loft, moved, turned
 from linden.meshes.actors.wheels import ABOUT_X
 from linden.meshes.mesh import Material, Mesh
 
 _TAXI_SIGN = Look(Material.PLAIN, (240, 220, 90))
+_SHORTEST_BONNET_M = 0.4
 _TAIL_LAMP_M = 0.09
 """Width of an upright tail lamp."""
 
@@ -54,6 +55,24 @@ def underside(frame: Frame) -> Mesh:
     return box(
         (frame.rear + 0.3, -frame.half_width + inset, low), (frame.front - 0.3, frame.half_width - inset, high), BLACK
     )
+
+
+def cockpit(shape: Silhouette, frame: Frame) -> list[Mesh]:
+    """Return what a camera in the driver's seat sees of the car: the dashboard and a bonnet of its own.
+
+    Casters that let a sensor look out through the back of its carrier's faces show no bonnet but this one, which lies
+    just below the body's. There is no steering wheel: it would stand in the way of what cameras are there for.
+    """
+    base = float(frame.x(shape.windscreen[1]))
+    wide, high = 0.84 * float(half_width(shape, frame, base)), float(top(shape, frame, base)) - 0.04
+    made = [box((base - 0.45, -wide, 0.4 * high), (base, wide, high), BLACK)]
+    if frame.front - base < _SHORTEST_BONNET_M:
+        return made
+    x: F64 = np.linspace(base - 0.02, frame.front - 0.04, 8, dtype=np.float64)
+    roof_m, side_m = top(shape, frame, x) - 0.025, 0.8 * half_width(shape, frame, x)
+    across = [(-1.0, -0.1), (1.0, -0.1), (1.0, -0.035), (0.6, 0.0), (-0.6, 0.0), (-1.0, -0.035)]
+    rings = np.stack([np.stack([x, side * side_m, roof_m + drop], 1) for side, drop in across], 1)
+    return [*made, loft(rings, PAINT, PAINT, PAINT)]
 
 
 def front(shape: Silhouette, frame: Frame) -> list[Mesh]:
