@@ -76,7 +76,7 @@ def air(weather: WeatherParameters, now_s: float) -> Air:
     sun = sunlight(height_deg) * (1.0 - 0.97 * cover**1.5) * (1.0 - 0.6 * rain)
     light_of_day = float(day[3:].mean())
     towards = _direction(given.sun_azimuth_angle, height_deg)
-    above = 0.50 * zenith + 0.26 * horizon + 0.9 * _MOONLIGHT
+    above = (0.50 * zenith + 0.26 * horizon) * (1.0 + 0.35 * grey) + 0.9 * _MOONLIGHT * (1.0 - 0.5 * grey)
     fog = 0.85 * horizon + 0.10 * zenith + 0.06 * sun
     return Air(
         *towards,
@@ -84,7 +84,7 @@ def air(weather: WeatherParameters, now_s: float) -> Air:
         glow=_colour(np.array([1.3, 0.42, 0.06]) * _bump(height_deg, 1.0, 7.0) * (1.0 - 0.8 * grey)),
         zenith=_colour(zenith),
         horizon=_colour(horizon),
-        above=_colour(above * (1.0 + 0.35 * grey)),
+        above=_colour(above),
         below=_colour(0.22 * above + 0.11 * max(0.0, towards[2]) * sun),
         cloud=_colour(gloom * _cloud(day, sun, cover)),
         cloud_cover=cover,

@@ -36,9 +36,9 @@ LAMPLIGHT = np.dtype(
 )
 
 _STREET, _HEAD, _TAIL = int(LampOf.STREET), int(LampOf.HEAD), int(LampOf.TAIL)
-_STRENGTH = {_STREET: 6.5, _HEAD: 26.0, _TAIL: 0.10}
+_STRENGTH = {_STREET: 6.5, _HEAD: 17.0, _TAIL: 0.10}
 _COLOUR = {_HEAD: (1.0, 0.95, 0.86), _TAIL: (1.0, 0.06, 0.03)}
-_FORM = {_STREET: (26.0, 0.05, 0.75, False), _HEAD: (55.0, 0.80, 0.97, True), _TAIL: (6.0, 0.0, 0.8, False)}
+_FORM = {_STREET: (26.0, 0.05, 0.75, False), _HEAD: (55.0, 0.70, 0.985, True), _TAIL: (6.0, 0.0, 0.8, False)}
 _DIP = math.radians(1.5)
 
 

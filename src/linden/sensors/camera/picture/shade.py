@@ -181,9 +181,10 @@ def _lamplight(spot: Spot, rx: float, ry: float, rz: float, grid: LampGrid) -> t
         facing = max(spot.nx * lx + spot.ny * ly + spot.nz * lz, 0.0)
         if along <= lamp.low:
             continue
-        strength = ramp(lamp.low, lamp.high, along) * (1.0 - far2 / (lamp.reach * lamp.reach)) / max(far2, 0.3)
-        if lamp.cut:
-            strength *= 0.12 + 0.88 * ramp(-0.03, 0.01, lz)
+        beam = ramp(lamp.low, lamp.high, along)
+        strength = beam * beam * (1.0 - far2 / (lamp.reach * lamp.reach)) / max(far2, 0.3)
+        if lamp.cut:  # it throws most of its light far ahead: R112 of UN ECE asks for little before the car
+            strength *= (0.12 + 0.88 * ramp(-0.03, 0.01, lz)) * min(1.0, far2 / 90.0)
         red += facing * strength * lamp.light[0]
         green += facing * strength * lamp.light[1]
         blue += facing * strength * lamp.light[2]
