@@ -70,7 +70,8 @@ class Radar:
         hits = look.seen.caster.closest(Rays(origin, direction), farthest_m, outer=True)
         # CARLA's rays end on a plane across the cone
         met = np.isfinite(hits.distance_m) & (hits.distance_m * ahead[:, 0] <= spec.range_m)
-        hits, ahead, direction = Hits(*(column[met] for column in hits)), ahead[met], direction[met]
+        hits = Hits(hits.distance_m[met], hits.instance[met], hits.triangle[met], hits.normal[met])
+        ahead, direction = ahead[met], direction[met]
         point_m = origin[met] + direction * hits.distance_m[:, None]
         apart = velocities(look.seen.instances, hits, point_m) - look.velocity_mps
         return Detections(
