@@ -8,11 +8,14 @@ gives the same bits; what is seen has threads (``unlocked``), pictures both. The
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar, cast
+from typing import Any, TypeVar, cast
 
 import llvmlite.binding
 import numba
 import numpy as np
+
+_UNCOUNTED: dict[str, Any] = {"_nrt": False}
+"""An option of numba's that its own type hints do not know."""
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -49,13 +52,13 @@ def shading(function: Function) -> Function:
     It makes no arrays, so that numba need not count who uses those it is given: that took as long as all the rest.
     """
     return cast(
-        "Function", numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True, _nrt=False)(function)
+        "Function", numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True, **_UNCOUNTED)(function)
     )
 
 
 def shading_part(function: Function) -> Function:
     """Compile into the kernels that call it, as :func:`part` does, with sums reordered."""
-    return cast("Function", numba.njit(error_model="numpy", fastmath=True, _nrt=False)(function))
+    return cast("Function", numba.njit(error_model="numpy", fastmath=True, **_UNCOUNTED)(function))
 
 
 def fingerprint(*sources: Path) -> int:
