@@ -19,7 +19,7 @@ def image_payload(pixels: NDArray[np.uint8] | NDArray[np.float32], fov_deg: floa
     Raises:
         ProtocolError: the pixels are of another form.
     """
-    if pixels.ndim != 3 or (pixels.shape[2], pixels.dtype) not in ((4, np.uint8), (2, np.float32)):
+    if pixels.ndim != 3 or (pixels.shape[2], pixels.dtype.name) not in ((4, "uint8"), (2, "float32")):
         raise ProtocolError(f"a picture has 4 bytes or 2 floats a pixel, not {pixels.shape} of {pixels.dtype}")
     height, width = pixels.shape[:2]
     return _HEADER.pack(width, height, fov_deg) + np.ascontiguousarray(pixels).tobytes()
