@@ -1,11 +1,11 @@
 """Traffic lights and signs through the official client."""
 
-from collections.abc import Iterator
-
 import carla
 import pytest
 
 from fakes.crossing_map import crossing
+from fakes.own_map import world_of
+from servers import RunningServer
 
 Colour = carla.TrafficLightState
 TICKS_PER_S = 20
@@ -239,13 +239,12 @@ def lit_crossing() -> str:
 
 
 @pytest.fixture
-def crossing_world(client: carla.Client) -> Iterator[carla.World]:
-    world = client.generate_opendrive_world(lit_crossing())
+def crossing_world(server: RunningServer) -> carla.World:
+    world = world_of(server.port, lit_crossing())
     settings = world.get_settings()
     settings.synchronous_mode, settings.fixed_delta_seconds = True, 1.0 / TICKS_PER_S
     world.apply_settings(settings)
-    yield world
-    client.load_world("Linden")
+    return world
 
 
 def test_the_lights_of_a_crossing_of_ones_own_take_turns_by_axis(crossing_world: carla.World) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import carla
 import pytest
 
+from fakes.own_map import TIMEOUT_S, world_of
 from linden.recording.read import Recording
 from opendrive_texts import street_through_junction
 from servers import RunningServer, running_server
@@ -81,14 +82,17 @@ def test_a_replay_shows_the_same_transforms_byte_for_byte(client: carla.Client, 
     assert spectator.location.distance(hero.location) == pytest.approx(11.18, abs=0.05)  # (-10, 0, 5) from the hero
 
 
-def test_a_replay_on_another_map_loads_it_first(client: carla.Client, world: carla.World, folder: Path) -> None:
+def test_a_replay_on_another_map_loads_it_first(
+    server: RunningServer, client: carla.Client, world: carla.World, folder: Path
+) -> None:
     actor_ids, _ = recorded(client, world, "there.log")
     here = world.get_map().name
-    assert client.generate_opendrive_world(street_through_junction()).get_map().name != here
+    del client, world
+    assert world_of(server.port, street_through_junction()).get_map().name != here
+    client = carla.Client("127.0.0.1", server.port)  # one that listens to nothing yet
+    client.set_timeout(TIMEOUT_S)
     text = client.replay_file(str(folder / "there.log"), 0.0, 0.0, 0)
     assert "Loading map Linden\nReplayer will start after map is loaded...\n" in text
-    for _ in range(3):  # as long as a client may take to notice
-        client.get_world().wait_for_tick()
     world = client.get_world()
     assert world.get_map().name == here
     assert sorted(actor.id for actor in world.get_actors().filter("vehicle.*")) == actor_ids

@@ -1,12 +1,14 @@
 """Walkers through the official client: its crowd on our mesh, crossings at crosswalks, bones, poses, sockets."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import carla
 import pytest
 
+from fakes.own_map import world_of
 from opendrive_texts import street_through_junction
+from servers import RunningServer
 
 CROSSWALK = (
     '<object id="c" type="crosswalk" name="crosswalk" s="30" t="0" zOffset="0" hdg="0" orientation="none"><outline>'
@@ -27,14 +29,9 @@ def synchronous(world: carla.World) -> carla.World:
 
 
 @pytest.fixture
-def generated(client: carla.Client) -> Iterator[Callable[[str], carla.World]]:
-    """Worlds made of texts; afterwards the map is Linden again."""
-
-    def make(text: str) -> carla.World:
-        return synchronous(client.generate_opendrive_world(text, carla.OpendriveGenerationParameters(wall_height=0.0)))
-
-    yield make
-    client.load_world("Linden")
+def generated(server: RunningServer) -> Callable[[str], carla.World]:
+    """What makes a world of a text."""
+    return lambda text: synchronous(world_of(server.port, text))
 
 
 def spawn(world: carla.World, place: carla.Location, number: int = 1) -> tuple[carla.Walker, carla.WalkerAIController]:

@@ -1,6 +1,8 @@
 """Calls of the clients, carried out strictly in the order of each, and by turns between them."""
 
 import logging
+import math
+import time
 from collections.abc import Callable
 
 from linden.errors import ProtocolError
@@ -17,6 +19,12 @@ CALLS_PER_TURN = 256
 UNREAD_ANSWERS_BYTES = 1024 * 1024
 """A client that leaves more than this unread is not listened to until it has caught up."""
 
+LOAD = "load_new_episode"
+JOINING_S = 0.05
+"""What the official client needs from beginning to listen until it may stop again. It drops its stream when it loads an
+episode, and a busy client that had asked for that stream just before ends its own process with ``bad_weak_ptr``:
+LibCarla's ``streaming::detail::tcp::Client`` is gone before its first message is sent. CARLA's loads take seconds."""
+
 
 class Calls:
     """What clients have asked for and not yet got.
@@ -24,6 +32,7 @@ class Calls:
     Attributes:
         unfinished: those whose calls wait for their turn; an ordered set.
         last_ticker: who made the last frame that was made by a call.
+        joined_s: when somebody last began to listen to a stream.
     """
 
     def __init__(
@@ -42,6 +51,7 @@ class Calls:
         self._close = close
         self.unfinished: dict[RpcPeer, None] = {}
         self.last_ticker: RpcPeer | None = None
+        self.joined_s = -math.inf
         self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
 
     def forget(self, peer: RpcPeer) -> None:
@@ -107,6 +117,8 @@ class Calls:
     def _answer(self, peer: RpcPeer) -> bytes:
         """Carry out a client's next call."""
         self._context.caller = peer.number
+        if peer.calls[0].method == LOAD:
+            time.sleep(max(0.0, self.joined_s + JOINING_S - self._clock()))
         frame = self._context.simulation.frame
         answer = registry.dispatch(self._context, peer.calls.popleft())
         if self._context.simulation.frame != frame:

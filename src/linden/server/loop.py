@@ -188,6 +188,7 @@ class Server:
         elif peer.subscription.receive(data) and peer.subscription.stream_id is not None:
             self._entrance.has_spoken(peer)
             self._subscribers.add(peer, peer.subscription.stream_id)
+            self._calls.joined_s = self._clock()
             if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # whoever joins between two ticks sees the world too
                 payload = self.context.frames.world_payload(self.context.simulation)
                 self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.is_synchronous())
