@@ -165,10 +165,10 @@ def test_somebody_elses_simulator_is_left_as_it_was(run: Runner, tmp_path: Path,
 
 
 def test_a_sensor_that_the_simulator_cannot_serve_gets_a_sentence(run: Runner, tmp_path: Path) -> None:
-    (tmp_path / "eyes.json").write_text('[{"type": "sensor.camera.rgb", "id": "EYE"}]')
-    code, result = run(doing(tmp_path, "return None", str(tmp_path / "eyes.json")))
+    (tmp_path / "ears.json").write_text('[{"type": "sensor.other.v2x", "id": "EAR"}]')
+    code, result = run(doing(tmp_path, "return None", str(tmp_path / "ears.json")))
     assert (code, result["status"]) == (2, "SetupFailed")
-    assert "sensor 'EYE' (sensor.camera.rgb) of" in result["message"]
+    assert "sensor 'EAR' (sensor.other.v2x) of" in result["message"]
     assert "cannot be served by this simulator" in result["message"]
 
 

@@ -32,7 +32,6 @@ NOT_YET = {
     "sensor.other.rss": "it is computed in a client that is built with the ad-rss library; the wheel is not",
     "sensor.other.v2x": "it would need a model of the radio channel between vehicles",
     "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
-    "sensor.": "other sensors are there, see docs/supported.md",
 }
 """Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
 
