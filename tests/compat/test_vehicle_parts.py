@@ -6,6 +6,7 @@ from typing import Any
 import carla
 import pytest
 
+from fakes.raw_client import RawClient
 from servers import RunningServer
 
 WHEEL = carla.VehicleWheelLocation
@@ -249,11 +250,12 @@ def test_a_control_acts_once_or_until_the_next_as_the_attribute_says(world, poin
     assert car.get_control().throttle == kept
 
 
-def test_switching_an_autopilot_off_takes_the_foot_from_the_pedal(client, world, car) -> None:
-    client.apply_batch_sync([carla.command.SetAutopilot(car, True)], False)
-    car.apply_control(carla.VehicleControl(throttle=0.5))
-    ticks(world, 2)
-    assert car.get_control().throttle == 0.5
-    client.apply_batch_sync([carla.command.SetAutopilot(car, False)], False)
-    ticks(world, 1)
-    assert car.get_control().throttle == 0.0
+def test_switching_an_autopilot_off_takes_the_foot_from_the_pedal(server: RunningServer, world, car) -> None:
+    with RawClient(server.port) as raw:  # the official client would start a Traffic Manager
+        raw.call("set_actor_autopilot", car.id, True)
+        car.apply_control(carla.VehicleControl(throttle=0.5))
+        ticks(world, 2)
+        assert car.get_control().throttle == 0.5
+        raw.call("set_actor_autopilot", car.id, False)
+        ticks(world, 1)
+        assert car.get_control().throttle == 0.0

@@ -27,7 +27,7 @@ class Stage:
         self._made: dict[str, Any] = {}
         self.client = carla.Client("127.0.0.1", tap.port())
         self.client.set_timeout(TIMEOUT_S)
-        self.world: carla.World = self.client.get_world()
+        self.world: carla.World = self.client.load_world("Linden")
         settings = self.world.get_settings()
         settings.synchronous_mode = True
         settings.fixed_delta_seconds = 0.05
