@@ -164,14 +164,22 @@ def gap_to(car: carla.Vehicle, other: carla.Actor) -> float:
     return between_m - car.bounding_box.extent.x - other.bounding_box.extent.x
 
 
-def stopped_behind_another(world: carla.World, manager: carla.TrafficManager, gap_m: float) -> tuple[float, list]:
-    """Return the gap that a car leaves to one that stands, told to keep that much, and the two."""
+def driven_and_standing(
+    world: carla.World, manager: carla.TrafficManager, between_m: float
+) -> tuple[carla.Vehicle, carla.Vehicle]:
+    """Return a car that keeps its lane, and another that stands ahead of it."""
     place = street(world)
-    car, other = put(world, place), put(world, place.next(35.0)[0])
+    car, other = put(world, place), put(world, place.next(between_m)[0])
     other.apply_control(carla.VehicleControl(hand_brake=True))
     world.tick()
     car.set_autopilot(True, manager.get_port())
     manager.auto_lane_change(car, False)
+    return car, other
+
+
+def stopped_behind_another(world: carla.World, manager: carla.TrafficManager, gap_m: float) -> tuple[float, list]:
+    """Return the gap that a car leaves to one that stands, told to keep that much, and the two."""
+    car, other = driven_and_standing(world, manager, 35.0)
     manager.set_desired_speed(car, SLOW_KMH)  # faster, it brakes for longer than it looks ahead
     manager.distance_to_leading_vehicle(car, gap_m)
     go(world, 10.0)
@@ -190,12 +198,7 @@ def test_a_car_keeps_the_more_distance_the_more_it_is_told(world, manager) -> No
 
 
 def test_who_ignores_vehicles_runs_into_one(world, manager) -> None:
-    place = street(world)
-    car, other = put(world, place), put(world, place.next(50.0)[0])
-    other.apply_control(carla.VehicleControl(hand_brake=True))
-    world.tick()
-    car.set_autopilot(True, manager.get_port())
-    manager.auto_lane_change(car, False)
+    car, other = driven_and_standing(world, manager, 50.0)
     manager.ignore_vehicles_percentage(car, 100.0)
     stood = other.get_location()
     go(world, 15.0)
@@ -219,12 +222,7 @@ def test_who_does_not_ignore_walkers_stops_for_one(world, manager, ignored_perce
 
 
 def test_cars_that_are_told_not_to_see_each_other_touch(world, manager) -> None:
-    place = street(world)
-    car, other = put(world, place), put(world, place.next(50.0)[0])
-    other.apply_control(carla.VehicleControl(hand_brake=True))
-    world.tick()
-    car.set_autopilot(True, manager.get_port())
-    manager.auto_lane_change(car, False)
+    car, other = driven_and_standing(world, manager, 50.0)
     manager.collision_detection(car, other, False)
     gaps: list[float] = []
     go(world, 12.0, lambda: gaps.append(gap_to(car, other)))

@@ -86,3 +86,9 @@ def described(blueprint_id: str, **chosen: object) -> ActorDescription:
     types = {item.id: item.type for item in library.find(blueprint_id).definition.attributes}
     values = tuple(value._replace(type=types[value.id]) for value in values)
     return library.validate(ActorDescription(0, blueprint_id, values))
+
+
+def volume_m3(mesh: Mesh) -> float:
+    """The volume that a closed mesh encloses (Gauss); positive where its triangles look outwards."""
+    a, b, c = (mesh.vertices_m[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
+    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)

@@ -78,7 +78,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.casting.choose import check_device  # noqa: PLC0415 - see above
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
-    from linden.meshes.library import standing_of  # noqa: PLC0415 - see above
+    from linden.meshes.library import keep_standing, standing_of  # noqa: PLC0415 - see above
     from linden.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
     from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
     from linden.recording.folder import RecordingFolder  # noqa: PLC0415 - see above
@@ -108,7 +108,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         simulation.episode.warm_up()
         simulation.seeing.device = arguments.device
         simulation.seeing.standing_on = partial(standing_of, cache=cache)
-        simulation.seeing.prepare(simulation.episode)  # seconds, if it is not in the cache
+        keep_standing(world_map, simulation.episode.surroundings.scene, cache)  # seconds, if it is not there yet
         mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
     server = Server(simulation, maps, frames, ports)
     server.context.recordings = RecordingFolder(arguments.recordings)

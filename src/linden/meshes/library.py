@@ -25,7 +25,12 @@ def standing_of(world_map: LoadedMap, scene: Scene, cache: MapCache) -> Mesh:
 
     Its arrays may be read-only.
     """
-    return _read(cache.kept(f"{_key(world_map, scene)}.mesh", lambda: _written(_made(world_map, scene))))
+    return _read(cache.kept(_name(world_map, scene), lambda: _written(_made(world_map, scene))))
+
+
+def keep_standing(world_map: LoadedMap, scene: Scene, cache: MapCache) -> None:
+    """Have the mesh in the cache, so that whoever looks first need not wait until it is made."""
+    cache.keep(_name(world_map, scene), lambda: _written(_made(world_map, scene)))
 
 
 def _made(world_map: LoadedMap, scene: Scene) -> Mesh:
@@ -36,12 +41,12 @@ def _made(world_map: LoadedMap, scene: Scene) -> Mesh:
     return standing(parse(world_map.text), world_map, scene)
 
 
-def _key(world_map: LoadedMap, scene: Scene) -> str:
-    """Return a name that tells all that decides the mesh: the map, what stands on it, the sources, the machine."""
+def _name(world_map: LoadedMap, scene: Scene) -> str:
+    """Return a file's name that tells what decides the mesh: the map, what stands on it, the sources, the machine."""
     digest = hashlib.sha256(f"{_sources()} {machine()}\n".encode())
     for part in (world_map.text.encode(), scene.things.tobytes(), scene.boxes.tobytes()):
         digest.update(hashlib.sha256(part).digest())
-    return digest.hexdigest()[:32]
+    return f"{digest.hexdigest()[:32]}.mesh"
 
 
 @once

@@ -78,10 +78,6 @@ class Seeing:
         self._frame = -1
         self._instances: Instances | None = None
 
-    def prepare(self, episode: "Episode") -> None:
-        """Have the mesh of what stands made, and kept where ``standing_on`` keeps it; it is not held here."""
-        self.standing_on(episode.map, episode.surroundings.scene)
-
     def follow(self, episode: "Episode", frame: int) -> Instances:
         """Note where the bodies are in a frame; to be called in every frame while a sensor that looks is listened to.
 

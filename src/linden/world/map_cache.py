@@ -77,6 +77,13 @@ class MapCache:
         self._keep(file, lambda stream: stream.write(_digest(content) + content))
         return content
 
+    def keep(self, name: str, make: Callable[[], bytes]) -> None:
+        """Have something kept under a name, for :meth:`kept` to read; made only where there is no file of that name."""
+        try:
+            os.utime(self._folder / name)  # it counts as used
+        except OSError:
+            self.kept(name, make)
+
     def _write(self, file: Path, facts: MapFacts) -> None:
         self._keep(file, lambda stream: np.savez(stream, **pack(facts)))  # type: ignore[arg-type] # one array could be called allow_pickle
 

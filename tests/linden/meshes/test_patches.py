@@ -3,18 +3,13 @@
 import numpy as np
 import pytest
 
-from linden.meshes.mesh import Material, Mesh
+from fakes.solids import volume_m3
+from linden.meshes.mesh import Material
 from linden.meshes.patches import ALL_SIDES, Frames, Look, boxes, polygons, prisms
 from linden.values.enums import SemanticTag
 
 LOOK = Look(Material.PLAIN, SemanticTag.STATIC, (1, 2, 3))
 FRAMES = Frames(np.array([[10.0, 20.0, 5.0], [-3.0, 4.0, 0.0]]), np.array([0.3, -2.0]))
-
-
-def volume_m3(mesh: Mesh) -> float:
-    """Six times this is the sum of triple products; it is positive where triangles look outwards (Gauss)."""
-    a, b, c = (mesh.vertices_m[mesh.triangles[:, k]].astype(np.float64) for k in range(3))
-    return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)
 
 
 def test_closed_boxes_hold_what_their_sizes_say_so_they_look_outwards() -> None:

@@ -1,10 +1,12 @@
 """What stands is seen where it is met: every box of the scene has its triangles, and they lie in it."""
 
+import os
+
 import numpy as np
 import pytest
 
 from linden.meshes.floors import floors
-from linden.meshes.library import standing_of
+from linden.meshes.library import keep_standing, standing_of
 from linden.meshes.mesh import NO_OBJECT, LampOf, Material, Mesh
 from linden.meshes.road import kerbs, surface
 from linden.meshes.standing import standing, things
@@ -160,6 +162,13 @@ def test_the_mesh_comes_out_of_the_cache_as_it_went_in(street: LoadedMap, tmp_pa
     scene = scenery_of(street).scene
     cache = MapCache(tmp_path)
     made = standing(parse(STREET), street, scene)
+    keep_standing(street, scene, cache)
+    (file,) = tmp_path.iterdir()
+    os.utime(file, (100.0, 100.0))
+    written = file.read_bytes()
+    keep_standing(street, scene, cache)
+    assert file.read_bytes() == written
+    assert file.stat().st_mtime > 100.0  # as used just now
     for _ in range(2):
         kept = standing_of(street, scene, cache)
         assert [part.tobytes() for part in kept] == [part.tobytes() for part in made]

@@ -43,12 +43,6 @@ def tagged(mesh: Mesh, tag: int) -> Mesh:
     return mesh._replace(faces=faces)
 
 
-def volume_m3(mesh: Mesh) -> float:
-    """Return the volume that a closed mesh encloses, negative where it is inside out."""
-    corner, normal = _normals(mesh.vertices_m.astype(np.float64), mesh.triangles)
-    return float((corner * normal).sum() / 6.0)
-
-
 def _normals(vertices_m: F64, triangles: NDArray[np.integer]) -> tuple[F64, F64]:
     """Return the first corner and the normal (T, 3) of triangles, twice their area long."""
     a = vertices_m[triangles[:, 0]]

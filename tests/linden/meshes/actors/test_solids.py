@@ -6,6 +6,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from fakes.solids import volume_m3
 from linden.geometry import rotation_matrix
 from linden.meshes.actors.solids import (
     Look,
@@ -19,7 +20,6 @@ from linden.meshes.actors.solids import (
     stretched,
     tube,
     turned,
-    volume_m3,
     wedge,
 )
 from linden.meshes.actors.wheels import hoop
