@@ -1,0 +1,91 @@
+"""The tests of the official client, each file in a process of its own: ``run_compat.py [pytest's options]``.
+
+That client's threads race each other: when it drops a stream that it has just asked for it may end its process
+(``bad_weak_ptr``), and its Traffic Manager may miss the wake-up of a tick and stand still for ever, where no time-out
+of Python's reaches it. docs/traffic.md and benchmarks/soak.py have the evidence. So a file whose process was ended by
+a signal, or stood still, is run once more, and is said to have been; the second time counts. A test that fails has
+failed.
+"""
+
+import os
+import selectors
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+SILENT_S = 240.0
+"""Longer than any test may take by the time-out in pyproject.toml; a process that says nothing for so long is stuck."""
+LAST_WORDS_S = 15.0
+TRIES = 2
+NO_TESTS = 5
+"""Of pytest, where options such as ``-k`` leave none in a file."""
+
+
+def main(options: list[str]) -> int:
+    """Run all files; return 0 where all passed."""
+    failed, again = [], []
+    for file in sorted((ROOT / "tests" / "compat").glob("test_*.py")):
+        name = file.relative_to(ROOT).as_posix()
+        for number in range(TRIES):
+            print(f"{name}{' once more' * (number > 0)}", flush=True)
+            code = run([sys.executable, "-m", "coverage", "run", "-m", "pytest", "--no-header", name, *options])
+            if code >= 0:
+                break
+            again.append(f"{name}: its process {'stood still' if code == STUCK else f'was ended by signal {-code}'}")
+        if code not in {0, NO_TESTS}:
+            failed.append(name)
+    for sentence in again:
+        print(f"run_compat: {sentence}")
+    for name in failed:
+        print(f"run_compat: {name} failed")
+    return 1 if failed else 0
+
+
+STUCK = -1000
+"""Instead of a return code."""
+
+
+def run(command: list[str], silent_s: float = SILENT_S) -> int:
+    """Run a command and show what it says; return its code, minus the signal that ended it, or STUCK."""
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True
+    ) as process:
+        stuck = not _shown(process, silent_s)
+        if stuck:
+            process.send_signal(signal.SIGABRT)  # pytest then shows where each thread is
+            _shown(process, LAST_WORDS_S)
+        try:
+            code = process.wait(LAST_WORDS_S)
+        except subprocess.TimeoutExpired:
+            stuck = True
+        if stuck:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+    return STUCK if stuck else code
+
+
+def _shown(process: "subprocess.Popen[bytes]", silent_s: float) -> bool:
+    """Pass on what a process says until it says no more; return False where it is silent for too long first."""
+    assert process.stdout is not None
+    with selectors.DefaultSelector() as selector:
+        selector.register(process.stdout, selectors.EVENT_READ)
+        heard_s = time.monotonic()
+        while time.monotonic() - heard_s < silent_s:
+            if not selector.select(1.0):
+                continue
+            said = os.read(process.stdout.fileno(), 1 << 16)
+            if not said:
+                return True
+            heard_s = time.monotonic()
+            sys.stdout.buffer.write(said)
+            sys.stdout.buffer.flush()
+    return False
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(sys.argv[1:]))
