@@ -10,6 +10,10 @@ ENDLESS_S = 25.0
 """How long a program that never ends by itself is watched before it is interrupted as by Ctrl+C."""
 
 
+PACE_S = 3.0
+"""From one picture of a program's window to the next."""
+
+
 class Program(NamedTuple):
     """One row of the table. The first of ``arguments`` is the program's file, below the folder of its ``family``."""
 
@@ -24,6 +28,8 @@ class Program(NamedTuple):
     port: int = 2000
     tells_failure: str = "Traceback"
     """What stands in its output when it failed without an exit status."""
+    keys: str = ""
+    """What is typed into its window, a key each ``PACE_S``; see ``watched/sitecustomize.py``."""
 
 
 def all_programs(folders: Folders) -> list[Program]:
@@ -46,9 +52,12 @@ def _example(*arguments: str, limit_s: float = 150.0) -> Program:
     return Program("examples", arguments, limit_s=limit_s)
 
 
-def _endless(*arguments: str, limit_s: float = ENDLESS_S) -> Program:
-    return Program("examples", arguments, limit_s=limit_s, is_endless=True)
+def _endless(*arguments: str, limit_s: float = ENDLESS_S, keys: str = "") -> Program:
+    return Program("examples", arguments, limit_s=limit_s, is_endless=True, keys=keys)
 
+
+EVERY_CAMERA = "p 2 3 4 5 6 7 8 ctrl+1 ctrl+2 ctrl+3 ctrl+4 ctrl+5 1 tab tab tab g c c"
+"""In manual_control.py: the autopilot, each of its sensors, three other places of the camera, the radar, the weather."""
 
 EXAMPLES = (
     _endless("dynamic_weather.py"),
@@ -63,8 +72,8 @@ EXAMPLES = (
     _example("show_recorder_actors_blocked.py", "-f", RECORDING, "-t", "5", "-d", "10"),
     _example("start_replaying.py", "-f", RECORDING, "-s", "2", "-d", "5"),
     Program("older_examples", ("start_replaying.py", "-f", RECORDING, "-s", "2", "-d", "5")),
-    _endless("manual_control.py"),
-    _endless("manual_control.py", "--sync"),
+    _endless("manual_control.py", limit_s=90.0, keys=EVERY_CAMERA),
+    _endless("manual_control.py", "--sync", limit_s=90.0, keys=EVERY_CAMERA),
     _endless("manual_control_fisheye.py"),
     _endless("manual_control_carsim.py"),
     _endless("manual_control_chrono.py"),

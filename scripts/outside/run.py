@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from folders import Folders
-from programs import Program, all_programs
+from programs import PACE_S, Program, all_programs
 
 START_LIMIT_S = 280.0
 GRACE_S = 20.0
@@ -77,6 +77,9 @@ def _run(program: Program, folders: Folders, python: str) -> Outcome:
     """Start a server and the program, and wait for the end of it."""
     name = f"{program.town}_" + re.sub(r"[^A-Za-z0-9.=-]+", "_", "_".join(program.arguments))[-90:]
     log, output = folders.out / f"{name}.server.txt", folders.out / f"{name}.txt"
+    pictures = folders.out / f"{name}.pictures"
+    pictures.mkdir(exist_ok=True)
+    watched = {"OUTSIDE_PICTURES": str(pictures), "OUTSIDE_KEYS": program.keys, "OUTSIDE_PACE_S": str(PACE_S)}
     command = [python, "-u", *(folders.filled(argument) for argument in program.arguments)]
     with _server(program, folders, log), _driver(program, python, folders, folders.out / f"{name}.driver.txt"):
         began_s = time.monotonic()
@@ -84,7 +87,7 @@ def _run(program: Program, folders: Folders, python: str) -> Outcome:
             process = subprocess.Popen(
                 command,
                 cwd=folders.of(program.family),
-                env=_environment(folders),
+                env={**_environment(folders), **watched},
                 stdin=subprocess.DEVNULL,
                 stdout=file,
                 stderr=subprocess.STDOUT,
@@ -155,7 +158,7 @@ def _environment(folders: Folders) -> dict[str, str]:
     """The variables that these programs' own manuals ask for, and no screen."""
     runner, api = folders.of("scenario_runner"), folders.programs / "carla" / "PythonAPI" / "carla"
     wanted = {
-        "PYTHONPATH": os.pathsep.join(map(str, (folders.sumo_home / "tools", api, runner))),
+        "PYTHONPATH": os.pathsep.join(map(str, (HERE / "watched", folders.sumo_home / "tools", api, runner))),
         "SCENARIO_RUNNER_ROOT": str(runner),
         "SUMO_HOME": str(folders.sumo_home),
         "SDL_VIDEODRIVER": "dummy",

@@ -50,6 +50,8 @@ def complete(definition: ActorDefinition, description: ActorDescription) -> Acto
             _check(definition.id, attribute, value)
         if attribute.type == AttributeType.BOOL:
             value = value.strip().lower()  # Python's str(True) reaches the server as "True"
+        elif attribute.type == AttributeType.INT:
+            value = value.partition(".")[0]  # as CARLA's Atoi: lidar_to_camera.py asks for "64.0" channels
         chosen.append(AttributeValue(attribute.id, attribute.type, value))
     return ActorDescription(definition.uid, definition.id, tuple(chosen))
 
@@ -92,7 +94,8 @@ def _wanted(kind: AttributeType, value: str) -> str | None:
     if kind is AttributeType.BOOL:
         return None if value.strip().lower() in {"true", "false"} else "true or false"
     if kind is AttributeType.INT:
-        return None if _is_integer(value) else "a whole number"
+        whole, _, rest = value.partition(".")
+        return None if _is_integer(whole) and not rest.strip("0 ") else "a whole number"
     if kind is AttributeType.FLOAT:
         return None if _is_finite(value) else "a finite number"
     if kind is AttributeType.RGB_COLOR:

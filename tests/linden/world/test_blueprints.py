@@ -195,6 +195,11 @@ def test_pythons_true_is_taken_for_true() -> None:
     assert complete.attribute("sticky_control") == "false"
 
 
+def test_a_whole_number_may_be_written_with_a_point() -> None:
+    complete = LIBRARY.validate(described("sensor.lidar.ray_cast", channels="64.0"))
+    assert complete.attribute("channels") == "64"
+
+
 def _reads(definition: ActorDefinition, name: str) -> str | None:
     return next((attribute.value for attribute in definition.attributes if attribute.id == name), None)
 
