@@ -11,8 +11,8 @@ from linden.compiled import shading_part
 def hashed(x: int, y: int, salt: int) -> float:
     """Return a number in [0, 1) for a cell of a grid; mixes as Murmur3's finaliser does (Appleby 2011)."""
     mixed = (
-        np.uint32(x & 0xFFFFFFFF) * np.uint32(0x8DA6B343)
-        ^ np.uint32(y & 0xFFFFFFFF) * np.uint32(0xD8163841)
+        np.uint32(int(x) & 0xFFFFFFFF) * np.uint32(0x8DA6B343)
+        ^ np.uint32(int(y) & 0xFFFFFFFF) * np.uint32(0xD8163841)
         ^ np.uint32(salt & 0xFFFFFFFF) * np.uint32(0xCB1AB31F)
     )
     mixed = np.uint32((mixed ^ (mixed >> np.uint32(16))) * np.uint32(0x85EBCA6B))
