@@ -33,6 +33,7 @@ _FUNCTIONS = {
     "rtcSetGeometryBuildQuality": (None, _HANDLE, _INT),
     "rtcSetSharedGeometryBuffer": (None, _HANDLE, _INT, _UINT, _INT, _HANDLE, _SIZE, _SIZE, _SIZE),
     "rtcSetGeometryInstancedScene": (None, _HANDLE, _HANDLE),
+    "rtcSetGeometryEnableFilterFunctionFromArguments": (None, _HANDLE, ctypes.c_bool),
     "rtcEnableGeometry": (None, _HANDLE),
     "rtcDisableGeometry": (None, _HANDLE),
     "rtcCommitGeometry": (None, _HANDLE),

@@ -10,8 +10,7 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from linden.casting.packets import INNER_SIDES, ON_M
-from linden.casting.rays import F32, NOTHING, STATIC, Hits, Instances, Rays
+from linden.casting.rays import F32, INNER_SIDES, NOTHING, ON_M, STATIC, Hits, Instances, Rays
 from linden.meshes.mesh import Mesh
 
 

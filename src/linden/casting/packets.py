@@ -13,6 +13,7 @@ import numpy as np
 from numba import types
 from numpy.typing import NDArray
 
+from linden.casting import inner_sides
 from linden.compiled import fingerprint, part, unlocked
 
 F32 = NDArray[np.float32]
@@ -23,10 +24,6 @@ NORMAL, U, V, TRIANGLE, GEOMETRY, INSTANCE = 12, 15, 16, 17, 18, 19
 """Columns of a packet; where a column is a vector's, y and z follow. Of a hit, GEOMETRY is -1 where there is none."""
 
 _COLUMNS = 21  # INSTANCE is followed by a column for instance arrays
-INNER_SIDES = 16
-"""How many inner sides of bodies a ray goes out through at most: those of the car it starts in, its seats, a rider."""
-ON_M = np.float32(1e-3)
-"""How far behind an inner side it goes on."""
 
 _ALIGNED = 64  # bytes
 _ALL_BITS = -1
@@ -40,9 +37,6 @@ def _external(name: str) -> Callable[[int, int, int, int], None]:
 
 
 _intersect4, _intersect8, _intersect16 = (_external(f"rtcIntersect{width}") for width in (4, 8, 16))
-_intersect1 = cast(
-    "Callable[[int, int, int], None]", types.ExternalFunction("rtcIntersect1", types.void(_intp, _intp, _intp))
-)
 _occluded4, _occluded8, _occluded16 = (_external(f"rtcOccluded{width}") for width in (4, 8, 16))
 
 _set_transform = cast(
@@ -52,9 +46,15 @@ _set_transform = cast(
 _commit_geometry = cast("Callable[[int], None]", types.ExternalFunction("rtcCommitGeometry", types.void(_intp)))
 _ROWS_3X4 = 0x9134  # RTC_FORMAT_FLOAT3X4_ROW_MAJOR
 
-COHERENT = np.array([1 << 16, 0xFFFF_FFFF, 0, 0, 0, 0, 0, 0], np.uint32)
-INCOHERENT = np.array([0, 0xFFFF_FFFF, 0, 0, 0, 0, 0, 0], np.uint32)
-"""RTCIntersectArguments for rays that go side by side, as a camera's, and for others; all features, no callbacks."""
+
+@lru_cache(maxsize=4)
+def asked(*, coherent: bool, outer: bool) -> NDArray[np.uint64]:
+    """Return RTCIntersectArguments, all features, for rays that go side by side, as a camera's, and for others.
+
+    With ``outer``, those bodies whose geometry lets itself be filtered are met from outside only.
+    """
+    flags = 1 << 16 if coherent else 0  # RTC_RAY_QUERY_FLAG_COHERENT
+    return np.array([flags | 0xFFFF_FFFF << 32, 0, inner_sides.address() if outer else 0, 0, 0], np.uint64)
 
 
 class Packet(NamedTuple):
@@ -158,13 +158,6 @@ def _turn(pose: F32, row: int, normal: F32, ray: int) -> None:
     normal[ray, 0], normal[ray, 1], normal[ray, 2] = u * scale, v * scale, w * scale
 
 
-@part
-def _is_inner(direction: F32, instance: I32, normal: F32, ray: int) -> bool:
-    along = direction[ray, 0] * normal[ray, 0] + direction[ray, 1] * normal[ray, 1] + direction[ray, 2] * normal[ray, 2]
-    inner: bool = instance[ray] >= 0 and along > 0.0
-    return inner
-
-
 @unlocked
 def place(geometry: NDArray[np.int64], pose: F32, before: F32) -> None:
     """Give instances (K,) their poses (K, 3, 4), those that have another one than ``before`` had."""
@@ -197,7 +190,6 @@ def build(width: int) -> Kernels:
         origin: F32,
         direction: F32,
         far_m: float,
-        outer: bool,  # noqa: FBT001 - numba knows no keywords
         pose: F32,
         distance: F32,
         instance: I32,
@@ -207,22 +199,12 @@ def build(width: int) -> Kernels:
         stop: int,
     ) -> None:
         _fingerprint = sources
-        packet, single = new_packet(width), new_packet(1)
+        packet = new_packet(width)
         for first in range(start, stop, width):
             count = min(width, stop - first)
             put_rays(packet, width, origin, direction, first, count, far_m)
             intersect(packet, width, scene, arguments)
             _read(packet, width, count, pose, distance, instance, triangle, normal, first)
-            if not outer:
-                continue
-            for ray in range(first, first + count):
-                passed = 0
-                while passed < INNER_SIDES and _is_inner(direction, instance, normal, ray):
-                    put_rays(single, 1, origin, direction, ray, 1, far_m)
-                    single.floats[NEAR] = distance[ray] + ON_M
-                    _intersect1(scene, single.at, arguments)
-                    _read(single, 1, 1, pose, distance, instance, triangle, normal, ray)
-                    passed += 1
 
     def blocked(
         scene: int,

@@ -15,6 +15,12 @@ STATIC = -1
 NOTHING = -2
 """``Hits.instance`` of a ray that meets nothing."""
 
+INNER_SIDES = 16
+"""How many inner sides of bodies a ray goes out through where a caster has to send it again behind each: those of the
+car it starts in, its seats, a rider."""
+ON_M = np.float32(1e-3)
+"""How far behind an inner side it goes on."""
+
 
 class Rays(NamedTuple):
     """Rays in the world, m; directions of length 1, so that distances are metres."""

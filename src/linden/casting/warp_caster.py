@@ -73,7 +73,7 @@ def _closest(
             return
         side = wp.mesh_eval_face_normal(moving, met.face)
         if tries <= inner_sides and wp.dot(side, d) > 0.0:
-            passed += met.t + 1.0e-3  # packets.ON_M
+            passed += met.t + 1.0e-3  # rays.ON_M
             continue
         body = owner[met.face]
         distance[i] = passed + met.t
@@ -165,7 +165,7 @@ class WarpCaster:
         answers = [
             wp.empty(count, dtype=kind, device=self._device) for kind in (wp.float32, wp.int32, wp.int32, wp.vec3)
         ]
-        sides = 16 if outer else 0  # packets.INNER_SIDES
+        sides = 16 if outer else 0  # rays.INNER_SIDES
         where = [*self._ids(), self._owner, self._first, *self._sent(rays), float(farthest_m), sides]
         wp.launch(_closest, dim=count, inputs=[*where, *answers], device=self._device)
         return Hits(*(answer.numpy() for answer in answers))
