@@ -57,7 +57,7 @@ def _endless(*arguments: str, limit_s: float = ENDLESS_S, keys: str = "") -> Pro
 
 
 EVERY_CAMERA = "p 2 3 4 5 6 7 8 ctrl+1 ctrl+2 ctrl+3 ctrl+4 ctrl+5 1 tab tab tab g c c"
-"""In manual_control.py: the autopilot, each of its sensors, three other places of the camera, the radar, the weather."""
+"""In manual_control.py: the autopilot, each of its sensors, other places of the camera, the radar, the weather."""
 
 EXAMPLES = (
     _endless("dynamic_weather.py"),
@@ -80,7 +80,7 @@ EXAMPLES = (
     _endless("manual_control_steeringwheel.py"),
     _endless("automatic_control.py", "--sync"),
     _endless("synchronous_mode.py"),
-    _example("sensor_synchronization.py", limit_s=60.0),
+    _endless("sensor_synchronization.py"),
     _endless("tutorial.py"),
     _endless("tutorial_gbuffer.py"),
     _endless("bounding_boxes.py"),

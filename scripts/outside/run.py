@@ -56,6 +56,7 @@ def main() -> int:
     parser.add_argument(
         "--only", nargs="*", default=(), metavar="WORD", help="run only the rows that hold all of these"
     )
+    parser.add_argument("--looked", action="store_true", help="let another client take a picture before each program")
     parser.add_argument("--python", default=sys.executable, help="the interpreter that has what the programs need")
     args = parser.parse_args()
     folders = Folders(*(getattr(args, folder).resolve() for folder in Folders._fields))
@@ -68,12 +69,12 @@ def main() -> int:
             if program.town != "Linden" and not (folders.towns / f"{program.town}.xodr").exists():
                 print(f"not run | {program.town} | {' '.join(program.arguments)} | no such map", flush=True)
                 continue
-            outcome = _run(program, folders, args.python)
+            outcome = _run(program, folders, args.python, looked=args.looked)
             print(_line(program, outcome), flush=True)
     return 0
 
 
-def _run(program: Program, folders: Folders, python: str) -> Outcome:
+def _run(program: Program, folders: Folders, python: str, *, looked: bool) -> Outcome:
     """Start a server and the program, and wait for the end of it."""
     name = f"{program.town}_" + re.sub(r"[^A-Za-z0-9.=-]+", "_", "_".join(program.arguments))[-90:]
     log, output = folders.out / f"{name}.server.txt", folders.out / f"{name}.txt"
@@ -82,6 +83,8 @@ def _run(program: Program, folders: Folders, python: str) -> Outcome:
     watched = {"OUTSIDE_PICTURES": str(pictures), "OUTSIDE_KEYS": program.keys, "OUTSIDE_PACE_S": str(PACE_S)}
     command = [python, "-u", *(folders.filled(argument) for argument in program.arguments)]
     with _server(program, folders, log), _driver(program, python, folders, folders.out / f"{name}.driver.txt"):
+        if looked:
+            subprocess.run([python, str(HERE / "first_look.py"), str(program.port)], check=True)
         began_s = time.monotonic()
         with output.open("w", encoding="utf-8") as file:
             process = subprocess.Popen(

@@ -53,6 +53,17 @@ def test_an_attached_sensor_follows_its_vehicle(world, blueprints, car) -> None:
     assert turn == pytest.approx(90.0, abs=0.01)
 
 
+def test_a_sensor_on_a_spring_arm_looks_at_its_vehicle(client, world, blueprints, car) -> None:
+    blueprint, behind = blueprints.find("sensor.other.gnss"), carla.Transform(carla.Location(x=-6.0, z=3.0))
+    sensor = world.spawn_actor(blueprint, behind, car, carla.AttachmentType.SpringArmGhost)
+    rigid = carla.command.SpawnActor(blueprint, behind, car)
+    on_arm = carla.command.SpawnActor(blueprint, behind, car, carla.AttachmentType.SpringArmGhost, "")
+    answers = client.apply_batch_sync([rigid, on_arm], True)
+    pitches = [world.get_actor(found).get_transform().rotation.pitch for found in (sensor.id, answers[1].actor_id)]
+    assert pitches == pytest.approx([-26.6, -26.6], abs=1.0)  # the street slopes
+    assert world.get_actor(answers[0].actor_id).get_transform().rotation.pitch == pytest.approx(0.0, abs=1.0)
+
+
 def test_destroying_a_vehicle_takes_its_sensors_along(world, blueprints, car) -> None:
     sensor = world.spawn_actor(blueprints.find("sensor.other.gnss"), carla.Transform(), attach_to=car)
     world.tick()

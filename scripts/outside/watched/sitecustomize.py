@@ -1,6 +1,6 @@
 """Looks over an outside program's shoulder: keeps pictures of its pygame window, and presses keys in it.
 
-Python imports a module of this name when it starts, if its folder is on PYTHONPATH, so the program itself is not touched.
+Python imports a module of this name when it starts, if its folder is on PYTHONPATH; the program is not touched.
 ``OUTSIDE_PICTURES`` is the folder of the pictures; ``OUTSIDE_KEYS`` the keys, as ``p n n shift+c``; ``OUTSIDE_PACE_S``
 the seconds from one picture, and the key after it, to the next. A window counts from the first time that it is shown.
 """

@@ -4,6 +4,7 @@ import math
 
 from linden.handlers.context import Context
 from linden.handlers.registry import method
+from linden.simulation.arms import hung
 from linden.simulation.sockets import in_parent
 from linden.values.actors import Actor, ActorDefinition, ActorDescription
 from linden.values.space import BoundingBox, Transform, Vector3D
@@ -47,10 +48,10 @@ def spawn_actor(context: Context, description: ActorDescription, pose: Transform
 
 @method("spawn_actor_with_parent")
 def spawn_actor_with_parent(
-    context: Context, description: ActorDescription, pose: Transform, parent_id: U32, _attachment: U8, socket: str
+    context: Context, description: ActorDescription, pose: Transform, parent_id: U32, attachment: U8, socket: str
 ) -> Actor:
-    """Attach an actor to another; spring arms hold as rigidly as the rest, for there is no screen to calm."""
-    return message(context, attach(context, description, pose, parent_id, socket))
+    """Attach an actor to another, rigidly or at the end of a spring arm."""
+    return message(context, attach(context, description, hung(pose, attachment), parent_id, socket))
 
 
 def attach(

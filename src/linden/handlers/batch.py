@@ -10,6 +10,8 @@ from linden.errors import Refusal
 from linden.handlers import actors, lights, other_physics, vehicles, walkers
 from linden.handlers.context import Context
 from linden.handlers.registry import method, told
+from linden.simulation.arms import hung
+from linden.values.enums import AttachmentType
 from linden.wire import commands as cmd
 
 Answer: TypeAlias = tuple[Any, ...]
@@ -112,7 +114,10 @@ def _run(context: Context, command: cmd.Command) -> int:
 def _spawn(context: Context, command: cmd.SpawnActor) -> int:
     """Spawn, then do what should follow; as in CARLA, what fails of the latter does not undo the spawn."""
     parent_id, socket = command.parent_id or 0, command.socket if command.parent_id else ""
-    record = actors.attach(context, command.description, command.transform, parent_id, socket)
+    # the client leaves the attachment unset unless it is told one: any byte may come, those seen were multiples of 8
+    on_arm = command.parent_id and command.attachment in {AttachmentType.SPRING_ARM, AttachmentType.SPRING_ARM_GHOST}
+    pose = hung(command.transform, command.attachment) if on_arm else command.transform
+    record = actors.attach(context, command.description, pose, parent_id, socket)
     for follow_up in command.do_after:
         aimed = follow_up
         if not isinstance(follow_up, cmd.SpawnActor) and follow_up[0] == cmd.JUST_SPAWNED:
