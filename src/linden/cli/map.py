@@ -1,16 +1,15 @@
-"""``linden map``: build OpenDRIVE from streets, check it, draw it, count it, export what is seen of it."""
+"""``linden map``: build OpenDRIVE from streets, check, draw and count it, export what is seen, measure it by lidar."""
 
 import argparse
 import json
 from collections.abc import Callable
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from linden.cli import map_pointcloud
+from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
-
-if TYPE_CHECKING:
-    from linden.opendrive.model import OpenDrive
 
 _HOME_STREETS = "linden.geojson"
 
@@ -39,6 +38,9 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     info_parser = _add(actions, "info", info, "count roads, junctions, signals, lanes")
     _add_file(info_parser)
 
+    cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
+    map_pointcloud.add_arguments(cloud_parser)
+
 
 def build(arguments: argparse.Namespace) -> int:
     """Write the OpenDRIVE map of a file of streets."""
@@ -62,7 +64,7 @@ def check(arguments: argparse.Namespace) -> int:
     from linden.opendrive.check import Severity  # noqa: PLC0415 - see above
     from linden.opendrive.check import check as findings_of  # noqa: PLC0415 - see above
 
-    findings = findings_of(_read(arguments.file))
+    findings = findings_of(opendrive_of(arguments.file))
     wrong = [finding for finding in findings if finding.severity is not Severity.NOTE]
     for finding in findings if arguments.notes else wrong:
         _say(str(finding))
@@ -76,7 +78,7 @@ def show(arguments: argparse.Namespace) -> int:
     """Write a drawing of the map."""
     from linden.opendrive.draw import svg  # noqa: PLC0415 - the server's start does not pay for it
 
-    _write(arguments.output, svg(_read(arguments.file)).encode())
+    _write(arguments.output, svg(opendrive_of(arguments.file)).encode())
     _say(f"{arguments.output}: drawn")
     return 0
 
@@ -87,17 +89,10 @@ def export(arguments: argparse.Namespace) -> int:
     from linden.meshes.standing import standing  # noqa: PLC0415 - see above
     from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
     from linden.simulation.scenery import scenery_of  # noqa: PLC0415 - see above
-    from linden.world.map_facts import derive  # noqa: PLC0415 - see above
-    from linden.world.maps import LoadedMap  # noqa: PLC0415 - see above
 
-    try:
-        text = _content(arguments.file).decode("utf-8")
-    except UnicodeDecodeError as error:
-        raise UserError(f"{arguments.file} is no text in UTF-8: {error.reason} at byte {error.start}") from None
-    name = Path(arguments.file).name.removesuffix(".xodr")
-    world_map = LoadedMap(name=name, text=text, **vars(derive(text)))
-    mesh = standing(parse(text), world_map, scenery_of(world_map).scene)
-    _write(arguments.output, glb(mesh, name))
+    world_map = world_map_of(arguments.file)
+    mesh = standing(parse(world_map.text), world_map, scenery_of(world_map).scene)
+    _write(arguments.output, glb(mesh, world_map.name))
     _say(f"{arguments.output}: {len(mesh.triangles):,} triangles, {arguments.output.stat().st_size:,} bytes")
     return 0
 
@@ -106,7 +101,7 @@ def info(arguments: argparse.Namespace) -> int:
     """Print what the map has, one count a line."""
     from linden.opendrive.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
 
-    for name, value in count(_read(arguments.file))._asdict().items():
+    for name, value in count(opendrive_of(arguments.file))._asdict().items():
         _say(f"{name.replace('_', ' '):24} {f'{value:.2f}' if isinstance(value, float) else value}")
     return 0
 
@@ -126,32 +121,8 @@ def _add_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", help="an OpenDRIVE file, or the name of a built-in map such as Linden")
 
 
-def _read(name: str) -> "OpenDrive":
-    """Read a file, or else the built-in map of that name.
-
-    Raises:
-        UserError: there is neither, or it cannot be read.
-    """
-    from linden.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
-
-    return parse(_content(name))
-
-
-def _content(name: str) -> bytes:
-    """Return the bytes of a file, or else of the built-in map of that name.
-
-    Raises:
-        UserError: there is neither.
-    """
-    path = Path(name)
-    built_in = resources.files("linden") / "data" / f"{name.removesuffix('.xodr')}.xodr"
-    if not path.is_file() and path.name == name and built_in.is_file():
-        return built_in.read_bytes()
-    return _bytes_of(path)
-
-
 def _streets(path: Path | None) -> dict[str, Any]:
-    data = (resources.files("linden") / "data" / _HOME_STREETS).read_bytes() if path is None else _bytes_of(path)
+    data = (resources.files("linden") / "data" / _HOME_STREETS).read_bytes() if path is None else bytes_of(path)
     try:
         streets = json.loads(data)
     except ValueError as error:
@@ -159,21 +130,6 @@ def _streets(path: Path | None) -> dict[str, Any]:
     if not isinstance(streets, dict):
         raise UserError(f"{path} is no GeoJSON: it should be an object of type FeatureCollection")
     return streets
-
-
-def _bytes_of(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        built_in = sorted(
-            entry.name.removesuffix(".xodr")
-            for entry in (resources.files("linden") / "data").iterdir()
-            if entry.name.endswith(".xodr")
-        )
-        raise UserError(
-            f"cannot read {path}: {error.strerror}; name an existing file"
-            + (f" or a built-in map: {', '.join(built_in)}" if built_in else "")
-        ) from None
 
 
 def _write(path: Path, data: bytes) -> None:
