@@ -44,16 +44,19 @@ def flow(spec: CameraSpec, rays: Rays, hits: Hits, instances: Instances, before:
     The sky is infinitely far: it moves as the camera turns.
     """
     image = np.empty((spec.height_px * spec.width_px, 2), np.float32)
-    scale = np.array([2.0 * spec.focal_px / spec.width_px, 2.0 * spec.focal_px / spec.height_px])
-    carried = carried_back(instances)
     carried, pixel = carried_back(instances), pixel_of_ray(spec)
-    where = rays.origin_m, rays.direction, hits.distance_m, hits.instance, carried, eye(before), eye(now), scale
+    where = rays.origin_m, rays.direction, hits.distance_m, hits.instance, carried, eye(before), eye(now), scale(spec)
 
     def work(start: int, stop: int) -> None:
-        _flow(*where, pixel, image, start, stop)
+        flow_loop(*where, pixel, image, start, stop)
 
     in_stretches(len(pixel), work, multiple=TILE_PX**2)
     return image.reshape(spec.height_px, spec.width_px, 2)
+
+
+def scale(spec: CameraSpec) -> F64:
+    """Return (2,) how much of half a picture's size lies between places one metre apart, one metre ahead."""
+    return np.array([2.0 * spec.focal_px / spec.width_px, 2.0 * spec.focal_px / spec.height_px])
 
 
 def carried_back(instances: Instances) -> F64:
@@ -65,41 +68,43 @@ def carried_back(instances: Instances) -> F64:
 
 
 @part
-def _slope(turn: F64, apart: F64, axis: int) -> float:
+def _slope(turn: F64, x: float, y: float, z: float, axis: int) -> float:
     """Return how far to the right (1) or up (2) a place lies on the plane one metre ahead; far off where behind it."""
-    ahead = turn[0, 0] * apart[0] + turn[1, 0] * apart[1] + turn[2, 0] * apart[2]
-    aside = turn[0, axis] * apart[0] + turn[1, axis] * apart[1] + turn[2, axis] * apart[2]
+    ahead = turn[0, 0] * x + turn[1, 0] * y + turn[2, 0] * z
+    aside = turn[0, axis] * x + turn[1, axis] * y + turn[2, axis] * z
     slope: float = aside / max(ahead, 1e-6)
     return slope
 
 
+@part
+def _through(matrix: F64, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Return a point through a (3, 4) matrix."""
+    return (
+        matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * z + matrix[0, 3],
+        matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * z + matrix[1, 3],
+        matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * z + matrix[2, 3],
+    )
+
+
 @unlocked
-def _flow(
+def flow_loop(
     origin: F32, direction: F32, distance_m: F32, instance: I32, carried: F64, before: Eye, now: Eye, scale: F64,
     pixel: I32, image: F32, start: int, stop: int,
 ) -> None:  # fmt: skip
-    here, then = np.empty(3), np.empty(3)
+    """Write the flow of rays ``start`` to ``stop``."""
     for ray in range(start, stop):
         at = pixel[ray]
         if at < 0:
             continue
+        x, y, z = float(direction[ray, 0]), float(direction[ray, 1]), float(direction[ray, 2])
+        u, v, w = x, y, z
         place = instance[ray]
-        for axis in range(3):
-            far = np.float64(direction[ray, axis])
-            here[axis] = far if place == NOTHING else origin[ray, axis] + far * distance_m[ray]
-            then[axis] = here[axis]
-        if place >= 0:
-            for axis in range(3):
-                then[axis] = (
-                    carried[place, axis, 0] * here[0]
-                    + carried[place, axis, 1] * here[1]
-                    + carried[place, axis, 2] * here[2]
-                    + carried[place, axis, 3]
-                )
         if place != NOTHING:
-            for axis in range(3):
-                here[axis] -= now.place_m[axis]
-                then[axis] -= before.place_m[axis]
+            far = float(distance_m[ray])
+            x, y, z = origin[ray, 0] + far * x, origin[ray, 1] + far * y, origin[ray, 2] + far * z
+            u, v, w = _through(carried[place], x, y, z) if place >= 0 else (x, y, z)
+            x, y, z = x - now.place_m[0], y - now.place_m[1], z - now.place_m[2]
+            u, v, w = u - before.place_m[0], v - before.place_m[1], w - before.place_m[2]
         for side in range(2):
-            moved = (_slope(now.turn, here, side + 1) - _slope(before.turn, then, side + 1)) * scale[side]
-            image[at, side] = min(max(moved, -_MOST), _MOST)
+            moved = _slope(now.turn, x, y, z, side + 1) - _slope(before.turn, u, v, w, side + 1)
+            image[at, side] = min(max(moved * scale[side], -_MOST), _MOST)
