@@ -85,15 +85,25 @@ def developed(spec: CameraSpec, film: Film, light: F32, air: Air) -> U8:
     """Return the picture (height, width, 4) of light (N, 3), tile by tile, as bytes B, G, R, A."""
     pixel = pixel_of_ray(spec)
     image = np.empty((spec.height_px * spec.width_px, 4), np.uint8)
-    table, factor = curve(film), white_balance(film) * np.float32(exposure(film, air))
-    halo = bloom(spec, light, factor) * np.float32(film.bloom / _DEFAULT.bloom if film.postprocess else 0.0)
-    rain = (air.rain, math.fmod(air.now_s, 1000.0), 0.16 * brightness(air))
+    table, factor = curve(film), balance(film, air)
+    halo = bloom(spec, film, light, factor)
 
     def work(start: int, stop: int) -> None:
-        _develop(light, factor, halo, tile_counts(spec)[0], pixel, spec.width_px, *rain, table, image, start, stop)
+        _develop(light, factor, halo, tile_counts(spec)[0], pixel, spec.width_px, *rain(air), table, image, start, stop)
 
     in_stretches(len(pixel), work, multiple=TILE_PX**2)
     return image.reshape(spec.height_px, spec.width_px, 4)
+
+
+def balance(film: Film, air: Air) -> F32:
+    """Return what red, green and blue (3,) are multiplied by before the film's curve."""
+    factors: F32 = white_balance(film) * np.float32(exposure(film, air))
+    return factors
+
+
+def rain(air: Air) -> tuple[float, float, float]:
+    """Return how hard it rains before the lens, 0 to 1, at what time (s), and how bright a drop is."""
+    return air.rain, math.fmod(air.now_s, 1000.0), 0.16 * brightness(air)
 
 
 def white_balance(film: Film) -> F32:
@@ -107,7 +117,15 @@ def white_balance(film: Film) -> F32:
     return factors
 
 
-def bloom(spec: CameraSpec, light: F32, factor: F32) -> F32:
+def bloom_weights(film: Film) -> tuple[F32, F32]:
+    """Return how much light comes from each of 13 tiles (13,) down, and then across."""
+    bell = np.exp(-0.5 * (np.arange(-6, 7) / 2.4) ** 2)
+    bell /= bell.sum()
+    strength = _BLOOM_SHARE * film.bloom / _DEFAULT.bloom if film.postprocess else 0.0
+    return bell.astype(np.float32), (strength * bell).astype(np.float32)
+
+
+def bloom(spec: CameraSpec, film: Film, light: F32, factor: F32) -> F32:
     """Return the light that the brightest spots spread around them, (tiles down, tiles across, 3), exposed."""
     across, down = tile_counts(spec)
     tiles = np.empty((down * across, 3), np.float32)
@@ -119,14 +137,12 @@ def bloom(spec: CameraSpec, light: F32, factor: F32) -> F32:
     over: F32 = tiles.reshape(down, across, 3)
     if not over.any():
         return over
-    weights = np.exp(-0.5 * (np.arange(-6, 7) / 2.4) ** 2).astype(np.float32)
-    weights *= np.float32(_BLOOM_SHARE) / weights.sum() ** 2
     spread: F32 = over
-    for axis in (0, 1):
+    for axis, weights in enumerate(bloom_weights(film)):
         padded = np.pad(spread, [(6, 6) if side == axis else (0, 0) for side in range(3)])
         length = spread.shape[axis]
         spread = sum(weight * np.take(padded, np.arange(k, k + length), axis=axis) for k, weight in enumerate(weights))
-    return spread * np.float32(weights.sum())
+    return spread
 
 
 @shading

@@ -41,13 +41,18 @@ def finer(spec: CameraSpec, rows: NDArray[np.intp], pose: Transform) -> Rays:
     """Return the rays (SAMPLES M) in the world that the pixels of ``rows`` (M,) get."""
     origin, direction = (np.empty((SAMPLES * len(rows), 3), np.float32) for _ in range(2))
     turn, place = rotation_matrix(pose.rotation).astype(np.float32), np.array(pose.location, np.float32)
-    vectors, offsets = directions(spec), ((np.array(_PLACES) - 0.5) / spec.focal_px).astype(np.float32)
+    vectors, aside = directions(spec), offsets(spec)
 
     def work(start: int, stop: int) -> None:
-        _split(vectors, rows, offsets, turn, place, origin, direction, start, stop)
+        _split(vectors, rows, aside, turn, place, origin, direction, start, stop)
 
     in_stretches(len(rows), work, multiple=TILE_PX)
     return Rays(origin, direction)
+
+
+def offsets(spec: CameraSpec) -> F32:
+    """Return how far (SAMPLES, 2) to the right and down the rays of a pixel go past its middle, one metre ahead."""
+    return ((np.array(_PLACES) - 0.5) / spec.focal_px).astype(np.float32)
 
 
 @unlocked

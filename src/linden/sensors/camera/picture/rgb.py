@@ -23,6 +23,10 @@ from linden.values.space import Transform
 F32 = NDArray[np.float32]
 
 
+BRIGHTEST = 2.0
+"""Light above counts as this where a pixel's samples are put together, or edges would glitter."""
+
+
 class Looks(NamedTuple):
     """What pictures need to know of the meshes besides their faces; made once for a map."""
 
@@ -70,8 +74,8 @@ def picture(spec: CameraSpec, film: Film, pose: Transform, rays: Rays, hits: Hit
 
 
 def _mean(samples: F32) -> F32:
-    """Return the mean of each pixel's samples; light above 2 counts as 2, or edges would glitter."""
-    grouped = np.minimum(samples, np.float32(2.0)).reshape(-1, SAMPLES, 3)
+    """Return the mean of each pixel's samples."""
+    grouped = np.minimum(samples, np.float32(BRIGHTEST)).reshape(-1, SAMPLES, 3)
     mean: F32 = grouped.mean(axis=1, dtype=np.float32)
     return mean
 

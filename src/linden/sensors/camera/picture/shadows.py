@@ -23,7 +23,7 @@ _DARK = 0.01
 def sunny(caster: Caster, rays: Rays, hits: Hits, air: Air) -> F32:
     """Return (N,) 1 where the sun reaches what a ray meets, 0 where it does not or looks the other way."""
     lit = np.zeros(len(hits.instance), np.float32)
-    if max(air.sun) < _DARK or air.sun_z <= 0.0:
+    if not shines(air):
         return lit
     sun = np.array([air.sun_x, air.sun_y, air.sun_z], np.float32)
     facing = np.empty(len(lit), np.bool_)
@@ -41,6 +41,11 @@ def sunny(caster: Caster, rays: Rays, hits: Hits, air: Air) -> F32:
     in_stretches(len(rows), gather, multiple=16)
     lit[rows] = ~caster.blocked(Rays(origin, direction), LONGEST_SHADOW_M, coherent=True)
     return lit
+
+
+def shines(air: Air) -> bool:
+    """Return whether the sun throws shadows."""
+    return max(air.sun) >= _DARK and air.sun_z > 0.0
 
 
 @unlocked

@@ -5,7 +5,15 @@ import pytest
 
 from linden.scene.weather import CLEAR_NOON
 from linden.sensors.camera.picture.atmosphere import air
-from linden.sensors.camera.picture.develop import bloom, curve, developed, exposure, filmic, white_balance
+from linden.sensors.camera.picture.develop import (
+    bloom,
+    bloom_weights,
+    curve,
+    developed,
+    exposure,
+    filmic,
+    white_balance,
+)
 from linden.sensors.camera.spec import CameraSpec, Film
 
 NOON = air(CLEAR_NOON, 0.0)
@@ -50,10 +58,15 @@ def test_a_film_for_candlelight_makes_daylight_blue() -> None:
 def test_a_bright_spot_spreads_and_an_ordinary_picture_does_not() -> None:
     light = np.full((SPEC.width_px * SPEC.height_px, 3), 0.5, np.float32)
     one = np.ones(3, np.float32)
-    assert not bloom(SPEC, light, one).any()
+    assert not bloom(SPEC, Film(), light, one).any()
     light[0] = 50.0
-    spread = bloom(SPEC, light, one)
+    spread = bloom(SPEC, Film(), light, one)
     assert spread[0, 0, 0] > spread[0, 1, 0] > spread[0, 2, 0] > 0.0
+
+
+def test_a_tenth_of_what_is_too_bright_spreads() -> None:
+    assert np.prod([weights.sum() for weights in bloom_weights(Film())]) == pytest.approx(0.10)
+    assert not bloom_weights(Film(postprocess=False))[1].any()
 
 
 def test_bytes_are_in_the_order_of_the_wire() -> None:
