@@ -2,12 +2,14 @@
 
 import numpy as np
 
-from linden.casting.rays import NOTHING, STATIC, Hits, Instances, Rays
+from linden.casting.rays import CPU, NOTHING, STATIC, Hits, Instances, Rays
 from linden.meshes.mesh import Mesh
 
 
 class PlainCaster:
     """See ``linden.casting.rays.Caster``."""
+
+    device = CPU
 
     def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
         self._standing, self._bodies = standing, bodies

@@ -5,14 +5,11 @@ import logging
 
 from linden.casting.embree import EmbreeCaster
 from linden.casting.embree_library import NoEmbreeError
-from linden.casting.rays import Caster
+from linden.casting.rays import CPU, Caster
 from linden.errors import UserError
 from linden.meshes.mesh import Mesh
 
 log = logging.getLogger("linden")
-
-
-CPU = "cpu"
 
 
 def check_device(device: str) -> None:

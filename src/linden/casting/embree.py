@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from linden.casting.crew import in_stretches
 from linden.casting.embree_library import embree, packet_width
 from linden.casting.packets import asked, build, place
-from linden.casting.rays import F32, I32, Hits, Instances, Rays
+from linden.casting.rays import CPU, F32, I32, Hits, Instances, Rays
 from linden.meshes.mesh import Mesh
 
 _TRIANGLES, _INSTANCE = 0, 121  # RTC_GEOMETRY_TYPE_
@@ -33,6 +33,8 @@ class EmbreeCaster:
         scene: address of the scene above, for kernels that send packets themselves.
         pose_of: (K, 3, 4) poses of the instances, as they were put last.
     """
+
+    device = CPU
 
     def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
         """Build the trees.

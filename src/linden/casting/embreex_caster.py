@@ -10,12 +10,14 @@ from embreex.mesh_construction import TriangleMesh
 from embreex.rtcore_scene import EmbreeScene
 from numpy.typing import NDArray
 
-from linden.casting.rays import F32, INNER_SIDES, NOTHING, ON_M, STATIC, Hits, Instances, Rays
+from linden.casting.rays import CPU, F32, INNER_SIDES, NOTHING, ON_M, STATIC, Hits, Instances, Rays
 from linden.meshes.mesh import Mesh
 
 
 class EmbreexCaster:
     """Answers rays by embreex; see ``linden.casting.rays.Caster``."""
+
+    device = CPU
 
     def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
         """Build the tree of what stands."""

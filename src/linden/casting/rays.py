@@ -10,6 +10,9 @@ from linden.meshes.mesh import Mesh
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
 
+CPU = "cpu"
+"""``Caster.device`` of all that need no GPU."""
+
 STATIC = -1
 """``Hits.instance`` of what stands."""
 NOTHING = -2
@@ -53,6 +56,8 @@ class Hits(NamedTuple):
 
 class Caster(Protocol):
     """Answers rays; made with what stands and the meshes that bodies may have."""
+
+    device: str  # CPU, or a GPU as Warp names it
 
     def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
         """Build what makes asking fast."""

@@ -4,17 +4,21 @@ What stands is one mesh. All bodies together are another, whose corners are move
 refitted, for Warp knows no instances. Of two surfaces at one distance what stands answers.
 """
 
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import warp as wp
 from numpy.typing import NDArray
 
+from linden.casting.gpu import Gpu
 from linden.casting.rays import Hits, Instances, Rays
 from linden.meshes.mesh import Mesh
 
 AGAIN = 200
 """Poses after which the tree of the bodies is built anew: refitted ever again, it would fit worse and worse."""
+
+_SIDES = 16  # rays.INNER_SIDES
 
 wp.config.quiet = True
 wp.config.enable_backward = False
@@ -101,23 +105,54 @@ def _blocked(
     hit[i] = met
 
 
+@wp.kernel  # type: ignore[untyped-decorator]
+def _sunny(
+    standing: wp.uint64,
+    moving: wp.uint64,
+    origin: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+    direction: wp.array(dtype=wp.vec3),  # type: ignore[valid-type]
+    facing: wp.array(dtype=wp.bool),  # type: ignore[valid-type]
+    far_m: float,
+    sunny: wp.array(dtype=float),  # type: ignore[valid-type]
+) -> None:
+    i = wp.tid()
+    reached = facing[i]
+    if reached and standing != wp.uint64(0):
+        reached = not wp.mesh_query_ray_anyhit(standing, origin[i], direction[i], far_m)
+    if reached and moving != wp.uint64(0):
+        reached = not wp.mesh_query_ray_anyhit(moving, origin[i], direction[i], far_m)
+    sunny[i] = wp.where(reached, 1.0, 0.0)
+
+
 class WarpCaster:
     """Answers rays by Warp; see ``linden.casting.rays.Caster``."""
 
     def __init__(self, standing: Mesh, bodies: list[Mesh], device: str = "cuda") -> None:
         """Build the tree of what stands, on a device of Warp's: "cuda", "cuda:1" or, slowly, "cpu"."""
-        self._device = device
+        self.device = device
         self._bodies = bodies
         self._standing = self._tree(self._vectors(standing.vertices_m), standing.triangles)
         self._mesh: NDArray[np.int32] = np.zeros(0, np.int32)
         self._poses = 0
         self._assemble(self._mesh)
 
+    @cached_property
+    def gpu(self) -> Gpu:
+        """The device, as kernels of numba's use it beside this caster; there is none where the device is "cpu"."""
+        device = wp.get_device(self.device)
+        return Gpu(device.ordinal, wp.get_stream(device).cuda_stream)
+
+    def view(self, array: Any) -> Any:  # noqa: ANN401 - from numba to Warp
+        """Return an array (N,) or (N, 3) of numba's on the device as Warp has it; it has to outlive what is returned."""
+        kind = wp.vec3 if len(array.shape) == 2 else wp.dtype_from_numpy(array.dtype)
+        pointer = array.device_ctypes_pointer.value
+        return wp.array(ptr=pointer, dtype=kind, shape=array.shape[0], device=self.device, capacity=array.nbytes)
+
     def _vectors(self, values: NDArray[Any]) -> Any:  # noqa: ANN401 - an array of Warp's
-        return wp.array(np.ascontiguousarray(values, np.float32), dtype=wp.vec3, device=self._device)
+        return wp.array(np.ascontiguousarray(values, np.float32), dtype=wp.vec3, device=self.device)
 
     def _whole(self, values: NDArray[Any]) -> Any:  # noqa: ANN401 - an array of Warp's
-        return wp.array(np.ascontiguousarray(values, np.int32), dtype=wp.int32, device=self._device)
+        return wp.array(np.ascontiguousarray(values, np.int32), dtype=wp.int32, device=self.device)
 
     def _tree(self, points: Any, triangles: NDArray[np.uint32]) -> Any:  # noqa: ANN401 - Warp's
         """Return a mesh of Warp's, None where there are no triangles."""
@@ -131,7 +166,7 @@ class WarpCaster:
         before = np.concatenate([[0], np.cumsum(corners)]).astype(np.uint32)
         self._mesh = np.array(mesh, np.int32)
         self._local = self._vectors(np.concatenate([np.zeros((0, 3)), *(body.vertices_m for body in bodies)]))
-        self._points = wp.zeros(int(corners.sum()), dtype=wp.vec3, device=self._device)
+        self._points = wp.zeros(int(corners.sum()), dtype=wp.vec3, device=self.device)
         self._triangles = np.concatenate(
             [np.zeros((0, 3), np.uint32), *(body.triangles + before[row] for row, body in enumerate(bodies))]
         )
@@ -149,9 +184,9 @@ class WarpCaster:
             return
         matrices = np.zeros((len(instances.pose), 4, 4), np.float32)
         matrices[:, :3], matrices[:, 3, 3] = instances.pose, 1.0
-        pose = wp.array(matrices, dtype=wp.mat44, device=self._device)
+        pose = wp.array(matrices, dtype=wp.mat44, device=self.device)
         arrays = [self._local, self._owner_of_point, pose, self._points]
-        wp.launch(_place, dim=len(self._points), inputs=arrays, device=self._device)
+        wp.launch(_place, dim=len(self._points), inputs=arrays, device=self.device)
         if self._poses % AGAIN == 0:
             self._moving = self._tree(self._points, self._triangles)
         else:
@@ -163,21 +198,31 @@ class WarpCaster:
         del coherent  # threads of a GPU go side by side as they come
         count = len(rays.origin_m)
         answers = [
-            wp.empty(count, dtype=kind, device=self._device) for kind in (wp.float32, wp.int32, wp.int32, wp.vec3)
+            wp.empty(count, dtype=kind, device=self.device) for kind in (wp.float32, wp.int32, wp.int32, wp.vec3)
         ]
-        sides = 16 if outer else 0  # rays.INNER_SIDES
+        sides = _SIDES if outer else 0
         where = [*self._ids(), self._owner, self._first, *self._sent(rays), float(farthest_m), sides]
-        wp.launch(_closest, dim=count, inputs=[*where, *answers], device=self._device)
+        wp.launch(_closest, dim=count, inputs=[*where, *answers], device=self.device)
         return Hits(*(answer.numpy() for answer in answers))
 
     def blocked(self, rays: Rays, farthest_m: float, *, coherent: bool = False) -> NDArray[np.bool_]:
         """Return (N,) whether anything is met at all, whichever its side."""
         del coherent
-        hit = wp.empty(len(rays.origin_m), dtype=wp.bool, device=self._device)
+        hit = wp.empty(len(rays.origin_m), dtype=wp.bool, device=self.device)
         where = [*self._ids(), *self._sent(rays), float(farthest_m), hit]
-        wp.launch(_blocked, dim=len(rays.origin_m), inputs=where, device=self._device)
+        wp.launch(_blocked, dim=len(rays.origin_m), inputs=where, device=self.device)
         answer: NDArray[np.bool_] = hit.numpy()
         return answer
+
+    def closest_into(self, count: int, rays: list[Any], farthest_m: float, hits: list[Any]) -> None:
+        """Find what ``count`` rays meet, all in arrays of Warp's; they go out through the inner sides of bodies."""
+        where = [*self._ids(), self._owner, self._first, *rays, float(farthest_m), _SIDES]
+        wp.launch(_closest, dim=count, inputs=[*where, *hits], device=self.device)
+
+    def sunny_into(self, count: int, rays: list[Any], facing: Any, farthest_m: float, sunny: Any) -> None:  # noqa: ANN401
+        """Write 1 where a ray that is to be asked for meets nothing, else 0, all in arrays of Warp's."""
+        where = [*self._ids(), *rays, facing, float(farthest_m), sunny]
+        wp.launch(_sunny, dim=count, inputs=where, device=self.device)
 
     def _ids(self) -> list[Any]:
         return [wp.uint64(0 if tree is None else tree.id) for tree in (self._standing, self._moving)]

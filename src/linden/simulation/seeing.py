@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.choose import CPU, caster_of
-from linden.casting.rays import Caster, Instances
+from linden.casting.choose import caster_of
+from linden.casting.rays import CPU, Caster, Instances
 from linden.meshes.bodies import Bodies
 from linden.meshes.mesh import NO_OBJECT, LampOf, Mesh
 from linden.meshes.standing import standing

@@ -5,11 +5,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.rays import Hits, Rays
-from linden.sensors.camera import labels, motion
+from linden.sensors.camera.darkroom import darkroom_of
 from linden.sensors.camera.events import Events, Retina
-from linden.sensors.camera.picture.rgb import picture
-from linden.sensors.camera.rays import aim, directions
 from linden.sensors.camera.spec import CameraSpec, Film, camera_spec, event_spec, film
 from linden.sensors.looking import Look
 from linden.values.actors import ActorDescription
@@ -25,20 +22,11 @@ class Image(NamedTuple):
     pixels: Pixels  # (height, width, 4) bytes B, G, R, A, or (height, width, 2) floats of a flow
 
 
-def view(spec: CameraSpec, look: Look) -> tuple[Rays, Hits]:
-    """Return a camera's rays and what they meet; cameras of one place and lens share them."""
-    key = ("view", spec, look.pose)
-    if key not in look.shared:
-        rays = aim(directions(spec), look.pose)
-        look.shared[key] = rays, look.seen.caster.closest(rays, labels.FAR_M, coherent=True, outer=True)
-    return look.shared[key]  # type: ignore[return-value] # put there above
-
-
 def coloured(spec: CameraSpec, of_film: Film, look: Look) -> NDArray[np.uint8]:
     """Return the colour picture of a camera; an event camera of the same place, lens and film shares it."""
     key = ("picture", spec, of_film, look.pose)
     if key not in look.shared:
-        look.shared[key] = picture(spec, of_film, look.pose, *view(spec, look), look.seen)
+        look.shared[key] = darkroom_of(look.seen.caster).coloured(spec, of_film, look)
     return look.shared[key]  # type: ignore[return-value] # put there above
 
 
@@ -71,8 +59,7 @@ class DepthCamera(Camera):
 
     def pixels(self, look: Look) -> Pixels:
         """Return depth along the camera's axis in 24 bits."""
-        _, hits = view(self.spec, look)
-        return labels.depth(self.spec, hits, directions(self.spec))
+        return darkroom_of(look.seen.caster).depth(self.spec, look)
 
 
 class SemanticCamera(Camera):
@@ -80,7 +67,7 @@ class SemanticCamera(Camera):
 
     def pixels(self, look: Look) -> Pixels:
         """Return tags."""
-        return labels.semantic(self.spec, view(self.spec, look)[1], look.seen)
+        return darkroom_of(look.seen.caster).semantic(self.spec, look)
 
 
 class InstanceCamera(Camera):
@@ -88,7 +75,7 @@ class InstanceCamera(Camera):
 
     def pixels(self, look: Look) -> Pixels:
         """Return tags and ids."""
-        return labels.instance(self.spec, view(self.spec, look)[1], look.seen)
+        return darkroom_of(look.seen.caster).instance(self.spec, look)
 
 
 class NormalsCamera(Camera):
@@ -96,7 +83,7 @@ class NormalsCamera(Camera):
 
     def pixels(self, look: Look) -> Pixels:
         """Return normals in the camera's view."""
-        return labels.normals(self.spec, view(self.spec, look)[1], look.pose)
+        return darkroom_of(look.seen.caster).normals(self.spec, look)
 
 
 class FlowCamera(Camera):
@@ -104,7 +91,7 @@ class FlowCamera(Camera):
 
     def pixels(self, look: Look) -> Pixels:
         """Return the motion of each pixel since the frame before."""
-        return motion.flow(self.spec, *view(self.spec, look), look.seen.instances, look.before, look.pose)
+        return darkroom_of(look.seen.caster).flow(self.spec, look)
 
 
 class ColourCamera(Camera):
