@@ -19,9 +19,10 @@ STEPS = 65_536
 """Where in its cell a point lies is kept in so many steps: a micrometre of a cell of 0.1 m."""
 MOST_AVERAGED = 65_536
 """Points of a cell that count for its mean: so many sums of STEPS fit into 32 bits."""
-TILE_BITS = 9
-"""A tile is 2**9 cells wide and deep, and as high as there are points."""
+TILE_BITS = 8
+"""A tile is 2**8 cells wide and deep, and as high as there are points."""
 _FARTHEST_CELL = 2.0**30
+_LOW_32 = 0xFFFF_FFFF
 _SPREAD = np.uint64(0x9E3779B97F4A7C15)  # 2**64 over the golden ratio: Knuth, The Art of Computer Programming, 6.4
 
 
@@ -64,7 +65,7 @@ def locate(points_m: F64, voxel_m: float, tile: I64, key: I64, steps: U32) -> in
                 return row
             cell[axis] = np.int64(whole)
             steps[row, axis] = np.uint32(min(STEPS - 1.0, np.floor((at - whole) * STEPS)))
-        tile[row] = ((cell[0] >> TILE_BITS) << 32) + (cell[1] >> TILE_BITS)
+        tile[row] = ((cell[0] >> TILE_BITS) << 32) | ((cell[1] >> TILE_BITS) & _LOW_32)
         inside = (1 << TILE_BITS) - 1
         height = cell[2] + (1 << 30)
         key[row] = (height << (2 * TILE_BITS)) | ((cell[1] & inside) << TILE_BITS) | (cell[0] & inside)
@@ -121,7 +122,7 @@ def packed(cells: Cells) -> Cells:
 def middles(cells: Cells, tile: int, voxel_m: float) -> F64:
     """Return the means (N, 3) of the points of packed cells, m."""
     inside = (1 << TILE_BITS) - 1
-    x, y = tile >> 32, (tile & 0xFFFF_FFFF) - ((tile & 0x8000_0000) << 1)
+    x, y = tile >> 32, (tile & _LOW_32) - ((tile & 0x8000_0000) << 1)  # the lower half has a sign of its own
     cell = np.stack(
         [
             (x << TILE_BITS) + (cells.key & inside),
