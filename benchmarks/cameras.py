@@ -15,7 +15,7 @@ from collections.abc import Callable
 import carla
 from live import server, synchronous_world
 
-from linden.sensors.camera import cameras, labels
+from linden.sensors.camera import labels
 from linden.sensors.camera.picture import rgb
 from linden.sensors.camera.picture.develop import developed
 from linden.sensors.camera.picture.edges import edge_rays, finer
@@ -109,7 +109,7 @@ def stage_by_stage(rounds: int) -> None:
     place = simulation.spawn_points[0]
     pose = Transform(place.location._replace(z=place.location.z + 2.0), Rotation(0.0, place.rotation.yaw, 0.0))
     spec, film = CameraSpec(), Film()
-    cameras.picture(spec, film, pose, *viewed(spec, pose, seen), seen)
+    rgb.picture(spec, film, pose, *viewed(spec, pose, seen), seen)
 
     def took(name: str, work: Callable[[], object]) -> object:
         times, answer = [], None
@@ -134,7 +134,7 @@ def stage_by_stage(rounds: int) -> None:
     )
     took("their shading", lambda: rgb.shone(fine, met, 0.5 / spec.focal_px, lit, seen))
     took("film", lambda: developed(spec, film, light, lit.air))
-    took("all of it", lambda: cameras.picture(spec, film, pose, *viewed(spec, pose, seen), seen))
+    took("all of it", lambda: rgb.picture(spec, film, pose, *viewed(spec, pose, seen), seen))
 
 
 def viewed(spec: CameraSpec, pose: Transform, seen: object) -> tuple[object, object]:
