@@ -81,7 +81,7 @@ EXAMPLES = (
     _endless("automatic_control.py", "--sync"),
     _endless("synchronous_mode.py"),
     _endless("sensor_synchronization.py"),
-    _endless("tutorial.py"),
+    _example("tutorial.py"),
     _endless("tutorial_gbuffer.py"),
     _endless("bounding_boxes.py"),
     _endless("client_bounding_boxes.py"),

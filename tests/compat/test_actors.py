@@ -1,5 +1,7 @@
 """Actors through the official client: spawning, refusing, attaching, moving, destroying, batches."""
 
+import time
+
 import carla
 import pytest
 
@@ -51,6 +53,15 @@ def test_an_attached_sensor_follows_its_vehicle(world, blueprints, car) -> None:
     assert sensor.parent.id == car.id
     turn = (sensor.get_transform().rotation.yaw - car.get_transform().rotation.yaw) % 360.0
     assert turn == pytest.approx(90.0, abs=0.01)
+
+
+def test_in_asynchronous_mode_the_next_snapshot_comes_at_once_for_what_was_spawned(world, blueprints) -> None:
+    settings = world.get_settings()
+    settings.synchronous_mode, settings.fixed_delta_seconds = False, 10.0
+    world.apply_settings(settings)
+    sensor, began_s = world.spawn_actor(blueprints.find("sensor.other.gnss"), carla.Transform()), time.monotonic()
+    while not world.get_snapshot().has_actor(sensor.id):
+        assert time.monotonic() - began_s < 5.0, "by the clock it comes after ten seconds"
 
 
 def test_a_sensor_on_a_spring_arm_looks_at_its_vehicle(client, world, blueprints, car) -> None:

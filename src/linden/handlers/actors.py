@@ -43,7 +43,7 @@ def get_spectator(context: Context) -> Actor:
 @method("spawn_actor")
 def spawn_actor(context: Context, description: ActorDescription, pose: Transform) -> Actor:
     """Put an actor into the world, or refuse where something stands there already."""
-    return message(context, context.simulation.spawn(description, pose))
+    return message(context, attach(context, description, pose, 0, ""))
 
 
 @method("spawn_actor_with_parent")
@@ -57,11 +57,15 @@ def spawn_actor_with_parent(
 def attach(
     context: Context, description: ActorDescription, pose: Transform, parent_id: int, socket: str
 ) -> ActorRecord:
-    """Spawn an actor that follows its parent, or one of its bones where ``socket`` names one.
+    """Spawn an actor, which follows its parent, or one of its bones, where ``parent_id`` and ``socket`` name them.
+
+    In asynchronous mode a frame shows it at once. CARLA makes frames as fast as it can, and programs count on theirs:
+    draw_skeleton.py sends a walker on its way in the very next call, and crashes where no snapshot has it yet.
 
     Raises:
         Refusal: no such parent or bone, or the actor cannot be spawned.
     """
+    context.frame_is_due = True
     if not socket:
         return context.simulation.spawn(description, pose, parent_id=parent_id)
     episode = context.simulation.episode

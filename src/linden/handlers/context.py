@@ -41,6 +41,8 @@ class Context:
     """Number of the connection whose call is being served."""
     traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
+    frame_is_due: bool = False
+    """Whether asynchronous mode's next frame shall not wait for the clock."""
     complaints: Complaints = field(default_factory=Complaints)
     bugs: Complaints = field(default_factory=Complaints)
 

@@ -217,10 +217,12 @@ class Server:
             raise ProtocolError(f"half-received calls of all clients hold {held} bytes, too much to receive more")
 
     def _make_due_frame(self) -> None:
-        """Make a frame by the clock, in asynchronous mode only."""
+        """Make a frame by the clock, or because something new is to be shown; in asynchronous mode only."""
         settings = self.context.simulation.settings
         now_s = self._clock()
-        if settings.synchronous_mode or self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0:
+        waits = not self.context.frame_is_due and self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0
+        self.context.frame_is_due = False
+        if settings.synchronous_mode or waits:
             return
         try:
             self.context.advance()
