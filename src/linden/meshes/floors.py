@@ -22,7 +22,7 @@ Flags = NDArray[np.bool_]
 
 CELL_M = 1.0
 _LARGEST_GAP = 25  # cells; what is larger is an island of its own, as in a roundabout
-_LONGEST_RUN = 8  # cells that one quad spans
+_LONGEST_RUN = 16  # cells that one quad spans
 _UNDER_M = 0.012
 _MARGIN = 2
 _HIGH_M = 1e6

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.meshes.mesh import LampOf, Material, Mesh, join
-from linden.meshes.patches import Frames, Look, boxes, polygons
+from linden.meshes.patches import WALLS, Frames, Look, boxes, polygons
 from linden.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
@@ -39,6 +39,8 @@ _STONE = (132, 128, 122)
 _BRICK_SHARE = 0.22
 _FOUNDATION_M = 0.45
 _OVERHANG_M = 0.35
+_ATTIC_M = 1.75  # of gable, for a window in it
+_CLOSE_M = 4.0
 _TAG = SemanticTag.BUILDINGS
 
 
@@ -101,12 +103,12 @@ def _walls(frames: Frames, plan: Plan) -> Mesh:
         look = Look(material, _TAG, colour, plan.objects).of(rows)
         centre = np.column_stack([zero, zero, middle])[rows]
         half = np.column_stack([plan.half_x, plan.half_y, middle - _FOUNDATION_M])[rows]
-        parts.append(boxes(frames.of(rows), centre, half, look, ("left", "ahead", "right", "behind")))
+        parts.append(boxes(frames.of(rows), centre, half, look, WALLS))
         parts.append(_gables(frames.of(rows), plan.of(rows), look))
     deep = np.column_stack([zero, zero, np.full(len(frames), 0.0)])
-    half = np.column_stack([plan.half_x + 0.03, plan.half_y + 0.03, np.full(len(frames), _FOUNDATION_M)])
+    half = np.column_stack([plan.half_x + 0.01, plan.half_y + 0.01, np.full(len(frames), _FOUNDATION_M)])
     stone = Look(Material.CONCRETE, _TAG, _STONE, plan.objects)
-    parts.append(boxes(frames, deep, half, stone))
+    parts.append(boxes(frames, deep, half, stone, WALLS))
     return join(parts)
 
 
@@ -174,8 +176,12 @@ def _roofs(frames: Frames, plan: Plan) -> Mesh:
 
 
 def _windows(frames: Frames, plan: Plan) -> Mesh:
-    """Return windows: two a storey to the street and behind, one or two on either side."""
+    """Return windows: two a storey on each side, the door in place of one, and one more in gables to the street.
+
+    Where the next house stands close by there is one, and neither there nor behind does anybody see a frame.
+    """
     parts = []
+    close = {"back": np.ones(len(frames), bool), **_neighbours(frames, plan)}
     for storey in (1, 2):
         rows = np.flatnonzero(plan.storeys >= storey)
         some, at = plan.of(rows), frames.of(rows)
@@ -187,30 +193,58 @@ def _windows(frames: Frames, plan: Plan) -> Mesh:
             ("left", some.half_x),
             ("right", some.half_x),
         ):
+            framed = ~close[side][rows] if side in close else np.ones(len(rows), bool)
             for share in (-0.5, 0.5):
                 if side == "front" and storey == 1 and share > 0.0:
                     continue  # the door
-                parts.append(_panes(at, some, side, share * half_run, sill, tall))
+                seen = framed if side in ("left", "right") and share > 0.0 else np.ones(len(rows), bool)
+                parts.append(_panes(at, some, side, share * half_run, (sill, np.where(seen, tall, 0.0)), framed))
+    attic = np.flatnonzero(plan.gable_ahead & (plan.storeys == 2) & (plan.height - plan.eaves > _ATTIC_M))
+    some = plan.of(attic)
+    sill, tall = some.eaves + 0.35, np.full(len(attic), 0.75)
+    parts.append(_panes(frames.of(attic), some, "front", np.zeros(len(attic)), (sill, tall), tall > 0.0))
     return join(parts)
+
+
+def _neighbours(frames: Frames, plan: Plan) -> dict[str, NDArray[np.bool_]]:
+    """Return for the left and the right of each house whether the one before or after it in the row stands close."""
+    close: dict[str, NDArray[np.bool_]] = {side: np.zeros(len(frames), np.bool_) for side in ("left", "right")}
+    for step in (-1, 1):
+        away = np.roll(frames.base_m, -step, axis=0) - frames.base_m
+        cosine, sine = np.cos(frames.yaw_rad), np.sin(frames.yaw_rad)
+        deep, aside = cosine * away[:, 0] + sine * away[:, 1], cosine * away[:, 1] - sine * away[:, 0]
+        gap = np.abs(aside) - plan.half_y - np.roll(plan.half_y, -step)
+        beside = (np.abs(deep) < plan.half_x) & (gap < _CLOSE_M)
+        close["left"] |= beside & (aside < 0.0)
+        close["right"] |= beside & (aside > 0.0)
+    return close
 
 
 _FACING = {"front": (-1.0, 0.0), "back": (1.0, 0.0), "left": (0.0, -1.0), "right": (0.0, 1.0)}
 
 
-def _panes(frames: Frames, plan: Plan, side: str, run: F64, sill: F64, tall: F64) -> Mesh:
-    """Return one window of each house: a frame on the wall and a pane in front of it."""
+def _panes(
+    frames: Frames, plan: Plan, side: str, run: F64, upright: tuple[F64, F64], framed: NDArray[np.bool_]
+) -> Mesh:
+    """Return one window of each house, a pane before its frame; ``upright`` is sill and height."""
+    sill, tall = upright
     fits = np.flatnonzero(tall > 0.5)
-    frames, plan, run, sill, tall = frames.of(fits), plan.of(fits), run[fits], sill[fits], tall[fits]
-    frame = Look(Material.WOOD, _TAG, _TRIM, plan.objects)
-    pane = Look(Material.GLASS, _TAG, _PANE, plan.objects, LampOf.WINDOW)
-    return join(
-        [
-            polygons(
-                _on_wall(frames, plan, side, run, sill - 0.1, sill + tall + 0.1, 0.6, 0.025), frame, _out(frames, side)
-            ),
-            polygons(_on_wall(frames, plan, side, run, sill, sill + tall, 0.48, 0.035), pane, _out(frames, side)),
-        ]
-    )
+    pane = Look(Material.GLASS, _TAG, _PANE, plan.objects, LampOf.WINDOW).of(fits)
+    parts = [_on(frames, plan, side, fits, (run, sill, sill + tall, 0.48, 0.035), pane)]
+    fits = np.flatnonzero((tall > 0.5) & framed)
+    frame = Look(Material.WOOD, _TAG, _TRIM, plan.objects).of(fits)
+    parts.append(_on(frames, plan, side, fits, (run, sill - 0.1, sill + tall + 0.1, 0.6, 0.025), frame))
+    return join(parts)
+
+
+def _on(
+    frames: Frames, plan: Plan, side: str, rows: NDArray[np.intp], place: tuple[F64, F64, F64, float, float], look: Look
+) -> Mesh:
+    """Return rectangles on a wall of those of the houses, ``place`` as :func:`_on_wall` takes it."""
+    run, low, high, half, off = place
+    some = frames.of(rows)
+    corners = _on_wall(some, plan.of(rows), side, run[rows], low[rows], high[rows], half, off)
+    return polygons(corners, look, _out(some, side))
 
 
 def _out(frames: Frames, side: str) -> F64:

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.geometry import points_from_opendrive
+from linden.meshes.laid import Laid
 from linden.meshes.mesh import Material, Mesh
 from linden.meshes.patches import Look, strips
-from linden.opendrive.evaluate.sampling import sample, sections_before, sections_of
-from linden.opendrive.evaluate.tables import Tables, tables_of
-from linden.opendrive.model import OpenDrive, RoadMark
+from linden.opendrive.evaluate.sampling import sections_before
+from linden.opendrive.evaluate.tables import Tables
+from linden.opendrive.model import RoadMark
 from linden.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
@@ -47,11 +48,11 @@ class _Stripe(NamedTuple):
     colour: tuple[int, int, int]
 
 
-def lines(opendrive: OpenDrive) -> Mesh:
+def lines(laid: Laid) -> Mesh:
     """Return all painted lines."""
-    tables = tables_of(opendrive)
+    tables = laid.tables
     stripes = list(_stripes(tables))
-    owner, s_m, continues = _places(tables, stripes)
+    owner, s_m, continues = _places(laid, stripes)
     lane = np.array([stripe.lane for stripe in stripes], np.int64)[owner]
     is_outer = np.array([stripe.is_outer for stripe in stripes], bool)[owner]
     left_m = np.array([stripe.left_m for stripe in stripes])[owner]
@@ -95,9 +96,9 @@ def _of_mark(mark: RoadMark, row: int, is_outer: bool, start_m: float, end_m: fl
             yield _Stripe(row, is_outer, begin_m, min(begin_m + stripe_m, end_m), left_m, width_m, colour)
 
 
-def _places(tables: Tables, stripes: list[_Stripe]) -> tuple[NDArray[np.int64], F64, NDArray[np.bool_]]:
+def _places(laid: Laid, stripes: list[_Stripe]) -> tuple[NDArray[np.int64], F64, NDArray[np.bool_]]:
     """Return owner, s and whether the stripe goes on: its ends, and all places between that the surface has."""
-    samples = sample(tables, sections_of(tables))
+    samples, tables = laid.samples, laid.tables
     before = sections_before(tables)
     begins = np.searchsorted(samples.section, np.arange(before[-1] + 1))
     rows = tables.lanes

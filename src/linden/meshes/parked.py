@@ -21,7 +21,7 @@ _PANE, _TYRE, _RIM = (34, 42, 50), (26, 26, 27), (150, 152, 156)
 _HEAD, _TAIL = (230, 232, 226), (150, 24, 24)
 _TAG = SemanticTag.CAR
 _WHEEL_SIDES = 8
-_TREADS = (4, 5, 6, 7)  # the sides of a wheel that look down; the others are in its arch
+_TREADS = (5, 6)  # the sides of a wheel that look down; the others are in its arch
 
 
 class _Outline(NamedTuple):
@@ -72,17 +72,15 @@ def _cars(frames: Frames, half_m: F64, outline: _Outline, paint: NDArray[np.uint
     for (x0, z0), (x1, z1) in pairwise(lower):
         y0, y1 = _INSET * _taper(x0), _INSET * _taper(x1)
         parts.append(
-            put.quad([(x0, -y0, z0), (x0, y0, z0), (x1, y1, z1), (x1, -y1, z1)], painted, (x0 + x1, 0.0, z0 + z1 - 0.9))
+            put.patch(
+                [(x0, -y0, z0), (x0, y0, z0), (x1, y1, z1), (x1, -y1, z1)], painted, (x0 + x1, 0.0, z0 + z1 - 0.9)
+            )
         )
     for side in (-1.0, 1.0):
-        ring = [(x, side * _INSET * _taper(x), z) for x, z in lower]
-        for (x0, y0, z0), (x1, y1, z1) in pairwise(ring):
-            low = min(_SILL, z0, z1)
-            parts.append(
-                put.quad([(x0, y0, low), (x0, y0, z0), (x1, y1, z1), (x1, y1, low)], painted, (0.0, side, 0.0))
-            )
+        flank = [(x, side * _INSET * _taper(x), z) for x, z in outline.lower]
+        parts.append(put.patch(flank, painted, (0.0, side, 0.0)))
     parts.append(
-        put.quad(
+        put.patch(
             [(-0.98, -0.9, _BELLY), (-0.98, 0.9, _BELLY), (0.98, 0.9, _BELLY), (0.98, -0.9, _BELLY)],
             dark,
             (0.0, 0.0, -1.0),
@@ -91,7 +89,7 @@ def _cars(frames: Frames, half_m: F64, outline: _Outline, paint: NDArray[np.uint
     for side in (-1.0, 1.0):
         ends = [(x, side * y, z) for x, y, z in ((-0.98, 0.9, _BELLY), (-0.98, 0.93, _SILL))]
         sill = [*ends, *((-x, y, z) for x, y, z in reversed(ends))]
-        parts += [put.quad(sill, dark, (0.0, side, 0.0))]
+        parts += [put.patch(sill, dark, (0.0, side, 0.0))]
     parts += _cabin(put, outline, painted, glass)
     parts += _lamps(put, outline, objects)
     parts += [_wheel(frames, half_m, x, side, objects) for x in (-0.6, 0.62) for side in (-1.0, 1.0)]
@@ -108,13 +106,13 @@ def _cabin(put: "_Put", outline: _Outline, painted: Look, glass: Look) -> list[M
     (rx, rz), (ax, az), (bx, bz), (fx, fz) = outline.roof
     low, high = 0.93 * _INSET, _ROOF_IN * _INSET
     parts = [
-        put.quad([(ax, -high, az), (ax, high, az), (bx, high, bz), (bx, -high, bz)], painted, (0.0, 0.0, 1.0)),
-        put.quad([(rx, -low, rz), (rx, low, rz), (ax, high, az), (ax, -high, az)], glass, (-1.0, 0.0, 0.6)),
-        put.quad([(fx, -low, fz), (fx, low, fz), (bx, high, bz), (bx, -high, bz)], glass, (1.0, 0.0, 0.6)),
+        put.patch([(ax, -high, az), (ax, high, az), (bx, high, bz), (bx, -high, bz)], painted, (0.0, 0.0, 1.0)),
+        put.patch([(rx, -low, rz), (rx, low, rz), (ax, high, az), (ax, -high, az)], glass, (-1.0, 0.0, 0.6)),
+        put.patch([(fx, -low, fz), (fx, low, fz), (bx, high, bz), (bx, -high, bz)], glass, (1.0, 0.0, 0.6)),
     ]
     for side in (-1.0, 1.0):
         wall = [(rx, side * low, rz), (fx, side * low, fz), (bx, side * high, bz), (ax, side * high, az)]
-        parts.append(put.quad(wall, painted, (0.0, side, 0.2)))
+        parts.append(put.patch(wall, painted, (0.0, side, 0.2)))
         middle = 0.5 * (ax + bx)
         for x0, x1, t0, t1 in (
             (rx + 0.08, middle - 0.03, ax + 0.02, middle - 0.03),
@@ -127,7 +125,7 @@ def _cabin(put: "_Put", outline: _Outline, painted: Look, glass: Look) -> list[M
                 (t1, side * (y1 + 0.01), z1),
                 (t0, side * (y1 + 0.01), z1),
             ]
-            parts.append(put.quad(pane, glass, (0.0, side, 0.2)))
+            parts.append(put.patch(pane, glass, (0.0, side, 0.2)))
     return parts
 
 
@@ -139,7 +137,7 @@ def _lamps(put: "_Put", outline: _Outline, objects: I32) -> list[Mesh]:
             look = Look(Material.GLASS, _TAG, colour, objects)
             y0, y1 = side * 0.42, side * 0.8
             parts.append(
-                put.quad(
+                put.patch(
                     [(x, y0, z - 0.02), (x, y1, z - 0.02), (x, y1, z - 0.11), (x, y0, z - 0.11)], look, (way, 0.0, 0.0)
                 )
             )
@@ -174,7 +172,7 @@ class _Put:
         self._frames = frames
         self._size = half_m * (1.0, 1.0, 2.0)
 
-    def quad(self, shares: list[tuple[float, float, float]], look: Look, towards: tuple[float, float, float]) -> Mesh:
+    def patch(self, shares: list[tuple[float, float, float]], look: Look, towards: tuple[float, float, float]) -> Mesh:
         """Return one patch of each car, looking ``towards`` (in the car's frame)."""
         corners = np.array(shares)[None] * self._size[:, None]
         way = self._frames.turned(np.broadcast_to(np.array(towards), (len(self._frames), 1, 3)))[:, 0]

@@ -122,8 +122,10 @@ def boxes(
     )
 
 
-def prisms(begin_m: F64, end_m: F64, radii_m: tuple[ArrayLike, ArrayLike], sides: int, look: Look) -> Mesh:
-    """Return tubes with ``sides`` flat sides from ``begin_m`` to ``end_m`` (N, 3), closed at the end where it is wide.
+def prisms(
+    begin_m: F64, end_m: F64, radii_m: tuple[ArrayLike, ArrayLike], sides: int, look: Look, *, lid: bool = True
+) -> Mesh:
+    """Return tubes with ``sides`` flat sides from ``begin_m`` to ``end_m`` (N, 3), closed there if they have a lid.
 
     ``radii_m`` at both ends are numbers or (N,).
     """
@@ -145,8 +147,8 @@ def prisms(begin_m: F64, end_m: F64, radii_m: tuple[ArrayLike, ArrayLike], sides
     walls = np.concatenate(
         [np.stack([around, after, after + sides], 1), np.stack([around, after + sides, around + sides], 1)]
     )
-    lid = np.array([(sides, sides + k, sides + k + 1) for k in range(1, sides - 1)])
-    pattern = np.concatenate([walls, lid]) if (second > 0.02).any() else walls
+    top = np.array([(sides, sides + k, sides + k + 1) for k in range(1, sides - 1)])
+    pattern = np.concatenate([walls, top]) if lid else walls
     triangles = (np.arange(count)[:, None, None] * 2 * sides + pattern[None]).reshape(-1, 3)
     return Mesh(
         corners.reshape(-1, 3).astype(np.float32), triangles.astype(np.uint32), _faces(count, len(pattern), look)

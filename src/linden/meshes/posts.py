@@ -132,9 +132,11 @@ def street_lamps(frames: Frames, poles: I32, arms: I32) -> Mesh:
     shining = Look(Material.LAMP, SemanticTag.POLES, (255, 236, 200), arms, LampOf.STREET)
     return join(
         [
-            prisms(frames.base_m - (0.0, 0.0, 0.2), top, (LAMP_HALF_WIDTH_M, 0.6 * LAMP_HALF_WIDTH_M), 5, steel),
-            prisms(top, end, (0.04, 0.03), 4, arm),
-            boxes(frames, lantern, (0.3, 0.12, 0.07), arm, ALL_SIDES),
+            prisms(
+                frames.base_m - (0.0, 0.0, 0.2), top, (LAMP_HALF_WIDTH_M, 0.6 * LAMP_HALF_WIDTH_M), 4, steel, lid=False
+            ),
+            prisms(top, end, (0.04, 0.03), 3, arm, lid=False),
+            boxes(frames, lantern, (0.3, 0.12, 0.07), arm),
             polygons(frames.world(glass + lantern - (0.0, 0.0, 0.075)), shining, (0.0, 0.0, -1.0)),
         ]
     )

@@ -11,7 +11,7 @@ from linden.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
 
-_STEP_M = 3.0
+_STEP_M = 6.0
 _TIE_SPACING_M = 0.6
 _TIE_HALF_M = (1.3, 0.11)
 _TOP_M, _FOOT_M, _BED_M = 1.7, 2.6, 0.28  # half widths of the bed above and below, and its height

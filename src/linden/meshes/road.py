@@ -3,13 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.geometry import points_from_opendrive
+from linden.meshes.laid import Laid
 from linden.meshes.mesh import FACE, NO_OBJECT, Material, Mesh, join
 from linden.meshes.patches import Look, strips
-from linden.opendrive.evaluate.strips import Strips, edges_of, strips_of
-from linden.opendrive.evaluate.tables import Tables, tables_of
-from linden.opendrive.mesh import RoadMesh
-from linden.opendrive.model import OpenDrive
+from linden.opendrive.mesh import TAGS
 from linden.values.enums import LaneType, SemanticTag
 
 F64 = NDArray[np.float64]
@@ -18,7 +15,7 @@ ASPHALT = (74, 74, 76)
 WORN_ASPHALT = (84, 83, 81)  # where cars stand, not drive
 CONCRETE = (168, 164, 156)
 KERB_STONE = (150, 147, 140)
-GRASS = (84, 112, 52)
+GRASS = (88, 108, 60)
 GRAVEL = (128, 120, 110)
 RED_ASPHALT = (112, 72, 62)
 
@@ -36,6 +33,7 @@ _LOOKS = {
 }
 _ROAD = (Material.ASPHALT, ASPHALT)
 _LEAST_STEP_M = 0.005
+_SMALLEST_AREA_M2 = 1e-6
 _SKIRT_M = 0.12
 """How far the outermost edge of a raised lane reaches down: to where the terrain touches it, and a little more."""
 
@@ -45,24 +43,37 @@ def is_paved(type_bits: NDArray[np.uint32]) -> NDArray[np.bool_]:
     return np.array([_LOOKS.get(LaneType(bits), _ROAD)[0] is Material.ASPHALT for bits in type_bits.tolist()], bool)
 
 
-def surface(mesh: RoadMesh) -> Mesh:
-    """Return the surface of all lanes, triangle for triangle what the wheels roll on."""
-    made = np.zeros(len(mesh.lanes), FACE)
-    made["object"], made["tag"] = NO_OBJECT, mesh.lanes["tag"]
-    for row, bits in enumerate(mesh.lanes["type_bits"].tolist()):
-        material, colour = _LOOKS.get(LaneType(bits), _ROAD)
-        made["material"][row], made["colour"][row] = material, colour
-    return Mesh(mesh.vertices.astype(np.float32), mesh.triangles.astype(np.uint32), made[mesh.lane_of_triangle])
+def surface(laid: Laid) -> Mesh:
+    """Return the surface of all lanes, within millimetres of what the wheels roll on."""
+    rows, places = np.flatnonzero(laid.continues), len(laid.lane)
+    halves = np.stack([rows, rows + 1, rows + 1 + places, rows, rows + 1 + places, rows + places], axis=1)
+    triangles = halves.reshape(-1, 3)
+    vertices = np.concatenate([laid.inner, laid.outer])
+    a, b, c = (vertices[triangles[:, corner], :2] for corner in range(3))
+    twice_area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    # each by itself: inside a bend tighter than the lane is wide a strip folds over
+    triangles[twice_area < 0.0] = triangles[twice_area < 0.0][:, [0, 2, 1]]
+    solid = np.abs(twice_area) > 2.0 * _SMALLEST_AREA_M2
+    faces = np.repeat(_faces_of(laid)[laid.lane[rows]], 2)
+    return Mesh(vertices.astype(np.float32), triangles[solid].astype(np.uint32), faces[solid])
 
 
-def kerbs(opendrive: OpenDrive) -> Mesh:
+def _faces_of(laid: Laid) -> NDArray[np.void]:
+    """Return the face of each lane."""
+    made = np.zeros(len(laid.tables.lanes), FACE)
+    made["object"] = NO_OBJECT
+    for row, bits in enumerate(laid.tables.lanes["type_bits"].tolist()):
+        made["material"][row], made["colour"][row] = _LOOKS.get(LaneType(bits), _ROAD)
+        made["tag"][row] = TAGS.get(LaneType(bits), SemanticTag.ROADS)
+    return made
+
+
+def kerbs(laid: Laid) -> Mesh:
     """Return the upright faces between lanes of different heights, and round the outside of raised ones."""
-    tables = tables_of(opendrive)
-    laid = strips_of(tables)
-    inner, outer = (points_from_opendrive(edge) for edge in edges_of(tables, laid))
+    tables, inner, outer = laid.tables, laid.inner, laid.outer
     across = outer - inner
     across[:, 2] = 0.0
-    beside = _outer_heights(tables, laid, outer)
+    beside = _outer_heights(laid)
     look = Look(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
     road_z = inner[:, 2] - tables.heights_inner.value(laid.lane, laid.s_m, laid.probe_m)
     within = np.where(np.isnan(beside), road_z, beside)
@@ -76,15 +87,16 @@ def kerbs(opendrive: OpenDrive) -> Mesh:
     return join(faces)
 
 
-def _outer_heights(tables: Tables, laid: Strips, outer: F64) -> F64:
+def _outer_heights(laid: Laid) -> F64:
     """Return the height of the outer edge of the lane inside of each, nan where there is none; all (P,)."""
-    first = np.searchsorted(laid.lane, np.arange(len(tables.lanes)))
-    inside = tables.lanes["inside"][laid.lane]
+    lanes, outer = laid.tables.lanes, laid.outer
+    first = np.searchsorted(laid.lane, np.arange(len(lanes)))
+    inside = lanes["inside"][laid.lane]
     nth = np.arange(len(laid.lane)) - first[laid.lane]
-    return np.where(inside >= 0, outer[(first[inside] + nth) % len(outer), 2], np.nan)
+    return np.where(inside >= 0, outer[(first[inside] + nth) % max(len(outer), 1), 2], np.nan)
 
 
-def _between(laid: Strips, line: F64, other_z: F64, wanted: NDArray[np.bool_], towards: F64, look: Look) -> Mesh:
+def _between(laid: Laid, line: F64, other_z: F64, wanted: NDArray[np.bool_], towards: F64, look: Look) -> Mesh:
     """Return upright faces along ``line`` to the heights ``other_z`` where they are wanted at either end."""
     other = np.column_stack([line[:, :2], other_z])
     here = laid.continues & (wanted | np.append(wanted[1:], [False])[: len(wanted)])

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from linden.meshes.arrows import arrows
 from linden.meshes.floors import floors
 from linden.meshes.houses import houses, plans
+from linden.meshes.laid import Laid, laid
 from linden.meshes.markings import lines
 from linden.meshes.mesh import Material, Mesh, join
 from linden.meshes.painted import across_lanes
@@ -15,11 +16,12 @@ from linden.meshes.posts import signs, street_lamps, traffic_lights
 from linden.meshes.railroad import railroad
 from linden.meshes.road import CONCRETE, kerbs, surface
 from linden.meshes.terrain import land
-from linden.meshes.trees import trees
+from linden.meshes.trees import Planted, trees
 from linden.meshes.wires import shelters, utility_poles
 from linden.meshes.yards import fences, hedges, paved_yards, porches
 from linden.opendrive.mesh import road_mesh
 from linden.opendrive.model import OpenDrive
+from linden.scene.groves import far_from_roads
 from linden.scene.objects import Kind, Scene
 from linden.scene.streetside import clear_of
 from linden.scene.surveyed import surveyed
@@ -34,30 +36,29 @@ _SEED = 880
 
 def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:
     """Return what stands: triangles of things name their box in ``scene``, those of the streets and the land none."""
-    return join([streets(opendrive, facts), _beside(facts, scene), things(facts, scene)])
+    lanes = laid(opendrive)
+    under = floors(road_mesh(opendrive), facts.ground)
+    lawn = land(lanes, facts.ground, under)
+    return join([streets(lanes, opendrive, facts), under.mesh, lawn, _beside(facts, scene, lawn), things(facts, scene)])
 
 
-def _beside(facts: MapFacts, scene: Scene) -> Mesh:
+def _beside(facts: MapFacts, scene: Scene, lawn: Mesh) -> Mesh:
     """Return what only Linden has and what is nothing to run into: drives, paths, the railroad."""
     if not (scene.things["kind"] == Kind.SHELTER).any():
         return join([])
     line = surveyed(facts.geo_origin_deg).railroad_m
-    return join([paved_yards(clear_of(facts.lots, line), scene, facts.ground), railroad(line, facts.ground)])
+    return join([paved_yards(clear_of(facts.lots, line), scene, facts.ground, lawn), railroad(line, facts.ground)])
 
 
-def streets(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
-    """Return the roads with their kerbs and paint, and the land around them."""
-    road = road_mesh(opendrive)
-    under = floors(road, facts.ground)
+def streets(lanes: Laid, opendrive: OpenDrive, facts: MapFacts) -> Mesh:
+    """Return the roads with their kerbs and paint."""
     return join(
         [
-            surface(road),
-            under.mesh,
-            kerbs(opendrive),
-            lines(opendrive),
+            surface(lanes),
+            kerbs(lanes),
+            lines(lanes),
             across_lanes(opendrive, facts.ground),
             arrows(opendrive, facts.ground),
-            land(opendrive, facts.ground, under),
         ]
     )
 
@@ -110,7 +111,8 @@ def _houses(of: _Of) -> Mesh:
 
 def _trees(of: _Of) -> Mesh:
     half = of.half_m(0)
-    return trees(of.frames, half[:, 0], 2.0 * half[:, 2], of.draw, of.box(0))
+    planted = Planted(of.frames, half[:, 0], 2.0 * half[:, 2], of.draw, of.box(0))
+    return trees(planted, ~far_from_roads(of.frames.base_m[:, :2], of.facts.ground))
 
 
 def _lamps(of: _Of) -> Mesh:

@@ -7,20 +7,17 @@ keep to an edge whose corners are closer to each other than to any other corner.
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.geometry import points_from_opendrive
 from linden.ground import Ground
 from linden.meshes.floors import Floors
+from linden.meshes.laid import Laid
 from linden.meshes.mesh import Material, Mesh, faces
 from linden.meshes.road import GRASS
-from linden.opendrive.evaluate.strips import edges_of, strips_of
-from linden.opendrive.evaluate.tables import tables_of
-from linden.opendrive.model import OpenDrive
 from linden.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
 
-_EDGE_STEP_M = 5.0
-_GRAIN_M = 21.0
+_EDGE_STEP_M = 4.0
+_GRAIN_M = 45.0
 _CLEAR_M = 5.5  # no corner of the open land lies nearer to a road
 _BELOW_EDGE_M = 0.015
 _PROBE_M = 0.08
@@ -29,11 +26,11 @@ _FAR_M = 2500.0  # to where a last ring of land reaches, so that the horizon is 
 _HIGH_M = 1e6
 
 
-def land(opendrive: OpenDrive, ground: Ground, floors: Floors) -> Mesh:
+def land(laid: Laid, ground: Ground, floors: Floors) -> Mesh:
     """Return the land of a map; flat and empty where the map has no roads."""
     from matplotlib.tri import Triangulation  # noqa: PLC0415 - a server whose maps are kept never pays for it
 
-    edges = _edges(opendrive, ground)
+    edges = _edges(laid, ground)
     if not len(edges):
         edges = np.zeros((1, 3))
     points = _thinned(np.concatenate([edges, _open_land(edges, ground), _horizon(edges, ground)]))
@@ -56,17 +53,14 @@ def _on_roads(points: F64, ground: Ground) -> NDArray[np.bool_]:
     return on
 
 
-def _edges(opendrive: OpenDrive, ground: Ground) -> F64:
+def _edges(laid: Laid, ground: Ground) -> F64:
     """Return corners (N, 3) along the outer edges of the outermost lanes, where no other road lies beyond."""
-    tables = tables_of(opendrive)
-    laid = strips_of(tables)
     if not len(laid.lane):
         return np.empty((0, 3))
-    inner, outer = (points_from_opendrive(edge) for edge in edges_of(tables, laid))
-    outermost = ~np.isin(laid.lane, tables.lanes["inside"])
-    innermost = tables.lanes["inside"][laid.lane] < 0
+    inside = laid.tables.lanes["inside"]
+    outermost, innermost = ~np.isin(laid.lane, inside), inside[laid.lane] < 0
     places = []
-    for line, other, wanted in ((outer, inner, outermost), (inner, outer, innermost)):
+    for line, other, wanted in ((laid.outer, laid.inner, outermost), (laid.inner, laid.outer, innermost)):
         rows = np.flatnonzero(wanted & laid.continues & np.append(wanted[1:], [False]))
         away = line - other
         away[:, 2] = 0.0

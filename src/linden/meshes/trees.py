@@ -1,98 +1,171 @@
-"""Trees and bushes: a trunk, and a crown of one of a few shapes, turned and stretched for each tree."""
+"""Trees: a trunk, and a crown of a few clumps of leaves, turned and stretched for each tree; some are conifers.
+
+Trees along the streets have more clumps than those of the open land behind.
+"""
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.meshes.mesh import Material, Mesh, join
-from linden.meshes.patches import Frames, Look, polygons, prisms
+from linden.meshes.mesh import FACE, Material, Mesh, join
+from linden.meshes.patches import Frames, Look, prisms
 from linden.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
+I32 = NDArray[np.int32]
 
-_LEAVES = np.array([(74, 104, 44), (88, 118, 48), (62, 92, 40), (104, 124, 52), (82, 108, 62), (112, 116, 50)])
-_NEEDLES = np.array([(44, 74, 48), (52, 82, 56), (38, 66, 50)])
+_LEAVES = np.array([(82, 104, 52), (92, 114, 56), (72, 96, 50), (104, 118, 60), (86, 106, 66), (110, 112, 58)])
+_NEEDLES = np.array([(52, 76, 54), (58, 82, 60), (46, 68, 54)])
 _BARK = np.array([(84, 68, 54), (96, 82, 68), (70, 58, 48)])
-_CROWNS = 6
+_SHAPES = 6
 _CONIFERS = 0.14
+_CLUMPS, _CLUMPS_BEHIND = 3, 2
+_TWIGS = 20
+"""Of a crown that is seen from near: single sprays of leaves that stand out of its clumps."""
+_ROOT_M = 0.3  # how far a trunk reaches into the ground
+_SKIRTS = ((0.10, 0.50, 0.26), (0.32, 0.76, 0.20), (0.58, 1.0, 0.13))
+"""Of a conifer: where a skirt of branches begins and ends, and how wide it is, in shares of the height."""
 
 
-def trees(frames: Frames, trunk_half_m: F64, trunk_height_m: F64, draw: F64, objects: NDArray[np.int32]) -> Mesh:
-    """Return trees; ``draw`` (N, 6) in [0, 1) decides what kind, how tall and how wide each is."""
-    conifer = draw[:, 0] < _CONIFERS
-    bark = _BARK[(draw[:, 1] * len(_BARK)).astype(int)]
-    foot = frames.base_m - (0.0, 0.0, 0.3)
-    rows = np.arange(len(frames))
-    trunk = prisms(
-        foot,
-        frames.base_m + np.column_stack([0.3 * (draw[:, 2:4] - 0.5), trunk_height_m + 0.2]),
-        (1.2 * trunk_half_m, 0.8 * trunk_half_m),
-        6,
-        Look(Material.BARK, SemanticTag.VEGETATION, bark, objects),
-    )
-    parts = [trunk]
-    shape = (draw[:, 5] * _CROWNS).astype(int)
-    for number in range(_CROWNS):
-        chosen = rows[~conifer & (shape == number)]
-        parts.append(
-            _crowns(
-                number, frames.of(chosen), trunk_half_m[chosen], trunk_height_m[chosen], draw[chosen], objects[chosen]
-            )
+class Planted(NamedTuple):
+    """N trees: where they stand, half the thickness and the height of their trunks, what was drawn for each."""
+
+    frames: Frames
+    trunk_half_m: F64
+    trunk_height_m: F64
+    draw: F64  # (N, 6) in [0, 1): decides what kind, how tall and how wide each is
+    objects: I32
+
+    def of(self, rows: NDArray[np.intp]) -> "Planted":
+        """Return those of the trees."""
+        return Planted(
+            self.frames.of(rows),
+            self.trunk_half_m[rows],
+            self.trunk_height_m[rows],
+            self.draw[rows],
+            self.objects[rows],
         )
-    chosen = rows[conifer]
-    parts.append(_cones(frames.of(chosen), draw[chosen], objects[chosen]))
+
+
+def trees(planted: Planted, by_street: NDArray[np.bool_]) -> Mesh:
+    """Return trees; those ``by_street`` (N,) are seen from near."""
+    conifer = planted.draw[:, 0] < _CONIFERS
+    shape = (planted.draw[:, 5] * _SHAPES).astype(int)
+    parts = [_trunks(planted), _cones(planted.of(np.flatnonzero(conifer)))]
+    for clumps, twigs, chosen in ((_CLUMPS, _TWIGS, by_street), (_CLUMPS_BEHIND, 0, ~by_street)):
+        for number in range(_SHAPES):
+            rows = np.flatnonzero(~conifer & chosen & (shape == number))
+            parts.append(_crowns(_crown(number, clumps, twigs), planted.of(rows)))
     return join(parts)
 
 
-def _crowns(number: int, frames: Frames, half_m: F64, height_m: F64, draw: F64, objects: NDArray[np.int32]) -> Mesh:
+def _trunks(planted: Planted) -> Mesh:
+    base, half, draw = planted.frames.base_m, planted.trunk_half_m, planted.draw
+    bark = _BARK[(draw[:, 1] * len(_BARK)).astype(int)]
+    top = base + np.column_stack([0.3 * (draw[:, 2:4] - 0.5), planted.trunk_height_m + 0.2])
+    look = Look(Material.BARK, SemanticTag.VEGETATION, bark, planted.objects)
+    return prisms(base - (0.0, 0.0, _ROOT_M), top, (1.25 * half, 0.7 * half), 5, look, lid=False)
+
+
+class _Crown(NamedTuple):
+    """A crown about its middle, a metre in radius, roughly."""
+
+    corners: F64  # (K, 3)
+    triangles: NDArray[np.int64]
+    light: F64  # of each triangle: what lies low or within is darker
+
+
+def _crowns(crown: _Crown, planted: Planted) -> Mesh:
     """Return crowns of one shape: the thicker the trunk the wider the crown."""
-    corners, triangles = _blob(number)
-    wide = 9.0 * half_m + 1.1 + 0.8 * draw[:, 3]
+    draw, count = planted.draw, len(planted.frames)
+    wide = 9.0 * planted.trunk_half_m + 1.1 + 0.8 * draw[:, 3]
     tall = wide * (0.85 + 0.45 * draw[:, 4])
-    stretch = np.column_stack([wide, wide * (0.9 + 0.2 * draw[:, 2]), tall])
-    points = corners[None] * stretch[:, None]
-    points[..., 2] += (height_m - 1.2 + 0.8 * tall)[:, None]
-    world = Frames(frames.base_m, frames.yaw_rad + 6.3 * draw[:, 1]).world(points)
-    leaves = _LEAVES[(draw[:, 2] * len(_LEAVES)).astype(int)]
-    shade = (0.85 + 0.3 * draw[:, 4])[:, None]
-    look = Look(Material.LEAVES, SemanticTag.VEGETATION, np.clip(leaves * shade, 0, 255).astype(np.uint8), objects)
-    return _from_shape(world, triangles, look)
+    points = crown.corners[None] * np.column_stack([wide, wide * (0.9 + 0.2 * draw[:, 2]), tall])[:, None]
+    points[..., 2] += (planted.trunk_height_m - 1.2 + 0.8 * tall)[:, None]
+    world = Frames(planted.frames.base_m, planted.frames.yaw_rad + 6.3 * draw[:, 1]).world(points)
+    faces = np.zeros((count, len(crown.triangles)), FACE)
+    faces["material"], faces["tag"], faces["object"] = (
+        Material.LEAVES, SemanticTag.VEGETATION, planted.objects[:, None],
+    )  # fmt: skip
+    colour = _LEAVES[(draw[:, 2] * len(_LEAVES)).astype(int)] * (0.85 + 0.3 * draw[:, 4])[:, None]
+    faces["colour"] = np.clip(colour[:, None] * crown.light[None, :, None], 0.0, 255.0)
+    numbers = np.arange(count)[:, None, None] * len(crown.corners) + crown.triangles[None]
+    return Mesh(world.reshape(-1, 3).astype(np.float32), numbers.reshape(-1, 3).astype(np.uint32), faces.reshape(-1))
 
 
-def _from_shape(world: F64, triangles: NDArray[np.int64], look: Look) -> Mesh:
-    """Return one mesh of N copies (N, K, 3) of a shape, corners shared within each."""
-    count, each = world.shape[:2]
-    flat = polygons(np.zeros((count * len(triangles), 3, 3)), look.of(np.repeat(np.arange(count), len(triangles))))
-    numbers = (np.arange(count)[:, None, None] * each + triangles[None]).reshape(-1, 3)
-    return Mesh(world.reshape(-1, 3).astype(np.float32), numbers.astype(np.uint32), flat.faces)
-
-
-def _cones(frames: Frames, draw: F64, objects: NDArray[np.int32]) -> Mesh:
-    """Return conifers: three skirts of branches one above the other."""
-    height = 6.5 + 6.0 * draw[:, 4]
-    look = Look(Material.LEAVES, SemanticTag.VEGETATION, _NEEDLES[(draw[:, 2] * 3).astype(int)], objects)
-    parts = []
-    for begin, end, width in ((0.12, 0.55, 0.26), (0.36, 0.8, 0.2), (0.62, 1.0, 0.13)):
-        up = np.array([0.0, 0.0, 1.0])
-        low = frames.base_m + up * (begin * height)[:, None]
-        parts.append(prisms(low, frames.base_m + up * (end * height)[:, None], (width * height, 0.01), 8, look))
-    return join(parts)
+def _cones(planted: Planted) -> Mesh:
+    """Return conifers: skirts of branches one above the other."""
+    height = 6.5 + 6.0 * planted.draw[:, 4]
+    needles = _NEEDLES[(planted.draw[:, 2] * len(_NEEDLES)).astype(int)]
+    look = Look(Material.LEAVES, SemanticTag.VEGETATION, needles, planted.objects)
+    up = np.array([0.0, 0.0, 1.0])
+    ends = [(planted.frames.base_m + up * (share * height)[:, None] for share in skirt[:2]) for skirt in _SKIRTS]
+    return join(
+        [
+            prisms(low, high, (width * height, 0.01), 8, look, lid=False)
+            for (low, high), (_, _, width) in zip(ends, _SKIRTS, strict=True)
+        ]
+    )
 
 
 @cache
-def _blob(number: int) -> tuple[F64, NDArray[np.int64]]:
-    """Return a lumpy ball: an icosahedron whose faces are cut in four, its corners moved in and out."""
-    corners, triangles = _icosahedron()
-    corners, triangles = _finer(corners, triangles)
-    rng = np.random.default_rng([7, number])
-    lumps = rng.normal(size=(5, 3))
-    lumps /= np.linalg.norm(lumps, axis=1)[:, None]
-    swell = np.exp(3.0 * (corners @ lumps.T - 1.0)).sum(axis=1)
-    radius = 0.72 + 0.28 * swell + rng.uniform(-0.15, 0.15, len(corners))
-    shaped = corners * radius[:, None]
-    shaped[:, 2] = np.where(shaped[:, 2] < 0.0, 0.75 * shaped[:, 2], shaped[:, 2])
-    return shaped, triangles
+def _crown(number: int, clumps: int, twigs: int) -> _Crown:
+    """Return a crown of so many clumps: one in the middle, the others leaning out of it all round, the last on top."""
+    rng = np.random.default_rng([7, number, clumps])
+    ball, triangles = _icosahedron()
+    turn = rng.uniform(0.0, 2.0 * np.pi)
+    corners, lights = [], []
+    for nth in range(clumps):
+        if nth == 0:
+            centre, radius = np.array([0.0, 0.0, -0.05]), 0.86
+        elif nth == clumps - 1:
+            centre, radius = np.array([*rng.uniform(-0.25, 0.25, 2), 0.42]), rng.uniform(0.55, 0.66)
+        else:
+            angle = turn + nth * 2.0 * np.pi / max(clumps - 2, 1) + rng.uniform(-0.4, 0.4)
+            centre = np.array([0.42 * np.cos(angle), 0.42 * np.sin(angle), rng.uniform(-0.25, 0.1)])
+            radius = rng.uniform(0.56, 0.68)
+        lumpy = _turned(ball, rng) * (radius * rng.uniform(0.88, 1.12, (len(ball), 1)))
+        lumpy[:, 2] *= 0.85
+        corners.append(centre + lumpy)
+        middle = corners[-1][triangles].mean(axis=1)
+        lights.append(np.clip(0.98 + 0.22 * middle[:, 2], 0.78, 1.15))
+    fans = (np.arange(clumps)[:, None, None] * len(ball) + triangles[None]).reshape(-1, 3)
+    solid = np.concatenate(corners)
+    sprays = _sprays(solid, twigs, rng)
+    loose = len(solid) + np.arange(3 * twigs).reshape(-1, 3)
+    light = np.clip(1.04 + 0.2 * sprays[:, :, 2].mean(axis=1), 0.84, 1.2)
+    return _Crown(
+        np.concatenate([solid, sprays.reshape(-1, 3)]), np.concatenate([fans, loose]), np.concatenate([*lights, light])
+    )
+
+
+def _sprays(solid: F64, count: int, rng: np.random.Generator) -> F64:
+    """Return triangles (count, 3, 3) on the outside of a crown with these corners, each turned a little out of it."""
+    golden_rad = np.pi * (3.0 - 5.0**0.5)
+    up = 1.0 - 1.7 * (np.arange(count) + 0.5) / max(count, 1)
+    angle = golden_rad * np.arange(count)
+    level = np.sqrt(1.0 - up * up)
+    out = np.column_stack([level * np.cos(angle), level * np.sin(angle), up])
+    # the crown reaches as far as the farthest corner that lies that way
+    reach = (solid @ out.T).max(axis=0, initial=0.0)
+    middle = out * (reach * rng.uniform(0.8, 0.92, count))[:, None]
+    u = np.cross(out, rng.normal(size=(count, 3)))
+    u /= np.linalg.norm(u, axis=1)[:, None]
+    v = np.cross(out, u) + 0.9 * rng.uniform(0.3, 1.0, (count, 1)) * out
+    size = rng.uniform(0.18, 0.3, (count, 1))
+    corners = [middle - size * u - 0.5 * size * v, middle + size * u - 0.5 * size * v, middle + 1.1 * size * v]
+    return np.stack(corners, axis=1)
+
+
+def _turned(points: F64, rng: np.random.Generator) -> F64:
+    """Return points turned about the origin, any way."""
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    if np.linalg.det(turn) < 0.0:
+        turn[:, 0] *= -1.0
+    turned: F64 = points @ turn.T
+    return turned
 
 
 def _icosahedron() -> tuple[F64, NDArray[np.int64]]:
@@ -114,15 +187,3 @@ def _icosahedron() -> tuple[F64, NDArray[np.int64]]:
         if near[i, j] and near[j, k] and near[i, k]
     ]
     return corners, np.array(found)
-
-
-def _finer(corners: F64, triangles: NDArray[np.int64]) -> tuple[F64, NDArray[np.int64]]:
-    """Cut every triangle of a ball in four."""
-    sides = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
-    unique, of_side = np.unique(sides, axis=0, return_inverse=True)
-    middles = corners[unique].mean(axis=1)
-    middles /= np.linalg.norm(middles, axis=1)[:, None]
-    ab, bc, ca = of_side.reshape(3, -1) + len(corners)
-    a, b, c = triangles.T
-    cut = [np.stack(corner, axis=1) for corner in ((a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca))]
-    return np.concatenate([corners, middles]), np.concatenate(cut)

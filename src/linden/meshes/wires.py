@@ -19,7 +19,7 @@ _WIRES_M = ((-0.85, -0.15), (-0.3, -0.15), (0.85, -0.15), (0.0, -2.2))
 """Where they hang: along the arm, and how far below the pole's top; the lowest is the telephone's."""
 _LONGEST_SPAN_M = 75.0
 _SAG = 0.018
-_PIECES = 3
+_PIECES = 2
 _WIRE_HALF_M = 0.012
 
 
@@ -33,9 +33,9 @@ def utility_poles(frames: Frames, objects: I32) -> Mesh:
     steel = Look(Material.METAL, SemanticTag.POLES, _STEEL, objects).of(third)
     return join(
         [
-            prisms(frames.base_m - 0.4 * up, top, (POLE_HALF_M, 0.7 * POLE_HALF_M), 6, wood),
+            prisms(frames.base_m - 0.4 * up, top, (POLE_HALF_M, 0.7 * POLE_HALF_M), 6, wood, lid=False),
             boxes(frames, (0.0, 0.0, POLE_HEIGHT_M - 0.25), (_ARM_M, 0.05, 0.06), wood, ALL_SIDES),
-            prisms(can, can + 0.9 * up, (0.22, 0.22), 7, steel),
+            prisms(can, can + 0.9 * up, (0.22, 0.22), 7, steel, lid=False),
             _wires(frames),
         ]
     )
@@ -55,7 +55,9 @@ def _wires(frames: Frames) -> Mesh:
             begin + share * (end - begin) - np.outer(4.0 * share * (1.0 - share) * _SAG * apart[spans], (0.0, 0.0, 1.0))
             for share in np.linspace(0.0, 1.0, _PIECES + 1)
         ]
-        parts += [prisms(first, second, (_WIRE_HALF_M, _WIRE_HALF_M), 3, look) for first, second in pairwise(nodes)]
+        parts += [
+            prisms(first, second, (_WIRE_HALF_M, _WIRE_HALF_M), 3, look, lid=False) for first, second in pairwise(nodes)
+        ]
     return join(parts)
 
 

@@ -1,6 +1,7 @@
 """What lies around houses: porches on posts, hedges, fences of boards or mesh, drives and paths of concrete."""
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +25,7 @@ _FLOOR_M = 0.45
 _POST_M = 0.07
 _UP = (0.0, 0.0, 1.0)
 _WALLS = ("left", "ahead", "right", "behind")
-_SLAB_M = 0.012  # how far a drive rises above the lawn
+_SLAB_M = 0.02  # how far a drive rises above the lawn
 _VERGE_M = (2.72, 1.48)  # from the lot's front back to the kerb, and to the pavement
 _PATH_HALF_M = 0.55
 _HIGH_M = 1e6
@@ -42,14 +43,14 @@ def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
         np.zeros(3),
         np.column_stack([x, y, np.full(len(x), _FLOOR_M)]),
         Look(Material.CONCRETE, tag, CONCRETE, objects),
+        ("top", "left", "right", "behind"),
     )
     parts = [floor]
     high = 0.5 * (top - 0.35 + _FLOOR_M)
     for share in (-1.0, -0.15, 1.0):
         centre = np.column_stack([-x + _POST_M + 0.05, share * (y - _POST_M - 0.05), high])
-        parts.append(
-            boxes(frames, centre, np.column_stack([zero + _POST_M, zero + _POST_M, high - _FLOOR_M]), trim, _WALLS)
-        )
+        half = np.column_stack([zero + _POST_M, zero + _POST_M, high - _FLOOR_M])
+        parts.append(boxes(frames, centre, half, trim, ("left", "behind", "right")))
     front, back = top - 0.35, top
     ends = [(-x, -y, front), (-x, y, front), (x, y, back), (x, -y, back)]
     slope = np.stack([np.column_stack(corner) for corner in ends], axis=1)
@@ -100,10 +101,14 @@ def _solid(frames: Frames, half_m: F64, look: Look) -> Mesh:
 def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
     """Return two rails between posts."""
     parts = []
-    for height in (0.8, 1.75):
-        centre, half = half_m * (0.0, 0.0, height), half_m * (1.0, 1.0, 0.09)
-        half[:, :2] = np.where(half_m[:, :2] < 0.1, 0.5 * half_m[:, :2], half_m[:, :2])
-        parts.append(boxes(frames, centre, half, look))
+    for sides, rows in (
+        (("top", "left", "right"), np.flatnonzero(half_m[:, 0] > half_m[:, 1])),
+        (("top", "ahead", "behind"), np.flatnonzero(half_m[:, 0] <= half_m[:, 1])),
+    ):
+        for height in (0.8, 1.75):
+            centre, half = half_m[rows] * (0.0, 0.0, height), half_m[rows] * (1.0, 1.0, 0.09)
+            half[:, :2] = np.where(half[:, :2] < 0.1, 0.5 * half[:, :2], half[:, :2])
+            parts.append(boxes(frames.of(rows), centre, half, look.of(rows), sides))
     for share in (-0.98, 0.0, 0.98):
         along = np.where(half_m[:, :2] > 0.1, share * half_m[:, :2], 0.0)
         centre = np.column_stack([along, half_m[:, 2]])
@@ -111,8 +116,9 @@ def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
     return join(parts)
 
 
-def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground) -> Mesh:
+def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground, lawn: Mesh) -> Mesh:
     """Return drives from the kerb to the house and paths to front doors; they lie on the lawn and are no objects."""
+    under = _Under(ground, Ground.from_triangles(lawn.vertices_m, lawn.triangles))
     drive = drives(lots, scene)
     house = lots_of(lots, scene)
     rows = np.searchsorted(scene.boxes["thing"], np.flatnonzero(scene.things["kind"] == Kind.HOUSE))
@@ -122,33 +128,45 @@ def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground) -> Mesh:
     frames = Frames(np.column_stack([lots["front_m"], np.zeros(len(lots))]), lots["yaw_rad"])
     return join(
         [
-            *_bays(frames.of(drive.lot), drive, ground),
-            *_lengths(frames.of(house), (0.0 * front, front), (door - _PATH_HALF_M, door + _PATH_HALF_M), ground),
+            *_bays(frames.of(drive.lot), drive, under),
+            *_lengths(frames.of(house), (0.0 * front, front), (door - _PATH_HALF_M, door + _PATH_HALF_M), under),
         ]
     )
 
 
-def _bays(frames: Frames, drive: Drive, ground: Ground) -> list[Mesh]:
+class _Under(NamedTuple):
+    """What slabs lie on: the road's verge, and beyond it the lawn as it is seen."""
+
+    roads: Ground
+    lawn: Ground
+
+    def heights(self, points_m: F64) -> F64:
+        """Return the heights (N,) under points (N, 3)."""
+        on_road, on_lawn = self.roads.surfaces_under(points_m), self.lawn.surfaces_under(points_m)
+        return np.where((on_lawn[1] >= 0) & (on_road[1] < 0), on_lawn[0], on_road[0])
+
+
+def _bays(frames: Frames, drive: Drive, under: _Under) -> list[Mesh]:
     zero = np.zeros(len(frames))
     aside = drive.side * DRIVE_ASIDE_M
     across = (aside - DRIVE_HALF_M, aside + DRIVE_HALF_M)
-    apron = _slab(frames, (zero - _VERGE_M[0], zero - _VERGE_M[1]), across, ground, 0.002)
-    return [apron, *_lengths(frames, (zero, drive.length_m), across, ground)]
+    apron = _slab(frames, (zero - _VERGE_M[0], zero - _VERGE_M[1]), across, under)
+    return [apron, *_lengths(frames, (zero, drive.length_m), across, under)]
 
 
-def _lengths(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], ground: Ground) -> list[Mesh]:
+def _lengths(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], under: _Under) -> list[Mesh]:
     """Return slabs in two lengths, so that they follow the ground."""
     shares = (0.0, 0.5, 1.0)
     places = [along[0] + share * (along[1] - along[0]) for share in shares]
-    return [_slab(frames, pair, across, ground, 0.0) for pair in pairwise(places)]
+    return [_slab(frames, pair, across, under) for pair in pairwise(places)]
 
 
-def _slab(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], ground: Ground, above_m: float) -> Mesh:
+def _slab(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], under: _Under) -> Mesh:
     corners = np.stack(
         [np.column_stack([along[i], across[j], np.zeros(len(frames))]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))],
         axis=1,
     )
     world = frames.world(corners)
     world[..., 2] = _HIGH_M
-    world[..., 2] = ground.surfaces_under(world.reshape(-1, 3))[0].reshape(-1, 4) + _SLAB_M + above_m
+    world[..., 2] = under.heights(world.reshape(-1, 3)).reshape(-1, 4) + _SLAB_M
     return polygons(world, Look(Material.CONCRETE, SemanticTag.TERRAIN, CONCRETE), _UP)

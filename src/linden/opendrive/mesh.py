@@ -18,7 +18,7 @@ from linden.opendrive.lane_table import LANES
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import LaneType, SemanticTag
 
-_TAGS = {
+TAGS = {
     LaneType.SIDEWALK: SemanticTag.SIDEWALKS,
     LaneType.BORDER: SemanticTag.SIDEWALKS,  # the kerb belongs to the pavement, as in CARLA's towns
     LaneType.NONE: SemanticTag.TERRAIN,
@@ -27,6 +27,7 @@ _TAGS = {
     LaneType.TRAM: SemanticTag.RAIL_TRACK,
     LaneType.RAIL: SemanticTag.RAIL_TRACK,
 }
+"""What lanes of these types are tagged; all others are roads."""
 _SMALLEST_AREA_M2 = 1e-6
 _FARTHEST_M = 2e7  # half way round the Earth
 
@@ -97,5 +98,5 @@ def _lane_table(tables: Tables, lane: I64, speed_mps: F64) -> tuple[I64, NDArray
     for name in ("section", "lane_id", "type_bits"):
         rows[name] = source[name]
     rows["speed_limit_mps"] = speed_mps[begins]
-    rows["tag"] = [_TAGS.get(LaneType(int(bits)), SemanticTag.ROADS) for bits in source["type_bits"]]
+    rows["tag"] = [TAGS.get(LaneType(int(bits)), SemanticTag.ROADS) for bits in source["type_bits"]]
     return np.cumsum(begins) - 1, rows

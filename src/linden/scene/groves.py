@@ -31,7 +31,7 @@ def groves(lots: NDArray[np.void], others: Scene, avoid_m: F64, ground: Ground) 
     draw = np.random.default_rng([SEED, 3]).random((len(places), 2))
     places = places[draw[:, 0] < SHARE]
     thick = draw[draw[:, 0] < SHARE, 1]
-    open_land = _far_from_roads(places, ground) & ~_beside(places, others.boxes, FROM_OTHERS_M)
+    open_land = far_from_roads(places, ground) & ~_beside(places, others.boxes, FROM_OTHERS_M)
     open_land &= _away_from(places, avoid_m)
     places, thick = places[open_land], thick[open_land]
     height, _ = ground.surfaces_under(np.column_stack([places, np.full(len(places), _HIGH_M)]))
@@ -63,7 +63,8 @@ def _packed(cells: NDArray[np.int64]) -> NDArray[np.int64]:
     return packed
 
 
-def _far_from_roads(places: F64, ground: Ground) -> NDArray[np.bool_]:
+def far_from_roads(places: F64, ground: Ground) -> NDArray[np.bool_]:
+    """Return which places (N, 2) lie further than ``FROM_ROAD_M`` from any road."""
     far = np.ones(len(places), bool)
     for angle in np.arange(8) * (np.pi / 4.0):
         for away in (0.5 * FROM_ROAD_M, FROM_ROAD_M):

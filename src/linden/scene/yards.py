@@ -44,10 +44,10 @@ class Drive(NamedTuple):
     length_m: F64
 
 
-def yards(lots: NDArray[np.void], houses: Scene, ground: Ground) -> Scene:
-    """Return what lies around the houses that stand on the lots."""
+def yards(lots: NDArray[np.void], houses: Scene, drive: Drive, ground: Ground) -> Scene:
+    """Return what lies around the houses that stand on the lots and have these drives."""
     lot_of_house = lots_of(lots, houses)
-    draw, drive = _draw(lots), drives(lots, houses)
+    draw = _draw(lots)
     open_left = np.setdiff1d(lot_of_house, drive.lot[drive.side < 0.0])
     box = houses.boxes[np.searchsorted(houses.boxes["thing"], _house_rows(houses))]
     return join(

@@ -40,7 +40,7 @@ def scenery_of(world_map: LoadedMap) -> Scenery:
     if len(world_map.walls.feet_m):
         scene = join([scene, walls(*world_map.walls)])
     if world_map.name == HOME_MAP:
-        scene = join([scene, home(world_map.lots, world_map.ground, world_map.geo_origin_deg)])
+        scene = join([scene, home(world_map)])
     elif world_map.name != GENERATED_MAP:
         scene = join([scene, furnish(world_map.lots, world_map.ground)])
     return Scenery(signals, scene, solid(scene, np.ones(len(scene.boxes), bool)))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from linden.meshes.laid import laid
 from linden.meshes.markings import COLOURS, PAINT_HEIGHT_M, WHITE, lines
 from linden.meshes.mesh import Material, Mesh
 from linden.opendrive.parse import parse
@@ -17,7 +18,7 @@ def of_marks(marks: str, shape: str = "<line/>", length: float = 30.0, elevation
     bare = lane(-1).replace('type="broken"', 'type="none"')
     centre = f'<center><lane id="0" type="none">{marks}</lane></center>'
     section = f'<laneSection s="0">{centre}<right>{bare}</right></laneSection>'
-    return lines(parse(opendrive(road(1, length, line(0, 0, 0, 0, length, shape), section, elevation=elevation))))
+    return lines(laid(parse(opendrive(road(1, length, line(0, 0, 0, 0, length, shape), section, elevation=elevation)))))
 
 
 def mark(kind: str, width: float = 0.1, colour: str = "white", offset: float = 0.0) -> str:
@@ -30,7 +31,7 @@ def areas_m2(mesh: Mesh) -> np.ndarray:
 
 
 def test_every_stripe_of_a_broken_line_begins_and_ends_where_the_manual_says() -> None:
-    mesh = lines(parse(street_through_junction()))
+    mesh = lines(laid(parse(street_through_junction())))
     outer = mesh.vertices_m[np.abs(mesh.vertices_m[:, 1] - 3.5) < 0.1]  # right edge of lane -1, south
     on_first = outer[outer[:, 0] < 50.0]
     starts = np.arange(0.0, 50.0, STRIPE_M + GAP_M)

@@ -1,11 +1,13 @@
 """What stands is seen where it is met: every box of the scene has its triangles, and they lie in it."""
 
 import os
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from linden.meshes.floors import floors
+from linden.meshes.laid import laid
 from linden.meshes.library import keep_standing, standing_of
 from linden.meshes.mesh import NO_OBJECT, LampOf, Material, Mesh
 from linden.meshes.road import kerbs, surface
@@ -37,7 +39,7 @@ def linden() -> LoadedMap:
 @pytest.fixture(scope="module")
 def scene(linden: LoadedMap) -> Scene:
     """Every tenth lot of Linden."""
-    return home(linden.lots[np.arange(len(linden.lots)) // 40 % 10 == 0], linden.ground, linden.geo_origin_deg)
+    return home(replace(linden, lots=linden.lots[np.arange(len(linden.lots)) // 40 % 10 == 0]))
 
 
 @pytest.fixture(scope="module")
@@ -126,7 +128,7 @@ def test_a_stop_sign_reads_from_the_left_to_the_right(street: LoadedMap) -> None
 
 
 def test_the_surface_is_what_wheels_feel(street: LoadedMap) -> None:
-    mesh = surface(road_mesh(parse(STREET)))
+    mesh = surface(laid(parse(STREET)))
     middle = mesh.vertices_m[mesh.triangles].mean(axis=1).astype(np.float64)
     height, triangle = street.ground.surfaces_under(np.column_stack([middle[:, :2], np.full(len(middle), HIGH_M)]))
     np.testing.assert_allclose(height, middle[:, 2], atol=1e-4)
@@ -135,7 +137,7 @@ def test_the_surface_is_what_wheels_feel(street: LoadedMap) -> None:
 
 
 def test_a_kerb_looks_at_the_road_and_is_as_high_as_the_pavement() -> None:
-    mesh = kerbs(parse(STREET))
+    mesh = kerbs(laid(parse(STREET)))
     at_road = np.isclose(np.abs(mesh.vertices_m[mesh.triangles, 1]), 3.5, atol=1e-3).all(axis=1)
     assert np.ptp(mesh.vertices_m[mesh.triangles[at_road], 2]) == pytest.approx(0.15, abs=1e-4)
     towards_middle = -np.sign(mesh.vertices_m[mesh.triangles[at_road, 0], 1])
@@ -144,7 +146,7 @@ def test_a_kerb_looks_at_the_road_and_is_as_high_as_the_pavement() -> None:
 
 def test_land_begins_where_the_pavement_ends_and_is_never_on_a_road(street: LoadedMap) -> None:
     opendrive = parse(STREET)
-    mesh = land(opendrive, street.ground, floors(road_mesh(opendrive), street.ground))
+    mesh = land(laid(opendrive), street.ground, floors(road_mesh(opendrive), street.ground))
     corners = mesh.vertices_m[mesh.triangles].astype(np.float64)
     for weights in ((1 / 3, 1 / 3, 1 / 3), (0.6, 0.2, 0.2), (0.2, 0.6, 0.2), (0.2, 0.2, 0.6)):
         points = np.tensordot(corners, weights, axes=(1, 0))

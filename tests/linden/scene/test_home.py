@@ -10,9 +10,11 @@ from linden.scene.home import home
 from linden.scene.objects import Kind, Scene
 from linden.scene.streetside import RAILROAD_CLEAR_M
 from linden.scene.surveyed import surveyed
+from linden.values.enums import LaneType
 from linden.world.maps import HOME_MAP, LoadedMap, MapLibrary
 
 HIGH_M = 1e9
+LARGEST_HALF_M = (5.14, 1.97)  # of vehicle.mitsubishi.fusorosa
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +24,7 @@ def linden() -> LoadedMap:
 
 @pytest.fixture(scope="module")
 def scene(linden: LoadedMap) -> Scene:
-    return home(linden.lots, linden.ground, linden.geo_origin_deg)
+    return home(linden)
 
 
 def of_kinds(scene: Scene, *kinds: Kind) -> np.ndarray:
@@ -37,6 +39,13 @@ def corners(boxes: np.ndarray) -> np.ndarray:
     return np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1) + boxes["centre"][:, None, :2]
 
 
+def lanes_under(linden: LoadedMap, points: np.ndarray) -> np.ndarray:
+    """The row in the table of lanes under each point (..., 2), -1 where no road is."""
+    flat = points.reshape(-1, 2)
+    _, triangle = linden.ground.surfaces_under(np.column_stack([flat, np.full(len(flat), HIGH_M)]))
+    return np.where(triangle >= 0, linden.lane_of_triangle[triangle], -1).reshape(points.shape[:-1])
+
+
 def as_columns(boxes: np.ndarray) -> np.ndarray:
     low, high = (boxes["centre"][:, 2] + side * boxes["half"][:, 2] for side in (-1.0, 1.0))
     turn = np.cos(boxes["yaw_rad"]), np.sin(boxes["yaw_rad"])
@@ -44,11 +53,45 @@ def as_columns(boxes: np.ndarray) -> np.ndarray:
 
 
 def test_yards_and_poles_stand_beside_roads_and_pavements(linden: LoadedMap, scene: Scene) -> None:
-    boxes = of_kinds(scene, Kind.PORCH, Kind.HEDGE, Kind.FENCE, Kind.PARKED_CAR, Kind.UTILITY_POLE)
-    points = corners(boxes).reshape(-1, 2)
-    _, triangle = linden.ground.surfaces_under(np.column_stack([points, np.full(len(points), HIGH_M)]))
+    boxes = of_kinds(scene, Kind.PORCH, Kind.HEDGE, Kind.FENCE, Kind.UTILITY_POLE)
     assert len(boxes) > 5000
-    assert (triangle < 0).all()
+    assert (lanes_under(linden, corners(boxes)) < 0).all()
+
+
+def test_a_parked_car_stands_on_a_drive_or_in_a_parking_lane(linden: LoadedMap, scene: Scene) -> None:
+    lanes = lanes_under(linden, corners(of_kinds(scene, Kind.PARKED_CAR)))
+    in_lane = (linden.lanes["type_bits"][lanes] == LaneType.PARKING) & (lanes >= 0)
+    assert (in_lane.all(axis=1) | (lanes < 0).all(axis=1)).all()
+    assert in_lane.all(axis=1).sum() > 400
+    assert (lanes < 0).all(axis=1).sum() > 500
+
+
+def test_no_car_is_parked_where_a_bus_may_be_spawned(linden: LoadedMap, scene: Scene) -> None:
+    cars = as_columns(of_kinds(scene, Kind.PARKED_CAR))
+    for point in linden.spawn_points[::7]:
+        yaw = np.radians(point.rotation.yaw)
+        bus = np.array([*point.location[:2], np.cos(yaw), np.sin(yaw), *LARGEST_HALF_M, -HIGH_M, HIGH_M])
+        near = np.hypot(*(cars[:, :2] - bus[:2]).T) < 12.0
+        assert not any(overlap(bus, car)[0] > 0.0 for car in cars[near])
+
+
+def test_cars_are_parked_the_way_the_traffic_beside_them_goes(linden: LoadedMap, scene: Scene) -> None:
+    cars = scene.things[scene.things["kind"] == Kind.PARKED_CAR]
+    cars = cars[lanes_under(linden, cars["base"][:, :2]) >= 0]
+    points = np.array([(*point.location[:2], np.radians(point.rotation.yaw)) for point in linden.spawn_points])
+    away = np.hypot(*np.moveaxis(points[None, :, :2] - cars["base"][:, None, :2], 2, 0))
+    beside = away.min(axis=1) < 14.0
+    along = np.cos(points[away.argmin(axis=1), 2] - cars["yaw_rad"])[beside]
+    assert beside.sum() > 200
+    assert 0.9 < (along > 0.9).mean() < 1.0  # some park the other way round
+
+
+def test_nobody_parks_where_the_shuttle_stops_or_before_a_sign(linden: LoadedMap, scene: Scene) -> None:
+    cars = of_kinds(scene, Kind.PARKED_CAR)["centre"][:, :2]
+    cars = cars[lanes_under(linden, cars) >= 0]
+    signals = np.array([signal.transform.location[:2] for signal in linden.signals])
+    for others, reach_m in ((surveyed(linden.geo_origin_deg).stops_m, 25.0), (signals, 9.0)):
+        assert min(float(np.hypot(*(cars - other).T).min()) for other in others) > reach_m
 
 
 def test_a_parked_car_stands_in_nothing_else(scene: Scene) -> None:
