@@ -2,11 +2,13 @@
 
 import argparse
 import math
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from linden.cli.map_source import world_map_of
+from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 
 if TYPE_CHECKING:
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
 
 HELP = "drive the streets with a lidar, or take existing scans, and write one point cloud (.pcd)"
 _DEFAULT_MAP = "Linden"
+_QUIET_S = 10.0  # between two lines of the bar where nobody watches (a log file)
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
@@ -73,8 +76,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     job = _driven(arguments) if arguments.source is None else _existing(arguments)
     with (
+        broken_off_cleanly(),
         PcdWriter(arguments.output, job.remark, labelled=job.labelled) as writer,
-        tqdm(total=job.amount, unit=f" {job.unit}", unit_scale=job.unit == "points", dynamic_ncols=True) as bar,
+        tqdm(
+            total=job.amount,
+            unit=f" {job.unit}",
+            unit_scale=job.unit == "points",
+            mininterval=0.1 if sys.stderr.isatty() else _QUIET_S,
+        ) as bar,
     ):
         merged = merge(job.scans, writer, arguments.voxel, bar.update)
     _say(f"{arguments.output}: {merged.written:,} of {merged.came:,} points, {_size(arguments.output)}")
@@ -130,7 +139,7 @@ def _existing(arguments: argparse.Namespace) -> _Job:
     if arguments.labels and not found.labelled:
         raise UserError(f"--labels: not every file of {arguments.source} has a field label")
     count = f"{len(found.files)} file{'' if len(found.files) == 1 else 's'}"
-    remark = f"of {count}, {'moved by their poses' if found.moved else 'in the frame they had'}; m"
+    remark = f"points of {count}, {'moved by their poses' if found.moved else 'in the frame they had'}"
     return _Job(found.scans(), found.points, "points", arguments.labels, remark)
 
 

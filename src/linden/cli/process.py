@@ -6,7 +6,8 @@ import select
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TextIO
@@ -47,6 +48,21 @@ class Ending:
         self._reminder.daemon = True
         self._reminder.start()
         self._ask()
+
+
+@contextmanager
+def broken_off_cleanly() -> Iterator[None]:
+    """Let SIGINT and SIGTERM end a long command as an exit, so that it takes away what it left half done."""
+    before = {number: signal.signal(number, _break_off) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _break_off(number: int, _frame: FrameType | None) -> None:
+    raise SystemExit(128 + number)  # as the shell counts it
 
 
 class PatientHandler(logging.StreamHandler):  # type: ignore[type-arg] # subscripted at run time only from Python 3.11 on
