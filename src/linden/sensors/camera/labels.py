@@ -34,20 +34,20 @@ _DEPTH_STEPS = 16777215.0  # 2^24 - 1
 
 def depth(spec: CameraSpec, hits: Hits, vectors: F32) -> U8:
     """Return depth along the camera's axis: R + 256 G + 65536 B counts (2^24 - 1) steps to 1000 m; the sky is there."""
-    return _picture(spec, _depth, hits.distance_m, vectors)
+    return _picture(spec, depth_loop, hits.distance_m, vectors)
 
 
 def semantic(spec: CameraSpec, hits: Hits, seen: Seen) -> U8:
     """Return the semantic tag of each pixel in R."""
     first = first_of_places(seen.faces, seen.instances)
-    return _picture(spec, _semantic, hits.instance, hits.triangle, first, seen.faces.tag)
+    return _picture(spec, semantic_loop, hits.instance, hits.triangle, first, seen.faces.tag)
 
 
 def instance(spec: CameraSpec, hits: Hits, seen: Seen) -> U8:
     """Return the semantic tag in R and the lower 16 bits of the object's or actor's id in G and B, low byte first."""
     places = first_of_places(seen.faces, seen.instances), id_of_places(seen.instances)
     objects = seen.faces.tag, seen.faces.object, seen.object_id
-    return _picture(spec, _instance, hits.instance, hits.triangle, *places, *objects)
+    return _picture(spec, instance_loop, hits.instance, hits.triangle, *places, *objects)
 
 
 def normals(spec: CameraSpec, hits: Hits, pose: Transform) -> U8:
@@ -55,7 +55,7 @@ def normals(spec: CameraSpec, hits: Hits, pose: Transform) -> U8:
 
     CARLA's own material for it is not public; these are the axes of view space, in which such materials are written.
     """
-    return _picture(spec, _normals, hits.instance, hits.normal, rotation_matrix(pose.rotation).astype(np.float32))
+    return _picture(spec, normals_loop, hits.instance, hits.normal, rotation_matrix(pose.rotation).astype(np.float32))
 
 
 def _picture(spec: CameraSpec, paint: Callable[..., None], *columns: NDArray[Any]) -> U8:
@@ -71,7 +71,8 @@ def _picture(spec: CameraSpec, paint: Callable[..., None], *columns: NDArray[Any
 
 
 @unlocked
-def _depth(distance_m: F32, vectors: F32, pixel: I32, image: U8, start: int, stop: int) -> None:
+def depth_loop(distance_m: F32, vectors: F32, pixel: I32, image: U8, start: int, stop: int) -> None:
+    """Write the depth of rays ``start`` to ``stop`` into the picture."""
     for ray in range(start, stop):
         at = pixel[ray]
         if at < 0:
@@ -85,9 +86,10 @@ def _depth(distance_m: F32, vectors: F32, pixel: I32, image: U8, start: int, sto
 
 
 @unlocked
-def _semantic(
+def semantic_loop(
     instances: I32, triangle: I32, first: I64, tags: U8, pixel: I32, image: U8, start: int, stop: int
 ) -> None:
+    """Write the tags of rays ``start`` to ``stop`` into the picture."""
     for ray in range(start, stop):
         at = pixel[ray]
         if at < 0:
@@ -99,10 +101,11 @@ def _semantic(
 
 
 @unlocked
-def _instance(
+def instance_loop(
     instances: I32, triangle: I32, first: I64, actor_id: U32, tags: U8, objects: I32, object_id: U32,
     pixel: I32, image: U8, start: int, stop: int,
 ) -> None:  # fmt: skip
+    """Write tags and ids of rays ``start`` to ``stop`` into the picture."""
     for ray in range(start, stop):
         at = pixel[ray]
         if at < 0:
@@ -121,7 +124,8 @@ def _instance(
 
 
 @unlocked
-def _normals(instances: I32, normal: F32, turn: F32, pixel: I32, image: U8, start: int, stop: int) -> None:
+def normals_loop(instances: I32, normal: F32, turn: F32, pixel: I32, image: U8, start: int, stop: int) -> None:
+    """Write the normals of rays ``start`` to ``stop`` into the picture."""
     for ray in range(start, stop):
         at = pixel[ray]
         if at < 0:

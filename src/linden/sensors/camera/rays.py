@@ -87,14 +87,15 @@ def aim(vectors: F32, pose: Transform) -> Rays:
     turn, place = rotation_matrix(pose.rotation).astype(np.float32), np.array(pose.location, np.float32)
 
     def work(start: int, stop: int) -> None:
-        _aim(vectors, turn, place, origin, direction, start, stop)
+        aim_loop(vectors, turn, place, origin, direction, start, stop)
 
     in_stretches(len(vectors), work, multiple=TILE_PX**2)
     return Rays(origin, direction)
 
 
 @unlocked
-def _aim(vectors: F32, turn: F32, place: F32, origin: F32, direction: F32, start: int, stop: int) -> None:
+def aim_loop(vectors: F32, turn: F32, place: F32, origin: F32, direction: F32, start: int, stop: int) -> None:
+    """Write rays ``start`` to ``stop`` in the world."""
     for i in range(start, stop):
         x, y, z = vectors[i]
         for axis in range(3):

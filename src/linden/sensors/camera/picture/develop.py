@@ -86,10 +86,10 @@ def developed(spec: CameraSpec, film: Film, light: F32, air: Air) -> U8:
     pixel = pixel_of_ray(spec)
     image = np.empty((spec.height_px * spec.width_px, 4), np.uint8)
     table, factor = curve(film), balance(film, air)
-    halo = bloom(spec, film, light, factor)
+    halo, across = bloom(spec, film, light, factor), tile_counts(spec)[0]
 
     def work(start: int, stop: int) -> None:
-        _develop(light, factor, halo, tile_counts(spec)[0], pixel, spec.width_px, *rain(air), table, image, start, stop)
+        develop_loop(light, factor, halo, across, pixel, spec.width_px, *rain(air), table, image, start, stop)
 
     in_stretches(len(pixel), work, multiple=TILE_PX**2)
     return image.reshape(spec.height_px, spec.width_px, 4)
@@ -131,7 +131,7 @@ def bloom(spec: CameraSpec, film: Film, light: F32, factor: F32) -> F32:
     tiles = np.empty((down * across, 3), np.float32)
 
     def work(start: int, stop: int) -> None:
-        _excess(light, factor, tiles, start, stop)
+        excess_loop(light, factor, tiles, start, stop)
 
     in_stretches(len(tiles), work, multiple=1)
     over: F32 = tiles.reshape(down, across, 3)
@@ -146,7 +146,7 @@ def bloom(spec: CameraSpec, film: Film, light: F32, factor: F32) -> F32:
 
 
 @shading
-def _excess(light: F32, factor: F32, over: F32, start: int, stop: int) -> None:
+def excess_loop(light: F32, factor: F32, over: F32, start: int, stop: int) -> None:
     """Write how far the brightest spot of each tile is above what a picture can hold."""
     for tile in range(start, stop):
         for channel in range(3):
@@ -202,4 +202,4 @@ def _build(built_of: int) -> Callable[..., None]:
     return develop
 
 
-_develop = _build(fingerprint(Path(__file__), Path(__file__).with_name("noise.py")))
+develop_loop = _build(fingerprint(Path(__file__), Path(__file__).with_name("noise.py")))

@@ -31,7 +31,7 @@ def edge_rays(spec: CameraSpec, hits: Hits, light: F32) -> NDArray[np.intp]:
     edge = np.empty(len(light), np.bool_)
 
     def work(start: int, stop: int) -> None:
-        _mark(hits.instance, hits.distance_m, hits.normal, light, across, down, edge, start, stop)
+        mark_loop(hits.instance, hits.distance_m, hits.normal, light, across, down, edge, start, stop)
 
     in_stretches(len(edge), work, multiple=TILE_PX**2)
     return np.flatnonzero(edge)
@@ -44,7 +44,7 @@ def finer(spec: CameraSpec, rows: NDArray[np.intp], pose: Transform) -> Rays:
     vectors, aside = directions(spec), offsets(spec)
 
     def work(start: int, stop: int) -> None:
-        _split(vectors, rows, aside, turn, place, origin, direction, start, stop)
+        split_loop(vectors, rows, aside, turn, place, origin, direction, start, stop)
 
     in_stretches(len(rows), work, multiple=TILE_PX)
     return Rays(origin, direction)
@@ -56,10 +56,11 @@ def offsets(spec: CameraSpec) -> F32:
 
 
 @unlocked
-def _split(
+def split_loop(
     vectors: F32, rows: NDArray[np.intp], offsets: F32, turn: F32, place: F32, origin: F32, direction: F32,
     start: int, stop: int,
 ) -> None:  # fmt: skip
+    """Write the samples of rows ``start`` to ``stop``."""
     for k in range(start, stop):
         ahead, right, up = vectors[rows[k]]
         for sample in range(SAMPLES):
@@ -72,10 +73,11 @@ def _split(
 
 
 @unlocked
-def _mark(
+def mark_loop(
     instance: I32, distance_m: F32, normal: F32, light: F32, across: int, down: int, edge: NDArray[np.bool_],
     start: int, stop: int,
 ) -> None:  # fmt: skip
+    """Mark the edges among rays ``start`` to ``stop``."""
     width, height = across * TILE_PX, down * TILE_PX
     for ray in range(start, stop):
         tile, within = ray // (TILE_PX * TILE_PX), ray % (TILE_PX * TILE_PX)

@@ -29,14 +29,16 @@ def sunny(caster: Caster, rays: Rays, hits: Hits, air: Air) -> F32:
     facing = np.empty(len(lit), np.bool_)
 
     def mark(start: int, stop: int) -> None:
-        _mark_facing(hits.instance, hits.normal, rays.direction, sun, facing, start, stop)
+        facing_loop(hits.instance, hits.normal, rays.direction, sun, facing, start, stop)
 
     in_stretches(len(lit), mark, multiple=16)
     rows = np.flatnonzero(facing)
     origin, direction = np.empty((len(rows), 3), np.float32), np.empty((len(rows), 3), np.float32)
 
     def gather(start: int, stop: int) -> None:
-        _gather(rows, rays.origin_m, rays.direction, hits.distance_m, hits.normal, sun, origin, direction, start, stop)
+        gather_loop(
+            rows, rays.origin_m, rays.direction, hits.distance_m, hits.normal, sun, origin, direction, start, stop
+        )
 
     in_stretches(len(rows), gather, multiple=16)
     lit[rows] = ~caster.blocked(Rays(origin, direction), LONGEST_SHADOW_M, coherent=True)
@@ -49,7 +51,7 @@ def shines(air: Air) -> bool:
 
 
 @unlocked
-def _mark_facing(
+def facing_loop(
     instance: NDArray[np.int32], normal: F32, direction: F32, sun: F32, facing: NDArray[np.bool_], start: int, stop: int
 ) -> None:
     """Mark what is seen from the side that the sun shines on."""
@@ -63,7 +65,7 @@ def _mark_facing(
 
 
 @unlocked
-def _gather(
+def gather_loop(
     rows: NDArray[np.intp], origin: F32, direction: F32, distance_m: F32, normal: F32, sun: F32, from_m: F32,
     towards: F32, start: int, stop: int,
 ) -> None:  # fmt: skip
