@@ -7,7 +7,9 @@ gives the same bits; what is seen has threads (``unlocked``), pictures both. The
 
 import hashlib
 from collections.abc import Callable
+from functools import update_wrapper
 from pathlib import Path
+from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import llvmlite.binding
@@ -50,15 +52,45 @@ def shading(function: Function) -> Function:
     """Compile as :func:`unlocked` does, and let sums be reordered: for light and colour, never for what is measured.
 
     It makes no arrays, so that numba need not count who uses those it is given: that took as long as all the rest.
+    Numbers written in it are of 32 bits (see :func:`shading_part`).
     """
-    return cast(
-        "Function", numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True, **_UNCOUNTED)(function)
-    )
+    compiled = numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True, **_UNCOUNTED)
+    return cast("Function", compiled(_single(function)))
 
 
 def shading_part(function: Function) -> Function:
-    """Compile into the kernels that call it, as :func:`part` does, with sums reordered."""
-    return cast("Function", numba.njit(error_model="numpy", fastmath=True, **_UNCOUNTED)(function))
+    """Compile into the kernels that call it, as :func:`part` does, with sums reordered, and always in place of a call.
+
+    Numbers written in it, as 0.5, are taken for floats of 32 bits: beside one of 64 bits all others would become that,
+    and a processor takes twice as many of 32 at once. So loops over such parts can be worked on eight at a time.
+    Constants of a module that it uses have to be of 32 bits themselves, ``np.float32(0.5)``.
+    """
+    return cast(
+        "Function", numba.njit(error_model="numpy", fastmath=True, forceinline=True, **_UNCOUNTED)(_single(function))
+    )
+
+
+def shading_stage(function: Function) -> Function:
+    """Compile as :func:`shading_part` does, but as a function of its own: a loop that several kernels or places call."""
+    return cast("Function", numba.njit(error_model="numpy", fastmath=True, **_UNCOUNTED)(_single(function)))
+
+
+def _single(function: Callable[..., object]) -> Callable[..., object]:
+    """Return a function whose literal floats are of 32 bits."""
+    given = cast("FunctionType", function)
+    code = given.__code__
+    written = cast("tuple[object, ...]", _narrowed(code.co_consts))
+    narrow = FunctionType(
+        code.replace(co_consts=written), given.__globals__, given.__name__, given.__defaults__, given.__closure__
+    )
+    return cast("Callable[..., object]", update_wrapper(narrow, function))
+
+
+def _narrowed(value: object) -> object:
+    """Return a constant with its floats, and those of tuples in it, of 32 bits."""
+    if type(value) is tuple:
+        return tuple(map(_narrowed, value))
+    return np.float32(value) if type(value) is float else value
 
 
 def fingerprint(*sources: Path) -> int:

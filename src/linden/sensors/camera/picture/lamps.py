@@ -20,8 +20,8 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 CELL_M = 8.0
-_CELLS = 40
-_REACH_M = CELL_M * _CELLS / 2.0
+CELLS = 40
+_REACH_M = CELL_M * CELLS / 2.0
 
 LAMPLIGHT = np.dtype(
     [
@@ -112,20 +112,20 @@ def _row(lamp: int, place: Iterable[float], towards: Iterable[float], colour: It
 def _sorted_into_cells(place: F64, reach: F64, west: float, north: float) -> tuple[I32, I32]:
     """Return which lamps reach into which cell, as ``LampGrid`` has it."""
     low, high = np.empty((len(place), 2), np.int64), np.empty((len(place), 2), np.int64)
-    counts = np.zeros(_CELLS * _CELLS + 1, np.int32)
+    counts = np.zeros(CELLS * CELLS + 1, np.int32)
     for lamp in range(len(place)):
         for axis in range(2):
             middle = place[lamp, axis] - (west if axis == 0 else north)
             low[lamp, axis] = max(0, int((middle - reach[lamp]) // CELL_M))
-            high[lamp, axis] = min(_CELLS - 1, int((middle + reach[lamp]) // CELL_M))
+            high[lamp, axis] = min(CELLS - 1, int((middle + reach[lamp]) // CELL_M))
         for y in range(low[lamp, 1], high[lamp, 1] + 1):
             for x in range(low[lamp, 0], high[lamp, 0] + 1):
-                counts[y * _CELLS + x + 1] += 1
+                counts[y * CELLS + x + 1] += 1
     first = np.cumsum(counts).astype(np.int32)
     filled, number = first.copy(), np.empty(first[-1], np.int32)
     for lamp in range(len(place)):
         for y in range(low[lamp, 1], high[lamp, 1] + 1):
             for x in range(low[lamp, 0], high[lamp, 0] + 1):
-                number[filled[y * _CELLS + x]] = lamp
-                filled[y * _CELLS + x] += 1
+                number[filled[y * CELLS + x]] = lamp
+                filled[y * CELLS + x] += 1
     return first, number

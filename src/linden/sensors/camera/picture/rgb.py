@@ -14,8 +14,9 @@ from linden.sensors.camera.picture.develop import developed
 from linden.sensors.camera.picture.edges import SAMPLES, edge_rays, finer
 from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, groups, lamps_near
 from linden.sensors.camera.picture.relief import Relief, relief
-from linden.sensors.camera.picture.shade import Places, shaded
+from linden.sensors.camera.picture.shade import shaded
 from linden.sensors.camera.picture.shadows import sunny
+from linden.sensors.camera.picture.spots import Places
 from linden.sensors.camera.spec import CameraSpec, Film
 from linden.sensors.seen import LINEAR, Seen, first_of_places
 from linden.values.space import Transform
