@@ -32,7 +32,8 @@ LAMPLIGHT = np.dtype(
         ("low", "f4"),  # cosine from which it gives light, and
         ("high", "f4"),  # from which it gives all of it
         ("cut", "?"),  # whether it is a low beam, dimmed above its middle
-    ]
+    ],
+    align=True,  # or a GPU could not read it
 )
 
 _STREET, _HEAD, _TAIL = int(LampOf.STREET), int(LampOf.HEAD), int(LampOf.TAIL)
