@@ -9,6 +9,7 @@ from linden.errors import ProtocolError
 from linden.handlers import registry
 from linden.handlers.context import Context
 from linden.server.cue import QUESTION, TICK, Cue, hear_question
+from linden.server.expected import Expected
 from linden.server.peers import RpcPeer
 from linden.server.subscribers import Subscribers
 
@@ -19,6 +20,7 @@ CALLS_PER_TURN = 256
 UNREAD_ANSWERS_BYTES = 1024 * 1024
 """A client that leaves more than this unread is not listened to until it has caught up."""
 
+ABOUT_TO_LISTEN = "get_sensor_token"
 LOAD = "load_new_episode"
 JOINING_S = 0.05
 """What the official client needs from beginning to listen until it may stop again. It drops its stream when it loads an
@@ -33,6 +35,7 @@ class Calls:
         unfinished: those whose calls wait for their turn; an ordered set.
         last_ticker: who made the last frame that was made by a call.
         joined_s: when somebody last began to listen to a stream.
+        expected: the streams that somebody is about to listen to.
     """
 
     def __init__(
@@ -52,6 +55,7 @@ class Calls:
         self.unfinished: dict[RpcPeer, None] = {}
         self.last_ticker: RpcPeer | None = None
         self.joined_s = -math.inf
+        self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
 
     def forget(self, peer: RpcPeer) -> None:
@@ -119,6 +123,8 @@ class Calls:
         self._context.caller = peer.number
         if peer.calls[0].method == LOAD:
             time.sleep(max(0.0, self.joined_s + JOINING_S - self._clock()))
+        if peer.calls[0].method == ABOUT_TO_LISTEN and peer.calls[0].args and type(peer.calls[0].args[0]) is int:
+            self.expected.asked(peer.calls[0].args[0], self._clock())
         frame = self._context.simulation.frame
         answer = registry.dispatch(self._context, peer.calls.popleft())
         if self._context.simulation.frame != frame:
@@ -131,12 +137,15 @@ class Calls:
         return peer.outgoing.waiting_bytes + unsent_bytes > UNREAD_ANSWERS_BYTES or self.waits_for_subscribers(peer)
 
     def waits_for_subscribers(self, peer: RpcPeer) -> bool:
-        """Whether a client's next call makes a frame, for which somebody who lags behind is not ready."""
+        """Whether a client's next call makes a frame, for which somebody who lags behind or comes is not ready."""
         return (
-            registry.advances(peer.calls[0])
-            and self.is_synchronous()
-            and self._subscribers.patience_s(self._clock()) is not None
+            registry.advances(peer.calls[0]) and self.is_synchronous() and self.frame_wait_s(self._clock()) is not None
         )
+
+    def frame_wait_s(self, now_s: float) -> float | None:
+        """Return how long synchronous mode's next frame waits at most for subscribers who lag behind or are coming."""
+        waits = (self._subscribers.patience_s(now_s), self.expected.wait_s(now_s))
+        return min((wait_s for wait_s in waits if wait_s is not None), default=None)
 
     def is_synchronous(self) -> bool:
         """Whether frames are made by calls alone."""

@@ -97,7 +97,7 @@ class Server:
             return 0.0
         now_s = self._clock()
         waits = [
-            self._subscribers.patience_s(now_s) if self._calls.unfinished else None,
+            self._calls.frame_wait_s(now_s) if self._calls.unfinished else None,
             self._entrance.wait_s(now_s),
             self._waiting.untold_s(now_s),
         ]
@@ -189,6 +189,7 @@ class Server:
             self._entrance.has_spoken(peer)
             self._subscribers.add(peer, peer.subscription.stream_id)
             self._calls.joined_s = self._clock()
+            self._calls.expected.came(peer.subscription.stream_id)
             if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # whoever joins between two ticks sees the world too
                 payload = self.context.frames.world_payload(self.context.simulation)
                 self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.is_synchronous())

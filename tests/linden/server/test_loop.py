@@ -182,6 +182,21 @@ def test_in_synchronous_mode_time_stands_still_between_ticks(running: Live) -> N
         assert running.simulation.steps_s == [0.05, 0.05]
 
 
+def test_a_tick_waits_for_whoever_has_just_asked_where_a_stream_is(running: Live) -> None:
+    with running.client() as client:
+        client.call("get_sensor_token", 1)
+        client.send("tick_cue")
+        with running.subscriber() as subscriber:
+            assert [subscriber.frame(), subscriber.frame()] == [0, 1]  # how it was on joining, and the tick
+        client.answer()
+
+
+def test_a_tick_does_not_wait_for_ever_for_who_has_asked(running: Live) -> None:
+    with running.client() as client:
+        client.call("get_sensor_token", 1)
+        assert client.call("tick_cue") == 1
+
+
 def test_in_asynchronous_mode_frames_come_by_themselves() -> None:
     with live(EpisodeSettings(fixed_delta_seconds=0.002)) as running, running.subscriber() as subscriber:
         first = subscriber.frame()
