@@ -71,7 +71,7 @@ def shading_part(function: Function) -> Function:
 
 
 def shading_stage(function: Function) -> Function:
-    """Compile as :func:`shading_part` does, but as a function of its own: a loop that several kernels or places call."""
+    """Compile as :func:`shading_part` does, but as a function of its own: a loop that several kernels call."""
     return cast("Function", numba.njit(error_model="numpy", fastmath=True, **_UNCOUNTED)(_single(function)))
 
 

@@ -1,7 +1,7 @@
 """The light that comes to a camera along each of its rays.
 
-``shade_loop`` does it ray after ray, as a GPU does. For the CPU there is ``stages``, eight rays at a time; both are made of
-the same parts (``spots``, ``patterns``, ``lit``, ``sky``).
+``shade_loop`` does it ray after ray, as a GPU does. For the CPU there is ``stages``, eight rays at a time; both are
+made of the same parts (``spots``, ``patterns``, ``lit``, ``sky``).
 """
 
 import math
