@@ -1,9 +1,9 @@
-"""Makes the pictures of docs/sensors.md: what cameras see from the shuttle's seat, through the official client.
+"""Makes the pictures of docs/cameras.md and docs/pointcloud.md: what sensors see from the shuttle, through the client.
 
     python scripts/sensor_pictures.py [--folder docs/images]
 
-Starts a server, puts the shuttle at five places of the LEAP route among parked and moving vehicles and people, and
-writes one sheet of colour pictures (places by weathers) and one of everything else that cameras can show.
+Starts a server, puts the shuttle at five places of the LEAP route among vehicles and people, and writes a sheet of
+colour pictures (places by weathers), one of everything else that cameras can show, and a lidar's sweep from above.
 """
 
 import argparse
@@ -11,6 +11,7 @@ import queue
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree as ET
@@ -32,7 +33,20 @@ WEATHERS = {
 }
 OTHERS = ("depth", "semantic_segmentation", "instance_segmentation", "normals", "optical_flow")
 LIT = carla.VehicleLightState(carla.VehicleLightState.Position | carla.VehicleLightState.LowBeam)
-WIDTH, HEIGHT = 400, 300
+WIDTH, HEIGHT = 480, 300
+SWEEP_PIXELS, SWEEP_M = 900, 90.0
+ROOF = carla.Transform(carla.Location(x=0.0, z=2.95))
+POINT = np.dtype([(name, "<f4") for name in ("x", "y", "z", "cos")] + [("object", "<u4"), ("tag", "<u4")])
+BACKGROUND = np.array([14, 16, 20])
+_TAGS = {  # of carla.CityObjectLabel, bright enough for a dark ground
+    "Roads": (120, 90, 130), "Sidewalks": (225, 80, 190), "Buildings": (235, 150, 80), "Walls": (150, 150, 200),
+    "Fences": (200, 150, 140), "Poles": (190, 190, 190), "TrafficLight": (255, 190, 40), "TrafficSigns": (250, 240, 60),
+    "Vegetation": (90, 180, 60), "Terrain": (60, 120, 70), "Pedestrians": (255, 60, 90), "Car": (80, 150, 255),
+    "Truck": (60, 110, 220), "Bus": (80, 200, 255), "RoadLines": (255, 255, 255),
+}  # fmt: skip
+COLOURS = np.full((32, 3), 150)
+for _name, _colour in _TAGS.items():
+    COLOURS[int(getattr(carla.CityObjectLabel, _name))] = _colour
 Picture = NDArray[np.uint8]
 
 
@@ -66,32 +80,88 @@ def furnish(world: carla.World, client: carla.Client) -> Stage:
     batch = [
         carla.command.SpawnActor(cars[number % len(cars)], point) for number, point in enumerate(points[5::9][:120])
     ]
-    for place in poses(world.get_map()):  # somebody ahead at each of them
-        ahead = world.get_map().get_waypoint(place.location).next(18.0)[0].transform
-        ahead.location.z += 0.3
-        batch.append(carla.command.SpawnActor(cars[len(batch) % len(cars)], ahead))
     people = library.filter("walker.pedestrian.*")
-    for number in range(80):
-        place = world.get_random_location_from_navigation()
-        if place is not None:
-            place.z += 1.0
-            batch.append(carla.command.SpawnActor(people[number % len(people)], carla.Transform(place)))
+    for place in poses(world.get_map()):  # company at each of them
+        lane = world.get_map().get_waypoint(place.location)
+        batch += [carla.command.SpawnActor(cars[len(batch) % len(cars)], pose) for pose in before(lane)]
+        batch += [carla.command.SpawnActor(people[len(batch) % len(people)], pose) for pose in beside(lane)]
     ids = [answer.actor_id for answer in client.apply_batch_sync(batch, True) if not answer.error]
     others = [actor for actor in world.get_actors(ids) if actor.type_id.startswith("vehicle.")]
     return Stage(world, shuttle, others)
 
 
+def before(lane: carla.Waypoint) -> list[carla.Transform]:
+    """Return a place in the same lane ahead, and one in the opposite lane where there is one."""
+    ahead = lane.next(22.0)[0]
+    found = [ahead.transform]
+    across = lane.next(13.0)[0].get_left_lane()
+    if across is not None and across.lane_type == carla.LaneType.Driving:
+        found.append(across.transform)
+    for pose in found:
+        pose.location.z += 0.3
+    return found
+
+
+def beside(lane: carla.Waypoint) -> list[carla.Transform]:
+    """Return places on the pavements ahead, some looking this way and some the other."""
+    found = []
+    for number, ahead_m in enumerate((8.0, 9.0, 15.0, 24.0, 30.0)):
+        side = lane.next(ahead_m)[0]
+        while side is not None and side.lane_type != carla.LaneType.Sidewalk:
+            side = side.get_right_lane() if number % 3 < 2 else _outwards(side, lane)
+        if side is not None:
+            pose = side.transform
+            pose.rotation.yaw += 180.0 * (number % 2)
+            pose.location.z += 1.0
+            found.append(pose)
+    return found
+
+
+def _outwards(side: carla.Waypoint, lane: carla.Waypoint) -> carla.Waypoint | None:
+    """Return the next lane to the left as who drives in ``lane`` sees it; lanes past the middle look the other way."""
+    return side.get_left_lane() if side.lane_id * lane.lane_id > 0 else side.get_right_lane()
+
+
 def picture(stage: Stage, kind: str) -> Picture:
     """Return one picture (height, width, 3) as people look at it."""
-    blueprint = stage.world.get_blueprint_library().find(f"sensor.camera.{kind}")
-    for name, value in (("image_size_x", WIDTH), ("image_size_y", HEIGHT)):
-        blueprint.set_attribute(name, str(value))
-    sensor = stage.world.spawn_actor(blueprint, SEAT, attach_to=stage.shuttle)
+    size = {"image_size_x": str(WIDTH), "image_size_y": str(HEIGHT)}
+    return measured(stage, f"sensor.camera.{kind}", size, lambda image: shown(kind, image))
+
+
+def sweep(stage: Stage) -> Picture:
+    """Return a whole turn of a lidar on the roof, from above: each point in the colour of what it is part of."""
+    chosen = {"channels": 64, "range": 100, "rotation_frequency": 20, "points_per_second": 64 * 2000 * 20}
+    angles = {"upper_fov": 10, "lower_fov": -25}
+    attributes = {name: str(value) for name, value in {**chosen, **angles}.items()}
+    return measured(stage, "sensor.lidar.ray_cast_semantic", attributes, from_above)
+
+
+def from_above(points: carla.SemanticLidarMeasurement) -> Picture:
+    """Return the points of a sweep, ahead being up; the brighter, the more of them fall on a pixel."""
+    columns = np.frombuffer(points.raw_data, POINT)
+    place = np.stack([-columns["x"], columns["y"]], axis=1) * (SWEEP_PIXELS / (2.0 * SWEEP_M)) + SWEEP_PIXELS / 2.0
+    inside = ((place >= 0.0) & (place < SWEEP_PIXELS)).all(axis=1)
+    row, column = place[inside].astype(np.int64).T
+    light = np.zeros((SWEEP_PIXELS, SWEEP_PIXELS, 3))
+    order = np.argsort(columns["z"][inside], kind="stable")  # what is higher covers what is lower
+    light[row[order], column[order]] = COLOURS[np.minimum(columns["tag"][inside][order], len(COLOURS) - 1)]
+    return np.where(light.any(axis=2, keepdims=True), light, BACKGROUND).astype(np.uint8)
+
+
+def measured(
+    stage: Stage, kind: str, attributes: dict[str, str], look: Callable[[carla.SensorData], Picture]
+) -> Picture:
+    """Return what a sensor on the shuttle measures, as a picture."""
+    blueprint = stage.world.get_blueprint_library().find(kind)
+    for name, value in attributes.items():
+        blueprint.set_attribute(name, value)
+    place = ROOF if "lidar" in kind else SEAT
+    sensor = stage.world.spawn_actor(blueprint, place, attach_to=stage.shuttle)
     arrived: queue.Queue[Picture] = queue.Queue()
-    sensor.listen(lambda image: arrived.put(shown(kind, image)))
+    sensor.listen(lambda data: arrived.put(look(data)))
     try:
         for turn in range(20):
-            if kind == "optical_flow":  # drive, for there to be any
+            if kind.endswith("optical_flow"):  # drive, for there to be any
                 pose = stage.shuttle.get_transform()
                 pose.location += 0.4 * pose.get_forward_vector()
                 stage.shuttle.set_transform(pose)
@@ -102,7 +172,7 @@ def picture(stage: Stage, kind: str) -> Picture:
                     return found
             except queue.Empty:
                 continue
-        raise SystemExit(f"no picture of {kind} has come")
+        raise SystemExit(f"nothing has come of {kind}")
     finally:
         sensor.stop()
         for _ in range(3):
@@ -141,13 +211,14 @@ def make(stage: Stage, folder: Path) -> None:
         if not last:
             stage.world.set_weather(carla.WeatherParameters.ClearNoon)
             last = [row[0], *(picture(stage, kind) for kind in OTHERS)]
+            save(folder / "lidar-sweep.jpg", sweep(stage))
     save(folder / "cameras-weather.jpg", np.concatenate(rows))
     save(folder / "cameras-kinds.jpg", np.concatenate([np.concatenate(last[:3], 1), np.concatenate(last[3:], 1)]))
 
 
 def save(path: Path, sheet: Picture) -> None:
     """Write a sheet, small enough for a repository."""
-    matplotlib.image.imsave(path, sheet, pil_kwargs={"quality": 88})
+    matplotlib.image.imsave(path, sheet, pil_kwargs={"quality": 86, "optimize": True})
     print(f"{path}: {sheet.shape[1]} x {sheet.shape[0]}")
 
 

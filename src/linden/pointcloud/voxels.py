@@ -26,7 +26,11 @@ class _Tile(NamedTuple):
 
 
 class VoxelGrid:
-    """Cells of one width over the whole world."""
+    """Cells of one width over the whole world.
+
+    Attributes:
+        cells: how many have a point.
+    """
 
     def __init__(self, voxel_m: float, folder: Path, most_places: int = MOST_PLACES) -> None:
         """Begin an empty grid, with a folder of its own for what there is no room for in memory."""
@@ -34,6 +38,7 @@ class VoxelGrid:
         self._tiles: dict[int, _Tile] = {}  # the one that was met last is the last
         self._away: dict[int, Path] = {}
         self._places = 0
+        self.cells = 0
 
     @property
     def bytes_in_memory(self) -> int:
@@ -55,6 +60,7 @@ class VoxelGrid:
             tile = self._with_room(number, len(rows))
             new = insert(tile.cells, rows, located.key, located.steps, label)
             self._tiles[number] = _Tile(tile.cells, tile.used + new)
+            self.cells += new
         self._put_away()
 
     def clouds(self) -> Iterator[Cloud]:
