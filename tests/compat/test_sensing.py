@@ -109,8 +109,7 @@ def test_the_semantic_lidar_knows_the_car_ahead_by_its_id(world: carla.World, eg
 
 def test_the_radar_reads_how_fast_the_car_ahead_goes_away(world: carla.World, ego: carla.Actor) -> None:
     other = ahead(world, ego, 12.0, "vehicle.audi.tt")
-    other.set_simulate_physics(False)
-    other.set_target_velocity(other.get_transform().get_forward_vector() * 4.0)
+    other.enable_constant_velocity(carla.Vector3D(x=4.0))
 
     def read(data: carla.RadarMeasurement):
         return [(ray.velocity, ray.azimuth, ray.altitude, ray.depth) for ray in data]
@@ -125,9 +124,10 @@ def test_the_radar_reads_how_fast_the_car_ahead_goes_away(world: carla.World, eg
         vertical_fov=4,
         points_per_second=4000,
     ) as got:
-        until(world, got, 2)
+        until(world, got, 12)  # until it has come down onto the street
     speed_mps = other.get_velocity().length()
-    on_car = [ray for ray in got[-1][1] if 5.0 < ray[3] < 9.0]
+    assert speed_mps == pytest.approx(4.0, rel=0.02)
+    on_car = [ray for ray in got[-1][1] if 5.0 < ray[3] < 11.5]
     assert len(on_car) > 20
     for velocity, azimuth, altitude, _ in on_car:
         assert velocity == pytest.approx(speed_mps * math.cos(azimuth) * math.cos(altitude), abs=0.2)
