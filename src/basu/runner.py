@@ -9,7 +9,7 @@ import traceback
 from dataclasses import dataclass
 from datetime import datetime, timezone
 from pathlib import PurePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from basu.errors import UserError
 from basu.managers.agent_loader import load_agent
 from basu.managers.agents_manager import AgentsManager
 from basu.managers.base_manager import Run
+from basu.managers.sensor_file import read_sensors
 from basu.managers.sensors_manager import SensorsManager
 from basu.options import STEP_S
 from basu.outcome import Status
@@ -32,11 +33,11 @@ from basu.vehicle import vehicle_at_start
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     import carla
 
     from basu.managers.agent_loader import LoadedAgent
+    from basu.managers.sensor_file import SensorSpec
     from basu.metrics.score import Scoring
     from basu.options import RunOptions
     from basu.outcome import Outcome
@@ -51,13 +52,20 @@ class Simulator:
     why_gone: Callable[[], str | None]
 
 
+class SensorSet(NamedTuple):
+    """The sensors of a run, and in words who gave them."""
+
+    specs: tuple[SensorSpec, ...]
+    source: str
+
+
 @dataclass(frozen=True, slots=True)
 class Plan:
     """What is to be run, as far as it can be known without a simulator."""
 
     loaded: LoadedAgent
     agents: AgentsManager  # for the first run; each further run makes its own
-    sensor_file: Path | None
+    sensors: SensorSet
     routes: tuple[RouteDescription, ...]
 
 
@@ -89,8 +97,7 @@ def _prepare(options: RunOptions) -> Plan:
     agents = _new_agents(loaded, options)
     config = agents.config
     weather_called(config.weather)
-    sensor_file = None if config.sensors is None else find(config.sensors, "sensor file", loaded.file)
-    SensorsManager(sensor_file)
+    sensors = _sensor_set(agents, loaded)
     if config.sumo is not None:
         print(
             f"basu: warning: {loaded.name} asks for the SUMO network {config.sumo}; co-simulation follows in a later "
@@ -104,7 +111,18 @@ def _prepare(options: RunOptions) -> Plan:
             ids = ", ".join(route.id for route in routes)
             raise UserError(f"{config.routes} has no route '{options.route_id}'; it has {ids}")
         routes = chosen
-    return Plan(loaded, agents, sensor_file, routes)
+    return Plan(loaded, agents, sensors, routes)
+
+
+def _sensor_set(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
+    """The sensors that the agent wants, by its own method or by a file."""
+    own = agents.own_sensors()
+    if own is not None:
+        return SensorSet(own, f"sensors() of {loaded.name}")
+    if agents.config.sensors is None:
+        return SensorSet((), "")
+    path = find(agents.config.sensors, "sensor file", loaded.file)
+    return SensorSet(read_sensors(path), f"sensor file {path}")
 
 
 def _new_agents(loaded: LoadedAgent, options: RunOptions) -> AgentsManager:
@@ -153,7 +171,7 @@ def _one(
     lanes = lane_graph.build(carla_map)
     description = _agents_own(agents, description) or description
     route = plan(carla_map, description, lanes)
-    sensors = SensorsManager(prepared.sensor_file)
+    sensors = SensorsManager(*prepared.sensors)
     with (
         asking("getting the vehicle ready"),
         ticked_by_us(world, STEP_S),

@@ -85,7 +85,7 @@ class AutonomousAgent(ABC):
         """Answer one tick with what the driver's hands and feet do until the next.
 
         Args:
-            sensor_data: for each sensor id of the sensor file the frame it was measured in and the measurement,
+            sensor_data: for each sensor id of the sensor set the frame it was measured in and the measurement,
                 a ``carla.SensorData``. A sensor with nothing new since the last tick still has its last one.
 
         Returns:
@@ -101,6 +101,14 @@ class AutonomousAgent(ABC):
         (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO network). File names are looked for from the
         working folder, then from the agent's own file, then among the files BASU brings.
         """
+
+    def sensors(self) -> Sequence[Mapping[str, Any]] | None:
+        """Give a sensor set of one's own, as the CARLA leaderboard's agents do; None, as here, takes the sensor file.
+
+        One dict a sensor, as an entry of the file: ``{"type": "sensor.camera.rgb", "id": "FRONT", "x": 1.5, "z": 2.4,
+        "width": 800, "height": 600, "fov": 90}``.
+        """
+        return None
 
     def get_initial_route_locations(self) -> Sequence[carla.Location] | None:
         """Give a route of one's own as locations to be joined along the lanes; None, as here, takes the route file."""

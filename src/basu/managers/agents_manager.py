@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 import traceback
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import carla
 
-from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError
+from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, UserError
 from basu.managers.agent_config import AgentConfig, parse_config
 from basu.managers.base_manager import BaseManager
+from basu.managers.sensor_file import SensorSpec, parse_sensors
 from basu.managers.time_limit import OverrunError, call_within
 from basu.routing.route_file import RoutePoint
 
@@ -51,6 +53,24 @@ class AgentsManager(BaseManager):
             raise AgentCrashedError(
                 f"get_initial_route_locations() of {self._name} returned what is no list of locations: {error}"
             ) from error
+
+    def own_sensors(self) -> tuple[SensorSpec, ...] | None:
+        """The agent's own sensor set (``sensors``), None where it has none.
+
+        Raises:
+            UserError: it is no list of sensors, or the agent names a sensor file as well.
+        """
+        given = self._ask("sensors", self._setup_limit_s, self._agent.sensors)
+        if given is None:
+            return None
+        source = f"sensors() of {self._name}"
+        if isinstance(given, str | Mapping) or not isinstance(given, Iterable):
+            raise UserError(f"{source} returned {type(given).__name__}; it must return a list of dicts, one a sensor")
+        if self.config.sensors is not None:
+            raise UserError(
+                f"{source} gives a sensor set, and config() the file {self.config.sensors}; give one of them"
+            )
+        return parse_sensors(given, source)
 
     def setup(self, run: Run) -> None:
         """Bind the agent to its run and let it get ready."""

@@ -1,8 +1,8 @@
-"""Reads a sensor set: JSON with the leaderboard's fields, checked against the simulator's blueprints.
+"""Reads a sensor set, out of a JSON file or from an agent: the leaderboard's fields, checked against the blueprints.
 
 ``{"sensors": [{"type": "sensor.other.gnss", "id": "GPS", "x": 0.7, "y": 0.0, "z": 1.6, …}]}`` or the bare list; beside
 ``type``, ``id`` and the six of the pose (m and degrees in the vehicle's frame) every field is an attribute of the
-sensor's blueprint.
+sensor's blueprint, or one of the leaderboard's names for some: :data:`LEADERBOARDS_NAMES`.
 """
 
 from __future__ import annotations
@@ -16,11 +16,18 @@ from typing import TYPE_CHECKING, Any
 from basu.errors import UserError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
     import carla
 
 POSE_FIELDS = ("x", "y", "z", "roll", "pitch", "yaw")
+LEADERBOARDS_NAMES = {
+    ("sensor.camera.", "width"): ("image_size_x",),
+    ("sensor.camera.", "height"): ("image_size_y",),
+    ("sensor.other.radar", "fov"): ("horizontal_fov", "vertical_fov"),
+}
+"""By the beginning of a type and a field: the attributes that the CARLA leaderboard sets by it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,16 +60,25 @@ def read_sensors(path: Path) -> tuple[SensorSpec, ...]:
     entries = document.get("sensors") if isinstance(document, dict) else document
     if not isinstance(entries, list):
         raise UserError(f"sensor file {path} holds no list of sensors")
-    specs = tuple(_spec(entry, number, path) for number, entry in enumerate(entries, start=1))
+    return parse_sensors(entries, f"sensor file {path}")
+
+
+def parse_sensors(entries: Iterable[Any], source: str) -> tuple[SensorSpec, ...]:
+    """Read a list of sensors that ``source`` gave, which is what complaints begin with.
+
+    Raises:
+        UserError: an entry is incomplete, double or no sensor.
+    """
+    specs = tuple(_spec(entry, number, source) for number, entry in enumerate(entries, start=1))
     seen: set[str] = set()
     for spec in specs:
         if spec.id in seen:
-            raise UserError(f"sensor file {path}: the id '{spec.id}' is given twice; each sensor needs its own")
+            raise UserError(f"{source}: the id '{spec.id}' is given twice; each sensor needs its own")
         seen.add(spec.id)
     return specs
 
 
-def check_sensors(specs: tuple[SensorSpec, ...], library: carla.BlueprintLibrary, path: Path) -> None:
+def check_sensors(specs: tuple[SensorSpec, ...], library: carla.BlueprintLibrary, source: str) -> None:
     """Hold the set against what the simulator has.
 
     Raises:
@@ -72,15 +88,14 @@ def check_sensors(specs: tuple[SensorSpec, ...], library: carla.BlueprintLibrary
     for spec in specs:
         if spec.type_id not in known:
             raise UserError(
-                f"sensor file {path}: sensor '{spec.id}' has the type '{spec.type_id}', which the simulator does not "
+                f"{source}: sensor '{spec.id}' has the type '{spec.type_id}', which the simulator does not "
                 f"have; {_nearest(spec.type_id, list(known))}"
             )
         names = [attribute.id for attribute in known[spec.type_id]]
         for name, _ in spec.attributes:
             if name not in names:
                 raise UserError(
-                    f"sensor file {path}: sensor '{spec.id}' ({spec.type_id}) has no attribute '{name}'; "
-                    f"{_nearest(name, names)}"
+                    f"{source}: sensor '{spec.id}' ({spec.type_id}) has no attribute '{name}'; {_nearest(name, names)}"
                 )
 
 
@@ -89,17 +104,22 @@ def _nearest(wanted: str, known: list[str]) -> str:
     return f"did you mean '{close[0]}'?" if close else f"it has {', '.join(sorted(known))}"
 
 
-def _spec(entry: Any, number: int, path: Path) -> SensorSpec:  # noqa: ANN401 - whatever stands in the file
+def _spec(entry: Any, number: int, source: str) -> SensorSpec:  # noqa: ANN401 - whatever stands in the file
     """One entry."""
     if not isinstance(entry, dict) or not isinstance(entry.get("type"), str) or not isinstance(entry.get("id"), str):
-        raise UserError(f"sensor file {path}: sensor {number} needs a 'type' and an 'id', both texts")
+        raise UserError(f"{source}: sensor {number} needs a 'type' and an 'id', both texts")
     pose = {}
     for name in POSE_FIELDS:
         value = entry.get(name, 0.0)
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
-            raise UserError(f"sensor file {path}: sensor '{entry['id']}' has {name} = {value!r}; it must be a number")
+            raise UserError(f"{source}: sensor '{entry['id']}' has {name} = {value!r}; it must be a number")
         pose[name] = float(value)
-    attributes = {name: value for name, value in entry.items() if name not in {"type", "id", *POSE_FIELDS}}
+    attributes = {
+        attribute: value
+        for name, value in entry.items()
+        if name not in {"type", "id", *POSE_FIELDS}
+        for attribute in _attributes(entry["type"], name)
+    }
     return SensorSpec(
         type_id=entry["type"],
         id=entry["id"],
@@ -111,6 +131,14 @@ def _spec(entry: Any, number: int, path: Path) -> SensorSpec:  # noqa: ANN401 - 
         yaw_deg=pose["yaw"],
         attributes=tuple((name, _as_text(value)) for name, value in attributes.items()),
     )
+
+
+def _attributes(type_id: str, name: str) -> tuple[str, ...]:
+    """The attributes that a field of a sensor sets: mostly the one that is called so."""
+    for (beginning, theirs), ours in LEADERBOARDS_NAMES.items():
+        if name == theirs and type_id.startswith(beginning):
+            return ours
+    return (name,)
 
 
 def _as_text(value: object) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
 from typing import TYPE_CHECKING, Any
 
@@ -9,11 +10,10 @@ import carla
 
 from basu.errors import SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
-from basu.managers.sensor_file import SensorSpec, check_sensors, read_sensors
+from basu.managers.sensor_file import SensorSpec, check_sensors
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-    from pathlib import Path
 
     from basu.managers.base_manager import Frame, Run
 
@@ -29,14 +29,17 @@ ON_EVENT = frozenset(
     }
 )
 
+PARTING_TICKS = 3
+"""Steps between the last measurement and the end of a sensor: what the client has under way arrives meanwhile."""
+
 
 class SensorsManager(BaseManager):
     """After ``tick``, ``data`` holds each sensor's latest measurement with the frame it was made in, by sensor id."""
 
-    def __init__(self, path: Path | None) -> None:
-        """Read the sensor set at ``path``; None for no sensors."""
-        self._path = path
-        self._specs = () if path is None else read_sensors(path)
+    def __init__(self, specs: tuple[SensorSpec, ...], source: str) -> None:
+        """Take a sensor set; ``source`` says in complaints who gave it."""
+        self._specs, self._source = specs, source
+        self._world: Any = None
         self._actors: list[Any] = []
         self._news = threading.Condition()
         self._latest: dict[str, tuple[int, Any]] = {}
@@ -46,10 +49,11 @@ class SensorsManager(BaseManager):
 
     def setup(self, run: Run) -> None:
         """Attach the sensors to the vehicle."""
-        if self._path is None:
+        if not self._specs:
             return
+        self._world = run.world
         library = run.world.get_blueprint_library()
-        check_sensors(self._specs, library, self._path)
+        check_sensors(self._specs, library, self._source)
         self._timeout_s = run.timeout_s
         for spec in self._specs:
             blueprint = library.find(spec.type_id)
@@ -71,14 +75,16 @@ class SensorsManager(BaseManager):
             self.data = dict(self._latest)
 
     def close(self) -> None:
-        """Stop listening and take the sensors away."""
-        while self._actors:
-            actor = self._actors.pop()
-            try:
+        """Stop listening, let go of what was measured, and take the sensors away."""
+        with contextlib.suppress(RuntimeError):  # the simulator is gone, and all sensors with it
+            for actor in self._actors:
                 actor.stop()
-                actor.destroy()
-            except RuntimeError:
-                continue  # the simulator or the actor is gone, which is what was wanted
+            for _ in range(PARTING_TICKS if self._actors else 0):
+                self._world.tick(self._timeout_s)
+        self._latest, self.data = {}, {}
+        while self._actors:
+            with contextlib.suppress(RuntimeError):  # the actor is gone, which is what was wanted
+                self._actors.pop().destroy()
 
     def _attach(self, spec: SensorSpec, blueprint: carla.ActorBlueprint, run: Run) -> None:
         """Spawn one sensor and listen to it."""
@@ -92,7 +98,7 @@ class SensorsManager(BaseManager):
             actor.listen(self._hearer(spec.id))
         except RuntimeError as error:
             raise UserError(
-                f"sensor '{spec.id}' ({spec.type_id}) of {self._path} cannot be served by this simulator: {error}"
+                f"{self._source}: sensor '{spec.id}' ({spec.type_id}) cannot be served by this simulator: {error}"
             ) from error
         if spec.type_id not in ON_EVENT:
             tick_s = float(dict(spec.attributes).get("sensor_tick", "0"))

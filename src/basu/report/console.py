@@ -33,5 +33,10 @@ def _figures(document: dict[str, Any]) -> list[tuple[str, str]]:
         ("infractions", str(len(document["infractions"]))),
         ("lane invasions", f"{reported['lane_invasions']['total']} (reported, not scored)"),
         ("driven", f"{reported['driven_m'] / 1000.0:.3f} km of {reported['planned_m'] / 1000.0:.3f} km"),
-        ("simulated", f"{meta['simulated_s']:.1f} s in {meta['wall_s']:.1f} s of wall time"),
+        ("simulated", f"{meta['simulated_s']:.1f} s in {meta['wall_s']:.1f} s of wall time{_pace(meta)}"),
     ]
+
+
+def _pace(meta: dict[str, Any]) -> str:
+    """How many times as fast as real time it went; nothing for a run that was over at once."""
+    return f", {meta['simulated_s'] / meta['wall_s']:.2f}x real time" if meta["wall_s"] > 0.0 else ""

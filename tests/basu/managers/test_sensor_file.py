@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from basu.errors import UserError
-from basu.managers.sensor_file import check_sensors, read_sensors
+from basu.managers.sensor_file import check_sensors, parse_sensors, read_sensors
 
 GNSS = {"type": "sensor.other.gnss", "id": "GPS", "x": 0.7, "y": -0.4, "z": 1.6}
 
@@ -55,9 +55,24 @@ def test_other_fields_are_attributes_in_the_spelling_of_blueprints(tmp_path: Pat
     assert spec.attributes == (("noise_seed", "7"), ("sensor_tick", "0.1"), ("flag", "true"))
 
 
-def test_the_set_that_comes_with_basu_can_be_read() -> None:
-    path = Path(__file__).parents[3] / "src" / "basu" / "config" / "sensors.json"
-    assert [spec.id for spec in read_sensors(path)] == ["GNSS", "IMU", "COLLISION", "LANE_INVASION"]
+@pytest.mark.parametrize(
+    ("name", "ids"),
+    [
+        ("sensors.json", ["GNSS", "IMU", "COLLISION", "LANE_INVASION"]),
+        ("rig.json", ["LEFT", "FRONT", "RIGHT", "LIDAR", "RADAR", "GNSS", "IMU"]),
+    ],
+)
+def test_the_sets_that_come_with_basu_can_be_read(name: str, ids: list[str]) -> None:
+    path = Path(__file__).parents[3] / "src" / "basu" / "config" / name
+    assert [spec.id for spec in read_sensors(path)] == ids
+
+
+def test_the_leaderboards_names_stand_for_attributes() -> None:
+    camera = {"type": "sensor.camera.rgb", "id": "FRONT", "width": 800, "height": 600, "fov": 100}
+    radar = {"type": "sensor.other.radar", "id": "RADAR", "fov": 30}
+    seen, echoes = parse_sensors([camera, radar], "sensors() of Test")
+    assert seen.attributes == (("image_size_x", "800"), ("image_size_y", "600"), ("fov", "100"))
+    assert echoes.attributes == (("horizontal_fov", "30"), ("vertical_fov", "30"))
 
 
 @pytest.mark.parametrize(
@@ -91,4 +106,4 @@ def test_a_missing_file_gets_a_sentence(tmp_path: Path) -> None:
 def test_what_the_simulator_does_not_have_gets_a_sentence(tmp_path: Path, entry: Any, sentence: str) -> None:
     path = written(tmp_path, [entry])
     with pytest.raises(UserError, match=sentence):
-        check_sensors(read_sensors(path), Library(), path)
+        check_sensors(read_sensors(path), Library(), f"sensor file {path}")

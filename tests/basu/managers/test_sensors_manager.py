@@ -1,0 +1,68 @@
+"""Claims about what an agent gets to see: what all its sensors measured, in step with a live simulator's ticks."""
+
+import json
+from pathlib import Path
+
+import carla
+import pytest
+
+from basu.cli import main
+from servers import RunningServer
+
+AGENT = """
+class Looking(AutonomousAgent):
+    def setup(self):
+        self.steps = []
+
+    def sensors(self):
+        small = {"width": 32, "height": 24}
+        return [
+            {"type": "sensor.camera.rgb", "id": "LEFT", "y": -0.5, "z": 2.4, **small},
+            {"type": "sensor.camera.rgb", "id": "RIGHT", "y": 0.5, "z": 2.4, **small},
+            {"type": "sensor.lidar.ray_cast", "id": "LIDAR", "z": 2.9, "channels": 4, "points_per_second": 4000},
+            {"type": "sensor.other.radar", "id": "RADAR", "x": 2.1, "z": 0.7, "fov": 30},
+            {"type": "sensor.other.gnss", "id": "GNSS"},
+            {"type": "sensor.other.imu", "id": "IMU"},
+            {"type": "sensor.camera.depth", "id": "SELDOM", "z": 2.4, "sensor_tick": 0.1, **small},
+        ]
+
+    def run_step(self, sensor_data):
+        now = self.world.get_snapshot().frame
+        self.steps.append((now, {name: frame for name, (frame, _) in sensor_data.items()}))
+        assert (sensor_data["LEFT"][1].width, sensor_data["LEFT"][1].height) == (32, 24)
+        if len(self.steps) > 20:
+            open(FOLDER + "/steps.json", "w").write(json.dumps(self.steps))
+            raise ValueError("enough")
+        return carla.VehicleControl(throttle=0.3)
+
+    def config(self):
+        return {"vehicle": "vehicle.tesla.model3"}
+"""
+
+
+@pytest.fixture
+def steps(simulator: RunningServer, tmp_path: Path, route_file: Path) -> list[tuple[int, dict[str, int]]]:
+    """The frames in which the agent ran, each with those of its measurements."""
+    agent = tmp_path / "looking.py"
+    agent.write_text(f"import json\nFOLDER = {str(tmp_path)!r}\n" + AGENT)
+    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
+    main(["run", str(agent), *address, "--routes", str(route_file), "--output", str(tmp_path / "runs")])
+    return [(now, frames) for now, frames in json.loads((tmp_path / "steps.json").read_text())]
+
+
+def test_every_measurement_is_of_the_frame_in_which_the_agent_is_asked(
+    steps: list[tuple[int, dict[str, int]]],
+) -> None:
+    numbers = [now for now, _ in steps]
+    assert numbers == list(range(numbers[0], numbers[0] + 21))
+    seldom = [frames.pop("SELDOM") for _, frames in steps]
+    assert all(set(frames.values()) == {now} for now, frames in steps)
+    assert {now - frame for now, frame in zip(numbers, seldom, strict=True)} == {0, 1}
+
+
+def test_nothing_of_the_sensors_is_left_behind(
+    simulator: RunningServer, steps: list[tuple[int, dict[str, int]]]
+) -> None:
+    assert steps
+    world = carla.Client("127.0.0.1", simulator.port).get_world()
+    assert not world.get_actors().filter("sensor.*")
