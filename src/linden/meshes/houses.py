@@ -85,11 +85,10 @@ def houses(frames: Frames, plan: Plan) -> Mesh:
 
 def _wall_look(plan: Plan) -> tuple[NDArray[np.bool_], NDArray[np.uint8]]:
     brick = plan.draw[:, 2] < _BRICK_SHARE
-    colour = np.where(
-        brick[:, None],
-        _BRICKS[(plan.draw[:, 3] * len(_BRICKS)).astype(int)],
-        _SIDING[(plan.draw[:, 3] * len(_SIDING)).astype(int)],
-    )
+    siding = (plan.draw[:, 3] * len(_SIDING)).astype(int)
+    for row in np.flatnonzero(siding[1:] == siding[:-1]) + 1:  # nobody paints as the neighbour did
+        siding[row] = (siding[row - 1] + 3) % len(_SIDING)
+    colour = np.where(brick[:, None], _BRICKS[(plan.draw[:, 3] * len(_BRICKS)).astype(int)], _SIDING[siding])
     return brick, colour.astype(np.uint8)
 
 

@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 
 ASIDE_M, ABOVE_M = 0.01, 0.003
 """How far a straight piece may leave the sampled edge; upwards less, for paint lies 6 mm above its lane."""
-_LONGEST_M = 30.0  # long slanting pieces have large bounds, and rays meet bounds first
+LONGEST_M = 50.0  # long slanting pieces have large bounds, and rays meet bounds first
 _MOST_TURNS = 24
 
 
@@ -96,7 +96,7 @@ class _Edges:
         share = np.einsum("ij,ij->i", away[:, :2], ahead[:, :2]) / np.maximum(squared, 1e-12)
         away -= np.clip(share, 0.0, 1.0)[:, None] * ahead
         bent = np.hypot(away[:, 0], away[:, 1]) > ASIDE_M
-        bent |= (np.abs(away[:, 2]) > ABOVE_M) | (squared > _LONGEST_M**2)
+        bent |= (np.abs(away[:, 2]) > ABOVE_M) | (squared > LONGEST_M**2)
         straight = np.ones(len(between), bool)
         straight[before[place[bent]]] = False
         return straight

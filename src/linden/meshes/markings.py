@@ -31,6 +31,7 @@ COLOURS = {
 }
 _WIDTH_M = 0.12  # where the map says none; 4 to 6 inches, MUTCD 2009, section 3A.06
 _BOLD = 2.0
+_LARGEST_TURN_RAD = 0.05  # 3 degrees between two pieces of a line
 _UNPAINTED = frozenset({"none", "curb", "grass", "edge", "custom"})
 _DASHES = {"broken": (3.05, 9.14), "botts": (0.12, 1.2)}
 """Stripe and gap, m: 10 and 30 feet (section 3A.06); raised dots every 4 feet."""
@@ -107,13 +108,23 @@ def _places(laid: Laid, stripes: list[_Stripe]) -> tuple[NDArray[np.int64], F64,
         section = before[rows["road"][stripe.lane]] + rows["section"][stripe.lane]
         known = samples.s_m[begins[section] : begins[section + 1]]
         between = known[(known > stripe.start_m + 1e-3) & (known < stripe.end_m - 1e-3)]
-        s_m = np.concatenate([[stripe.start_m], between, [stripe.end_m]])
+        s_m = _finer(tables, rows["road"][stripe.lane], np.concatenate([[stripe.start_m], between, [stripe.end_m]]))
         owners.append(np.full(len(s_m), number))
         places.append(s_m)
         goes_on.append(np.arange(len(s_m)) < len(s_m) - 1)
     if not stripes:
         return np.empty(0, np.int64), np.empty(0), np.empty(0, np.bool_)
     return np.concatenate(owners), np.concatenate(places), np.concatenate(goes_on)
+
+
+def _finer(tables: Tables, road: int, s_m: F64) -> F64:
+    """Return places along a road and as many between them as it takes for no piece to turn by a visible angle."""
+    heading = tables.curves.pose(np.full(len(s_m), road, np.int64), s_m).heading_rad
+    turn = np.abs((np.diff(heading) + np.pi) % (2.0 * np.pi) - np.pi)
+    pieces = np.maximum(np.ceil(turn / _LARGEST_TURN_RAD), 1.0).astype(np.int64)
+    piece = np.repeat(np.arange(len(pieces)), pieces)
+    share = (np.arange(len(piece)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[piece]
+    return np.append(s_m[piece] + share * np.diff(s_m)[piece], s_m[-1])
 
 
 def _edge_at(tables: Tables, lane: NDArray[np.int64], is_outer: NDArray[np.bool_], s_m: F64, left_m: F64) -> F64:

@@ -21,6 +21,7 @@ _PANE, _TYRE, _RIM = (34, 42, 50), (26, 26, 27), (150, 152, 156)
 _HEAD, _TAIL = (230, 232, 226), (150, 24, 24)
 _TAG = SemanticTag.CAR
 _WHEEL_SIDES = 8
+_CAP = [0, 1, 3, 4, 5, 7]
 _TREADS = (5, 6)  # the sides of a wheel that look down; the others are in its arch
 
 
@@ -155,7 +156,7 @@ def _wheel(frames: Frames, half_m: F64, x: float, side: float, objects: I32) -> 
     tyre, rim = Look(Material.RUBBER, _TAG, _TYRE, objects), Look(Material.METAL, _TAG, _RIM, objects)
     out = frames.turned(np.broadcast_to(np.array([0.0, side, 0.0]), (len(frames), 1, 3)))[:, 0]
     parts = [polygons(frames.world(outer), tyre, out)]
-    cap = hub[:, None] + 0.6 * ring[::2] * radius[:, None, None] + (0.0, side * 0.006, 0.0)
+    cap = hub[:, None] + 0.6 * ring[_CAP] * radius[:, None, None] + (0.0, side * 0.006, 0.0)
     parts.append(polygons(frames.world(cap), rim, out))
     for k in _TREADS:
         n = (k + 1) % _WHEEL_SIDES

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.ground import Ground
 from linden.meshes.laid import Laid
 from linden.meshes.mesh import FACE, NO_OBJECT, Material, Mesh, join
 from linden.meshes.patches import Look, strips
@@ -34,6 +35,7 @@ _LOOKS = {
 _ROAD = (Material.ASPHALT, ASPHALT)
 _LEAST_STEP_M = 0.005
 _SMALLEST_AREA_M2 = 1e-6
+_PROBE_M, _HIGH_M = 0.3, 1e6
 _SKIRT_M = 0.12
 """How far the outermost edge of a raised lane reaches down: to where the terrain touches it, and a little more."""
 
@@ -62,14 +64,21 @@ def _faces_of(laid: Laid) -> NDArray[np.void]:
     """Return the face of each lane."""
     made = np.zeros(len(laid.tables.lanes), FACE)
     made["object"] = NO_OBJECT
+    in_junction = np.array([road.is_in_junction for road in laid.tables.roads], bool)[laid.tables.lanes["road"]]
     for row, bits in enumerate(laid.tables.lanes["type_bits"].tolist()):
-        made["material"][row], made["colour"][row] = _LOOKS.get(LaneType(bits), _ROAD)
+        material, colour = _LOOKS.get(LaneType(bits), _ROAD)
+        if material is Material.ASPHALT and in_junction[row]:
+            colour = ASPHALT  # a junction is paved in one go
+        made["material"][row], made["colour"][row] = material, colour
         made["tag"][row] = TAGS.get(LaneType(bits), SemanticTag.ROADS)
     return made
 
 
-def kerbs(laid: Laid) -> Mesh:
-    """Return the upright faces between lanes of different heights, and round the outside of raised ones."""
+def kerbs(laid: Laid, ground: Ground) -> Mesh:
+    """Return the upright faces between lanes of different heights, and of raised ones that end above another road.
+
+    Where land lies beyond there is none to be seen: it reaches the edge.
+    """
     tables, inner, outer = laid.tables, laid.inner, laid.outer
     across = outer - inner
     across[:, 2] = 0.0
@@ -78,13 +87,21 @@ def kerbs(laid: Laid) -> Mesh:
     road_z = inner[:, 2] - tables.heights_inner.value(laid.lane, laid.s_m, laid.probe_m)
     within = np.where(np.isnan(beside), road_z, beside)
     is_inside_of_another = np.isin(laid.lane, tables.lanes["inside"])
-    raised = outer[:, 2] - road_z > _LEAST_STEP_M
+    raised = (outer[:, 2] - road_z > _LEAST_STEP_M) & _beside_road(outer, across, ground)
     faces = [
         _between(laid, inner, within, inner[:, 2] - within > _LEAST_STEP_M, -across, look),
         _between(laid, inner, within, within - inner[:, 2] > _LEAST_STEP_M, across, look),
         _between(laid, outer, outer[:, 2] - _SKIRT_M, raised & ~is_inside_of_another, across, look),
     ]
     return join(faces)
+
+
+def _beside_road(edge: F64, away: F64, ground: Ground) -> NDArray[np.bool_]:
+    """Return where along an edge (P, 3) a road lies close by on its far side."""
+    beyond = edge + _PROBE_M * away / np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-6)[:, None]
+    beyond[:, 2] += _HIGH_M
+    found: NDArray[np.bool_] = ground.surfaces_under(beyond)[1] >= 0
+    return found
 
 
 def _outer_heights(laid: Laid) -> F64:

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.ground import Ground
 from linden.meshes.arrows import arrows
 from linden.meshes.floors import floors
 from linden.meshes.houses import houses, plans
@@ -18,6 +19,7 @@ from linden.meshes.road import CONCRETE, kerbs, surface
 from linden.meshes.terrain import land
 from linden.meshes.trees import Planted, trees
 from linden.meshes.wires import shelters, utility_poles
+from linden.meshes.woods import woods
 from linden.meshes.yards import fences, hedges, paved_yards, porches
 from linden.opendrive.mesh import road_mesh
 from linden.opendrive.model import OpenDrive
@@ -47,7 +49,14 @@ def _beside(facts: MapFacts, scene: Scene, lawn: Mesh) -> Mesh:
     if not (scene.things["kind"] == Kind.SHELTER).any():
         return join([])
     line = surveyed(facts.geo_origin_deg).railroad_m
-    return join([paved_yards(clear_of(facts.lots, line), scene, facts.ground, lawn), railroad(line, facts.ground)])
+    under = Ground.from_triangles(lawn.vertices_m, lawn.triangles)
+    return join(
+        [
+            paved_yards(clear_of(facts.lots, line), scene, facts.ground, under),
+            railroad(line, facts.ground, under),
+            woods(scene, facts.ground),
+        ]
+    )
 
 
 def streets(lanes: Laid, opendrive: OpenDrive, facts: MapFacts) -> Mesh:
@@ -55,7 +64,7 @@ def streets(lanes: Laid, opendrive: OpenDrive, facts: MapFacts) -> Mesh:
     return join(
         [
             surface(lanes),
-            kerbs(lanes),
+            kerbs(lanes, facts.ground),
             lines(lanes),
             across_lanes(opendrive, facts.ground),
             arrows(opendrive, facts.ground),

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.meshes.mesh import FACE, Material, Mesh, join
+from linden.meshes.mesh import FACE, NO_OBJECT, Material, Mesh, join
 from linden.meshes.patches import Frames, Look, prisms
 from linden.values.enums import SemanticTag
 
@@ -22,7 +22,7 @@ _BARK = np.array([(84, 68, 54), (96, 82, 68), (70, 58, 48)])
 _SHAPES = 6
 _CONIFERS = 0.14
 _CLUMPS, _CLUMPS_BEHIND = 3, 2
-_TWIGS = 20
+_TWIGS = 18
 """Of a crown that is seen from near: single sprays of leaves that stand out of its clumps."""
 _ROOT_M = 0.3  # how far a trunk reaches into the ground
 _SKIRTS = ((0.10, 0.50, 0.26), (0.32, 0.76, 0.20), (0.58, 1.0, 0.13))
@@ -79,16 +79,35 @@ class _Crown(NamedTuple):
 
 def _crowns(crown: _Crown, planted: Planted) -> Mesh:
     """Return crowns of one shape: the thicker the trunk the wider the crown."""
-    draw, count = planted.draw, len(planted.frames)
+    draw = planted.draw
     wide = 9.0 * planted.trunk_half_m + 1.1 + 0.8 * draw[:, 3]
     tall = wide * (0.85 + 0.45 * draw[:, 4])
-    points = crown.corners[None] * np.column_stack([wide, wide * (0.9 + 0.2 * draw[:, 2]), tall])[:, None]
-    points[..., 2] += (planted.trunk_height_m - 1.2 + 0.8 * tall)[:, None]
-    world = Frames(planted.frames.base_m, planted.frames.yaw_rad + 6.3 * draw[:, 1]).world(points)
+    size = np.column_stack([wide, wide * (0.9 + 0.2 * draw[:, 2]), tall])
+    return _shaped(crown, planted.frames, size, planted.trunk_height_m - 1.2 + 0.8 * tall, draw, planted.objects)
+
+
+def clumps(frames: Frames, draw: F64) -> Mesh:
+    """Return trees so close to each other, and so far away, that each clump is one round body down to the grass."""
+    size = np.column_stack([8.0 + 5.0 * draw[:, 3], 8.0 + 5.0 * draw[:, 4], 7.0 + 4.0 * draw[:, 5]])
+    nothing = np.full(len(frames), NO_OBJECT, np.int32)
+    shape = (draw[:, 0] * _SHAPES).astype(int)
+    parts = []
+    for number in range(_SHAPES):
+        rows = np.flatnonzero(shape == number)
+        up_m = 0.3 * size[rows, 2]
+        parts.append(_shaped(_crown(number, 1, 0), frames.of(rows), size[rows], up_m, draw[rows], nothing[rows]))
+    return join(parts)
+
+
+def _shaped(crown: _Crown, frames: Frames, size_m: F64, up_m: F64, draw: F64, objects: I32) -> Mesh:
+    """Return crowns of one shape, stretched to ``size_m`` (N, 3), their middles so far up."""
+    count = len(frames)
+    points = crown.corners[None] * size_m[:, None]
+    points[..., 2] += up_m[:, None]
+    world = Frames(frames.base_m, frames.yaw_rad + 6.3 * draw[:, 1]).world(points)
     faces = np.zeros((count, len(crown.triangles)), FACE)
-    faces["material"], faces["tag"], faces["object"] = (
-        Material.LEAVES, SemanticTag.VEGETATION, planted.objects[:, None],
-    )  # fmt: skip
+    faces["material"], faces["tag"] = Material.LEAVES, SemanticTag.VEGETATION
+    faces["object"] = objects[:, None]
     colour = _LEAVES[(draw[:, 2] * len(_LEAVES)).astype(int)] * (0.85 + 0.3 * draw[:, 4])[:, None]
     faces["colour"] = np.clip(colour[:, None] * crown.light[None, :, None], 0.0, 255.0)
     numbers = np.arange(count)[:, None, None] * len(crown.corners) + crown.triangles[None]

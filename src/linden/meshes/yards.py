@@ -11,7 +11,7 @@ from linden.meshes.mesh import Material, Mesh, join
 from linden.meshes.patches import Frames, Look, boxes, polygons
 from linden.meshes.road import CONCRETE
 from linden.scene.objects import Kind, Scene
-from linden.scene.yards import DRIVE_ASIDE_M, DRIVE_HALF_M, Drive, drives, lots_of
+from linden.scene.yards import DRIVE_ASIDE_M, DRIVE_HALF_M, Drive, drives, has_porch, lots_of
 from linden.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
@@ -27,6 +27,8 @@ _UP = (0.0, 0.0, 1.0)
 _WALLS = ("left", "ahead", "right", "behind")
 _SLAB_M = 0.02  # how far a drive rises above the lawn
 _VERGE_M = (2.72, 1.48)  # from the lot's front back to the kerb, and to the pavement
+_APRON_M = 3.15  # from the lot's front back to where the slope over the kerb meets the street
+_STEP_HALF_M = (0.35, 0.75, 0.24)  # half of its height is in the ground
 _PATH_HALF_M = 0.55
 _HIGH_M = 1e6
 
@@ -47,7 +49,7 @@ def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
     )
     parts = [floor]
     high = 0.5 * (top - 0.35 + _FLOOR_M)
-    for share in (-1.0, -0.15, 1.0):
+    for share in (-1.0, 1.0):
         centre = np.column_stack([-x + _POST_M + 0.05, share * (y - _POST_M - 0.05), high])
         half = np.column_stack([zero + _POST_M, zero + _POST_M, high - _FLOOR_M])
         parts.append(boxes(frames, centre, half, trim, ("left", "behind", "right")))
@@ -116,9 +118,9 @@ def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
     return join(parts)
 
 
-def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground, lawn: Mesh) -> Mesh:
+def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground, lawn: Ground) -> Mesh:
     """Return drives from the kerb to the house and paths to front doors; they lie on the lawn and are no objects."""
-    under = _Under(ground, Ground.from_triangles(lawn.vertices_m, lawn.triangles))
+    under = _Under(ground, lawn)
     drive = drives(lots, scene)
     house = lots_of(lots, scene)
     rows = np.searchsorted(scene.boxes["thing"], np.flatnonzero(scene.things["kind"] == Kind.HOUSE))
@@ -126,12 +128,24 @@ def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground, lawn: Mesh
     front = np.hypot(*(box["centre"][:, :2] - lots["front_m"][house]).T) - box["half"][:, 0]
     door = 0.5 * box["half"][:, 1]
     frames = Frames(np.column_stack([lots["front_m"], np.zeros(len(lots))]), lots["yaw_rad"])
+    plain = np.flatnonzero(~has_porch(lots)[house])
     return join(
         [
             *_bays(frames.of(drive.lot), drive, under),
             *_lengths(frames.of(house), (0.0 * front, front), (door - _PATH_HALF_M, door + _PATH_HALF_M), under),
+            _steps(frames.of(house[plain]), front[plain], door[plain], under),
         ]
     )
+
+
+def _steps(frames: Frames, wall: F64, door: F64, under: "_Under") -> Mesh:
+    """Return a step before each door, ``wall`` away from the lot's front and ``door`` to the right of its middle."""
+    middle = np.column_stack([wall - _STEP_HALF_M[0], door, np.zeros(len(wall))])
+    foot = frames.world(middle[:, None])[:, 0]
+    foot[:, 2] = _HIGH_M
+    foot[:, 2] = under.heights(foot)
+    look = Look(Material.CONCRETE, SemanticTag.BUILDINGS, CONCRETE)
+    return boxes(Frames(foot, frames.yaw_rad), np.zeros(3), _STEP_HALF_M, look, ("top", "left", "right", "behind"))
 
 
 class _Under(NamedTuple):
@@ -150,8 +164,9 @@ def _bays(frames: Frames, drive: Drive, under: _Under) -> list[Mesh]:
     zero = np.zeros(len(frames))
     aside = drive.side * DRIVE_ASIDE_M
     across = (aside - DRIVE_HALF_M, aside + DRIVE_HALF_M)
-    apron = _slab(frames, (zero - _VERGE_M[0], zero - _VERGE_M[1]), across, under)
-    return [apron, *_lengths(frames, (zero, drive.length_m), across, under)]
+    verge = _slab(frames, (zero - _VERGE_M[0], zero - _VERGE_M[1]), across, under)
+    apron = _slab(frames, (zero - _VERGE_M[0], zero - _APRON_M), across, under)
+    return [apron, verge, *_lengths(frames, (zero, drive.length_m), across, under)]
 
 
 def _lengths(frames: Frames, along: tuple[F64, F64], across: tuple[F64, F64], under: _Under) -> list[Mesh]:

@@ -63,15 +63,21 @@ def yards(lots: NDArray[np.void], houses: Scene, drive: Drive, ground: Ground) -
 def drives(lots: NDArray[np.void], houses: Scene) -> Drive:
     """Return the drives of the lots that have one."""
     lot, rows = lots_of(lots, houses), _house_rows(houses)
-    has_porch = _draw(lots)[lot, 0] < PORCHES
+    with_porch = has_porch(lots)[lot]
     draw = np.random.default_rng([SEED, 2]).random((len(lots), 2))[lot]
     box = houses.boxes[np.searchsorted(houses.boxes["thing"], rows)]
     front = np.hypot(*(box["centre"][:, :2] - lots["front_m"][lot]).T) - box["half"][:, 0]
     side = np.where((draw[:, 1] < 0.5) | (lot % LOTS_A_LAMP == 0), -1.0, 1.0)
     side = np.where(_tree_side(lots, houses)[lot] == side, -side, side)
     chosen = (draw[:, 0] < DRIVES) & ((lot % LOTS_A_LAMP != 0) | (side < 0.0))
-    length = front - np.where(has_porch, PORCH_DEPTH_M + 0.1, 0.1)
+    length = front - np.where(with_porch, PORCH_DEPTH_M + 0.1, 0.1)
     return Drive(lot[chosen], side[chosen], length[chosen])
+
+
+def has_porch(lots: NDArray[np.void]) -> NDArray[np.bool_]:
+    """Return for each lot whether the house on it, if there is one, has a porch."""
+    with_porch: NDArray[np.bool_] = _draw(lots)[:, 0] < PORCHES
+    return with_porch
 
 
 def _draw(lots: NDArray[np.void]) -> F64:
@@ -113,7 +119,7 @@ def _tree_side(lots: NDArray[np.void], scene: Scene) -> F64:
 
 
 def _porches(box: NDArray[np.void], things: NDArray[np.void], draw: F64) -> Scene:
-    chosen = draw[:, 0] < PORCHES
+    chosen = draw[:, 0] < PORCHES  # as has_porch
     box, things = box[chosen], things[chosen]
     x = -box["half"][:, 0] - 0.5 * PORCH_DEPTH_M - 0.02
     forward = np.column_stack([np.cos(box["yaw_rad"]), np.sin(box["yaw_rad"]), np.zeros(len(box))])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linden.geometry import points_from_opendrive
-from linden.meshes.laid import ABOVE_M, ASIDE_M, Laid, laid
+from linden.meshes.laid import ABOVE_M, ASIDE_M, LONGEST_M, Laid, laid
 from linden.opendrive.evaluate.strips import edges_of, strips_of
 from linden.opendrive.parse import parse
 from opendrive_texts import lane, line, opendrive, road
@@ -48,7 +48,7 @@ def test_a_straight_street_is_drawn_in_few_pieces_of_bounded_length() -> None:
     _, _, drawn = away_m(street())
     places_m = drawn.s_m[drawn.lane == 0]
     assert len(places_m) <= 5  # of ten samples
-    assert 15.0 < np.diff(places_m).max() <= 30.0
+    assert 0.3 * LONGEST_M < np.diff(places_m).max() <= LONGEST_M
 
 
 def test_lanes_side_by_side_share_their_places_so_that_no_crack_opens() -> None:

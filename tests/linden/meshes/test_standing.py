@@ -136,8 +136,8 @@ def test_the_surface_is_what_wheels_feel(street: LoadedMap) -> None:
     assert (normals(mesh)[:, 2] > 0.0).all()
 
 
-def test_a_kerb_looks_at_the_road_and_is_as_high_as_the_pavement() -> None:
-    mesh = kerbs(laid(parse(STREET)))
+def test_a_kerb_looks_at_the_road_and_is_as_high_as_the_pavement(street: LoadedMap) -> None:
+    mesh = kerbs(laid(parse(STREET)), street.ground)
     at_road = np.isclose(np.abs(mesh.vertices_m[mesh.triangles, 1]), 3.5, atol=1e-3).all(axis=1)
     assert np.ptp(mesh.vertices_m[mesh.triangles[at_road], 2]) == pytest.approx(0.15, abs=1e-4)
     towards_middle = -np.sign(mesh.vertices_m[mesh.triangles[at_road, 0], 1])
