@@ -19,6 +19,8 @@ from linden.values.space import Transform
 F32 = NDArray[np.float32]
 
 TILE_PX = 4
+TILE = TILE_PX**2
+"""Rays."""
 
 
 @lru_cache(maxsize=32)
@@ -97,7 +99,8 @@ def aim(vectors: F32, pose: Transform) -> Rays:
 def aim_loop(vectors: F32, turn: F32, place: F32, origin: F32, direction: F32, start: int, stop: int) -> None:
     """Write rays ``start`` to ``stop`` in the world."""
     for i in range(start, stop):
-        x, y, z = vectors[i]
-        for axis in range(3):
-            origin[i, axis] = place[axis]
-            direction[i, axis] = turn[axis, 0] * x + turn[axis, 1] * y + turn[axis, 2] * z
+        x, y, z = vectors[i, 0], vectors[i, 1], vectors[i, 2]
+        origin[i, 0], origin[i, 1], origin[i, 2] = place[0], place[1], place[2]
+        direction[i, 0] = turn[0, 0] * x + turn[0, 1] * y + turn[0, 2] * z
+        direction[i, 1] = turn[1, 0] * x + turn[1, 1] * y + turn[1, 2] * z
+        direction[i, 2] = turn[2, 0] * x + turn[2, 1] * y + turn[2, 2] * z

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from linden.casting.crew import in_stretches
 from linden.compiled import fingerprint, shading, shading_part
 from linden.sensors.camera.picture.atmosphere import Air, brightness
-from linden.sensors.camera.picture.noise import hashed
-from linden.sensors.camera.rays import TILE_PX, pixel_of_ray, tile_counts
+from linden.sensors.camera.picture.noise import hashed, narrow, narrow_whole, whole
+from linden.sensors.camera.rays import TILE, TILE_PX, pixel_of_ray, tile_counts
 from linden.sensors.camera.spec import CameraSpec, Film
 
 F32 = NDArray[np.float32]
@@ -91,7 +91,7 @@ def developed(spec: CameraSpec, film: Film, light: F32, air: Air) -> U8:
     def work(start: int, stop: int) -> None:
         develop_loop(light, factor, halo, across, pixel, spec.width_px, *rain(air), table, image, start, stop)
 
-    in_stretches(len(pixel), work, multiple=TILE_PX**2)
+    in_stretches(len(pixel), work, multiple=TILE)
     return image.reshape(spec.height_px, spec.width_px, 4)
 
 
@@ -150,10 +150,10 @@ def excess_loop(light: F32, factor: F32, over: F32, start: int, stop: int) -> No
     """Write how far the brightest spot of each tile is above what a picture can hold."""
     for tile in range(start, stop):
         for channel in range(3):
-            most = np.float32(0.0)
-            for ray in range(tile * TILE_PX * TILE_PX, (tile + 1) * TILE_PX * TILE_PX):
+            most = narrow(0.0)
+            for ray in range(tile * TILE, (tile + 1) * TILE):
                 most = max(most, light[ray, channel])
-            over[tile, channel] = min(max(most * factor[channel] - _BLOOM_FROM, 0.0), _BLOOM_MOST)
+            over[tile, channel] = min(max(most * factor[channel] - narrow(_BLOOM_FROM), 0.0), narrow(_BLOOM_MOST))
 
 
 @shading_part
@@ -162,13 +162,11 @@ def _streak(x: float, y: float, rain: float, now_s: float) -> float:
     bright = 0.0
     for sheet in range(2):
         wide, tall, fall = (1.6, 46.0, 1500.0) if sheet == 0 else (3.2, 95.0, 2300.0)
-        column = (x + 0.07 * y) / wide
-        number = math.floor(column)
-        shift = hashed(number, 3, 61 + sheet) * 977.0
-        row = (y - fall * now_s) / tall + shift
-        chance = hashed(number, math.floor(row), 71 + sheet)
-        if chance < 0.02 + 0.07 * rain:
-            along = row - math.floor(row)
+        number = whole((x + 0.07 * y) / wide)
+        row = (y - fall * now_s) / tall + hashed(number, 3, 61 + sheet) * 977.0
+        first = whole(row)
+        if hashed(number, first, 71 + sheet) < 0.02 + 0.07 * rain:
+            along = row - narrow(first)
             bright += (0.9 if sheet == 0 else 0.55) * along * (1.0 - along) * 4.0
     return bright
 
@@ -183,21 +181,29 @@ def _build(built_of: int) -> Callable[..., None]:
     ) -> None:  # fmt: skip
         if built_of < 0:
             return
-        scale = (len(table) - 1) / math.sqrt(_MOST)
-        finer = 600.0 * width / len(image)
-        for ray in range(start, stop):
-            at = pixel[ray]
-            if at < 0:
-                continue
-            tile = ray // (TILE_PX * TILE_PX)
-            drop = 0.0
-            if rain > 0.0:
-                drop = rain * rain_light * _streak(finer * (at % width), finer * (at // width), rain, now_s)
-            for channel in range(3):
-                value = (light[ray, channel] + drop) * factor[channel] + halo[tile // across, tile % across, channel]
-                step = int(math.sqrt(min(max(value, 0.0), _MOST)) * scale)
-                image[at, 2 - channel] = table[step]
-            image[at, 3] = np.uint8(255)
+        most = narrow(_MOST)
+        scale = narrow(len(table) - 1) / math.sqrt(most)
+        finer = narrow(600.0 * width / len(image))
+        for tile in range(start // TILE, (stop + TILE - 1) // TILE):
+            row, column = tile // across, tile % across
+            red, green, blue = halo[row, column, 0], halo[row, column, 1], halo[row, column, 2]
+            for ray in range(max(start, tile * TILE), min(stop, tile * TILE + TILE)):
+                at = pixel[ray]
+                if at < 0:
+                    continue
+                drop = narrow(0.0)
+                if rain > 0.0:
+                    x, y = narrow(column * TILE_PX + ray % TILE_PX), narrow(row * TILE_PX + ray % TILE // TILE_PX)
+                    drop = narrow(rain * rain_light) * _streak(finer * x, finer * y, narrow(rain), narrow(now_s))
+                exposed = (
+                    (light[ray, 0] + drop) * factor[0] + red,
+                    (light[ray, 1] + drop) * factor[1] + green,
+                    (light[ray, 2] + drop) * factor[2] + blue,
+                )
+                image[at, 2] = table[narrow_whole(math.sqrt(min(max(exposed[0], 0.0), most)) * scale)]
+                image[at, 1] = table[narrow_whole(math.sqrt(min(max(exposed[1], 0.0), most)) * scale)]
+                image[at, 0] = table[narrow_whole(math.sqrt(min(max(exposed[2], 0.0), most)) * scale)]
+                image[at, 3] = np.uint8(255)
 
     return develop
 

@@ -7,9 +7,10 @@ from numpy.typing import NDArray
 
 from linden.casting.crew import in_stretches
 from linden.casting.rays import NOTHING, Hits, Rays
-from linden.compiled import unlocked
+from linden.compiled import shading, shading_part, unlocked
 from linden.geometry import rotation_matrix
-from linden.sensors.camera.rays import TILE_PX, directions, tile_counts
+from linden.sensors.camera.picture.noise import narrow
+from linden.sensors.camera.rays import TILE, TILE_PX, directions, tile_counts
 from linden.sensors.camera.spec import CameraSpec
 from linden.values.space import Transform
 
@@ -20,9 +21,10 @@ SAMPLES = 4
 _PLACES = ((0.125, 0.375), (0.375, 0.875), (0.625, 0.125), (0.875, 0.625))
 """Of the rays in a pixel: a rotated grid, no two in one row or column."""
 
-_CONTRAST = 0.14
-_STEP = 0.06
-"""Differences that are an edge: of the light, and of the distances."""
+_CONTRAST, _LEAST = np.float32(0.14), np.float32(0.04)
+"""Differences of light that are an edge: wherever they are, and between two things or two sides of one."""
+_STEP = np.float32(0.06)
+"""A difference of distances that makes two sides of two faces that are not one plane."""
 
 
 def edge_rays(spec: CameraSpec, hits: Hits, light: F32) -> NDArray[np.intp]:
@@ -33,7 +35,7 @@ def edge_rays(spec: CameraSpec, hits: Hits, light: F32) -> NDArray[np.intp]:
     def work(start: int, stop: int) -> None:
         mark_loop(hits.instance, hits.distance_m, hits.normal, light, across, down, edge, start, stop)
 
-    in_stretches(len(edge), work, multiple=TILE_PX**2)
+    in_stretches(len(edge), work, multiple=TILE)
     return np.flatnonzero(edge)
 
 
@@ -55,6 +57,32 @@ def offsets(spec: CameraSpec) -> F32:
     return ((np.array(_PLACES) - 0.5) / spec.focal_px).astype(np.float32)
 
 
+@shading_part
+def _differ(instance: I32, distance_m: F32, normal: F32, light: F32, ray: int, other: int) -> bool:
+    """Return whether there is an edge between two neighbours."""
+    here, there = light[ray, 0] + light[ray, 1] + light[ray, 2], light[other, 0] + light[other, 1] + light[other, 2]
+    contrast, level = abs(here - there), here + there + 0.1
+    if contrast <= _LEAST * level:
+        return False
+    if contrast > _CONTRAST * level or instance[ray] != instance[other]:
+        return True
+    if instance[ray] == NOTHING:
+        return False
+    step_m = abs(distance_m[ray] - distance_m[other])
+    along = normal[ray, 0] * normal[other, 0] + normal[ray, 1] * normal[other, 1] + normal[ray, 2] * normal[other, 2]
+    beyond: bool = step_m > _STEP * min(distance_m[ray], distance_m[other]) and along < 0.99
+    return beyond
+
+
+def smooth(rows: NDArray[np.intp], samples: F32, brightest: float, light: F32) -> None:
+    """Give the pixels of ``rows`` (M,) the mean of their samples (SAMPLES M, 3), none of them above ``brightest``."""
+
+    def work(start: int, stop: int) -> None:
+        mean_loop(samples, narrow(brightest), rows, light, start, stop)
+
+    in_stretches(len(rows), work, multiple=TILE_PX)
+
+
 @unlocked
 def split_loop(
     vectors: F32, rows: NDArray[np.intp], offsets: F32, turn: F32, place: F32, origin: F32, direction: F32,
@@ -62,49 +90,52 @@ def split_loop(
 ) -> None:  # fmt: skip
     """Write the samples of rows ``start`` to ``stop``."""
     for k in range(start, stop):
-        ahead, right, up = vectors[rows[k]]
+        row = rows[k]
+        right, up = vectors[row, 1] / vectors[row, 0], vectors[row, 2] / vectors[row, 0]
         for sample in range(SAMPLES):
-            y, z = right / ahead + offsets[sample, 0], up / ahead - offsets[sample, 1]
-            length = math.sqrt(1.0 + y * y + z * z)
-            for axis in range(3):
-                origin[SAMPLES * k + sample, axis] = place[axis]
-                along = turn[axis, 0] + turn[axis, 1] * y + turn[axis, 2] * z
-                direction[SAMPLES * k + sample, axis] = along / length
+            at = SAMPLES * k + sample
+            y, z = right + offsets[sample, 0], up - offsets[sample, 1]
+            scale = np.float32(1.0) / math.sqrt(np.float32(1.0) + y * y + z * z)
+            origin[at, 0], origin[at, 1], origin[at, 2] = place[0], place[1], place[2]
+            direction[at, 0] = (turn[0, 0] + turn[0, 1] * y + turn[0, 2] * z) * scale
+            direction[at, 1] = (turn[1, 0] + turn[1, 1] * y + turn[1, 2] * z) * scale
+            direction[at, 2] = (turn[2, 0] + turn[2, 1] * y + turn[2, 2] * z) * scale
 
 
-@unlocked
+@shading
+def mean_loop(samples: F32, brightest: float, rows: NDArray[np.intp], light: F32, start: int, stop: int) -> None:
+    """Give the pixels of ``rows`` ``start`` to ``stop`` the mean of their samples, none brighter than ``brightest``."""
+    for k in range(start, stop):
+        row = rows[k]
+        for channel in range(3):
+            total = np.float32(0.0)
+            for sample in range(SAMPLES):
+                total += min(samples[SAMPLES * k + sample, channel], brightest)
+            light[row, channel] = total * np.float32(1.0 / SAMPLES)
+
+
+@shading
 def mark_loop(
     instance: I32, distance_m: F32, normal: F32, light: F32, across: int, down: int, edge: NDArray[np.bool_],
     start: int, stop: int,
 ) -> None:  # fmt: skip
     """Mark the edges among rays ``start`` to ``stop``."""
-    width, height = across * TILE_PX, down * TILE_PX
-    for ray in range(start, stop):
-        tile, within = ray // (TILE_PX * TILE_PX), ray % (TILE_PX * TILE_PX)
-        y = tile // across * TILE_PX + within // TILE_PX
-        x = tile % across * TILE_PX + within % TILE_PX
-        here = light[ray, 0] + light[ray, 1] + light[ray, 2]
-        found = False
-        for side in range(4):
-            row, column = y + (side == 0) - (side == 1), x + (side == 2) - (side == 3)
-            if row < 0 or column < 0 or row >= height or column >= width:
-                continue
-            other = (row // TILE_PX * across + column // TILE_PX) * TILE_PX * TILE_PX
-            other += row % TILE_PX * TILE_PX + column % TILE_PX
-            if instance[ray] != instance[other]:
-                found = True
-                break
-            there = light[other, 0] + light[other, 1] + light[other, 2]
-            if abs(here - there) > _CONTRAST * (here + there + 0.1):
-                found = True
-                break
-            if instance[ray] != NOTHING and (
-                abs(distance_m[ray] - distance_m[other]) > _STEP * min(distance_m[ray], distance_m[other])
-                and normal[ray, 0] * normal[other, 0]
-                + normal[ray, 1] * normal[other, 1]
-                + normal[ray, 2] * normal[other, 2]
-                < 0.99
-            ):
-                found = True
-                break
-        edge[ray] = found
+    for tile in range(start // TILE, (stop + TILE - 1) // TILE):
+        row, column = tile // across, tile % across
+        for ray in range(max(start, tile * TILE), min(stop, tile * TILE + TILE)):
+            x, y = ray % TILE_PX, ray % TILE // TILE_PX
+            left, right, above, below = ray - 1, ray + 1, ray - TILE_PX, ray + TILE_PX  # while in the same tile
+            if x == 0:
+                left = ray - TILE + TILE_PX - 1 if column > 0 else ray
+            if x == TILE_PX - 1:
+                right = ray + TILE - TILE_PX + 1 if column + 1 < across else ray
+            if y == 0:
+                above = ray - (across - 1) * TILE - TILE_PX if row > 0 else ray
+            if y == TILE_PX - 1:
+                below = ray + (across - 1) * TILE + TILE_PX if row + 1 < down else ray
+            edge[ray] = (
+                _differ(instance, distance_m, normal, light, ray, left)
+                or _differ(instance, distance_m, normal, light, ray, right)
+                or _differ(instance, distance_m, normal, light, ray, above)
+                or _differ(instance, distance_m, normal, light, ray, below)
+            )

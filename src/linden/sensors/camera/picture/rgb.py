@@ -11,7 +11,7 @@ from linden.meshes.mesh import Mesh
 from linden.sensors.camera.labels import FAR_M
 from linden.sensors.camera.picture.atmosphere import Air, air
 from linden.sensors.camera.picture.develop import developed
-from linden.sensors.camera.picture.edges import SAMPLES, edge_rays, finer
+from linden.sensors.camera.picture.edges import edge_rays, finer, smooth
 from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, groups, lamps_near
 from linden.sensors.camera.picture.relief import Relief, relief
 from linden.sensors.camera.picture.shade import shaded
@@ -70,15 +70,8 @@ def picture(spec: CameraSpec, film: Film, pose: Transform, rays: Rays, hits: Hit
     if len(rows):
         fine = finer(spec, rows, pose)
         met = seen.caster.closest(fine, FAR_M, coherent=True, outer=True)
-        light[rows] = _mean(shone(fine, met, 0.5 * pixel_rad, lit, seen))
+        smooth(rows, shone(fine, met, 0.5 * pixel_rad, lit, seen), BRIGHTEST, light)
     return developed(spec, film, light, lit.air)
-
-
-def _mean(samples: F32) -> F32:
-    """Return the mean of each pixel's samples."""
-    grouped = np.minimum(samples, np.float32(BRIGHTEST)).reshape(-1, SAMPLES, 3)
-    mean: F32 = grouped.mean(axis=1, dtype=np.float32)
-    return mean
 
 
 def shone(rays: Rays, hits: Hits, pixel_rad: float, lit: Light, seen: Seen) -> F32:
