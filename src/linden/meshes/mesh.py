@@ -93,5 +93,12 @@ def join(meshes: "list[Mesh]") -> Mesh:
                 *(mesh.triangles + np.uint32(start) for mesh, start in zip(meshes, before, strict=True)),
             ]
         ),
-        np.concatenate([np.zeros(0, FACE), *(mesh.faces for mesh in meshes)]),
+        _as_bytes(meshes).view(FACE),
+    )
+
+
+def _as_bytes(meshes: "list[Mesh]") -> NDArray[np.uint8]:
+    """Return the bytes of all faces, one after the other: of records numpy would ask whether their kinds agree."""
+    return np.concatenate(
+        [np.zeros(0, np.uint8), *(np.ascontiguousarray(mesh.faces).view(np.uint8) for mesh in meshes)]
     )

@@ -31,9 +31,15 @@ class Look(NamedTuple):
 
 def faces_of(look: Look, *shape: int) -> NDArray[np.void]:
     """Return an array of faces that look so; the tag is given to the whole body at the end (:func:`tagged`)."""
-    made = np.zeros(shape, FACE)
+    return np.full(shape, _face(look), FACE)
+
+
+@lru_cache(maxsize=1024)
+def _face(look: Look) -> np.void:
+    made = np.zeros(1, FACE)
     made["material"], made["colour"], made["lamp"], made["painted"], made["object"] = *look, NO_OBJECT
-    return made
+    face: np.void = made[0]
+    return face
 
 
 def tagged(mesh: Mesh, tag: int) -> Mesh:
@@ -77,18 +83,24 @@ def loft(
     lies between points k, k + 1 and their partners counted from the ring's other end; arrays (P // 2,) tell them apart.
     """
     count, points, _ = rings_m.shape
+    triangles = _lofted(count, points)
+    sides, end = 2 * (count - 1) * points, len(_strips(points))
+    faces = np.empty(len(triangles), FACE)
+    for start, stop, looks in (
+        (0, sides, look), (sides, sides + end, first), (sides + end, sides + 2 * end, last),
+    ):  # fmt: skip
+        faces[start:stop] = _face(looks) if isinstance(looks, Look) else np.repeat(looks.reshape(-1), 2)
+    return closed(rings_m.reshape(-1, 3), triangles, faces)
+
+
+@lru_cache(maxsize=256)
+def _lofted(count: int, points: int) -> NDArray[np.intp]:
+    """Return the triangles (T, 3) of a loft: its sides, then its first end, then its last."""
     ring, point = np.divmod(np.arange((count - 1) * points), points)
     low, high = ring * points + point, ring * points + (point + 1) % points
     sides = np.stack([low, high, high + points, low, high + points, low + points], 1).reshape(-1, 3)
-    side_faces = (faces_of(look, count - 1, points) if isinstance(look, Look) else look).reshape(-1)
     end = _strips(points)
-    triangles = np.concatenate([sides, end[:, ::-1], end + (count - 1) * points])
-    faces = np.empty(len(triangles), FACE)
-    faces[: len(sides)] = np.repeat(side_faces, 2)
-    for start, strips in ((len(sides), first), (len(sides) + len(end), last)):
-        looks = faces_of(strips, points // 2) if isinstance(strips, Look) else strips
-        faces[start : start + len(end)] = np.repeat(looks, 2)
-    return closed(rings_m.reshape(-1, 3), triangles, faces)
+    return np.concatenate([sides, end[:, ::-1], end + (count - 1) * points])
 
 
 @lru_cache(maxsize=64)
