@@ -58,6 +58,28 @@ def offsets(spec: CameraSpec) -> F32:
 
 
 @shading_part
+def beside(ray: int, side: int, across: int, down: int) -> int:
+    """Return the ray of the pixel to the left (1), to the right (2), above (3) or below (4), or itself (0).
+
+    Beyond the picture there is none: then it is the ray itself.
+    """
+    tile, x, y = ray // TILE, ray % TILE_PX, ray % TILE // TILE_PX
+    if side == 1:
+        return ray - 1 if x > 0 else (ray - TILE + TILE_PX - 1 if tile % across > 0 else ray)
+    if side == 2:
+        return ray + 1 if x < TILE_PX - 1 else (ray + TILE - TILE_PX + 1 if tile % across < across - 1 else ray)
+    if side == 3:
+        return ray - TILE_PX if y > 0 else (ray - (across - 1) * TILE - TILE_PX if tile >= across else ray)
+    if side == 4:
+        return (
+            ray + TILE_PX
+            if y < TILE_PX - 1
+            else (ray + (across - 1) * TILE + TILE_PX if tile < (down - 1) * across else ray)
+        )
+    return ray
+
+
+@shading_part
 def _differ(instance: I32, distance_m: F32, normal: F32, light: F32, ray: int, other: int) -> bool:
     """Return whether there is an edge between two neighbours."""
     here, there = light[ray, 0] + light[ray, 1] + light[ray, 2], light[other, 0] + light[other, 1] + light[other, 2]
@@ -120,22 +142,10 @@ def mark_loop(
     start: int, stop: int,
 ) -> None:  # fmt: skip
     """Mark the edges among rays ``start`` to ``stop``."""
-    for tile in range(start // TILE, (stop + TILE - 1) // TILE):
-        row, column = tile // across, tile % across
-        for ray in range(max(start, tile * TILE), min(stop, tile * TILE + TILE)):
-            x, y = ray % TILE_PX, ray % TILE // TILE_PX
-            left, right, above, below = ray - 1, ray + 1, ray - TILE_PX, ray + TILE_PX  # while in the same tile
-            if x == 0:
-                left = ray - TILE + TILE_PX - 1 if column > 0 else ray
-            if x == TILE_PX - 1:
-                right = ray + TILE - TILE_PX + 1 if column + 1 < across else ray
-            if y == 0:
-                above = ray - (across - 1) * TILE - TILE_PX if row > 0 else ray
-            if y == TILE_PX - 1:
-                below = ray + (across - 1) * TILE + TILE_PX if row + 1 < down else ray
-            edge[ray] = (
-                _differ(instance, distance_m, normal, light, ray, left)
-                or _differ(instance, distance_m, normal, light, ray, right)
-                or _differ(instance, distance_m, normal, light, ray, above)
-                or _differ(instance, distance_m, normal, light, ray, below)
-            )
+    for ray in range(start, stop):
+        edge[ray] = (
+            _differ(instance, distance_m, normal, light, ray, beside(ray, 1, across, down))
+            or _differ(instance, distance_m, normal, light, ray, beside(ray, 2, across, down))
+            or _differ(instance, distance_m, normal, light, ray, beside(ray, 3, across, down))
+            or _differ(instance, distance_m, normal, light, ray, beside(ray, 4, across, down))
+        )

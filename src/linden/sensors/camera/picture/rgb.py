@@ -15,7 +15,7 @@ from linden.sensors.camera.picture.edges import edge_rays, finer, smooth
 from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, groups, lamps_near
 from linden.sensors.camera.picture.relief import Relief, relief
 from linden.sensors.camera.picture.shade import shaded
-from linden.sensors.camera.picture.shadows import sunny
+from linden.sensors.camera.picture.shadows import Sunshine, sunny, within
 from linden.sensors.camera.picture.spots import Places
 from linden.sensors.camera.spec import CameraSpec, Film
 from linden.sensors.seen import LINEAR, Seen, first_of_places
@@ -65,19 +65,20 @@ def picture(spec: CameraSpec, film: Film, pose: Transform, rays: Rays, hits: Hit
     """Return (height, width, 4) bytes B, G, R, A of what a camera at ``pose`` sees along its rays."""
     lit = light_of(pose, seen)
     pixel_rad = 1.0 / spec.focal_px
-    light = shone(rays, hits, pixel_rad, lit, seen)
+    sun = sunny(seen.caster, rays, hits, lit.air)
+    light = shone(rays, hits, sun, pixel_rad, lit, seen)
     rows = edge_rays(spec, hits, light)
     if len(rows):
         fine = finer(spec, rows, pose)
         met = seen.caster.closest(fine, FAR_M, coherent=True, outer=True)
-        smooth(rows, shone(fine, met, 0.5 * pixel_rad, lit, seen), BRIGHTEST, light)
+        sun = sunny(seen.caster, fine, met, lit.air, within(spec, rows, sun))
+        smooth(rows, shone(fine, met, sun, 0.5 * pixel_rad, lit, seen), BRIGHTEST, light)
     return developed(spec, film, light, lit.air)
 
 
-def shone(rays: Rays, hits: Hits, pixel_rad: float, lit: Light, seen: Seen) -> F32:
+def shone(rays: Rays, hits: Hits, sun: Sunshine, pixel_rad: float, lit: Light, seen: Seen) -> F32:
     """Return the light (N, 3) that comes along each ray; ``pixel_rad`` is how wide a ray's pixel is."""
-    sun = sunny(seen.caster, rays, hits, lit.air)
-    return shaded(rays, hits, sun, pixel_rad, seen.faces, lit.looks.relief, lit.places, lit.air, lit.lamps)
+    return shaded(rays, hits, sun.lit, pixel_rad, seen.faces, lit.looks.relief, lit.places, lit.air, lit.lamps)
 
 
 def light_of(pose: Transform, seen: Seen) -> Light:

@@ -1,5 +1,7 @@
 """Which of the spots that a camera sees are lit by the sun."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,6 +9,9 @@ from linden.casting.crew import in_stretches
 from linden.casting.rays import NOTHING, Caster, Hits, Rays
 from linden.compiled import unlocked
 from linden.sensors.camera.picture.atmosphere import Air
+from linden.sensors.camera.picture.edges import SAMPLES, beside
+from linden.sensors.camera.rays import tile_counts
+from linden.sensors.camera.spec import CameraSpec
 
 F32 = NDArray[np.float32]
 
@@ -19,20 +24,33 @@ _OFF_SHARE = 2e-5
 
 _DARK = 0.01
 
+UNKNOWN = -1.0
+"""Neither lit nor in the shadow, as far as is known."""
 
-def sunny(caster: Caster, rays: Rays, hits: Hits, air: Air) -> F32:
-    """Return (N,) 1 where the sun reaches what a ray meets, 0 where it does not or looks the other way."""
-    lit = np.zeros(len(hits.instance), np.float32)
+
+class Sunshine(NamedTuple):
+    """Which hits (N,) look to the sun, and which of them it reaches: 1, or 0."""
+
+    facing: NDArray[np.bool_]
+    lit: F32
+
+
+def sunny(caster: Caster, rays: Rays, hits: Hits, air: Air, known: F32 | None = None) -> Sunshine:
+    """Return where the sun shines; ``known`` (N,) says it of what looks to the sun, where it is not UNKNOWN."""
+    facing, lit = np.zeros(len(hits.instance), np.bool_), np.zeros(len(hits.instance), np.float32)
     if not shines(air):
-        return lit
+        return Sunshine(facing, lit)
     sun = np.array([air.sun_x, air.sun_y, air.sun_z], np.float32)
-    facing = np.empty(len(lit), np.bool_)
 
     def mark(start: int, stop: int) -> None:
         facing_loop(hits.instance, hits.normal, rays.direction, sun, facing, start, stop)
 
     in_stretches(len(lit), mark, multiple=16)
-    rows = np.flatnonzero(facing)
+    asked = facing
+    if known is not None:
+        asked = facing & (known == UNKNOWN)
+        np.copyto(lit, known, where=facing & ~asked)
+    rows = np.flatnonzero(asked)
     origin, direction = np.empty((len(rows), 3), np.float32), np.empty((len(rows), 3), np.float32)
 
     def gather(start: int, stop: int) -> None:
@@ -42,7 +60,40 @@ def sunny(caster: Caster, rays: Rays, hits: Hits, air: Air) -> F32:
 
     in_stretches(len(rows), gather, multiple=16)
     lit[rows] = ~caster.blocked(Rays(origin, direction), LONGEST_SHADOW_M, coherent=True)
-    return lit
+    return Sunshine(facing, lit)
+
+
+def within(spec: CameraSpec, rows: NDArray[np.intp], sun: Sunshine) -> F32:
+    """Return (SAMPLES M,) whether the sun shines on what is met in the pixels of ``rows`` (M,): 1, 0 or UNKNOWN.
+
+    It is known where all that look to the sun, of a pixel and its neighbours, are lit or none is: there no shadow ends.
+    """
+    known = np.empty(SAMPLES * len(rows), np.float32)
+    across, down = tile_counts(spec)
+
+    def work(start: int, stop: int) -> None:
+        _agree_loop(rows, sun.facing, sun.lit, across, down, known, start, stop)
+
+    in_stretches(len(rows), work, multiple=16)
+    return known
+
+
+@unlocked
+def _agree_loop(
+    rows: NDArray[np.intp], facing: NDArray[np.bool_], lit: F32, across: int, down: int, known: F32,
+    start: int, stop: int,
+) -> None:  # fmt: skip
+    for k in range(start, stop):
+        light, dark = False, False
+        for side in range(5):
+            ray = beside(rows[k], side, across, down)
+            light = light or (facing[ray] and lit[ray] > 0.0)
+            dark = dark or (facing[ray] and lit[ray] == 0.0)
+        agreed = np.float32(UNKNOWN)
+        if light != dark:
+            agreed = np.float32(light)
+        for sample in range(SAMPLES):
+            known[SAMPLES * k + sample] = agreed
 
 
 def shines(air: Air) -> bool:
