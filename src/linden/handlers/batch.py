@@ -1,7 +1,7 @@
 """Batches of commands, carried out in their order. Source: LibCarla 0.9.16, ``carla/rpc/Command.h``."""
 
 from collections.abc import Callable
-from itertools import groupby
+from itertools import chain, groupby
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -12,7 +12,9 @@ from linden.handlers.context import Context
 from linden.handlers.registry import method, told
 from linden.simulation.arms import hung
 from linden.values.enums import AttachmentType
+from linden.values.vehicles import VehicleControl
 from linden.wire import commands as cmd
+from linden.wire.plain import Controls
 
 Answer: TypeAlias = tuple[Any, ...]
 """``((1, actor id),)`` or ``((0, (message,)),)``: CARLA's Response of an actor id."""
@@ -50,9 +52,11 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
     """Carry out commands in their order; one that fails says so in its own answer and stops none of the others."""
     answers: list[Answer] = []
     for kind, group in groupby(batch, type):
-        run = list(group)
-        if kind is cmd.ApplyVehicleControl and len(run) >= WORTH_AN_ARRAY:
-            answers += _drive(context, run)
+        run: list[Any] = list(group)
+        if kind is Controls:
+            answers += [answer for controls in run for answer in _drive(context, controls)]
+        elif kind is cmd.ApplyVehicleControl and len(run) >= WORTH_AN_ARRAY:
+            answers += _drive(context, Controls(*zip(*run, strict=True)))
         elif kind is cmd.ApplyWalkerState and len(run) >= WORTH_AN_ARRAY:
             answers += _lead(context, run)
         else:
@@ -62,20 +66,21 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
     return answers
 
 
-def _drive(context: Context, commands: list[Any]) -> list[Answer]:
+def _drive(context: Context, controls: Controls) -> list[Answer]:
     """Set the controls of many vehicles at once: what a script for traffic sends every tick."""
     episode = context.simulation.episode
     answers: list[Answer] = []
-    slots, controls = [], []
-    for actor_id, control in commands:
+    slots, chosen = [], []
+    for actor_id, control in zip(*controls, strict=True):
         try:
             slots.append(episode.vehicle(actor_id))
-            controls.append(control)
+            chosen.append(control)
             answers.append(cmd.done(actor_id))
         except Refusal as refusal:  # noqa: PERF203 - each command fails or succeeds by itself
             answers.append(cmd.failed(told("apply_control_to_vehicle", refusal)))
     if slots:
-        episode.bodies.set_controls(np.array(slots), np.array(controls, np.float64))
+        fields = np.fromiter(chain.from_iterable(chosen), np.float64, len(slots) * len(VehicleControl._fields))
+        episode.bodies.set_controls(np.array(slots), fields.reshape(len(slots), -1))
     return answers
 
 

@@ -4,19 +4,19 @@ On the wire a command is ``[[index, body]]``: a struct of one member around the 
 that of the template's name in the official client's own symbols (which has ApplyLocation before ConsoleCommand).
 """
 
-from math import hypot
+from itertools import groupby
 from typing import Annotated, Any, NamedTuple, TypeAlias, cast
 
 from linden.values.actors import ActorDescription
 from linden.values.space import Transform, Vector3D
-from linden.values.vehicles import AckermannControl, VehicleControl, VehiclePhysicsControl
+from linden.values.vehicles import AckermannControl, VehiclePhysicsControl
 from linden.values.walkers import WalkerControl
 from linden.wire.controls import ClientControl
 from linden.wire.decode import U8, U32, DecodedBy, Decoder, WireTypeError, got, struct_decoder
+from linden.wire.plain import WORTH_COLUMNS, Controls, plain_controls
 
 JUST_SPAWNED = 0
 """The actor id that a command in ``do_after`` gives for the actor which its SpawnActor makes."""
-
 
 MAX_NESTED_SPAWNS = 4
 """How deep SpawnActor may stand in the ``do_after`` of another: scripts need one, each doubles what an error costs."""
@@ -225,8 +225,8 @@ COMMANDS: tuple[type[Command], ...] = Command.__args__
 """The commands in the order of their index on the wire."""
 
 
-def decode_commands(raw: object) -> tuple[Command, ...]:
-    """Return the commands of a batch.
+def decode_commands(raw: object, *, before: int = 0) -> tuple[Command, ...]:
+    """Return commands one by one; as many as ``before`` come before them in their batch.
 
     Raises:
         WireTypeError: the first that does not fit, with its place in the batch.
@@ -236,32 +236,37 @@ def decode_commands(raw: object) -> tuple[Command, ...]:
     commands: list[Command] = []
     try:
         for item in raw:
-            commands.append(_plain_control(item) or _decode_command(item))  # noqa: PERF401 - the length says which failed
+            commands.append(_decode_command(item))  # noqa: PERF401 - the length says which failed
     except WireTypeError as error:
-        raise error.inside(f"[{len(commands)}]") from None
+        raise error.inside(f"[{before + len(commands)}]") from None
     return tuple(commands)
 
 
-def _plain_control(item: Any) -> ApplyVehicleControl | None:  # noqa: ANN401 - whatever msgpack found
-    """Return the command that a traffic script sends for every vehicle in every tick; None where anything is unusual.
+def decode_batch(raw: object) -> "tuple[Command | Controls, ...]":
+    """Return the commands of a batch; what it has of many controls in a row is one of its members.
 
-    The short way of :func:`_decode_command`: all types are the very ones the client sends, and no number is too large
-    (none is larger than the root of the sum of their squares, which is NaN where one of them is).
+    Raises:
+        WireTypeError: the first that does not fit, with its place in the batch.
     """
+    if type(raw) is not list:
+        return decode_commands(raw)
+    members: list[Command | Controls] = []
+    before = 0
+    for index, stretch in groupby(raw, _index):
+        items = list(stretch)
+        controls = plain_controls(items) if index == _CONTROL and len(items) >= WORTH_COLUMNS else None
+        members += [controls] if controls else decode_commands(items, before=before)
+        before += len(items)
+    return tuple(members)
+
+
+def _index(item: Any) -> int | None:  # noqa: ANN401 - whatever msgpack found
+    """Return the index of a command, None where it is none."""
     try:
-        (((index, (actor_id, control)),),) = (item,)
-        fits = (
-            type(index) is int
-            and index == _CONTROL
-            and type(actor_id) is int
-            and 0 <= actor_id <= _LARGEST_ID
-            and type(control) is list
-            and tuple(map(type, control)) == _CONTROL_TYPES
-            and hypot(*control) <= _LARGEST_PLAIN
-        )
-    except (TypeError, ValueError):
+        index = item[0][0]
+    except (TypeError, LookupError):
         return None
-    return ApplyVehicleControl(actor_id, VehicleControl._make(control)) if fits else None
+    return index if type(index) is int else None
 
 
 def _decode_command(item: Any) -> Command:  # noqa: ANN401 - whatever msgpack found
@@ -277,9 +282,6 @@ def _decode_command(item: Any) -> Command:  # noqa: ANN401 - whatever msgpack fo
 
 
 _CONTROL = COMMANDS.index(ApplyVehicleControl)
-_CONTROL_TYPES = tuple(VehicleControl.__annotations__[name] for name in VehicleControl._fields)
-_LARGEST_ID = 2**32 - 1
-_LARGEST_PLAIN = 2**31 - 1  # pedals, wheel and gear are far below
 _DECODERS: tuple[Decoder, ...] = tuple(struct_decoder(command) for command in COMMANDS)
 
 
@@ -293,5 +295,5 @@ def failed(message: str) -> tuple[Any, ...]:
     return ((0, (message,)),)
 
 
-Batch = Annotated[tuple[Command, ...], DecodedBy(decode_commands)]
+Batch = Annotated[tuple[Command | Controls, ...], DecodedBy(decode_batch)]
 """The annotation of a handler's argument that is a batch."""

@@ -1,0 +1,97 @@
+"""Controls of many vehicles at once: the short way decodes what the long way does, and nothing else."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import msgpack
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linden.values.vehicles import VehicleControl
+from linden.wire.commands import COMMANDS, ApplyVehicleControl, Command, DestroyActor, decode_batch, decode_commands
+from linden.wire.decode import WireTypeError
+from linden.wire.plain import WORTH_COLUMNS, Controls, plain_controls
+
+CONTROL, DESTROY = COMMANDS.index(ApplyVehicleControl), COMMANDS.index(DestroyActor)
+PLAIN = [0.4, -0.1, 0.0, False, False, False, 1]
+
+
+def control(actor_id: Any, fields: Any = PLAIN) -> list[Any]:
+    return [[CONTROL, [actor_id, fields]]]
+
+
+def one_by_one(members: tuple[Command | Controls, ...]) -> list[Command]:
+    found: list[Command] = []
+    for member in members:
+        if isinstance(member, Controls):
+            found += [ApplyVehicleControl(i, VehicleControl(*fields)) for i, fields in zip(*member, strict=True)]
+        else:
+            found.append(member)
+    return found
+
+
+def test_controls_in_a_row_become_one_member_and_the_rest_of_the_batch_stays() -> None:
+    first, last = [[[DESTROY, [number]]] for number in (1, 2)]
+    members = decode_batch([first, *(control(i) for i in range(20)), last])
+    assert [type(member) for member in members] == [DestroyActor, Controls, DestroyActor]
+    assert members[1] == Controls(tuple(range(20)), (PLAIN,) * 20)
+
+
+def test_few_controls_are_decoded_one_by_one() -> None:
+    assert len(decode_batch([control(i) for i in range(WORTH_COLUMNS - 1)])) == WORTH_COLUMNS - 1
+
+
+@pytest.mark.parametrize(
+    "unusual",
+    [
+        pytest.param(control(3, [math.nan, *PLAIN[1:]]), id="a number that is none"),
+        pytest.param(control(3, [math.inf, *PLAIN[1:]]), id="an infinite number"),
+        pytest.param(control(3, [1e30, *PLAIN[1:]]), id="a large number"),
+        pytest.param(control(3, [1, *PLAIN[1:]]), id="an integer for a pedal"),
+        pytest.param(control(3, PLAIN[:5]), id="fields left out"),
+    ],
+)
+def test_an_unusual_control_is_decoded_as_if_it_were_alone(unusual: list[Any]) -> None:
+    raw = [*(control(i) for i in range(10)), unusual]
+    assert plain_controls(raw) is None
+    assert decode_batch(raw) == decode_commands(raw)
+
+
+@pytest.mark.parametrize("wrong", [control(True), control(2**32), control(-1), control(1, [*PLAIN, 1]), control(1, 5)])
+def test_what_is_no_control_is_refused_with_its_place_in_the_whole_batch(wrong: list[Any]) -> None:
+    raw = [[[DESTROY, [1]]], *(control(i) for i in range(10)), wrong]
+    with pytest.raises(WireTypeError) as short:
+        decode_batch(raw)
+    with pytest.raises(WireTypeError) as long:
+        decode_commands(raw)
+    assert str(short.value) == str(long.value)
+    assert str(short.value).startswith("[11] (ApplyVehicleControl)")
+
+
+ANYTHING = st.one_of(
+    st.none(), st.booleans(), st.integers(-3, 3), st.integers(-(2**40), 2**40), st.floats(), st.text(max_size=2)
+)
+FIELDS = st.one_of(st.just(PLAIN), st.lists(ANYTHING, max_size=9), ANYTHING)
+ITEMS = st.one_of(
+    st.builds(control, st.integers(0, 5), st.just(PLAIN)),
+    st.builds(control, ANYTHING, FIELDS),
+    st.builds(lambda number: [[DESTROY, [number]]], st.integers(0, 5)),
+    st.lists(st.lists(ANYTHING, max_size=3), max_size=2),
+    ANYTHING,
+)
+
+
+def told(decode: Callable[[Any], tuple[Command | Controls, ...]], raw: Any) -> str:
+    """What a decoder makes of a batch: its commands, or its error."""
+    try:
+        return repr(one_by_one(decode(raw)))
+    except WireTypeError as error:
+        return str(error)
+
+
+@given(st.lists(st.builds(control, st.integers(0, 9), st.just(PLAIN)), max_size=12), st.lists(ITEMS, max_size=4))
+def test_both_ways_find_the_same_commands_or_the_same_error(usual: list[Any], more: list[Any]) -> None:
+    raw = msgpack.unpackb(msgpack.packb([*usual, *more]))
+    assert told(decode_batch, raw) == told(decode_commands, raw)
