@@ -19,7 +19,7 @@ from linden.sensors.camera import labels
 from linden.sensors.camera.picture import rgb
 from linden.sensors.camera.picture.develop import developed
 from linden.sensors.camera.picture.edges import edge_rays, finer
-from linden.sensors.camera.picture.shadows import sunny
+from linden.sensors.camera.picture.shadows import sunny, within
 from linden.sensors.camera.rays import aim, directions
 from linden.sensors.camera.spec import CameraSpec, Film
 from linden.simulation import Simulation
@@ -124,15 +124,16 @@ def stage_by_stage(rounds: int) -> None:
     rays = took("rays", lambda: aim(directions(spec), pose))
     hits = took("what they meet", lambda: seen.caster.closest(rays, labels.FAR_M, coherent=True, outer=True))
     lit = took("lamps and places", lambda: rgb.light_of(pose, seen))
-    took("shadows", lambda: sunny(seen.caster, rays, hits, lit.air))
-    light = took("shading, shadows with it", lambda: rgb.shone(rays, hits, 1.0 / spec.focal_px, lit, seen))
+    sun = took("shadows", lambda: sunny(seen.caster, rays, hits, lit.air))
+    light = took("shading", lambda: rgb.shone(rays, hits, sun, 1.0 / spec.focal_px, lit, seen))
     rows = took("edges", lambda: edge_rays(spec, hits, light))
     fine = finer(spec, rows, pose)
     met = took(
         f"four rays for each of {len(rows)} pixels",
         lambda: seen.caster.closest(fine, labels.FAR_M, coherent=True, outer=True),
     )
-    took("their shading", lambda: rgb.shone(fine, met, 0.5 / spec.focal_px, lit, seen))
+    fine_sun = took("their shadows", lambda: sunny(seen.caster, fine, met, lit.air, within(spec, rows, sun)))
+    took("their shading", lambda: rgb.shone(fine, met, fine_sun, 0.5 / spec.focal_px, lit, seen))
     took("film", lambda: developed(spec, film, light, lit.air))
     took("all of it", lambda: rgb.picture(spec, film, pose, *viewed(spec, pose, seen), seen))
 
