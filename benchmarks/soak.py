@@ -20,7 +20,9 @@ import numpy as np
 import psutil
 import soak_rows as rows
 import soak_worlds as worlds
-from soak_rows import Done, Rude, Target
+from soak_rows import Done, Target
+
+from fakes import client_programs as programs
 
 LEAST_FOR_A_SLOPE = 100
 """Repetitions; fewer say nothing about a thousand."""
@@ -31,9 +33,9 @@ ROWS: dict[str, tuple[int, Callable[[Target, int, Done], str]]] = {
     "connections cut off": (1000, rows.cut_off),
     "silent connections at once": (1000, rows.silent),
     "official clients": (200, rows.whole_clients),
-    "killed while ticking": (10, rows.killed(rows.TICKING)),
-    "killed while sensors listen": (10, rows.killed(rows.LISTENING)),
-    "killed with a Traffic Manager": (10, rows.killed(rows.TRAFFIC)),
+    "killed while ticking": (10, rows.killed(programs.TICKING)),
+    "killed while sensors listen": (10, rows.killed(programs.LISTENING)),
+    "killed with a Traffic Manager": (10, rows.killed(programs.TRAFFIC)),
     "ten clients tick at once": (5000, rows.ten_at_once),
     "never reads, asynchronous": (5000, rows.deaf_asynchronous),
     "never reads, synchronous": (3, rows.deaf_synchronous),
@@ -42,6 +44,7 @@ ROWS: dict[str, tuple[int, Callable[[Target, int, Done], str]]] = {
     "reloads by the official client": (200, worlds.official_reloads),
     TOWNS: (1, worlds.towns),
     "sensors made, heard, destroyed": (3000, worlds.sensor_cycles),
+    "ten cameras made, seen, destroyed": (3000, worlds.camera_cycles),
     "vehicles one by one": (10_000, worlds.one_by_one),
     "props all at once": (10_000, worlds.all_at_once),
     "large batches": (30, worlds.large_batches),
@@ -123,7 +126,7 @@ def main() -> None:
                 chosen = not arguments.only or any(word in name for word in arguments.only)
                 if chosen and (name != TOWNS or arguments.towns):
                     measure(name, row, target, max(1, round(count * arguments.share)))
-            with Rude(target.port) as last:
+            with rows.caller(target) as last:
                 assert last.call("version") == "0.9.16"
         finally:  # a row that ends the table must not leave the server behind
             began_s = time.monotonic()

@@ -4,21 +4,21 @@ A row takes the server, how often, and what to call after every repetition; it r
 """
 
 import contextlib
-import socket
-import struct
 import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import carla
-import msgpack
 import psutil
-from typing_extensions import Self
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+from fakes.client_programs import LISTENING, client_program, numbers
+from fakes.raw_client import RawClient, RawSubscriber
 
 Done = Callable[[], None]
 
@@ -32,52 +32,18 @@ class Target(NamedTuple):
     log: Path
 
 
-class Rude:
-    """A connection that speaks bytes."""
-
-    def __init__(self, port: int) -> None:
-        self.socket = socket.create_connection(("127.0.0.1", port), 60.0)
-        self._unpacker = msgpack.Unpacker(max_buffer_size=2**30)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.socket.close()
-
-    def send(self, method: str, *arguments: object) -> None:
-        self.socket.sendall(request(method, *arguments))
-
-    def call(self, method: str, *arguments: object) -> Any:  # noqa: ANN401 - whatever a function returns
-        self.send(method, *arguments)
-        while True:
-            for _, _, error, result in self._unpacker:
-                return result[0][-1] if error is None and method != "apply_batch" else error or result
-            data = self.socket.recv(1 << 20)
-            if not data:
-                raise EOFError("the server has closed the connection")
-            self._unpacker.feed(data)
-
-    def reset(self) -> None:
-        """Vanish as a killed process does."""
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-        self.socket.close()
+def caller(target: Target) -> RawClient:
+    """A connection that speaks bytes, and has patience with a server that is plagued."""
+    return RawClient(target.port, timeout_s=60.0)
 
 
-def request(method: str, *arguments: object) -> bytes:
-    packed: bytes = msgpack.packb([0, 1, method, [[False], *arguments]])
-    return packed
-
-
-def subscriber(target: Target, stream_id: int) -> Rude:
-    found = Rude(target.streaming_port)
-    found.socket.sendall(struct.pack("<I", stream_id))
-    return found
+def subscriber(target: Target, stream_id: int) -> RawSubscriber:
+    return RawSubscriber(target.streaming_port, stream_id)
 
 
 def settle(target: Target, synchronous: bool = True) -> None:  # noqa: FBT001, FBT002 - what a row asks for
     """Begin a new episode, in one mode or the other, and tick a few times: what a client that behaves does next."""
-    with Rude(target.port) as client:
+    with caller(target) as client:
         client.call("load_new_episode", "Linden", True, 0xFFFF)
         settings = [synchronous, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
         client.call("set_episode_settings", settings)
@@ -96,7 +62,7 @@ def official(target: Target) -> tuple[carla.Client, carla.World]:
 
 def rpc_connects(target: Target, count: int, done: Done) -> str:
     for _ in range(count):
-        with Rude(target.port) as client:
+        with caller(target) as client:
             client.call("version")
         done()
     return ""
@@ -111,8 +77,8 @@ def stream_connects(target: Target, count: int, done: Done) -> str:
 
 def cut_off(target: Target, count: int, done: Done) -> str:
     for number in range(count):
-        client = Rude(target.port if number % 2 else target.streaming_port)
-        client.socket.sendall(request("tick_cue")[: 1 + number % 10] if number % 2 else b"\1\0\0"[: number % 4])
+        client = RawClient(target.port if number % 2 else target.streaming_port)
+        client.socket.sendall(client.request("tick_cue")[: 1 + number % 10] if number % 2 else b"\1\0\0"[: number % 4])
         client.reset()
         done()
     return "half by half a call, half by half a handshake"
@@ -121,10 +87,10 @@ def cut_off(target: Target, count: int, done: Done) -> str:
 def silent(target: Target, count: int, done: Done) -> str:
     held = []
     for _ in range(count):
-        held.append(Rude(target.port))
+        held.append(caller(target))
         done()
     open_files = target.process.num_fds()
-    with Rude(target.port) as client:
+    with caller(target) as client:
         client.call("tick_cue")
     for each in held:
         each.socket.close()
@@ -142,63 +108,13 @@ def whole_clients(target: Target, count: int, done: Done) -> str:
 
 # -- killed ----------------------------------------------------------------------------------------------------------
 
-BEGIN = """
-import carla, sys
-client = carla.Client("127.0.0.1", int(sys.argv[1]))
-client.set_timeout(60.0)
-world = client.get_world()
-points = world.get_map().get_spawn_points()
-library = world.get_blueprint_library()
-def car(place):
-    return world.try_spawn_actor(library.find("vehicle.tesla.model3"), points[place % len(points)])
-"""
-TICKING = BEGIN + "while True: print(world.tick(), flush=True)\n"
-LISTENING = (
-    BEGIN
-    + """
-ego = car(int(sys.argv[2]))
-sensors = [world.spawn_actor(library.find("sensor.other." + kind), carla.Transform(), attach_to=ego)
-           for kind in ("imu", "gnss", "collision")]
-for sensor in sensors:
-    sensor.listen(lambda event: None)
-while True: print(world.tick(), flush=True)
-"""
-)
-TRAFFIC = (
-    BEGIN
-    + """
-manager = client.get_trafficmanager(0)
-manager.set_synchronous_mode(True)
-for place in range(10):
-    vehicle = car(place)
-    if vehicle is not None:
-        vehicle.set_autopilot(True, manager.get_port())
-while True: print(world.tick(), flush=True)
-"""
-)
-
-
-@contextmanager
-def program(target: Target, text: str, *arguments: str) -> Iterator[subprocess.Popen[str]]:
-    """A client in a process of its own, killed at the end."""
-    process = subprocess.Popen(
-        [sys.executable, "-c", text, str(target.port), *arguments],
-        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
-    )  # fmt: skip
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
-
 
 def killed(text: str) -> Callable[[Target, int, Done], str]:
     def row(target: Target, count: int, done: Done) -> str:
         for number in range(count):
-            with program(target, text, str(number)) as victim:
-                for _ in range(30):
-                    victim.stdout.readline()
-            with Rude(target.port) as survivor:
+            with client_program(target.port, text, number) as victim:
+                numbers(victim, 30)
+            with caller(target) as survivor:
                 survivor.call("tick_cue")
             done()
         return "each after 30 ticks of its own; another ticked after each"
@@ -208,12 +124,12 @@ def killed(text: str) -> Callable[[Target, int, Done], str]:
 
 def ten_at_once(target: Target, count: int, done: Done) -> str:
     with contextlib.ExitStack() as stack:
-        clients = [stack.enter_context(program(target, LISTENING, str(5 * number))) for number in range(10)]
-        frames: list[list[int]] = [[int(client.stdout.readline())] for client in clients]
+        clients = [stack.enter_context(client_program(target.port, LISTENING, 5 * number)) for number in range(10)]
+        frames = [numbers(client, 1) for client in clients]
         began_s = time.monotonic()
 
         def follow(client: subprocess.Popen[str], mine: list[int]) -> None:
-            mine += [int(client.stdout.readline()) for _ in range(count // 10)]
+            mine += numbers(client, count // 10)
 
         threads = [threading.Thread(target=follow, args=pair) for pair in zip(clients, frames, strict=True)]
         for thread in threads:
@@ -241,7 +157,7 @@ def crowd(target: Target) -> None:
 def deaf_asynchronous(target: Target, count: int, done: Done) -> str:
     settle(target, synchronous=False)
     crowd(target)
-    with Rude(target.port) as client, subscriber(target, 1) as reader, contextlib.ExitStack() as stack:
+    with caller(target) as client, subscriber(target, 1) as reader, contextlib.ExitStack() as stack:
         for _ in range(10):
             stack.enter_context(subscriber(target, 1))
         seen = longest_ms = 0
@@ -257,7 +173,7 @@ def deaf_asynchronous(target: Target, count: int, done: Done) -> str:
 def deaf_synchronous(target: Target, count: int, done: Done) -> str:
     crowd(target)
     waits_s = []
-    with Rude(target.port) as client:
+    with caller(target) as client:
         for _ in range(count):
             with subscriber(target, 1):
                 longest_s, closed = 0.0, _shown_out(target)
@@ -278,10 +194,10 @@ def _shown_out(target: Target) -> int:
 
 
 def slow_loris(target: Target, count: int, done: Done) -> str:
-    message = request("get_sensor_token", 1)
-    clients = [Rude(target.port) for _ in range(count)]
+    clients = [caller(target) for _ in range(count)]
+    message = clients[0].request("get_sensor_token", 1)
     longest_ms = 0.0
-    with Rude(target.port) as other:
+    with caller(target) as other:
         for byte in message:
             for client in clients:
                 client.socket.sendall(bytes([byte]))

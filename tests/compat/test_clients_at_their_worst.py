@@ -3,61 +3,15 @@
 The long versions, with figures, are the rows of ``benchmarks/soak.py``.
 """
 
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 
 import carla
 import psutil
 import pytest
 
+from fakes.client_programs import LISTENING, TRAFFIC, client_program, numbers
 from fakes.raw_client import RawClient, RawSubscriber
 from servers import RunningServer
-
-BEGIN = """
-import carla, sys
-client = carla.Client("127.0.0.1", int(sys.argv[1]))
-client.set_timeout(20.0)
-world = client.get_world()
-points = world.get_map().get_spawn_points()
-library = world.get_blueprint_library()
-car = world.spawn_actor(library.find("vehicle.tesla.model3"), points[0])
-"""
-LISTENING = (
-    BEGIN
-    + """
-sensors = [world.spawn_actor(library.find("sensor.other." + kind), carla.Transform(), attach_to=car)
-           for kind in ("imu", "gnss", "collision")]
-for sensor in sensors:
-    sensor.listen(lambda event: None)
-while True: print(world.tick(), flush=True)
-"""
-)
-TRAFFIC = (
-    BEGIN
-    + """
-manager = client.get_trafficmanager(0)
-manager.set_synchronous_mode(True)
-car.set_autopilot(True, manager.get_port())
-print(manager.get_port(), flush=True)
-while True: print(world.tick(), flush=True)
-"""
-)
-
-
-@contextmanager
-def program(server: RunningServer, text: str) -> Iterator[subprocess.Popen[str]]:
-    with subprocess.Popen([sys.executable, "-c", text, str(server.port)], stdout=subprocess.PIPE, text=True) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
-def numbers(process: subprocess.Popen[str], count: int) -> list[int]:
-    assert process.stdout is not None
-    return [int(process.stdout.readline()) for _ in range(count)]
 
 
 @pytest.fixture
@@ -70,7 +24,7 @@ def raw(server: RunningServer, world: carla.World) -> Iterator[RawClient]:
 def test_what_a_killed_client_spawned_stays_and_others_can_clear_it_away(
     server: RunningServer, client: carla.Client, world: carla.World
 ) -> None:
-    with program(server, LISTENING) as victim:
+    with client_program(server.port, LISTENING) as victim:
         ticks = numbers(victim, 20)
         victim.kill()
         victim.wait()
@@ -84,7 +38,7 @@ def test_what_a_killed_client_spawned_stays_and_others_can_clear_it_away(
 
 
 def test_the_port_of_a_killed_traffic_manager_is_free_again(server: RunningServer, raw: RawClient) -> None:
-    with program(server, TRAFFIC) as victim:
+    with client_program(server.port, TRAFFIC) as victim:
         (port,) = numbers(victim, 1)
         assert raw.call("is_traffic_manager_running", port) is True
         numbers(victim, 10)

@@ -10,12 +10,18 @@ from typing_extensions import Self
 TIMEOUT_S = 20.0
 
 
+def request(number: int, method: str, *args: Any, is_async: bool = False) -> bytes:
+    """The bytes of a call."""
+    packed: bytes = msgpack.packb([0, number, method, [[is_async], *args]])
+    return packed
+
+
 class RawClient:
     """One RPC connection, of which the test decides every byte."""
 
-    def __init__(self, port: int) -> None:
-        self.socket = socket.create_connection(("127.0.0.1", port), TIMEOUT_S)
-        self._unpacker = msgpack.Unpacker()
+    def __init__(self, port: int, timeout_s: float = TIMEOUT_S) -> None:
+        self.socket = socket.create_connection(("127.0.0.1", port), timeout_s)
+        self._unpacker = msgpack.Unpacker(max_buffer_size=2**30)
         self._id = 0
 
     def __enter__(self) -> Self:
@@ -26,8 +32,7 @@ class RawClient:
 
     def request(self, method: str, *args: Any, is_async: bool = False) -> bytes:
         self._id += 1
-        packed: bytes = msgpack.packb([0, self._id, method, [[is_async], *args]])
-        return packed
+        return request(self._id, method, *args, is_async=is_async)
 
     def send(self, method: str, *args: Any) -> int:
         """Send a call and do not wait; return its id."""
@@ -56,6 +61,11 @@ class RawClient:
         if failed_or_kind is True or (failed_or_kind == 0 and failed_or_kind is not False):
             raise RuntimeError(rest[0][0])
         return rest[0] if rest else None
+
+    def reset(self) -> None:
+        """Vanish as a killed process does."""
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        self.socket.close()
 
     def is_closed(self) -> bool:
         """Whether the server closes this connection (waits for it)."""
