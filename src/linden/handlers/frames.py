@@ -37,11 +37,12 @@ def sensor_payloads(simulation: Simulation, listened: set[int]) -> list[tuple[in
 
 def _payload(simulation: Simulation, measurement: Measurement) -> bytes:
     if (encode := ENCODERS.get(type(measurement.reading))) is not None:
-        kind, packed = encode(simulation, measurement, measurement.reading)
+        kind, parts = encode(simulation, measurement, measurement.reading)
     else:
         kind, body = _encoded(simulation, measurement)
-        packed = msgpack.packb(body)
-    return sensor_header(kind, simulation.frame, simulation.elapsed_s, measurement.pose) + packed
+        parts = (msgpack.packb(body),)
+    header = sensor_header(kind, simulation.frame, simulation.elapsed_s, measurement.pose)
+    return b"".join((header, *parts))  # type: ignore[arg-type] # numpy's stubs know buffers from Python 3.12 on
 
 
 def _encoded(simulation: Simulation, measurement: Measurement) -> tuple[SensorType, object]:

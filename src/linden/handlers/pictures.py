@@ -6,6 +6,7 @@ from linden.simulation import Simulation
 from linden.simulation.measuring import Measurement
 from linden.wire.headers import SensorType
 from linden.wire.images import events_payload, image_payload
+from linden.wire.stream import Parts
 
 _KINDS = {
     "sensor.camera.depth": SensorType.CAMERA_DEPTH,
@@ -17,11 +18,11 @@ _KINDS = {
 }
 
 
-def image(_simulation: Simulation, _measurement: Measurement, reading: Image) -> tuple[SensorType, bytes]:
+def image(_simulation: Simulation, _measurement: Measurement, reading: Image) -> tuple[SensorType, Parts]:
     """Encode a picture."""
     return _KINDS[reading.blueprint], image_payload(reading.pixels, reading.fov_deg)
 
 
-def events(_simulation: Simulation, _measurement: Measurement, reading: Events) -> tuple[SensorType, bytes]:
+def events(_simulation: Simulation, _measurement: Measurement, reading: Events) -> tuple[SensorType, Parts]:
     """Encode the events of an event camera."""
     return SensorType.CAMERA_DVS, events_payload(reading.events, reading.width_px, reading.height_px, reading.fov_deg)

@@ -19,31 +19,31 @@ from linden.values.actors import Actor, ActorDescription
 from linden.values.space import BoundingBox
 from linden.wire.headers import SensorType
 from linden.wire.points import RADAR_DETECTION, lidar_payload, radar_payload
+from linden.wire.stream import Parts
 from linden.world.actors import ActorRecord
 
-Encode = Callable[[Simulation, Measurement, Any], tuple[SensorType, bytes]]
+Encode = Callable[[Simulation, Measurement, Any], tuple[SensorType, Parts]]
 
 
-def _sweep(_simulation: Simulation, _measurement: Measurement, reading: Sweep) -> tuple[SensorType, bytes]:
+def _sweep(_simulation: Simulation, _measurement: Measurement, reading: Sweep) -> tuple[SensorType, Parts]:
     return SensorType.LIDAR, lidar_payload(*reading)
 
 
-def _semantic(_simulation: Simulation, _measurement: Measurement, reading: SemanticSweep) -> tuple[SensorType, bytes]:
+def _semantic(_simulation: Simulation, _measurement: Measurement, reading: SemanticSweep) -> tuple[SensorType, Parts]:
     return SensorType.LIDAR_SEMANTIC, lidar_payload(*reading)
 
 
-def _radar(_simulation: Simulation, _measurement: Measurement, reading: Detections) -> tuple[SensorType, bytes]:
+def _radar(_simulation: Simulation, _measurement: Measurement, reading: Detections) -> tuple[SensorType, Parts]:
     packed = np.empty(len(reading.depth_m), RADAR_DETECTION)
     for name, column in zip(RADAR_DETECTION.names or (), reading, strict=True):
         packed[name] = column
     return SensorType.RADAR, radar_payload(packed)
 
 
-def _obstacle(simulation: Simulation, measurement: Measurement, reading: Obstacle) -> tuple[SensorType, bytes]:
+def _obstacle(simulation: Simulation, measurement: Measurement, reading: Obstacle) -> tuple[SensorType, Parts]:
     actors = simulation.episode.actors
     other = described(actors.get(reading.actor_id)) if reading.actor_id else scenery(scenery_type(reading.tag))
-    packed: bytes = msgpack.packb((described(measurement.sensor), other, reading.distance_m))
-    return SensorType.OBSTACLE, packed
+    return SensorType.OBSTACLE, (msgpack.packb((described(measurement.sensor), other, reading.distance_m)),)
 
 
 def described(record: ActorRecord) -> Actor:

@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.wire.stream import Parts
+
 RADAR_DETECTION = np.dtype(
     [
         ("velocity", "<f4"),  # m/s, positive where the target recedes (Radar.cpp)
@@ -21,17 +23,15 @@ RADAR_DETECTION = np.dtype(
 _LIDAR = struct.Struct("<fI")
 
 
-def lidar_payload(horizontal_rad: float, count: NDArray[np.uint32], points: NDArray[Any]) -> bytes:
+def lidar_payload(horizontal_rad: float, count: NDArray[np.uint32], points: NDArray[Any]) -> Parts:
     """Return the header with the number of points of each channel, and the points, packed as they are."""
-    return b"".join(
-        (
-            _LIDAR.pack(horizontal_rad, len(count)),
-            np.ascontiguousarray(count, "<u4").data,
-            np.ascontiguousarray(points).data,
-        )
+    return (
+        _LIDAR.pack(horizontal_rad, len(count)),
+        np.ascontiguousarray(count, "<u4"),
+        np.ascontiguousarray(points),
     )
 
 
-def radar_payload(detections: NDArray[np.void]) -> bytes:
+def radar_payload(detections: NDArray[np.void]) -> Parts:
     """Return detections (N,) of RADAR_DETECTION as they are sent."""
-    return np.ascontiguousarray(detections, RADAR_DETECTION).tobytes()
+    return (np.ascontiguousarray(detections, RADAR_DETECTION),)

@@ -4,12 +4,17 @@ Source: LibCarla 0.9.16, ``carla/streaming/detail/Token.h`` and ``tcp/ServerSess
 """
 
 import struct
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
+
+from numpy.typing import NDArray
 
 from linden.errors import ProtocolError
 
 WORLD_OBSERVER_ID = 1
 """Stream id of the world snapshot; CARLA uses the same."""
+
+Parts: TypeAlias = tuple[bytes | NDArray[Any], ...]
+"""What a message is made of, in its order: pictures are large, so they are joined once, when all of it is there."""
 
 _TOKEN = struct.Struct("<IHBB16x")  # stream id, port, protocol, address type, address
 _TCP = 1
