@@ -11,7 +11,8 @@ import queue
 import re
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 from xml.etree import ElementTree as ET
@@ -22,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 ROUTE = Path("src/basu/routes/linden_leap.xml")
-PLACES = (0.02, 0.2, 0.42, 0.63, 0.85)  # of the route's points
+PLACES = (0.125, 0.375, 0.725, 0.775, 0.925)  # of the route's points: streets of both widths, a roundabout
 SEAT = carla.Transform(carla.Location(x=1.5, z=1.9), carla.Rotation(pitch=-4.0))
 WEATHERS = {
     "clear noon": carla.WeatherParameters.ClearNoon,
@@ -34,8 +35,8 @@ WEATHERS = {
 OTHERS = ("depth", "semantic_segmentation", "instance_segmentation", "normals", "optical_flow")
 LIT = carla.VehicleLightState(carla.VehicleLightState.Position | carla.VehicleLightState.LowBeam)
 WIDTH, HEIGHT = 480, 300
-SWEEP_PIXELS, SWEEP_M = 900, 90.0
-ROOF = carla.Transform(carla.Location(x=0.0, z=2.95))
+SWEEP_PIXELS, SWEEP_M = 1000, 55.0
+ROOF = carla.Transform(carla.Location(x=0.0, z=3.7))  # high enough to look past the roof's edges
 POINT = np.dtype([(name, "<f4") for name in ("x", "y", "z", "cos")] + [("object", "<u4"), ("tag", "<u4")])
 BACKGROUND = np.array([14, 16, 20])
 _TAGS = {  # of carla.CityObjectLabel, bright enough for a dark ground
@@ -76,18 +77,29 @@ def furnish(world: carla.World, client: carla.Client) -> Stage:
     ez10 = library.find("vehicle.easymile.ez10")
     shuttle = world.spawn_actor(ez10, points[0])
     shuttle.set_simulate_physics(False)
-    cars = [item for item in library.filter("vehicle.*") if item.id != ez10.id]
-    batch = [
-        carla.command.SpawnActor(cars[number % len(cars)], point) for number, point in enumerate(points[5::9][:120])
-    ]
+    cars = painted([item for item in library.filter("vehicle.*") if item.id != ez10.id])
     people = library.filter("walker.pedestrian.*")
-    for place in poses(world.get_map()):  # company at each of them
+    batch = [carla.command.SpawnActor(next(cars), point) for point in points[5::9][:120]]
+    for number, place in enumerate(poses(world.get_map())):  # company at each of them
         lane = world.get_map().get_waypoint(place.location)
-        batch += [carla.command.SpawnActor(cars[len(batch) % len(cars)], pose) for pose in before(lane)]
-        batch += [carla.command.SpawnActor(people[len(batch) % len(people)], pose) for pose in beside(lane)]
+        batch += [carla.command.SpawnActor(next(cars), pose) for pose in before(lane)]
+        batch += [
+            carla.command.SpawnActor(people[(7 * number + nth) % len(people)], pose)
+            for nth, pose in enumerate(beside(lane))
+        ]
     ids = [answer.actor_id for answer in client.apply_batch_sync(batch, True) if not answer.error]
     others = [actor for actor in world.get_actors(ids) if actor.type_id.startswith("vehicle.")]
     return Stage(world, shuttle, others)
+
+
+def painted(cars: list[carla.ActorBlueprint]) -> Iterator[carla.ActorBlueprint]:
+    """Give the blueprints in turn, for ever, each time in another of their colours."""
+    for turn in count():
+        for number, car in enumerate(cars):
+            if car.has_attribute("color"):
+                colours = car.get_attribute("color").recommended_values
+                car.set_attribute("color", colours[(turn + number) % len(colours)])
+            yield car
 
 
 def before(lane: carla.Waypoint) -> list[carla.Transform]:
@@ -105,7 +117,7 @@ def before(lane: carla.Waypoint) -> list[carla.Transform]:
 def beside(lane: carla.Waypoint) -> list[carla.Transform]:
     """Return places on the pavements ahead, some looking this way and some the other."""
     found = []
-    for number, ahead_m in enumerate((8.0, 9.0, 15.0, 24.0, 30.0)):
+    for number, ahead_m in enumerate((9.0, 12.0, 16.0, 24.0, 30.0)):
         side = lane.next(ahead_m)[0]
         while side is not None and side.lane_type != carla.LaneType.Sidewalk:
             side = side.get_right_lane() if number % 3 < 2 else _outwards(side, lane)
@@ -137,14 +149,18 @@ def sweep(stage: Stage) -> Picture:
 
 
 def from_above(points: carla.SemanticLidarMeasurement) -> Picture:
-    """Return the points of a sweep, ahead being up; the brighter, the more of them fall on a pixel."""
+    """Return the points of a sweep, ahead being up."""
     columns = np.frombuffer(points.raw_data, POINT)
     place = np.stack([-columns["x"], columns["y"]], axis=1) * (SWEEP_PIXELS / (2.0 * SWEEP_M)) + SWEEP_PIXELS / 2.0
     inside = ((place >= 0.0) & (place < SWEEP_PIXELS)).all(axis=1)
     row, column = place[inside].astype(np.int64).T
     light = np.zeros((SWEEP_PIXELS, SWEEP_PIXELS, 3))
     order = np.argsort(columns["z"][inside], kind="stable")  # what is higher covers what is lower
-    light[row[order], column[order]] = COLOURS[np.minimum(columns["tag"][inside][order], len(COLOURS) - 1)]
+    tint = COLOURS[np.minimum(columns["tag"][inside][order], len(COLOURS) - 1)]
+    for down in (0, 1):  # two pixels wide and high, to be seen
+        for right in (0, 1):
+            at = np.minimum(row[order] + down, SWEEP_PIXELS - 1), np.minimum(column[order] + right, SWEEP_PIXELS - 1)
+            light[at] = tint
     return np.where(light.any(axis=2, keepdims=True), light, BACKGROUND).astype(np.uint8)
 
 
