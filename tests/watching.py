@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 TIMEOUT_S = 60.0
 """Who looks first waits for the scene."""
 PARTING_TICKS = 3
+IN_WORDS = ("latitude", "longitude", "altitude", "accelerometer", "gyroscope", "compass")
+"""What GNSS and IMU tell; their measurements have no raw data."""
 SEMANTIC = np.dtype([("xyz", "<f4", (3,)), ("cosine", "<f4"), ("id", "<u4"), ("tag", "<u4")])
 
 
@@ -53,9 +55,11 @@ class Reading(NamedTuple):
 
 def reading_of(data: carla.SensorData) -> Reading:
     """Copy what a sensor tells."""
-    raw, shape = repr(data).encode(), tuple[int, ...]()
+    shape = tuple[int, ...]()
     if hasattr(data, "raw_data"):
         raw = bytes(data.raw_data)
+    else:
+        raw = repr([str(getattr(data, name)) for name in IN_WORDS if hasattr(data, name)]).encode()
     if hasattr(data, "height"):
         shape = data.height, data.width
     elif hasattr(data, "channels"):
