@@ -9,6 +9,7 @@ WITHIN = {
     "util": "carla/PythonAPI/util",
     "test": "carla/PythonAPI/test",
     "scenario_runner": "scenario_runner",
+    "leaderboard": "leaderboard",
     "sumo": "sumo",
 }
 """Where the programs of a family lie below the folder of all of them; README.md says how they get there."""

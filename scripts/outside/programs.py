@@ -40,6 +40,7 @@ def all_programs(folders: Folders) -> list[Program]:
         *_on(("Linden",), UTILITIES),
         *_on(("Town01",), SMOKE),
         *_scenarios(folders),
+        *(_leaderboard(folders, agent) for agent in ("dummy_agent", "npc_agent")),
         *SUMO,
     ]
 
@@ -83,7 +84,7 @@ EXAMPLES = (
     _endless("sensor_synchronization.py"),
     _example("tutorial.py"),
     _endless("tutorial_gbuffer.py"),
-    _endless("bounding_boxes.py"),
+    _endless("bounding_boxes.py", limit_s=40.0, keys="3"),
     _endless("client_bounding_boxes.py"),
     _endless("draw_skeleton.py"),
     _endless("lidar_to_camera.py"),
@@ -126,7 +127,7 @@ UTILITIES = (
     _utility("vehicle_physics_tester.py", limit_s=300.0),
     _utility("apply_texture.py", "-o", "SM_House"),
     _utility("performance_benchmark.py"),
-    _utility("raycast_sensor_testing.py"),
+    _utility("raycast_sensor_testing.py", limit_s=ENDLESS_S, is_endless=True),
     _utility("check_lidar_bb.py"),
     _utility("check_raycast_sensors_determinism.py"),
 )
@@ -197,6 +198,17 @@ def _scenarios(folders: Folders) -> list[Program]:
     agent = ("--agent", "srunner/autoagents/npc_agent.py")
     rows.append(_scenario(*route, *agent, town="Town10HD_Opt", limit_s=300.0, needs_driver=False))
     return rows
+
+
+def _leaderboard(folders: Folders, agent: str) -> Program:
+    """The leaderboard's evaluator, with one of its own agents on ScenarioRunner's route through a public town."""
+    routes = folders.of("scenario_runner") / "srunner" / "data" / "routes_town10.xml"
+    arguments = (
+        *("leaderboard/leaderboard_evaluator.py", "--routes", str(routes), "--routes-subset", "0"),
+        *("--agent", f"leaderboard/autoagents/{agent}.py", "--track", "SENSORS", "--debug", "0"),
+        *("--checkpoint", "{out}/" + agent + ".checkpoint.json", "--debug-checkpoint", "{out}/" + agent + ".live.txt"),
+    )
+    return Program("leaderboard", arguments, "Town10HD_Opt", limit_s=600.0)
 
 
 def _sumo(town: str, *arguments: str) -> Program:

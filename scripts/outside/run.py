@@ -160,9 +160,11 @@ def _driver(program: Program, python: str, folders: Folders, log: Path) -> Itera
 def _environment(folders: Folders) -> dict[str, str]:
     """The variables that these programs' own manuals ask for, and no screen."""
     runner, api = folders.of("scenario_runner"), folders.programs / "carla" / "PythonAPI" / "carla"
+    board = folders.of("leaderboard")
     wanted = {
-        "PYTHONPATH": os.pathsep.join(map(str, (HERE / "watched", folders.sumo_home / "tools", api, runner))),
+        "PYTHONPATH": os.pathsep.join(map(str, (HERE / "watched", folders.sumo_home / "tools", api, runner, board))),
         "SCENARIO_RUNNER_ROOT": str(runner),
+        "LEADERBOARD_ROOT": str(board),
         "SUMO_HOME": str(folders.sumo_home),
         "SDL_VIDEODRIVER": "dummy",
         "SDL_AUDIODRIVER": "dummy",
