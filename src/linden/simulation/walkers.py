@@ -104,7 +104,7 @@ class Walkers:
         """Let a frame pass, after its physics; returns the ids of the dead who have lain long enough."""
         if self._before or self._velocity:
             self._show_motion(episode, dt_s)
-        if len(episode.contacts):
+        if len(episode.contacts) and episode.walker_ids_and_slots()[0]:
             for actor_id in _struck(episode):
                 self.die(episode, actor_id)
         gone = []
@@ -152,8 +152,8 @@ def _struck(episode: "Episode") -> list[int]:
     """Return the ids of the walkers that a vehicle struck down in this frame."""
     bodies, contacts = episode.bodies, episode.contacts
     found = []
+    pairs = contacts[(contacts["a"] >= 0) & (contacts["b"] >= 0)]
     for own, other in (("a", "b"), ("b", "a")):
-        pairs = contacts[(contacts["a"] >= 0) & (contacts["b"] >= 0)]
         hits = pairs[(bodies.kind[pairs[own]] == WALKER) & (bodies.kind[pairs[other]] == VEHICLE)]
         blow_mps = np.linalg.norm(hits["impulse"], axis=1) / bodies.mass_kg[hits[own]]
         for slot in hits[own][blow_mps >= LETHAL_MPS].tolist():
