@@ -1,4 +1,7 @@
-"""MetaDrive beside eyes.py: what a step of its own traffic takes with its lidar, and with its colour camera."""
+"""MetaDrive beside eyes.py: what a step of its own traffic takes with its lidar, and with its colour camera.
+
+The camera is drawn by OpenGL: without a screen, run the whole under ``xvfb-run``.
+"""
 
 import subprocess
 from pathlib import Path
@@ -22,16 +25,20 @@ def drive(pythons: list[Path], steps: int) -> None:
     if python is None:
         print("MetaDrive was not measured: name a Python that has it by --peer-python")
         return
-    for what in ([], ["camera"]):
-        command = [str(python), str(METADRIVE), str(steps), *what]
-        try:
-            done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=PATIENCE_S)
-        except subprocess.TimeoutExpired:
-            print(f"MetaDrive with {what or 'its lidar'} was not measured: {PATIENCE_S:.0f} s were too short")
-            continue
-        said = [line for line in done.stdout.splitlines() if line.count("|") == 2]
-        if done.returncode and not said:
-            print(f"MetaDrive with {what or 'its lidar'} was not measured: {done.stderr.strip().splitlines()[-1:]}")
-            continue
-        name, sensor, ms = said[-1].split("|")
-        print(f"{name}, {sensor}: {float(ms):.2f} ms a step, {1000.0 / float(ms):.0f} steps/s")
+    print()
+    for what, arguments in (("its lidar", []), ("its colour camera", ["camera"])):
+        print(driven([str(python), str(METADRIVE), str(steps), *arguments], what), flush=True)
+
+
+def driven(command: list[str], what: str) -> str:
+    """Return what became of a run, in a sentence."""
+    try:
+        done = subprocess.run(command, check=False, capture_output=True, text=True, timeout=PATIENCE_S)
+    except subprocess.TimeoutExpired:
+        return f"MetaDrive with {what} was not measured: it was not done after {PATIENCE_S:.0f} s"
+    said = [line for line in done.stdout.splitlines() if line.count("|") == 2]
+    if not said:
+        why = next(iter(done.stderr.strip().splitlines()[-1:]), f"it ended with {done.returncode}")
+        return f"MetaDrive with {what} was not measured: {why}"
+    name, sensor, ms = said[-1].split("|")
+    return f"{name}, {sensor}: {float(ms):.2f} ms a step, {1000.0 / float(ms):.0f} steps/s"
