@@ -75,6 +75,13 @@ def _tail(frame: Frame) -> list[Mesh]:
     return made
 
 
+def _skirt(frame: Frame, high_m: float, look: Look) -> Mesh:
+    """Return what closes a body's rear below its floor, behind the bumper."""
+    return box(
+        (frame.rear + 0.13, -frame.half_width + 0.26, 0.45), (frame.rear + 0.2, frame.half_width - 0.26, high_m), look
+    )
+
+
 def _over_axle(whole: Frame, look: Look) -> list[Mesh]:
     """Return mudguards over the rear wheels."""
     x, r = whole.axles[0], whole.wheel_radius
@@ -119,6 +126,10 @@ def firetruck(blueprint: Blueprint) -> list[Shape]:
     load = [box((back, -wide, floor), (cab.rear - 0.03, wide, roof_m), PAINT), *_over_axle(whole, BLACK)]
     load += both_sides(box((back + 0.02, wide - 0.25, 0.55), (whole.axles[0] - 0.6, wide, floor), PAINT))
     load += both_sides(box((whole.axles[0] + 0.6, wide - 0.25, 0.55), (cab.rear - 0.03, wide, floor), PAINT))
+    load += [
+        _skirt(whole, floor, PAINT),
+        plaque(back, (-0.55 * wide, 0.55 * wide), (floor + 0.08, roof_m - 0.25), _SHUTTER),
+    ]
     span_m = (cab.rear - 0.1 - back) / 4.0
     for n in range(4):
         start = back + 0.08 + n * span_m
@@ -160,6 +171,7 @@ def ambulance(blueprint: Blueprint) -> list[Shape]:
     x, r = whole.axles[0], whole.wheel_radius
     load += both_sides(box((body[0], wide - 0.3, 0.4), (x - 1.2 * r, wide, floor), _WHITE))
     load += both_sides(box((x + 1.2 * r, wide - 0.3, 0.4), (body[1], wide, floor), _WHITE))
+    load.append(_skirt(whole, floor, _WHITE))
     load.append(
         box((body[0] + 0.05, -wide - 0.008, waist - 0.25), (body[1] - 0.02, wide + 0.008, waist - 0.02), _STRIPE)
     )

@@ -1,0 +1,68 @@
+"""The meshes of all blueprints, kept in the user's cache like what stands on a map: made once, read after."""
+
+import hashlib
+import json
+from functools import cache as once
+from pathlib import Path
+
+import numpy as np
+
+from linden.compiled import fingerprint, machine
+from linden.meshes.bodies import Bodies, Part
+from linden.meshes.mesh import FACE, Mesh
+from linden.world.blueprints import BlueprintLibrary
+from linden.world.map_cache import MapCache
+
+_PACKAGE = Path(__file__).parent.parent
+_MAKING = ("meshes/**/*.py", "world/blueprint*.py", "data/blueprints.json", "values/*.py", "geometry.py")
+_HEAD = 16
+"""Digits of how long the text is that says what lies behind it."""
+
+
+def bodies_of(library: BlueprintLibrary, cache: MapCache) -> Bodies:
+    """Return the meshes of a library's actors, out of the cache or made, which takes a second.
+
+    Their arrays may be read-only.
+    """
+    return _read(cache.kept(_name(), lambda: _written(Bodies(library))))
+
+
+def keep_bodies(library: BlueprintLibrary, cache: MapCache) -> None:
+    """Have the meshes in the cache."""
+    cache.keep(_name(), lambda: _written(Bodies(library)))
+
+
+@once
+def _name() -> str:
+    sources = fingerprint(*(file for pattern in _MAKING for file in _PACKAGE.glob(pattern)))
+    return f"{hashlib.sha256(f'{sources} {machine()}'.encode()).hexdigest()[:32]}.bodies"
+
+
+def _written(bodies: Bodies) -> bytes:
+    """Return how many vertices and triangles each mesh has and which parts an actor has, as JSON, and all arrays."""
+    counts = [(len(mesh.vertices_m), len(mesh.triangles)) for mesh in bodies.meshes]
+    parts = [(*named, chosen) for named, chosen in bodies.all_parts.items()]
+    text = json.dumps([counts, parts]).encode()
+    columns = zip(zip(*bodies.meshes, strict=True), (np.float32, np.uint32, FACE), strict=True)
+    arrays = [np.concatenate(column).astype(kind) for column, kind in columns]
+    return b"".join([f"{len(text):{_HEAD}}".encode(), text, *(array.tobytes() for array in arrays)])
+
+
+def _read(content: bytes) -> Bodies:
+    start = _HEAD + int(content[:_HEAD])
+    counts, parts = json.loads(content[_HEAD:start])
+    corners, triangles = map(sum, zip(*counts, strict=True))
+    vertices_m = np.frombuffer(content, np.float32, 3 * corners, start).reshape(-1, 3)
+    rows = np.frombuffer(content, np.uint32, 3 * triangles, start + vertices_m.nbytes).reshape(-1, 3)
+    faces = np.frombuffer(content, FACE, triangles, start + vertices_m.nbytes + rows.nbytes)
+    meshes, at, face = list[Mesh](), 0, 0
+    for many, count in counts:
+        meshes.append(Mesh(vertices_m[at : at + many], rows[face : face + count], faces[face : face + count]))
+        at, face = at + many, face + count
+    named = {(blueprint, choice): tuple(map(_part, found)) for blueprint, choice, found in parts}
+    return Bodies.kept(meshes, named)
+
+
+def _part(fields: tuple[int, int, list[int] | None, float]) -> Part:
+    mesh, frame, colour, scale = fields
+    return Part(mesh, frame, None if colour is None else (colour[0], colour[1], colour[2]), scale)
