@@ -51,6 +51,14 @@ class LampGroup(NamedTuple):
     object: int
 
 
+class StandingLamps(NamedTuple):
+    """The lamps of what stands (L,), likewise."""
+
+    lamp: NDArray[np.uint32]
+    middle_m: F64  # (L, 3)
+    object: NDArray[np.int64]
+
+
 class LampGrid(NamedTuple):
     """Lamps near a camera, and which reach into each cell of a square around it."""
 
@@ -77,21 +85,30 @@ def groups(mesh: Mesh, *, standing: bool) -> tuple[LampGroup, ...]:
     return tuple(found)
 
 
-def lamps_near(
-    place_m: F64, seen: Seen, standing: Sequence[LampGroup], bodies: Sequence[Sequence[LampGroup]]
-) -> LampGrid:
+def standing_lamps(mesh: Mesh) -> StandingLamps:
+    """Return the lamps of what stands; those of no object cannot be lit."""
+    found = [group for group in groups(mesh, standing=True) if group.object >= 0]
+    return StandingLamps(
+        np.array([group.lamp for group in found], np.uint32),
+        np.array([group.middle_m for group in found], np.float64).reshape(-1, 3),
+        np.array([group.object for group in found], np.int64),
+    )
+
+
+def lamps_near(place_m: F64, seen: Seen, standing: StandingLamps, bodies: Sequence[Sequence[LampGroup]]) -> LampGrid:
     """Return the lamps that shine within reach of a camera at ``place_m`` (3,)."""
     rows: list[tuple[object, ...]] = []
-    for group in standing:
-        near = math.dist(group.middle_m[:2], place_m[:2]) < _REACH_M
-        if near and group.object >= 0 and seen.object_lights[group.object] >> group.lamp & 1:
-            colour = LINEAR[seen.object_light_colour[group.object]]
-            rows.append(_row(group.lamp, group.middle_m, (0.0, 0.0, -1.0), colour))
+    shining = seen.object_lights[standing.object] >> standing.lamp & np.uint32(1)
+    away = standing.middle_m[:, :2] - place_m[:2]
+    for row in np.flatnonzero(shining.astype(np.bool_) & (np.hypot(away[:, 0], away[:, 1]) < _REACH_M)).tolist():
+        colour = LINEAR[seen.object_light_colour[standing.object[row]]]
+        rows.append(_row(int(standing.lamp[row]), standing.middle_m[row], (0.0, 0.0, -1.0), colour))
     moving = seen.instances
-    for mesh, pose, lights in zip(moving.mesh.tolist(), moving.pose, moving.lights.tolist(), strict=True):
-        if not lights or abs(pose[:2, 3] - place_m[:2]).max() > _REACH_M:
+    for body in np.flatnonzero(moving.lights).tolist():
+        pose, lights = moving.pose[body], int(moving.lights[body])
+        if abs(pose[:2, 3] - place_m[:2]).max() > _REACH_M:
             continue
-        for group in bodies[mesh]:
+        for group in bodies[moving.mesh[body]]:
             if lights >> group.lamp & 1:
                 forward = pose[:, :3] @ ((math.cos(_DIP), 0.0, -math.sin(_DIP)) if group.lamp == _HEAD else (-1, 0, 0))
                 middle = pose[:, :3] @ np.array(group.middle_m) + pose[:, 3]

@@ -12,7 +12,7 @@ from linden.sensors.camera.labels import FAR_M
 from linden.sensors.camera.picture.atmosphere import Air, air
 from linden.sensors.camera.picture.develop import developed
 from linden.sensors.camera.picture.edges import edge_rays, finer, smooth
-from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, groups, lamps_near
+from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, StandingLamps, groups, lamps_near, standing_lamps
 from linden.sensors.camera.picture.relief import Relief, relief
 from linden.sensors.camera.picture.shade import shaded
 from linden.sensors.camera.picture.shadows import Sunshine, sunny, within
@@ -32,7 +32,7 @@ class Looks(NamedTuple):
     """What pictures need to know of the meshes besides their faces; made once for a map."""
 
     relief: Relief
-    standing_lamps: tuple[LampGroup, ...]
+    standing_lamps: StandingLamps
     body_lamps: tuple[tuple[LampGroup, ...], ...]
 
 
@@ -45,7 +45,7 @@ def looks_of(standing: Mesh, bodies: Sequence[Mesh]) -> Looks:
     if not _made or _made[0][0] is not standing or _made[0][1] is not bodies:
         made = Looks(
             relief((standing, *bodies)),
-            groups(standing, standing=True),
+            standing_lamps(standing),
             tuple(groups(mesh, standing=False) for mesh in bodies),
         )
         _made[:] = [(standing, bodies, made)]
@@ -92,7 +92,8 @@ def _places(seen: Seen) -> Places:
     bodies = seen.instances
     world = np.concatenate([np.eye(3, 4, dtype=np.float32)[None], bodies.pose])
     back = np.empty_like(world)
-    turned = np.linalg.inv(world[:, :, :3])
+    scale2 = np.einsum("ki,ki->k", world[:, :, 0], world[:, :, 0])  # poses turn, and scale evenly
+    turned = world[:, :, :3].transpose(0, 2, 1) / scale2[:, None, None]
     back[:, :, :3], back[:, :, 3] = turned, -np.einsum("kij,kj->ki", turned, world[:, :, 3])
     return Places(
         first_of_places(seen.faces, bodies),
