@@ -47,7 +47,8 @@ class EmbreeCaster:
         self._kernels = build(self.width)
         self._device = self._library.rtcNewDevice(b"threads=1")
         self._kept: list[NDArray[Any]] = []  # Embree reads them in place
-        self._bodies = [self._built(mesh, filtered=True) for mesh in bodies]
+        self._bodies = bodies
+        self._trees: dict[int, int] = {}  # of bodies, by their number: built when one of them first comes
         self._standing = self._built(standing, filtered=False)
         self.scene: int = self._library.rtcNewScene(self._device)
         self._library.rtcSetSceneFlags(self.scene, _DYNAMIC)
@@ -58,7 +59,8 @@ class EmbreeCaster:
         here = np.array([self._new_instance(self._standing, 0)], np.int64)
         place(here, np.eye(3, 4, dtype=np.float32)[None], self.pose_of)
         self._library.rtcCommitScene(self.scene)
-        weakref.finalize(self, _release, self._library, self._device, [*self._bodies, self._standing, self.scene])
+        self._scenes = [self._standing, self.scene]
+        weakref.finalize(self, _release, self._library, self._device, self._scenes)
         self._complain()
 
     def _built(self, mesh: Mesh, *, filtered: bool) -> int:
@@ -89,6 +91,13 @@ class EmbreeCaster:
         library.rtcCommitScene(scene)
         return scene
 
+    def _tree(self, number: int) -> int:
+        """Return the scene of a body's mesh."""
+        if number not in self._trees:
+            self._trees[number] = self._built(self._bodies[number], filtered=True)
+            self._scenes.append(self._trees[number])
+        return self._trees[number]
+
     def _new_instance(self, scene: int, number: int) -> int:
         geometry: int = self._library.rtcNewGeometry(self._device, _INSTANCE)
         self._library.rtcSetGeometryInstancedScene(geometry, scene)
@@ -114,11 +123,11 @@ class EmbreeCaster:
         library, before = self._library, self._mesh
         for row, number in enumerate(mesh.tolist()):
             if row == len(self._instances):
-                self._instances.append(self._new_instance(self._bodies[number], row + 1))
+                self._instances.append(self._new_instance(self._tree(number), row + 1))
                 continue
             if row >= len(before):
                 library.rtcEnableGeometry(self._instances[row])
-            library.rtcSetGeometryInstancedScene(self._instances[row], self._bodies[number])
+            library.rtcSetGeometryInstancedScene(self._instances[row], self._tree(number))
         for geometry in self._instances[len(mesh) : max(len(mesh), len(before))]:
             library.rtcDisableGeometry(geometry)
         self._mesh = np.array(mesh, np.int32)

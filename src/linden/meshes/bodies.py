@@ -29,15 +29,23 @@ class Bodies:
 
     Attributes:
         meshes: one for each row that parts name.
+        all_parts: those of each blueprint and value of what tells its actors apart, "" the plain ones.
     """
 
     def __init__(self, library: BlueprintLibrary) -> None:
         self.meshes: list[Mesh] = []
         self._row_of: dict[int, int] = {}  # by the mesh's own identity, so that nothing is compared
-        self._parts: dict[tuple[str, str], tuple[Part, ...]] = {}
+        self.all_parts: dict[tuple[str, str], tuple[Part, ...]] = {}
         for blueprint in library:
             for choice, shapes in _shapes(blueprint).items():
-                self._parts[blueprint.definition.id, choice] = tuple(map(self._part, shapes))
+                self.all_parts[blueprint.definition.id, choice] = tuple(map(self._part, shapes))
+
+    @classmethod
+    def kept(cls, meshes: list[Mesh], all_parts: dict[tuple[str, str], tuple[Part, ...]]) -> "Bodies":
+        """Return what was made before."""
+        bodies = cls.__new__(cls)
+        bodies.meshes, bodies.all_parts = meshes, all_parts
+        return bodies
 
     def _part(self, shape: Shape) -> Part:
         row = self._row_of.setdefault(id(shape.mesh), len(self.meshes))
@@ -48,8 +56,8 @@ class Bodies:
     def parts(self, description: ActorDescription) -> tuple[Part, ...]:
         """Return the parts of an actor that was spawned so; none for what cannot be seen (sensors, controllers)."""
         chosen = description.attribute("driver_id") or description.attribute("use_wheelchair")
-        plain = self._parts.get((description.id, ""), ())
-        parts = self._parts.get((description.id, chosen), plain)
+        plain = self.all_parts.get((description.id, ""), ())
+        parts = self.all_parts.get((description.id, chosen), plain)
         if description.id != SCALED:
             return parts
         scale = float(description.attribute("scale"))

@@ -1,24 +1,24 @@
 """What the sensors of a simulation look at: the caster of the map, built when somebody first looks, and its bodies."""
 
 from collections.abc import Callable
+from concurrent.futures import Future, wait
 from functools import lru_cache
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.choose import caster_of
-from linden.casting.rays import CPU, Caster, Instances
+from linden.casting.rays import CPU, Instances
 from linden.meshes.bodies import Bodies
-from linden.meshes.mesh import NO_OBJECT, LampOf, Mesh
+from linden.meshes.mesh import LampOf, Mesh
 from linden.meshes.standing import standing
 from linden.opendrive.parse import parse
-from linden.physics.contact.statics import Statics
 from linden.scene.lamps import is_night
 from linden.scene.objects import Kind as Thing
 from linden.scene.objects import Scene
-from linden.sensors.seen import NO_ACTOR_FROM, Faces, Seen, table_of
+from linden.sensors.seen import NO_ACTOR_FROM, Seen
 from linden.simulation.company import Company
+from linden.simulation.stage import Stage, Wanted, build, in_background
 from linden.values.enums import TrafficLightState
 from linden.values.episode import LightState
 from linden.world.blueprints import BlueprintLibrary, Kind
@@ -45,38 +45,38 @@ def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
     return standing(parse(world_map.text), world_map, scene)
 
 
-class _Stage(NamedTuple):
-    """What is built once and asked often, and what it was built for."""
-
-    scene: Scene
-    statics: Statics
-    standing: Mesh
-    faces: Faces
-    caster: Caster
-
-
 class Seeing:
     """Lets sensors see an episode; outlives it, since most loads load the same map again.
 
-    Nothing is built, and no body gathered, before somebody looks.
+    Nothing is built before a sensor that looks is there, and no body gathered before it is listened to.
 
     Attributes:
         standing_on: gives the mesh of what stands on a map, anew or out of a cache.
+        bodies_of: gives the meshes of a library's actors, likewise.
         device: where rays are cast: "cpu", or a GPU as Warp names it, "cuda".
     """
 
     def __init__(self, library: BlueprintLibrary) -> None:
         self.standing_on: Callable[[LoadedMap, Scene], Mesh] = standing_on
         self.device = CPU
+        self.bodies_of: Callable[[BlueprintLibrary], Bodies] = Bodies
         self._library = library
-        self._bodies: Bodies | None = None
+        self._bodies: Future[Bodies] | None = None
         self._company: Company | None = None
         self._whole: tuple[Scene, Mesh] | None = None
-        self._stage: _Stage | None = None
+        self._stage: Stage | None = None
+        self._coming: tuple[Wanted, Future[Stage]] | None = None
         self._episode: Episode | None = None
         self._signals: tuple[Episode, U32] | None = None
         self._frame = -1
         self._instances: Instances | None = None
+
+    def prepare(self, episode: "Episode") -> None:
+        """Begin to build what is not built yet, in the background: a sensor that looks was spawned."""
+        if not self._is_built(episode) and (self._coming is None or not self._coming[0].is_for(episode)):
+            wanted, before = Wanted.of(episode), self._coming
+            self._stage = None  # before the next is built: two of them at once would take twice the memory
+            self._coming = wanted, in_background(lambda: self._built(wanted, before))
 
     def follow(self, episode: "Episode", frame: int) -> Instances:
         """Note where the bodies are in a frame; to be called in every frame while a sensor that looks is listened to.
@@ -112,27 +112,28 @@ class Seeing:
 
     def _all_bodies(self) -> Bodies:
         if self._bodies is None:
-            self._bodies = Bodies(self._library)
-        return self._bodies
+            self._bodies = in_background(lambda: self.bodies_of(self._library))
+        return self._bodies.result()
 
-    def _stage_of(self, episode: "Episode") -> _Stage:
+    def _is_built(self, episode: "Episode") -> bool:
+        here = episode.surroundings
+        return self._stage is not None and self._stage.scene is here.scene and self._stage.statics is here.statics
+
+    def _stage_of(self, episode: "Episode") -> Stage:
         """Return the stage; what does not stand any more (layers, single objects) is left out of it."""
-        scene, statics = episode.surroundings.scene, episode.surroundings.statics
-        if self._stage is not None and self._stage.scene is scene and self._stage.statics is statics:
-            return self._stage
-        if self._whole is None or self._whole[0] is not scene:
-            self._whole = scene, self.standing_on(episode.map, scene)
-        mesh, bodies = _present(self._whole[1], episode.surroundings.present), self._all_bodies().meshes
-        self._stage = None  # before the next is built: two of them at once would take twice the memory
-        self._stage = _Stage(scene, statics, mesh, table_of(mesh, bodies), caster_of(mesh, bodies, self.device))
+        self.prepare(episode)
+        if self._coming is not None:
+            self._stage, self._coming = self._coming[1].result(), None
+        assert self._stage is not None
         return self._stage
 
-
-def _present(mesh: Mesh, present: NDArray[np.bool_]) -> Mesh:
-    """Return the mesh without the triangles of boxes that are not there."""
-    thing = mesh.faces["object"]
-    stays = np.append(present, [True])[np.where(thing == NO_OBJECT, len(present), thing)]
-    return mesh if stays.all() else Mesh(mesh.vertices_m, mesh.triangles[stays], mesh.faces[stays])
+    def _built(self, wanted: Wanted, before: "tuple[Wanted, Future[Stage]] | None") -> Stage:
+        """Return the stage that is wanted, once that before it, which nobody wants any more, is done."""
+        if before is not None:
+            wait([before[1]])
+        if self._whole is None or self._whole[0] is not wanted.scene:
+            self._whole = wanted.scene, self.standing_on(wanted.world_map, wanted.scene)
+        return build(wanted, self._whole[1], self._all_bodies(), self.device)
 
 
 def _object_ids(episode: "Episode") -> U32:
