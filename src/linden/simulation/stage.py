@@ -1,0 +1,90 @@
+"""What sensors that look around need once for a map: the mesh of what stands, the faces of all meshes, the caster.
+
+Building it takes a second. So it begins in the background when such a sensor is spawned; whoever looks waits for what
+is left of it. What is built is the same whenever it began.
+"""
+
+from collections.abc import Callable
+from concurrent.futures import Future
+from threading import Thread
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.casting.choose import caster_of
+from linden.casting.rays import Caster
+from linden.meshes.bodies import Bodies
+from linden.meshes.mesh import NO_OBJECT, Mesh
+from linden.physics.contact.statics import Statics
+from linden.scene.objects import Scene
+from linden.sensors.camera.picture.rgb import looks_of
+from linden.sensors.seen import Faces, table_of
+from linden.sensors.warming import warm_up
+from linden.world.maps import LoadedMap
+
+if TYPE_CHECKING:
+    from linden.simulation.episode import Episode
+
+Made = TypeVar("Made")
+
+
+class Stage(NamedTuple):
+    """What is built once and asked often, and what it was built for."""
+
+    scene: Scene
+    statics: Statics
+    standing: Mesh
+    faces: Faces
+    caster: Caster
+
+
+class Wanted(NamedTuple):
+    """What a stage is built for: what stands on a map, and which boxes of it are there."""
+
+    world_map: LoadedMap
+    scene: Scene
+    statics: Statics
+    present: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, episode: "Episode") -> "Wanted":
+        """Return what an episode's sensors want now."""
+        here = episode.surroundings
+        return cls(episode.map, here.scene, here.statics, here.present.copy())
+
+    def is_for(self, episode: "Episode") -> bool:
+        """Return whether this is still what an episode's sensors want."""
+        here = episode.surroundings
+        return self.scene is here.scene and self.statics is here.statics
+
+
+def build(wanted: Wanted, whole: Mesh, bodies: Bodies, device: str) -> Stage:
+    """Return the stage: the caster built beside the rest of it, which a colour picture needs."""
+    standing = present_of(whole, wanted.present)
+    caster = in_background(lambda: caster_of(standing, bodies.meshes, device))
+    warm_up()  # out of the cache, where a start compiled everything
+    faces = table_of(standing, bodies.meshes)
+    looks_of(standing, bodies.meshes)
+    return Stage(wanted.scene, wanted.statics, standing, faces, caster.result())
+
+
+def present_of(mesh: Mesh, present: NDArray[np.bool_]) -> Mesh:
+    """Return the mesh without the triangles of boxes that are not there."""
+    thing = mesh.faces["object"]
+    stays = np.append(present, [True])[np.where(thing == NO_OBJECT, len(present), thing)]
+    return mesh if stays.all() else Mesh(mesh.vertices_m, mesh.triangles[stays], mesh.faces[stays])
+
+
+def in_background(work: Callable[[], Made]) -> "Future[Made]":
+    """Return what will have been made; the process does not wait for it when it ends."""
+    made: Future[Made] = Future()
+
+    def run() -> None:
+        try:
+            made.set_result(work())
+        except BaseException as error:  # noqa: BLE001 - it is raised again where the result is asked for
+            made.set_exception(error)
+
+    Thread(target=run, name="stage", daemon=True).start()
+    return made
