@@ -10,6 +10,7 @@ WITHIN = {
     "test": "carla/PythonAPI/test",
     "scenario_runner": "scenario_runner",
     "leaderboard": "leaderboard",
+    "scenic": "scenic",
     "sumo": "sumo",
 }
 """Where the programs of a family lie below the folder of all of them; README.md says how they get there."""

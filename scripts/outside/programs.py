@@ -41,6 +41,7 @@ def all_programs(folders: Folders) -> list[Program]:
         *_on(("Town01",), SMOKE),
         *_scenarios(folders),
         *(_leaderboard(folders, agent) for agent in ("dummy_agent", "npc_agent")),
+        *SCENIC,
         *SUMO,
     ]
 
@@ -209,6 +210,22 @@ def _leaderboard(folders: Folders, agent: str) -> Program:
         *("--checkpoint", "{out}/" + agent + ".checkpoint.json", "--debug-checkpoint", "{out}/" + agent + ".live.txt"),
     )
     return Program("leaderboard", arguments, "Town10HD_Opt", limit_s=600.0)
+
+
+def _scenic(path: str) -> Program:
+    """Scenic draws one scene of a scenario, and lets it run for ten simulated seconds, watched by its own camera."""
+    choices = ("--2d", "--model", "scenic.simulators.carla.model", "--simulate", "--count", "1", "--time", "100")
+    return Program("scenic", ("-m", "scenic", f"examples/{path}.scenic", *choices), "Town01", limit_s=240.0)
+
+
+SCENIC = (
+    _scenic("carla/car"),
+    _scenic("driving/pedestrian"),
+    _scenic("carla/trafficLights"),
+    _scenic("driving/pedestrianAcrossRoad"),
+    _scenic("driving/pedestrianJaywalking"),
+    _scenic("carla/NHTSA_Scenarios/pedestrian/pedestrian_01"),
+)
 
 
 def _sumo(town: str, *arguments: str) -> Program:
