@@ -78,12 +78,13 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.casting.choose import check_device  # noqa: PLC0415 - see above
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
+    from linden.meshes.bodies_library import bodies_of, keep_bodies  # noqa: PLC0415 - see above
     from linden.meshes.library import keep_standing, standing_of  # noqa: PLC0415 - see above
     from linden.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
     from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
     from linden.recording.folder import RecordingFolder  # noqa: PLC0415 - see above
     from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
-    from linden.sensors.warming import warm_up as warm_eyes  # noqa: PLC0415 - see above
+    from linden.sensors.warming import compile_once  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
@@ -103,11 +104,13 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
             raise UserError(f"--map: {refusal}") from refusal
         warm_up()
         warm_rays()
-        warm_eyes()
+        compile_once(cache)
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
         simulation.episode.warm_up()
         simulation.seeing.device = arguments.device
         simulation.seeing.standing_on = partial(standing_of, cache=cache)
+        simulation.seeing.bodies_of = partial(bodies_of, cache=cache)
+        keep_bodies(simulation.library, cache)
         keep_standing(world_map, simulation.episode.surroundings.scene, cache)  # seconds, if it is not there yet
         mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
     server = Server(simulation, maps, frames, ports)

@@ -74,9 +74,9 @@ class Seeing:
     def prepare(self, episode: "Episode") -> None:
         """Begin to build what is not built yet, in the background: a sensor that looks was spawned."""
         if not self._is_built(episode) and (self._coming is None or not self._coming[0].is_for(episode)):
-            wanted, before = Wanted.of(episode), self._coming
+            wanted, before, bodies = Wanted.of(episode), self._coming, self._bodies_coming()
             self._stage = None  # before the next is built: two of them at once would take twice the memory
-            self._coming = wanted, in_background(lambda: self._built(wanted, before))
+            self._coming = wanted, in_background(lambda: self._built(wanted, bodies, before))
 
     def follow(self, episode: "Episode", frame: int) -> Instances:
         """Note where the bodies are in a frame; to be called in every frame while a sensor that looks is listened to.
@@ -111,9 +111,12 @@ class Seeing:
         )
 
     def _all_bodies(self) -> Bodies:
+        return self._bodies_coming().result()
+
+    def _bodies_coming(self) -> "Future[Bodies]":
         if self._bodies is None:
             self._bodies = in_background(lambda: self.bodies_of(self._library))
-        return self._bodies.result()
+        return self._bodies
 
     def _is_built(self, episode: "Episode") -> bool:
         here = episode.surroundings
@@ -127,13 +130,13 @@ class Seeing:
         assert self._stage is not None
         return self._stage
 
-    def _built(self, wanted: Wanted, before: "tuple[Wanted, Future[Stage]] | None") -> Stage:
+    def _built(self, wanted: Wanted, bodies: "Future[Bodies]", before: "tuple[Wanted, Future[Stage]] | None") -> Stage:
         """Return the stage that is wanted, once that before it, which nobody wants any more, is done."""
         if before is not None:
             wait([before[1]])
         if self._whole is None or self._whole[0] is not wanted.scene:
             self._whole = wanted.scene, self.standing_on(wanted.world_map, wanted.scene)
-        return build(wanted, self._whole[1], self._all_bodies(), self.device)
+        return build(wanted, self._whole[1], bodies.result(), self.device)
 
 
 def _object_ids(episode: "Episode") -> U32:

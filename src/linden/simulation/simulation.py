@@ -117,6 +117,8 @@ class Simulation:
         if blueprint.has_stream:
             record.stream_id = self._next_stream
             self._next_stream += 1
+        if record.id in self.episode.eyes:
+            self.seeing.prepare(self.episode)
         return record
 
     def destroy(self, actor_id: int) -> None:

@@ -74,7 +74,7 @@ class MapCache:
         except OSError as error:
             log.debug("%s is made: %s", file, error)
         content = make()
-        self._keep(file, lambda stream: stream.write(_digest(content) + content))
+        self.replace(name, content)
         return content
 
     def keep(self, name: str, make: Callable[[], bytes]) -> None:
@@ -83,6 +83,10 @@ class MapCache:
             os.utime(self._folder / name)  # it counts as used
         except OSError:
             self.kept(name, make)
+
+    def replace(self, name: str, content: bytes) -> None:
+        """Keep something else than before under a name."""
+        self._keep(self._folder / name, lambda stream: stream.write(_digest(content) + content))
 
     def _write(self, file: Path, facts: MapFacts) -> None:
         self._keep(file, lambda stream: np.savez(stream, **pack(facts)))  # type: ignore[arg-type] # one array could be called allow_pickle

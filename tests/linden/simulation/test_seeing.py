@@ -1,12 +1,14 @@
 """What sensors look at in an episode: who is there, where from, how fast, and what shines."""
 
+from threading import Event
+
 import numpy as np
 import pytest
 
 from fakes.solids import box, described, floor
 from linden.casting.rays import STATIC, Rays
 from linden.geometry import compose, rotation_matrix
-from linden.meshes.mesh import LampOf, join
+from linden.meshes.mesh import LampOf, Mesh, join
 from linden.simulation import Simulation
 from linden.simulation.company import matrices
 from linden.simulation.seeing import Seeing
@@ -157,18 +159,34 @@ def test_objects_that_are_disabled_are_not_seen_and_come_back(simulation: Simula
     assert distances == pytest.approx([9.0, 510.0, 9.0], abs=1e-3)
 
 
-def test_nothing_is_built_before_somebody_listens_to_a_sensor_that_looks(world_map: LoadedMap) -> None:
+def test_nothing_is_built_before_a_sensor_that_looks_is_there(world_map: LoadedMap) -> None:
     simulation = Simulation(world_map, EpisodeSettings())
 
     def never(_map: LoadedMap, _scene: object):
         pytest.fail("nobody looks")
 
     simulation.seeing.standing_on = never
-    lidar = simulation.spawn(described("sensor.lidar.ray_cast"), Transform())
     simulation.spawn(described("sensor.other.gnss"), Transform())
     for _ in range(3):
         simulation.step(STEP_S)
-        simulation.measure({lidar.stream_id + 1})
+        simulation.measure({1, 2, 3})
+
+
+def test_building_begins_when_a_sensor_that_looks_is_spawned_and_is_waited_for(world_map: LoadedMap) -> None:
+    simulation = Simulation(world_map, EpisodeSettings())
+    begun, may_go_on = Event(), Event()
+
+    def late(_map: LoadedMap, _scene: object) -> Mesh:
+        begun.set()
+        assert may_go_on.wait(60.0)
+        return floor(2000.0)
+
+    simulation.seeing.standing_on = late
+    lidar = simulation.spawn(described("sensor.lidar.ray_cast"), Transform(Vector3D(0.0, 0.0, 3.0)))
+    assert begun.wait(60.0)
+    simulation.step(STEP_S)
+    may_go_on.set()
+    assert len(simulation.measure({lidar.stream_id})[0].reading.points) > 0
 
 
 def test_a_reading_is_the_same_whoever_listened_before(simulation: Simulation, world_map: LoadedMap) -> None:
