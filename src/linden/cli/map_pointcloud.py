@@ -45,6 +45,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     drive.add_argument(
         "--height", type=_positive, default=2.4, metavar="M", help="of the lidar above the lane (default: %(default)s)"
     )
+    drive.add_argument(
+        "--device", default="cpu", metavar="NAME", help="where rays are cast: cpu, or cuda (default: %(default)s)"
+    )
     drive.add_argument("--scans", type=Path, metavar="DIR", help="keep every scan too, and its pose, in a new folder")
     existing = command.add_argument_group("existing scans, instead of a drive")
     existing.add_argument("--from", dest="source", type=Path, metavar="PATH", help="a folder of .pcd files, or one")
@@ -97,7 +100,7 @@ def _driven(arguments: argparse.Namespace) -> _Job:
     Raises:
         UserError: there is no such map, or it has no lane to drive on.
     """
-    from linden.casting.choose import caster_of  # noqa: PLC0415 - see `run`
+    from linden.casting.choose import caster_of, check_device  # noqa: PLC0415 - see `run`
     from linden.meshes.library import standing_of  # noqa: PLC0415 - see `run`
     from linden.opendrive.parse import parse  # noqa: PLC0415 - see `run`
     from linden.pointcloud.drive import Lidar, drive  # noqa: PLC0415 - see `run`
@@ -110,13 +113,14 @@ def _driven(arguments: argparse.Namespace) -> _Job:
         raise UserError("--poses are those of existing scans: name these by --from")
     if arguments.upper_fov < arguments.lower_fov:
         raise UserError(f"--upper-fov {arguments.upper_fov:g} is below --lower-fov {arguments.lower_fov:g}")
+    check_device(arguments.device)
     world_map = world_map_of(arguments.file or _DEFAULT_MAP)
     places = places_along(parse(world_map.text), arguments.every, arguments.height)
     if not places:
         raise UserError(f"{world_map.name} has no driving lane, so there is nowhere to drive")
     standing = standing_of(world_map, scenery_of(world_map).scene, MapCache.of_user())
     lidar = Lidar(arguments.channels, arguments.upper_fov, arguments.lower_fov, arguments.range, arguments.columns)
-    scans = drive(places, lidar, caster_of(standing, []), standing)
+    scans = drive(places, lidar, caster_of(standing, [], arguments.device), standing)
     latitude, longitude = world_map.geo_origin_deg
     remark = (
         f"{world_map.name}: x east, y north, z up, m; x = y = 0 at latitude {latitude:.7f}, longitude {longitude:.7f}"

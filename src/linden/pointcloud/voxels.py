@@ -61,7 +61,7 @@ class VoxelGrid:
             new = insert(tile.cells, rows, located.key, located.steps, label)
             self._tiles[number] = _Tile(tile.cells, tile.used + new)
             self.cells += new
-        self._put_away()
+            self._put_away()
 
     def clouds(self) -> Iterator[Cloud]:
         """Give what is left of all points, a tile at a time, from west to east; the grid is empty afterwards."""

@@ -95,6 +95,7 @@ def test_scans_of_other_programs_are_taken(tmp_path: Path, capsys: pytest.Captur
         (["Linden", "--from", "x", "-o", "a.pcd"], "leave the map and --scans out"),
         (["--from", "nowhere", "-o", "a.pcd"], "cannot read nowhere: No such file"),
         (["--poses", "p.txt", "-o", "a.pcd"], "--poses are those of existing scans"),
+        (["--device", "abacus", "-o", "a.pcd"], "--device abacus"),
         (["--upper-fov", "-30", "-o", "a.pcd"], "--upper-fov -30 is below --lower-fov -25"),
     ],
 )
