@@ -56,6 +56,13 @@ def test_no_two_points_are_in_one_cell(town: str, tmp_path: Path) -> None:
     assert len(np.unique(cells, axis=0)) > 0.99 * len(cells)  # means are single precision, and may touch a side
 
 
+def test_the_same_map_gives_the_same_file(town: str, tmp_path: Path) -> None:
+    files = [tmp_path / "one.pcd", tmp_path / "two.pcd"]
+    for file in files:
+        assert pointcloud(town, "-o", file, "--labels", *QUICK) == 0
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
 def test_kept_scans_make_the_same_map_again(town: str, tmp_path: Path) -> None:
     assert pointcloud(town, "-o", tmp_path / "drive.pcd", "--scans", tmp_path / "scans", *QUICK) == 0
     assert pointcloud("--from", tmp_path / "scans", "-o", tmp_path / "again.pcd") == 0
