@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _make_server(arguments: argparse.Namespace) -> "Server":
     # here, not above: these bring in the compiler, which other commands of this program do not need
-    from linden.casting.choose import check_device  # noqa: PLC0415 - see above
+    from linden.casting.rays import CPU  # noqa: PLC0415 - see above
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
     from linden.handlers import frames, registry  # noqa: PLC0415 - see above
     from linden.meshes.bodies_library import bodies_of, keep_bodies  # noqa: PLC0415 - see above
@@ -84,7 +84,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
     from linden.recording.folder import RecordingFolder  # noqa: PLC0415 - see above
     from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
-    from linden.sensors.warming import compile_once  # noqa: PLC0415 - see above
+    from linden.sensors.compiling import compile_once  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
@@ -92,7 +92,10 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
     from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
 
-    check_device(arguments.device)
+    if arguments.device != CPU:
+        from linden.casting.choose import check_device  # noqa: PLC0415 - see above
+
+        check_device(arguments.device)
     registry.load_handlers()
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
     cache = MapCache.of_user()

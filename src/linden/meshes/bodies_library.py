@@ -4,14 +4,17 @@ import hashlib
 import json
 from functools import cache as once
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from linden.compiled import fingerprint, machine
-from linden.meshes.bodies import Bodies, Part
 from linden.meshes.mesh import FACE, Mesh
 from linden.world.blueprints import BlueprintLibrary
 from linden.world.map_cache import MapCache
+
+if TYPE_CHECKING:
+    from linden.meshes.bodies import Bodies
 
 _PACKAGE = Path(__file__).parent.parent
 _MAKING = ("meshes/**/*.py", "world/blueprint*.py", "data/blueprints.json", "values/*.py", "geometry.py")
@@ -19,17 +22,17 @@ _HEAD = 16
 """Digits of how long the text is that says what lies behind it."""
 
 
-def bodies_of(library: BlueprintLibrary, cache: MapCache) -> Bodies:
+def bodies_of(library: BlueprintLibrary, cache: MapCache) -> "Bodies":
     """Return the meshes of a library's actors, out of the cache or made, which takes a second.
 
     Their arrays may be read-only.
     """
-    return _read(cache.kept(_name(), lambda: _written(Bodies(library))))
+    return _read(cache.kept(_name(), lambda: _made(library)))
 
 
 def keep_bodies(library: BlueprintLibrary, cache: MapCache) -> None:
     """Have the meshes in the cache."""
-    cache.keep(_name(), lambda: _written(Bodies(library)))
+    cache.keep(_name(), lambda: _made(library))
 
 
 @once
@@ -38,7 +41,13 @@ def _name() -> str:
     return f"{hashlib.sha256(f'{sources} {machine()}'.encode()).hexdigest()[:32]}.bodies"
 
 
-def _written(bodies: Bodies) -> bytes:
+def _made(library: BlueprintLibrary) -> bytes:
+    from linden.meshes.bodies import Bodies  # noqa: PLC0415 - a start that finds them kept does without
+
+    return _written(Bodies(library))
+
+
+def _written(bodies: "Bodies") -> bytes:
     """Return how many vertices and triangles each mesh has and which parts an actor has, as JSON, and all arrays."""
     counts = [(len(mesh.vertices_m), len(mesh.triangles)) for mesh in bodies.meshes]
     parts = [(*named, chosen) for named, chosen in bodies.all_parts.items()]
@@ -48,7 +57,9 @@ def _written(bodies: Bodies) -> bytes:
     return b"".join([f"{len(text):{_HEAD}}".encode(), text, *(array.tobytes() for array in arrays)])
 
 
-def _read(content: bytes) -> Bodies:
+def _read(content: bytes) -> "Bodies":
+    from linden.meshes.bodies import Bodies, Part  # noqa: PLC0415 - as in _made
+
     start = _HEAD + int(content[:_HEAD])
     counts, parts = json.loads(content[_HEAD:start])
     corners, triangles = map(sum, zip(*counts, strict=True))
@@ -59,10 +70,10 @@ def _read(content: bytes) -> Bodies:
     for many, count in counts:
         meshes.append(Mesh(vertices_m[at : at + many], rows[face : face + count], faces[face : face + count]))
         at, face = at + many, face + count
-    named = {(blueprint, choice): tuple(map(_part, found)) for blueprint, choice, found in parts}
-    return Bodies.kept(meshes, named)
-
-
-def _part(fields: tuple[int, int, list[int] | None, float]) -> Part:
-    mesh, frame, colour, scale = fields
-    return Part(mesh, frame, None if colour is None else (colour[0], colour[1], colour[2]), scale)
+    all_parts = {
+        (blueprint, choice): tuple(
+            Part(mesh, frame, colour and tuple(colour), scale) for mesh, frame, colour, scale in found
+        )
+        for blueprint, choice, found in parts
+    }
+    return Bodies.kept(meshes, all_parts)

@@ -3,19 +3,12 @@
 Each step measures once in a world of two triangles; a kernel that is in the cache is only read.
 """
 
-import hashlib
-import json
-import os
-import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
-from numba.core.dispatcher import Dispatcher
 
 from linden.casting.choose import caster_of
 from linden.casting.rays import Instances, Rays
-from linden.compiled import machine
 from linden.meshes.mesh import Material, Mesh, faces
 from linden.scene.weather import CLEAR_NOON
 from linden.sensors.camera.cameras import CAMERAS
@@ -28,10 +21,6 @@ from linden.values.actors import ActorDescription, AttributeValue
 from linden.values.enums import AttributeType, SemanticTag
 from linden.values.space import Rotation, Transform, Vector3D
 from linden.world.blueprints import BlueprintLibrary
-from linden.world.map_cache import MapCache
-
-_PACKAGE = Path(__file__).parent.parent
-_COMPILED = ("sensors/**/*.py", "casting/*.py", "compiled.py")
 
 _FAN = Fan(2, 0.0, -90.0, 360.0, 10.0, 80, 10.0)
 _LOSSES = Losses(0.004, 0.45, 0.8, 0.4, 0.0, 0)
@@ -86,31 +75,3 @@ def warm_up() -> None:
     """Take all steps, one after the other."""
     for step in STEPS:
         step()
-
-
-def compile_once(cache: MapCache) -> None:
-    """Take all steps, unless somebody has on this machine and what was compiled is still there.
-
-    So a start compiles what is not compiled, and does not load what nobody has asked for yet.
-    """
-    name = _name()
-    files = json.loads(cache.kept(name, lambda: b"[]"))
-    if files and all(map(os.path.exists, files)):
-        return
-    warm_up()
-    cache.replace(name, json.dumps(_compiled_files()).encode())
-
-
-def _name() -> str:
-    """Return a file's name that tells what numba goes by: the sources as they lie there, the machine."""
-    sources = sorted(file for pattern in _COMPILED for file in _PACKAGE.glob(pattern))
-    stamps = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in sources]
-    return f"{hashlib.sha256(f'{stamps} {machine()}'.encode()).hexdigest()[:32]}.compiled"
-
-
-def _compiled_files() -> list[str]:
-    """Return the files of machine code beside those of the kernels that were loaded or compiled."""
-    modules = [module for name, module in sys.modules.items() if name.startswith(("linden.sensors", "linden.casting"))]
-    kernels = [thing for module in modules for thing in vars(module).values() if isinstance(thing, Dispatcher)]
-    folders = {kernel.stats.cache_path for kernel in kernels}
-    return sorted(str(file) for folder in folders if folder for file in Path(folder).glob("*.nb[ci]"))

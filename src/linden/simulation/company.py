@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.casting.rays import Instances
-from linden.meshes.bodies import Bodies
 from linden.meshes.mesh import LampOf
 from linden.meshes.posing import VEHICLE_FRAMES, WALKER_FRAMES, posed_frames, vehicle_frames, walker_frames
 from linden.simulation.bones import bones_of
@@ -14,6 +13,7 @@ from linden.world.actors import NO_BODY, ActorRecord
 from linden.world.blueprints import Kind
 
 if TYPE_CHECKING:
+    from linden.meshes.bodies import Bodies
     from linden.simulation.episode import Episode
 
 F64 = NDArray[np.float64]
@@ -58,7 +58,7 @@ class _Cast(NamedTuple):
 class Company:
     """Gathers bodies frame by frame."""
 
-    def __init__(self, bodies: Bodies) -> None:
+    def __init__(self, bodies: "Bodies") -> None:
         self._bodies = bodies
         self._cast: _Cast | None = None
         self._version = -1
@@ -137,7 +137,7 @@ def matrices(pose: F64) -> F64:
     return made
 
 
-def _survey(episode: "Episode", bodies: Bodies) -> _Cast:
+def _survey(episode: "Episode", bodies: "Bodies") -> _Cast:
     actors = episode.actors
     records = [record for record in actors if record.kind in _VISIBLE and bodies.parts(record.description)]
     embodied = [record.slot != NO_BODY for record in records]

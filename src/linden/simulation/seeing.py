@@ -9,10 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.casting.rays import CPU, Instances
-from linden.meshes.bodies import Bodies
 from linden.meshes.mesh import LampOf, Mesh
-from linden.meshes.standing import standing
-from linden.opendrive.parse import parse
 from linden.scene.lamps import is_night
 from linden.scene.objects import Kind as Thing
 from linden.scene.objects import Scene
@@ -25,6 +22,7 @@ from linden.world.blueprints import BlueprintLibrary, Kind
 from linden.world.maps import LoadedMap
 
 if TYPE_CHECKING:
+    from linden.meshes.bodies import Bodies
     from linden.simulation.episode import Episode
 
 U32 = NDArray[np.uint32]
@@ -42,7 +40,17 @@ _LENS = {
 
 def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
     """Return what stands on a map; made anew each time."""
+    from linden.meshes.standing import standing  # noqa: PLC0415 - a server that nobody looks with does without
+    from linden.opendrive.parse import parse  # noqa: PLC0415 - likewise
+
     return standing(parse(world_map.text), world_map, scene)
+
+
+def bodies_of(library: BlueprintLibrary) -> "Bodies":
+    """Return the meshes of a library's actors; made anew each time."""
+    from linden.meshes.bodies import Bodies  # noqa: PLC0415 - as in standing_on
+
+    return Bodies(library)
 
 
 class Seeing:
@@ -59,7 +67,7 @@ class Seeing:
     def __init__(self, library: BlueprintLibrary) -> None:
         self.standing_on: Callable[[LoadedMap, Scene], Mesh] = standing_on
         self.device = CPU
-        self.bodies_of: Callable[[BlueprintLibrary], Bodies] = Bodies
+        self.bodies_of: Callable[[BlueprintLibrary], Bodies] = bodies_of
         self._library = library
         self._bodies: Future[Bodies] | None = None
         self._company: Company | None = None
@@ -110,7 +118,7 @@ class Seeing:
             now_s=episode.elapsed_s,
         )
 
-    def _all_bodies(self) -> Bodies:
+    def _all_bodies(self) -> "Bodies":
         return self._bodies_coming().result()
 
     def _bodies_coming(self) -> "Future[Bodies]":

@@ -12,18 +12,15 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.choose import caster_of
 from linden.casting.rays import Caster
-from linden.meshes.bodies import Bodies
 from linden.meshes.mesh import NO_OBJECT, Mesh
 from linden.physics.contact.statics import Statics
 from linden.scene.objects import Scene
-from linden.sensors.camera.picture.rgb import looks_of
 from linden.sensors.seen import Faces, table_of
-from linden.sensors.warming import warm_up
 from linden.world.maps import LoadedMap
 
 if TYPE_CHECKING:
+    from linden.meshes.bodies import Bodies
     from linden.simulation.episode import Episode
 
 Made = TypeVar("Made")
@@ -59,8 +56,13 @@ class Wanted(NamedTuple):
         return self.scene is here.scene and self.statics is here.statics
 
 
-def build(wanted: Wanted, whole: Mesh, bodies: Bodies, device: str) -> Stage:
+def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
     """Return the stage: the caster built beside the rest of it, which a colour picture needs."""
+    # here, not above: a server that nobody looks with does without
+    from linden.casting.choose import caster_of  # noqa: PLC0415 - see above
+    from linden.sensors.camera.picture.rgb import looks_of  # noqa: PLC0415 - see above
+    from linden.sensors.warming import warm_up  # noqa: PLC0415 - see above
+
     standing = present_of(whole, wanted.present)
     caster = in_background(lambda: caster_of(standing, bodies.meshes, device))
     warm_up()  # out of the cache, where a start compiled everything
