@@ -1,4 +1,4 @@
-"""A GPU as kernels of numba's use it: memory, one stream of work, and pictures on their way back.
+"""A GPU as kernels of numba's use it: memory, one stream of work, letters to it and pictures back.
 
 Warp casts rays there (``warp_caster``); numba compiles the very loops that shade on the CPU for the GPU as well. Needs
 the extra ``gpu``.
@@ -8,48 +8,157 @@ import ctypes
 import math
 import weakref
 from collections import defaultdict
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
 
+import numba
 import numpy as np
-from numba import cuda
+import warp as wp
+from numba import cuda as numba_cuda
 from numpy.typing import DTypeLike, NDArray
+
+cuda: Any = numba_cuda
+"""What it offers it makes up as it is loaded: nothing of that is typed."""
 
 THREADS = 128
 """Of a block: enough to hide what memory takes, few enough for kernels as thirsty for registers as the shading."""
 
+_ALIGNED = 256  # bytes: where arrays begin that numba makes itself
+
+numba.config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # type: ignore[attr-defined] # small pictures are small
+
+
+class Letter(NamedTuple):
+    """Memory that is written here and read on a device, at the same place each time."""
+
+    here: NDArray[np.uint8]
+    there: Any  # an array of numba's
+    send: Callable[[], None]
+
 
 class Gpu:
-    """Memory and work on one device."""
+    """Memory of a device, and work that is done there in the order it came in.
 
-    def __init__(self, number: int, stream: int) -> None:
-        """Take CUDA's device of this number; ``stream`` is CUDA's too: work on it is done in the order it came in."""
-        cuda.select_device(number)
-        self.stream = cuda.external_stream(stream)
-        self._frames: dict[tuple[tuple[int, ...], str], list[NDArray[Any]]] = defaultdict(list)
+    Attributes:
+        queue: Warp's stream of the work.
+    """
+
+    def __init__(self, device: str, queue: wp.Stream | None = None) -> None:
+        """Take a device as Warp names it; without a queue of its own, the one that Warp works on by itself."""
+        self._device = wp.get_device(device)
+        cuda.select_device(self._device.ordinal)
+        self.queue = wp.get_stream(self._device) if queue is None else queue
+        self._stream = cuda.external_stream(self.queue.cuda_stream)
+        self._frames: dict[int, list[Any]] = defaultdict(list)
+
+    def beside(self) -> "Gpu":
+        """Return the same device for work that goes on beside this one's."""
+        return Gpu(self._device, wp.Stream(self._device))
+
+    def after(self, other: "Gpu") -> None:
+        """Let what comes from now on wait for what ``other`` was given until now."""
+        self.queue.wait_stream(other.queue)
 
     def empty(self, shape: tuple[int, ...], dtype: DTypeLike) -> Any:  # noqa: ANN401 - an array of numba's
         """Return an array on the device."""
-        return cuda.device_array(shape, np.dtype(dtype), stream=self.stream)
+        return cuda.device_array(shape, np.dtype(dtype), stream=self._stream)
 
     def put(self, values: NDArray[Any]) -> Any:  # noqa: ANN401 - an array of numba's
-        """Return a copy on the device."""
-        return cuda.to_device(np.ascontiguousarray(values), stream=self.stream)
+        """Return a copy on the device, which is there when this returns."""
+        copy = cuda.to_device(np.ascontiguousarray(values), stream=self._stream)
+        self._stream.synchronize()
+        return copy
+
+    def letter(self, size: int) -> Letter:
+        """Return memory of so many bytes, here and there."""
+        here = wp.zeros(size, dtype=wp.uint8, device="cpu", pinned=True)
+        there = wp.zeros(size, dtype=wp.uint8, device=self._device)
+        return Letter(
+            here.numpy(), cuda.as_cuda_array(there, sync=False), lambda: wp.copy(there, here, stream=self.queue)
+        )
+
+    def view(self, array: Any) -> Any:  # noqa: ANN401 - from numba to Warp
+        """Return an array (N,) or (N, 3) of numba's as Warp has it; it has to outlive what is returned."""
+        kind = wp.vec3 if len(array.shape) == 2 else wp.dtype_from_numpy(array.dtype)
+        pointer = array.device_ctypes_pointer.value
+        return wp.array(ptr=pointer, dtype=kind, shape=array.shape[0], device=self._device, capacity=array.nbytes)
 
     def launch(self, kernel: Any, count: int, *arguments: Any) -> None:  # noqa: ANN401 - numba's
-        """Run a kernel for each of ``count`` numbers, which is its last argument."""
-        if count:
-            kernel[math.ceil(count / THREADS), THREADS, self.stream](*arguments, count)
+        """Run a kernel in ``count`` threads or a few more."""
+        kernel[math.ceil(count / THREADS), THREADS, self._stream](*arguments)
 
-    def fetched(self, array: Any) -> NDArray[Any]:  # noqa: ANN401 - an array of numba's
-        """Return a copy of an array on the host, once all work before it is done.
+    def fetching(self, array: Any) -> Callable[[], NDArray[Any]]:  # noqa: ANN401 - an array of numba's
+        """Have an array copied to the host once all work before is done; return what waits for the copy and returns it.
 
         It lies in memory that the device writes to by itself, which takes long to get; so it is used again when
         nobody holds the copy any more.
         """
-        waiting = self._frames[array.shape, np.dtype(array.dtype).str]
-        frame = waiting.pop() if waiting else cuda.pinned_array(array.shape, array.dtype)
-        array.copy_to_host(frame, stream=self.stream)
-        self.stream.synchronize()
-        held = (ctypes.c_char * frame.nbytes).from_address(frame.ctypes.data)
-        weakref.finalize(held, waiting.append, frame)  # every view of the copy holds it
-        return np.frombuffer(held, array.dtype).reshape(array.shape)
+        size, waiting = array.nbytes, self._frames[array.nbytes]
+        frame = waiting.pop() if waiting else wp.empty(size, dtype=wp.uint8, device="cpu", pinned=True)
+        pointer = array.device_ctypes_pointer.value
+        there = wp.array(ptr=pointer, dtype=wp.uint8, shape=size, device=self._device, capacity=size)
+        wp.copy(frame, there, stream=self.queue)
+
+        def fetched() -> NDArray[Any]:
+            wp.synchronize_stream(self.queue)
+            held = (ctypes.c_char * size).from_address(frame.ptr)
+            weakref.finalize(held, waiting.append, frame)  # every view of the copy holds it
+            return np.frombuffer(held, array.dtype).reshape(array.shape)
+
+        return fetched
+
+    def capture(self, work: Callable[[], None]) -> Any:  # noqa: ANN401 - a graph of Warp's
+        """Return what ``work`` would have launched, to be launched by ``replay`` at once and again and again."""
+        with cuda.defer_cleanup(), wp.ScopedCapture(stream=self.queue, force_module_load=False) as capture:
+            work()
+        return capture.graph
+
+    def replay(self, graph: Any) -> None:  # noqa: ANN401 - a graph of Warp's
+        """Launch what was captured."""
+        wp.capture_launch(graph, stream=self.queue)
+
+
+class Mailbox:
+    """Arrays that go to a GPU together, again and again, and lie at the same place there each time.
+
+    Attributes:
+        moves: how often that place has changed, since an array had become longer than there was room for.
+    """
+
+    def __init__(self, gpu: Gpu) -> None:
+        self.moves = 0
+        self._gpu = gpu
+        self._room: dict[str, int] = {}
+        self._letter: Letter | None = None
+        self._slots: dict[str, tuple[NDArray[Any], Any]] = {}
+
+    def send(self, letters: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+        """Return the arrays on the device, each as long as there is room for; what is sent is at its beginning.
+
+        The names, dtypes and trailing shapes are the same each time. What was sent before must have been read.
+        """
+        if any(len(letter) > self._room.get(name, -1) for name, letter in letters.items()):
+            self._make_room(letters)
+        for name, letter in letters.items():
+            self._slots[name][0][: len(letter)] = letter
+        assert self._letter is not None
+        self._letter.send()
+        return {name: there for name, (_, there) in self._slots.items()}
+
+    def _make_room(self, letters: Mapping[str, NDArray[Any]]) -> None:
+        """Lay all arrays out anew, with room for twice as many rows where there were too few."""
+        self.moves += 1
+        starts, end = {}, 0
+        for name, letter in letters.items():
+            if len(letter) > self._room.get(name, -1):
+                self._room[name] = max(1, len(letter) if self.moves == 1 else 2 * len(letter))
+            starts[name] = end
+            row = letter.dtype.itemsize * math.prod(letter.shape[1:])
+            end += -(-self._room[name] * row // _ALIGNED) * _ALIGNED
+        self._letter = self._gpu.letter(end)
+        for name, letter in letters.items():
+            shape = (self._room[name], *letter.shape[1:])
+            span = slice(starts[name], starts[name] + letter.dtype.itemsize * math.prod(shape))
+            self._slots[name] = tuple(  # type: ignore[assignment] # the two of them
+                side[span].view(letter.dtype).reshape(shape) for side in self._letter[:2]
+            )

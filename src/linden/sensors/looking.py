@@ -1,7 +1,7 @@
 """What a sensor that looks around is given in a frame of its own, and what every such sensor has to offer."""
 
 from collections.abc import Hashable
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,4 +41,13 @@ class LookingSensor(Protocol):
 
     def skip(self, interval_s: float) -> None:
         """Let a measurement pass that nobody listens to; no later reading may depend on whether somebody did."""
+        ...
+
+
+@runtime_checkable
+class Expectant(Protocol):
+    """A sensor whose measurement goes on by itself once it is begun: those of a frame are begun before any is made."""
+
+    def expect(self, look: Look) -> None:
+        """Begin what ``measure`` will be asked for with the same look."""
         ...

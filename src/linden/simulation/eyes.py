@@ -8,10 +8,11 @@ import numpy as np
 from linden.sensors.camera.cameras import CAMERAS
 from linden.sensors.description import interval_s
 from linden.sensors.lidar import Lidar, SemanticLidar
-from linden.sensors.looking import F64, Look, LookingSensor
+from linden.sensors.looking import F64, Expectant, Look, LookingSensor
 from linden.sensors.obstacle import ObstacleDetector
 from linden.sensors.radar import Radar
 from linden.sensors.schedule import Schedule, advance
+from linden.sensors.seen import Seen
 from linden.simulation.seeing import Seeing
 from linden.values.actors import ActorDescription
 from linden.values.space import Transform
@@ -39,8 +40,8 @@ class Eye:
         self._last_s: float | None = None
         self._pose: Transform | None = None
 
-    def see(self, episode: "Episode", sensor: ActorRecord, now: "Now", *, wanted: bool) -> object | None:
-        """Return the reading, None where there is none in this frame; to be called once in every frame."""
+    def turn(self, episode: "Episode", sensor: ActorRecord, now: "Now", *, wanted: bool) -> Look | None:
+        """Return what there is to be measured, None where nothing is; to be called once in every frame."""
         number = self._schedule.made
         due, self._schedule = advance(self._schedule, episode.elapsed_s)
         pose = episode.actors.transform(sensor.id)
@@ -52,17 +53,15 @@ class Eye:
         if not wanted:
             self.sensor.skip(passed_s)
             return None
-        return self.sensor.measure(
-            Look(
-                seen=now.seeing.look(episode, now.frame),
-                shared=now.shared,
-                pose=pose,
-                before=before,
-                velocity_mps=_velocity(episode, sensor, pose),
-                carrier_id=sensor.parent_id,
-                number=number,
-                interval_s=passed_s,
-            )
+        return Look(
+            seen=now.seen(episode),
+            shared=now.shared,
+            pose=pose,
+            before=before,
+            velocity_mps=_velocity(episode, sensor, pose),
+            carrier_id=sensor.parent_id,
+            number=number,
+            interval_s=passed_s,
         )
 
 
@@ -72,6 +71,13 @@ class Now:
     def __init__(self, seeing: Seeing, frame: int, frame_s: float) -> None:
         self.seeing, self.frame, self.frame_s = seeing, frame, frame_s
         self.shared: dict[Hashable, object] = {}
+        self._seen: Seen | None = None
+
+    def seen(self, episode: "Episode") -> Seen:
+        """Return the moment as it is seen, the bodies posed."""
+        if self._seen is None:
+            self._seen = self.seeing.look(episode, self.frame)
+        return self._seen
 
 
 def eye_of(description: ActorDescription) -> Eye | None:
@@ -84,12 +90,15 @@ def look_around(episode: "Episode", now: Now, listened: Container[int]) -> list[
     sensors = [(episode.actors.get(sensor_id), eye) for sensor_id, eye in episode.eyes.items()]
     if any(sensor.stream_id in listened for sensor, _ in sensors):
         now.seeing.follow(episode, now.frame)
-    found = []
-    for sensor, eye in sensors:
-        reading = eye.see(episode, sensor, now, wanted=sensor.stream_id in listened)
-        if reading is not None:
-            found.append((sensor, episode.actors.transform(sensor.id), reading))
-    return found
+    turned = [
+        (sensor, eye, eye.turn(episode, sensor, now, wanted=sensor.stream_id in listened)) for sensor, eye in sensors
+    ]
+    looks = [(sensor, eye.sensor, look) for sensor, eye, look in turned if look is not None]
+    for _, eye, look in looks:
+        if isinstance(eye, Expectant):
+            eye.expect(look)
+    readings = [(sensor, look.pose, eye.measure(look)) for sensor, eye, look in looks]
+    return [(sensor, pose, reading) for sensor, pose, reading in readings if reading is not None]
 
 
 def _velocity(episode: "Episode", sensor: ActorRecord, pose: Transform) -> F64:

@@ -1,15 +1,17 @@
 """The cameras: each a spec and how its picture is made of what its rays meet."""
 
-from typing import NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.sensors.camera.darkroom import darkroom_of
 from linden.sensors.camera.events import Events, Retina
-from linden.sensors.camera.spec import CameraSpec, Film, camera_spec, event_spec, film
+from linden.sensors.camera.spec import Picture, camera_spec, event_spec, film
 from linden.sensors.looking import Look
 from linden.values.actors import ActorDescription
+
+if TYPE_CHECKING:
+    from linden.sensors.camera.darkroom import Darkroom
 
 Pixels: TypeAlias = NDArray[np.uint8] | NDArray[np.float32]
 
@@ -22,16 +24,29 @@ class Image(NamedTuple):
     pixels: Pixels  # (height, width, 4) bytes B, G, R, A, or (height, width, 2) floats of a flow
 
 
-def coloured(spec: CameraSpec, of_film: Film, look: Look) -> NDArray[np.uint8]:
-    """Return the colour picture of a camera; an event camera of the same place, lens and film shares it."""
-    key = ("picture", spec, of_film, look.pose)
+def darkroom(look: Look) -> "Darkroom":
+    """Return where pictures are made; who never looks does not load what makes them."""
+    from linden.sensors.camera.darkroom import darkroom_of  # noqa: PLC0415 - see above
+
+    return darkroom_of(look.seen.caster)
+
+
+def pixels(picture: Picture, look: Look) -> Pixels:
+    """Return a picture; cameras of one place, kind, lens and film share it."""
+    key = (picture, look.pose, look.before)
     if key not in look.shared:
-        look.shared[key] = darkroom_of(look.seen.caster).coloured(spec, of_film, look)
+        look.shared[key] = darkroom(look).make(picture, look)
     return look.shared[key]  # type: ignore[return-value] # put there above
 
 
 class Camera:
-    """A camera of any kind; subclasses say how its picture is made."""
+    """A camera of any kind.
+
+    Attributes:
+        picture: what it takes.
+    """
+
+    kind: ClassVar[str]
 
     def __init__(self, description: ActorDescription) -> None:
         """Read the attributes.
@@ -40,70 +55,58 @@ class Camera:
             Refusal: no picture can have this size or field of view.
         """
         self.blueprint = description.id
-        self.spec = camera_spec(description)
+        self.picture = Picture(self.kind, camera_spec(description))
+
+    def expect(self, look: Look) -> None:
+        """Begin what ``measure`` will be asked for."""
+        darkroom(look).expect(self.picture, look)
 
     def measure(self, look: Look) -> Image:
         """Return the picture of a frame."""
-        return Image(self.blueprint, self.spec.fov_deg, self.pixels(look))
-
-    def pixels(self, look: Look) -> Pixels:
-        """Return the picture's pixels."""
-        raise NotImplementedError
+        return Image(self.blueprint, self.picture.spec.fov_deg, pixels(self.picture, look))
 
     def skip(self, _interval_s: float) -> None:
         """Let a picture pass: none depends on those before it."""
 
 
 class DepthCamera(Camera):
-    """``sensor.camera.depth``."""
+    """``sensor.camera.depth``: along the camera's axis, in 24 bits."""
 
-    def pixels(self, look: Look) -> Pixels:
-        """Return depth along the camera's axis in 24 bits."""
-        return darkroom_of(look.seen.caster).depth(self.spec, look)
+    kind = "depth"
 
 
 class SemanticCamera(Camera):
-    """``sensor.camera.semantic_segmentation``."""
+    """``sensor.camera.semantic_segmentation``: tags."""
 
-    def pixels(self, look: Look) -> Pixels:
-        """Return tags."""
-        return darkroom_of(look.seen.caster).semantic(self.spec, look)
+    kind = "semantic"
 
 
 class InstanceCamera(Camera):
-    """``sensor.camera.instance_segmentation``."""
+    """``sensor.camera.instance_segmentation``: tags and ids."""
 
-    def pixels(self, look: Look) -> Pixels:
-        """Return tags and ids."""
-        return darkroom_of(look.seen.caster).instance(self.spec, look)
+    kind = "instance"
 
 
 class NormalsCamera(Camera):
-    """``sensor.camera.normals``."""
+    """``sensor.camera.normals``: in the camera's view."""
 
-    def pixels(self, look: Look) -> Pixels:
-        """Return normals in the camera's view."""
-        return darkroom_of(look.seen.caster).normals(self.spec, look)
+    kind = "normals"
 
 
 class FlowCamera(Camera):
-    """``sensor.camera.optical_flow``."""
+    """``sensor.camera.optical_flow``: the motion of each pixel since the frame before."""
 
-    def pixels(self, look: Look) -> Pixels:
-        """Return the motion of each pixel since the frame before."""
-        return darkroom_of(look.seen.caster).flow(self.spec, look)
+    kind = "flow"
 
 
 class ColourCamera(Camera):
     """``sensor.camera.rgb``."""
 
+    kind = "coloured"
+
     def __init__(self, description: ActorDescription) -> None:
         super().__init__(description)
-        self.film = film(description)
-
-    def pixels(self, look: Look) -> Pixels:
-        """Return colours."""
-        return coloured(self.spec, self.film, look)
+        self.picture = self.picture._replace(film=film(description))
 
 
 class EventCamera:
@@ -115,17 +118,22 @@ class EventCamera:
         Raises:
             Refusal: no picture can have this size or field of view.
         """
-        self.spec, self.film, self.events = camera_spec(description), film(description), event_spec(description)
+        self.picture = Picture(ColourCamera.kind, camera_spec(description), film(description))
+        self.events = event_spec(description)
         self._retina: Retina | None = None
+
+    def expect(self, look: Look) -> None:
+        """Begin what ``measure`` will be asked for."""
+        darkroom(look).expect(self.picture, look)
 
     def measure(self, look: Look) -> Events | None:
         """Return what has changed since the last picture, None where nothing has."""
-        image = coloured(self.spec, self.film, look)
+        image, spec = np.asarray(pixels(self.picture, look), np.uint8), self.picture.spec
         if self._retina is None:
             self._retina = Retina(self.events, image, look.seen.now_s)
             return None
         found = self._retina.watch(image, look.seen.now_s, look.number)
-        return Events(self.spec.width_px, self.spec.height_px, self.spec.fov_deg, found) if len(found) else None
+        return Events(spec.width_px, spec.height_px, spec.fov_deg, found) if len(found) else None
 
     def skip(self, _interval_s: float) -> None:
         """Forget the last picture: to remember one that nobody listens to would mean to make it."""

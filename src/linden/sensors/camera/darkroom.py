@@ -1,75 +1,50 @@
 """Where cameras have their pictures made: on the CPU, or on the GPU where rays are cast on one."""
 
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.casting.rays import CPU, Caster, Hits, Rays
 from linden.sensors.camera import labels, motion
-from linden.sensors.camera.picture.rgb import picture
+from linden.sensors.camera.picture.rgb import picture as coloured
 from linden.sensors.camera.rays import aim, directions
-from linden.sensors.camera.spec import CameraSpec, Film
+from linden.sensors.camera.spec import CameraSpec, Picture
 from linden.sensors.looking import Look
 
-U8 = NDArray[np.uint8]
-F32 = NDArray[np.float32]
+Pixels: TypeAlias = NDArray[np.uint8] | NDArray[np.float32]
 
 
 class Darkroom(Protocol):
     """Makes pictures: (height, width, 4) bytes B, G, R, A, and (height, width, 2) floats of a flow."""
 
-    def depth(self, spec: CameraSpec, look: Look) -> U8:
-        """Return depth along the camera's axis in 24 bits."""
+    def expect(self, picture: Picture, look: Look) -> None:
+        """Begin a picture that will be asked for, where it can be made beside others."""
         ...
 
-    def semantic(self, spec: CameraSpec, look: Look) -> U8:
-        """Return tags."""
-        ...
-
-    def instance(self, spec: CameraSpec, look: Look) -> U8:
-        """Return tags and ids."""
-        ...
-
-    def normals(self, spec: CameraSpec, look: Look) -> U8:
-        """Return normals in the camera's view."""
-        ...
-
-    def flow(self, spec: CameraSpec, look: Look) -> F32:
-        """Return the motion of each pixel since the frame before."""
-        ...
-
-    def coloured(self, spec: CameraSpec, film: Film, look: Look) -> U8:
-        """Return colours."""
+    def make(self, picture: Picture, look: Look) -> Pixels:
+        """Return a picture."""
         ...
 
 
 class OnCpu:
     """The CPU's pictures."""
 
-    def depth(self, spec: CameraSpec, look: Look) -> U8:
-        """Return depth along the camera's axis in 24 bits."""
-        return labels.depth(spec, view(spec, look)[1], directions(spec))
+    def expect(self, picture: Picture, look: Look) -> None:
+        """Do nothing: each picture is made by all processors."""
 
-    def semantic(self, spec: CameraSpec, look: Look) -> U8:
-        """Return tags."""
-        return labels.semantic(spec, view(spec, look)[1], look.seen)
-
-    def instance(self, spec: CameraSpec, look: Look) -> U8:
-        """Return tags and ids."""
-        return labels.instance(spec, view(spec, look)[1], look.seen)
-
-    def normals(self, spec: CameraSpec, look: Look) -> U8:
-        """Return normals in the camera's view."""
-        return labels.normals(spec, view(spec, look)[1], look.pose)
-
-    def flow(self, spec: CameraSpec, look: Look) -> F32:
-        """Return the motion of each pixel since the frame before."""
-        return motion.flow(spec, *view(spec, look), look.seen.instances, look.before, look.pose)
-
-    def coloured(self, spec: CameraSpec, film: Film, look: Look) -> U8:
-        """Return colours."""
-        return picture(spec, film, look.pose, *view(spec, look), look.seen)
+    def make(self, picture: Picture, look: Look) -> Pixels:
+        """Return a picture."""
+        spec, (rays, hits) = picture.spec, view(picture.spec, look)
+        if picture.film is not None:
+            return coloured(spec, picture.film, look.pose, rays, hits, look.seen)
+        if picture.kind == "depth":
+            return labels.depth(spec, hits, directions(spec))
+        if picture.kind == "normals":
+            return labels.normals(spec, hits, look.pose)
+        if picture.kind == "flow":
+            return motion.flow(spec, rays, hits, look.seen.instances, look.before, look.pose)
+        return (labels.semantic if picture.kind == "semantic" else labels.instance)(spec, hits, look.seen)
 
 
 def view(spec: CameraSpec, look: Look) -> tuple[Rays, Hits]:

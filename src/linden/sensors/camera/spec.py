@@ -50,6 +50,14 @@ class Film(NamedTuple):
     tint: float = 0.0
 
 
+class Picture(NamedTuple):
+    """A picture that may be asked for: of light, where there is a film, or of what was measured."""
+
+    kind: str  # depth, semantic, instance, normals, flow or coloured
+    spec: CameraSpec
+    film: Film | None = None
+
+
 class EventSpec(NamedTuple):
     """When a pixel of an event camera speaks: steps of brightness, their spread, and the rest after each event."""
 
