@@ -52,6 +52,7 @@ def _written(bodies: "Bodies") -> bytes:
     counts = [(len(mesh.vertices_m), len(mesh.triangles)) for mesh in bodies.meshes]
     parts = [(*named, chosen) for named, chosen in bodies.all_parts.items()]
     text = json.dumps([counts, parts]).encode()
+    text += b" " * (-len(text) % _HEAD)  # so that the arrays begin where Embree, which reads them in place, wants them
     columns = zip(zip(*bodies.meshes, strict=True), (np.float32, np.uint32, FACE), strict=True)
     arrays = [np.concatenate(column).astype(kind) for column, kind in columns]
     return b"".join([f"{len(text):{_HEAD}}".encode(), text, *(array.tobytes() for array in arrays)])
