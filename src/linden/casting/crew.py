@@ -1,10 +1,13 @@
-"""Work on long arrays by all processors at once: threads that take one stretch after the other."""
+"""Work in threads: on long arrays by all processors at once, and beside other work."""
 
 import os
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import lru_cache
 from itertools import count
+from typing import TypeVar
+
+Made = TypeVar("Made")
 
 FEWEST = 512
 """Rays; a shorter stretch costs more to hand out than to work on."""
@@ -43,3 +46,11 @@ def in_stretches(total: int, work: Callable[[int, int], None], *, multiple: int)
     take()
     for helper in helpers:
         helper.result()
+
+
+def in_background(work: Callable[[], Made]) -> Future[Made]:
+    """Return what will have been made by a thread of its own, which may wait for others."""
+    hand = ThreadPoolExecutor(1, thread_name_prefix="background")
+    made = hand.submit(work)
+    hand.shutdown(wait=False)
+    return made

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.casting.crew import in_background
 from linden.casting.rays import CPU, Instances
 from linden.meshes.mesh import LampOf, Mesh
 from linden.scene.lamps import is_night
@@ -15,7 +16,7 @@ from linden.scene.objects import Kind as Thing
 from linden.scene.objects import Scene
 from linden.sensors.seen import NO_ACTOR_FROM, Seen
 from linden.simulation.company import Company
-from linden.simulation.stage import Stage, Wanted, build, in_background
+from linden.simulation.stage import Stage, Wanted, build
 from linden.values.enums import TrafficLightState
 from linden.values.episode import LightState
 from linden.world.blueprints import BlueprintLibrary, Kind

@@ -4,14 +4,12 @@ Building it takes a second. So it begins in the background when such a sensor is
 is left of it. What is built is the same whenever it began.
 """
 
-from collections.abc import Callable
-from concurrent.futures import Future
-from threading import Thread
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.casting.crew import in_background
 from linden.casting.rays import Caster
 from linden.meshes.mesh import NO_OBJECT, Mesh
 from linden.physics.contact.statics import Statics
@@ -22,8 +20,6 @@ from linden.world.maps import LoadedMap
 if TYPE_CHECKING:
     from linden.meshes.bodies import Bodies
     from linden.simulation.episode import Episode
-
-Made = TypeVar("Made")
 
 
 class Stage(NamedTuple):
@@ -76,17 +72,3 @@ def present_of(mesh: Mesh, present: NDArray[np.bool_]) -> Mesh:
     thing = mesh.faces["object"]
     stays = np.append(present, [True])[np.where(thing == NO_OBJECT, len(present), thing)]
     return mesh if stays.all() else Mesh(mesh.vertices_m, mesh.triangles[stays], mesh.faces[stays])
-
-
-def in_background(work: Callable[[], Made]) -> "Future[Made]":
-    """Return what will have been made; the process does not wait for it when it ends."""
-    made: Future[Made] = Future()
-
-    def run() -> None:
-        try:
-            made.set_result(work())
-        except BaseException as error:  # noqa: BLE001 - it is raised again where the result is asked for
-            made.set_exception(error)
-
-    Thread(target=run, name="stage", daemon=True).start()
-    return made
