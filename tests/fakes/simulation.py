@@ -21,6 +21,13 @@ class FakeEpisode:
         assert layers == 0
 
 
+class FakeSeeing:
+    """There is nothing to see."""
+
+    def wait(self, at_most_s: float) -> None:
+        assert at_most_s > 0.0
+
+
 @dataclass
 class FakeSimulation:
     settings: EpisodeSettings = field(default_factory=EpisodeSettings)
@@ -33,6 +40,7 @@ class FakeSimulation:
     spawn_points: tuple[Transform, ...] = (Transform(),)
     steps_s: list[float] = field(default_factory=list)
     episode: FakeEpisode = field(default_factory=FakeEpisode)
+    seeing: FakeSeeing = field(default_factory=FakeSeeing)
 
     def step(self, dt_s: float) -> None:
         self.frame += 1

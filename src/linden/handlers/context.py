@@ -11,6 +11,9 @@ from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
 
+SCENE_S = 1.0
+"""How long a call waits at most for the scene that sensors look at."""
+
 
 class Frames(Protocol):
     """What one frame looks like on the wire: :mod:`linden.handlers.frames`."""
@@ -55,6 +58,14 @@ class Context:
             self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.simulation)))
         self.outbox.extend(self.frames.sensor_payloads(self.simulation, listened))
         return self.simulation.frame
+
+    def wait_for_the_scene(self) -> None:
+        """Give what sensors look at some time to be built, where it is being built.
+
+        Of the calls that lead to a first picture each waits a little, rather than the tick all the time: CARLA's
+        examples give a call two seconds.
+        """
+        self.simulation.seeing.wait(SCENE_S)
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""
