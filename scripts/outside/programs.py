@@ -10,7 +10,7 @@ ENDLESS_S = 25.0
 """How long a program that never ends by itself is watched before it is interrupted as by Ctrl+C."""
 
 
-PACE_S = 3.0
+PACE_S = 4.0
 """From one picture of a program's window to the next."""
 
 
@@ -40,7 +40,8 @@ def all_programs(folders: Folders) -> list[Program]:
         *_on(("Linden",), UTILITIES),
         *_on(("Town01",), SMOKE),
         *_scenarios(folders),
-        *(_leaderboard(folders, agent) for agent in ("dummy_agent", "npc_agent")),
+        _leaderboard(folders, "dummy_agent", "MAP"),
+        _leaderboard(folders, "npc_agent", "SENSORS"),
         *SCENIC,
         *SUMO,
     ]
@@ -74,8 +75,8 @@ EXAMPLES = (
     _example("show_recorder_actors_blocked.py", "-f", RECORDING, "-t", "5", "-d", "10"),
     _example("start_replaying.py", "-f", RECORDING, "-s", "2", "-d", "5"),
     Program("older_examples", ("start_replaying.py", "-f", RECORDING, "-s", "2", "-d", "5")),
-    _endless("manual_control.py", limit_s=90.0, keys=EVERY_CAMERA),
-    _endless("manual_control.py", "--sync", limit_s=90.0, keys=EVERY_CAMERA),
+    _endless("manual_control.py", limit_s=120.0, keys=EVERY_CAMERA),
+    _endless("manual_control.py", "--sync", limit_s=120.0, keys=EVERY_CAMERA),
     _endless("manual_control_fisheye.py"),
     _endless("manual_control_carsim.py"),
     _endless("manual_control_chrono.py"),
@@ -130,7 +131,7 @@ UTILITIES = (
     _utility("performance_benchmark.py"),
     _utility("raycast_sensor_testing.py", limit_s=ENDLESS_S, is_endless=True),
     _utility("check_lidar_bb.py"),
-    _utility("check_raycast_sensors_determinism.py"),
+    _utility("check_raycast_sensors_determinism.py", limit_s=900.0),
 )
 
 
@@ -201,12 +202,12 @@ def _scenarios(folders: Folders) -> list[Program]:
     return rows
 
 
-def _leaderboard(folders: Folders, agent: str) -> Program:
+def _leaderboard(folders: Folders, agent: str, track: str) -> Program:
     """The leaderboard's evaluator, with one of its own agents on ScenarioRunner's route through a public town."""
     routes = folders.of("scenario_runner") / "srunner" / "data" / "routes_town10.xml"
     arguments = (
         *("leaderboard/leaderboard_evaluator.py", "--routes", str(routes), "--routes-subset", "0"),
-        *("--agent", f"leaderboard/autoagents/{agent}.py", "--track", "SENSORS", "--debug", "0"),
+        *("--agent", f"leaderboard/autoagents/{agent}.py", "--track", track, "--debug", "0"),
         *("--checkpoint", "{out}/" + agent + ".checkpoint.json", "--debug-checkpoint", "{out}/" + agent + ".live.txt"),
     )
     return Program("leaderboard", arguments, "Town10HD_Opt", limit_s=600.0)
