@@ -22,7 +22,7 @@ _BARK = np.array([(84, 68, 54), (96, 82, 68), (70, 58, 48)])
 _SHAPES = 6
 _CONIFERS = 0.14
 _CLUMPS, _CLUMPS_BEHIND = 3, 2
-_TWIGS = 13
+_TWIGS = 26
 """Of a crown that is seen from near: single sprays of leaves that stand out of its clumps."""
 _ROOT_M = 0.3  # how far a trunk reaches into the ground
 _SKIRTS = ((0.10, 0.50, 0.26), (0.32, 0.76, 0.20), (0.58, 1.0, 0.13))
@@ -173,7 +173,7 @@ def _sprays(solid: F64, count: int, rng: np.random.Generator) -> F64:
     u = np.cross(out, rng.normal(size=(count, 3)))
     u /= np.linalg.norm(u, axis=1)[:, None]
     v = np.cross(out, u) + 0.9 * rng.uniform(0.3, 1.0, (count, 1)) * out
-    size = rng.uniform(0.18, 0.3, (count, 1))
+    size = rng.uniform(0.15, 0.27, (count, 1))
     corners = [middle - size * u - 0.5 * size * v, middle + size * u - 0.5 * size * v, middle + 1.1 * size * v]
     return np.stack(corners, axis=1)
 

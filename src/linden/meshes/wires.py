@@ -15,7 +15,7 @@ I32 = NDArray[np.int32]
 
 _WOOD, _WIRE, _STEEL, _GLASS, _BENCH = (104, 86, 68), (26, 26, 26), (70, 78, 84), (176, 196, 202), (120, 92, 64)
 _ARM_M = 0.95
-_WIRES_M = ((-0.85, -0.15), (-0.3, -0.15), (0.85, -0.15), (0.0, -2.2))
+_WIRES_M = ((-0.85, -0.15), (0.85, -0.15), (0.0, -2.2))
 """Where they hang: along the arm, and how far below the pole's top; the lowest is the telephone's."""
 _LONGEST_SPAN_M = 75.0
 _SAG = 0.018

@@ -64,9 +64,7 @@ def porches(frames: Frames, half_m: F64, objects: I32) -> Mesh:
         middle = frames.turned((0.5 * (slope[:, a] + slope[:, b]) * (1.0, 1.0, 0.0))[:, None])[:, 0]
         parts.append(polygons(frames.world(edge), trim, middle))
     rail = np.column_stack([-x + 0.08, -0.55 * y, np.full(len(x), _FLOOR_M + 0.75)])
-    parts.append(
-        boxes(frames, rail, np.column_stack([zero + 0.03, 0.42 * y, zero + 0.04]), trim, ("top", "ahead", "behind"))
-    )
+    parts.append(boxes(frames, rail, np.column_stack([zero + 0.03, 0.42 * y, zero + 0.04]), trim, ("top", "behind")))
     return join(parts)
 
 
@@ -101,7 +99,7 @@ def _solid(frames: Frames, half_m: F64, look: Look) -> Mesh:
 
 
 def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
-    """Return two rails between posts."""
+    """Return two rails between posts, without what nobody sees of them."""
     parts = []
     for sides, rows in (
         (("top", "left", "right"), np.flatnonzero(half_m[:, 0] > half_m[:, 1])),
@@ -111,10 +109,11 @@ def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
             centre, half = half_m[rows] * (0.0, 0.0, height), half_m[rows] * (1.0, 1.0, 0.09)
             half[:, :2] = np.where(half[:, :2] < 0.1, 0.5 * half[:, :2], half[:, :2])
             parts.append(boxes(frames.of(rows), centre, half, look.of(rows), sides))
-    for share in (-0.98, 0.0, 0.98):
-        along = np.where(half_m[:, :2] > 0.1, share * half_m[:, :2], 0.0)
-        centre = np.column_stack([along, half_m[:, 2]])
-        parts.append(boxes(frames, centre, np.column_stack([np.full((len(half_m), 2), 0.045), half_m[:, 2]]), look))
+        for share in (-0.98, 0.0, 0.98):
+            along = np.where(half_m[rows, :2] > 0.1, share * half_m[rows, :2], 0.0)
+            centre = np.column_stack([along, half_m[rows, 2]])
+            half = np.column_stack([np.full((len(rows), 2), 0.045), half_m[rows, 2]])
+            parts.append(boxes(frames.of(rows), centre, half, look.of(rows), sides[1:]))
     return join(parts)
 
 
