@@ -22,10 +22,13 @@ class FakeEpisode:
 
 
 class FakeSeeing:
-    """There is nothing to see."""
+    """There is nothing to see; notes who would have waited for it."""
+
+    def __init__(self) -> None:
+        self.waits_s: list[float] = []
 
     def wait(self, at_most_s: float) -> None:
-        assert at_most_s > 0.0
+        self.waits_s.append(at_most_s)
 
 
 @dataclass

@@ -43,7 +43,7 @@ def get_spectator(context: Context) -> Actor:
 @method("spawn_actor")
 def spawn_actor(context: Context, description: ActorDescription, pose: Transform) -> Actor:
     """Put an actor into the world, or refuse where something stands there already."""
-    return _arrived(context, attach(context, description, pose, 0, ""))
+    return message(context, attach(context, description, pose, 0, ""))
 
 
 @method("spawn_actor_with_parent")
@@ -51,13 +51,7 @@ def spawn_actor_with_parent(
     context: Context, description: ActorDescription, pose: Transform, parent_id: U32, attachment: U8, socket: str
 ) -> Actor:
     """Attach an actor to another, rigidly or at the end of a spring arm."""
-    return _arrived(context, attach(context, description, hung(pose, attachment), parent_id, socket))
-
-
-def _arrived(context: Context, record: ActorRecord) -> Actor:
-    """Return a newcomer as the client learns of it, once what it may look at has had some time to be built."""
-    context.wait_for_the_scene()
-    return message(context, record)
+    return message(context, attach(context, description, hung(pose, attachment), parent_id, socket))
 
 
 def attach(

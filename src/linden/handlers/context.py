@@ -62,7 +62,7 @@ class Context:
     def wait_for_the_scene(self) -> None:
         """Give what sensors look at some time to be built, where it is being built.
 
-        Of the calls that lead to a first picture each waits a little, rather than the tick all the time: CARLA's
+        So each of the calls that lead to a first picture waits a little, rather than the tick all the time: CARLA's
         examples give a call two seconds.
         """
         self.simulation.seeing.wait(SCENE_S)

@@ -82,7 +82,6 @@ def get_episode_info(context: Context) -> EpisodeInfo:
 @method("get_sensor_token")
 def get_sensor_token(context: Context, stream_id: U32) -> Token:
     """Return where to subscribe to a stream."""
-    context.wait_for_the_scene()
     return context.streams.token(stream_id)
 
 

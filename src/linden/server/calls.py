@@ -126,7 +126,10 @@ class Calls:
         if peer.calls[0].method == ABOUT_TO_LISTEN and peer.calls[0].args and type(peer.calls[0].args[0]) is int:
             self.expected.asked(peer.calls[0].args[0], self._clock())
         frame = self._context.simulation.frame
-        answer = registry.dispatch(self._context, peer.calls.popleft())
+        call = peer.calls.popleft()
+        answer = registry.dispatch(self._context, call)
+        if not call.is_async and not registry.advances(call):
+            self._context.wait_for_the_scene()
         if self._context.simulation.frame != frame:
             self.last_ticker = peer
         self.publish()

@@ -15,6 +15,7 @@ import pytest
 from fakes.raw_client import RawClient, RawSubscriber
 from fakes.simulation import FakeFrames, FakeMaps, FakeSimulation
 from linden.handlers import registry
+from linden.handlers.context import SCENE_S
 from linden.server import loop, subscribers, waiting
 from linden.server.calls import CALLS_PER_TURN
 from linden.server.loop import Server
@@ -189,6 +190,14 @@ def test_a_tick_waits_for_whoever_has_just_asked_where_a_stream_is(running: Live
         with running.subscriber() as subscriber:
             assert [subscriber.frame(), subscriber.frame()] == [0, 1]  # how it was on joining, and the tick
         client.answer()
+
+
+def test_calls_that_make_no_frame_give_the_scene_some_time_to_be_built(running: Live) -> None:
+    with running.client() as client:
+        client.call("tick_cue")
+        assert running.simulation.seeing.waits_s == []
+        client.call("version")
+    assert running.simulation.seeing.waits_s == [SCENE_S]
 
 
 def test_a_tick_does_not_wait_for_ever_for_who_has_asked(running: Live) -> None:
