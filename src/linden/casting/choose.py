@@ -20,8 +20,8 @@ def check_device(device: str) -> None:
     """
     if device == CPU:
         return
-    if importlib.util.find_spec("warp") is None:
-        raise UserError(f"--device {device} needs NVIDIA's Warp: pip install 'linden[gpu]'")
+    if any(importlib.util.find_spec(name) is None for name in ("warp", "numba_cuda")):
+        raise UserError(f"--device {device} needs NVIDIA's Warp and numba for its GPUs: pip install 'linden[gpu]'")
     import warp  # noqa: PLC0415 - half a second that only users of a GPU pay
 
     known = [CPU, *(gpu.alias for gpu in warp.get_cuda_devices())]

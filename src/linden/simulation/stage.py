@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.casting.crew import in_background
-from linden.casting.rays import Caster
+from linden.casting.rays import CPU, Caster
 from linden.meshes.mesh import NO_OBJECT, Mesh
 from linden.physics.contact.statics import Statics
 from linden.scene.objects import Scene
@@ -61,7 +61,8 @@ def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
 
     standing = present_of(whole, wanted.present)
     caster = in_background(lambda: caster_of(standing, bodies.meshes, device))
-    warm_up()  # out of the cache, where a start compiled everything
+    if device == CPU:
+        warm_up()  # out of the cache, where a start compiled everything
     faces = table_of(standing, bodies.meshes)
     looks_of(standing, bodies.meshes)
     return Stage(wanted.scene, wanted.statics, standing, faces, caster.result())
