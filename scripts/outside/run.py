@@ -9,6 +9,7 @@ import argparse
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -79,7 +80,8 @@ def _run(program: Program, folders: Folders, python: str, *, looked: bool) -> Ou
     name = f"{program.town}_" + re.sub(r"[^A-Za-z0-9.=-]+", "_", "_".join(program.arguments))[-90:]
     log, output = folders.out / f"{name}.server.txt", folders.out / f"{name}.txt"
     pictures = folders.out / f"{name}.pictures"
-    pictures.mkdir(exist_ok=True)
+    shutil.rmtree(pictures, ignore_errors=True)
+    pictures.mkdir()
     watched = {"OUTSIDE_PICTURES": str(pictures), "OUTSIDE_KEYS": program.keys, "OUTSIDE_PACE_S": str(PACE_S)}
     command = [python, "-u", *(folders.filled(argument) for argument in program.arguments)]
     with _server(program, folders, log), _driver(program, python, folders, folders.out / f"{name}.driver.txt"):

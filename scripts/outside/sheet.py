@@ -16,11 +16,11 @@ WINDOWS = (
     ("manual_control.py: events", "Linden_manual_control.py_--sync", "*-before-ctrl-3.jpg"),
     ("manual_control.py: optical flow", "Linden_manual_control.py_--sync", "*-before-ctrl-5.jpg"),
     ("manual_control.py: normals", "Linden_manual_control.py_--sync", "*-before-1.jpg"),
-    ("visualize_multiple_sensors.py", "Linden_visualize_multiple_sensors.py", "03.jpg"),
-    ("client_bounding_boxes.py", "Linden_client_bounding_boxes.py", "03.jpg"),
-    ("bounding_boxes.py", "Linden_bounding_boxes.py", "03.jpg"),
-    ("synchronous_mode.py", "Linden_synchronous_mode.py", "03.jpg"),
-    ("draw_skeleton.py (Town01)", "Town01_draw_skeleton.py", "02.jpg"),
+    ("visualize_multiple_sensors.py", "Linden_visualize_multiple_sensors.py", "0?.jpg"),
+    ("client_bounding_boxes.py", "Linden_client_bounding_boxes.py", "0?.jpg"),
+    ("bounding_boxes.py (Town01)", "Town01_bounding_boxes.py", "0?.jpg"),
+    ("synchronous_mode.py", "Linden_synchronous_mode.py", "0?.jpg"),
+    ("draw_skeleton.py (Town01)", "Town01_draw_skeleton.py", "0?.jpg"),
 )
 """Caption, row, and which of its pictures: the last that fits."""
 
