@@ -37,7 +37,7 @@ _LEAST_STEP_M = 0.005
 _SMALLEST_AREA_M2 = 1e-6
 _PROBE_M, _HIGH_M = 0.3, 1e6
 _SKIRT_M = 0.12
-"""How far the outermost edge of a raised lane reaches down: to where the terrain touches it, and a little more."""
+"""How far an outermost edge reaches down: to where the terrain touches it, and a little more."""
 
 
 def is_paved(type_bits: NDArray[np.uint32]) -> NDArray[np.bool_]:
@@ -75,9 +75,9 @@ def _faces_of(laid: Laid) -> NDArray[np.void]:
 
 
 def kerbs(laid: Laid, ground: Ground) -> Mesh:
-    """Return the upright faces between lanes of different heights, and of raised ones that end above another road.
+    """Return the upright faces between lanes of different heights, and round the outside of all.
 
-    Where land lies beyond there is none to be seen: it reaches the edge.
+    Land lies millimetres below an outermost edge; without a face there, rays slip through from far away.
     """
     tables, inner, outer = laid.tables, laid.inner, laid.outer
     across = outer - inner
@@ -87,11 +87,14 @@ def kerbs(laid: Laid, ground: Ground) -> Mesh:
     road_z = inner[:, 2] - tables.heights_inner.value(laid.lane, laid.s_m, laid.probe_m)
     within = np.where(np.isnan(beside), road_z, beside)
     is_inside_of_another = np.isin(laid.lane, tables.lanes["inside"])
-    raised = (outer[:, 2] - road_z > _LEAST_STEP_M) & _beside_road(outer, across, ground)
+    raised = outer[:, 2] - road_z > _LEAST_STEP_M
+    is_last = raised | ~_beside_road(outer, across, ground)
+    is_first = (tables.lanes["inside"][laid.lane] < 0) & ~_beside_road(inner, -across, ground)
     faces = [
         _between(laid, inner, within, inner[:, 2] - within > _LEAST_STEP_M, -across, look),
         _between(laid, inner, within, within - inner[:, 2] > _LEAST_STEP_M, across, look),
-        _between(laid, outer, outer[:, 2] - _SKIRT_M, raised & ~is_inside_of_another, across, look),
+        _between(laid, outer, outer[:, 2] - _SKIRT_M, is_last & ~is_inside_of_another, across, look),
+        _between(laid, inner, inner[:, 2] - _SKIRT_M, is_first, -across, look),
     ]
     return join(faces)
 

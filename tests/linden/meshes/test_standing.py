@@ -6,10 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from linden.casting.choose import caster_of
+from linden.casting.rays import Rays
 from linden.meshes.floors import floors
 from linden.meshes.laid import laid
 from linden.meshes.library import keep_standing, standing_of
-from linden.meshes.mesh import NO_OBJECT, LampOf, Material, Mesh
+from linden.meshes.mesh import NO_OBJECT, LampOf, Material, Mesh, join
 from linden.meshes.road import kerbs, surface
 from linden.meshes.standing import standing, things
 from linden.meshes.terrain import land
@@ -142,6 +144,22 @@ def test_a_kerb_looks_at_the_road_and_is_as_high_as_the_pavement(street: LoadedM
     assert np.ptp(mesh.vertices_m[mesh.triangles[at_road], 2]) == pytest.approx(0.15, abs=1e-4)
     towards_middle = -np.sign(mesh.vertices_m[mesh.triangles[at_road, 0], 1])
     assert (np.sign(normals(mesh)[at_road, 1]) == towards_middle).all()
+
+
+def test_no_ray_slips_through_between_the_land_and_the_street(street: LoadedMap) -> None:
+    opendrive = parse(STREET)
+    lanes, under = laid(opendrive), floors(road_mesh(opendrive), street.ground)
+    mesh = join([surface(lanes), kerbs(lanes, street.ground), under.mesh, land(lanes, street.ground, under)])
+    dice, count = np.random.default_rng(5), 50_000
+    side = dice.choice([-1.0, 1.0], count)
+    eye = np.column_stack(
+        [dice.uniform(0.0, 130.0, count), side * dice.uniform(12.0, 40.0, count), np.full(count, 2.0)]
+    )
+    x = np.where(dice.random(count) < 0.5, dice.uniform(5.0, 45.0, count), dice.uniform(75.0, 125.0, count))
+    seam = np.column_stack([x, side * dice.uniform(4.8, 5.2, count), np.full(count, 0.149)])  # where the pavement ends
+    along = (seam - eye) / np.linalg.norm(seam - eye, axis=1)[:, None]
+    hits = caster_of(mesh, []).closest(Rays(eye.astype(np.float32), along.astype(np.float32)), 500.0)
+    assert np.isfinite(hits.distance_m).all()
 
 
 def test_land_begins_where_the_pavement_ends_and_is_never_on_a_road(street: LoadedMap) -> None:
