@@ -53,6 +53,7 @@ def rows() -> tuple[Row, ...]:
         for kind in ("rgb", "depth", "semantic_segmentation")
         for width, height in ((800, 600), (1280, 720))
     ]
+    around = Row("six rgb 800 x 600", tuple(camera("rgb", 800, 600, yaw_deg) for yaw_deg in range(0, 360, 60)))
     lidars = [
         Row("lidar, 32 channels, a turn", (lidar("ray_cast", 32, 560_000),), TURN_S),
         Row("lidar, 64 channels, a turn", (lidar("ray_cast", 64, 1_300_000),), TURN_S),
@@ -68,7 +69,7 @@ def rows() -> tuple[Row, ...]:
             Sensor("sensor.other.imu", {}),
         ),
     )
-    return (*pictures, *lidars, rig)
+    return (*pictures, around, *lidars, rig)
 
 
 class Figures(NamedTuple):
