@@ -24,11 +24,14 @@ class FakeEpisode:
 class FakeSeeing:
     """There is nothing to see; notes who would have waited for it."""
 
-    def __init__(self) -> None:
+    def __init__(self, *, is_there: bool = True) -> None:
+        self.is_there = is_there
         self.waits_s: list[float] = []
 
-    def wait(self, at_most_s: float) -> None:
-        self.waits_s.append(at_most_s)
+    def wait(self, at_most_s: float) -> bool:
+        if at_most_s > 0.0:
+            self.waits_s.append(at_most_s)
+        return self.is_there
 
 
 @dataclass

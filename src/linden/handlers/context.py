@@ -13,6 +13,8 @@ from linden.world.maps import MapLibrary
 
 SCENE_S = 1.0
 """How long a call waits at most for the scene that sensors look at."""
+MOMENT_S = 0.1
+"""How long a frame of asynchronous mode does, before calls have their turn."""
 
 
 class Frames(Protocol):
@@ -66,6 +68,16 @@ class Context:
         examples give a call two seconds.
         """
         self.simulation.seeing.wait(SCENE_S)
+
+    def waits_for_the_scene(self) -> bool:
+        """Whether the next frame would have to wait until what sensors look at is built, after a moment of patience."""
+        simulation = self.simulation
+        if simulation.seeing.wait(0.0):
+            return False
+        listened, actors = self.streams.listened(), simulation.episode.actors
+        if not any(actors.get(sensor_id).stream_id in listened for sensor_id in simulation.episode.eyes):
+            return False
+        return not simulation.seeing.wait(MOMENT_S)
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""

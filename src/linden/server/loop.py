@@ -223,7 +223,7 @@ class Server:
         now_s = self._clock()
         waits = not self.context.frame_is_due and self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0
         self.context.frame_is_due = False
-        if settings.synchronous_mode or waits:
+        if settings.synchronous_mode or waits or self.context.waits_for_the_scene():
             return
         try:
             self.context.advance()

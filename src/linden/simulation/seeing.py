@@ -87,10 +87,9 @@ class Seeing:
             self._stage = None  # before the next is built: two of them at once would take twice the memory
             self._coming = wanted, in_background(lambda: self._built(wanted, bodies, before))
 
-    def wait(self, at_most_s: float) -> None:
-        """Wait for what is being built, if anything is, but no longer than that."""
-        if self._coming is not None:
-            wait([self._coming[1]], at_most_s)
+    def wait(self, at_most_s: float) -> bool:
+        """Wait for what is being built, if anything is, but no longer than that; return whether all is there."""
+        return self._coming is None or not wait([self._coming[1]], at_most_s).not_done
 
     def follow(self, episode: "Episode", frame: int) -> Instances:
         """Note where the bodies are in a frame; to be called in every frame while a sensor that looks is listened to.

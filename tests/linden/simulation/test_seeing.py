@@ -205,7 +205,7 @@ def test_a_reading_is_the_same_whoever_listened_before(simulation: Simulation, w
 
 def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedMap) -> None:
     seeing, may_build = Seeing(BlueprintLibrary.load()), Event()
-    seeing.wait(60.0)  # nobody has asked for anything
+    assert seeing.wait(60.0)  # nobody has asked for anything
 
     def standing_on(*_: object) -> Mesh:
         may_build.wait()
@@ -214,8 +214,8 @@ def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedM
     seeing.standing_on = standing_on
     simulation = Simulation(world_map, EpisodeSettings())
     seeing.prepare(simulation.episode)
-    seeing.wait(0.01)
+    assert not seeing.wait(0.01)
     may_build.set()
-    seeing.wait(60.0)
+    assert seeing.wait(60.0)
     simulation.seeing = seeing
     assert len(look(simulation).standing.triangles) == len(floor(9.0).triangles)
