@@ -51,9 +51,8 @@ class EmbreeCaster:
         self._trees: dict[int, int] = {}  # of bodies, by their number: built when one of them first comes
         self._standing = self._built(standing, filtered=False)
         self.scene: int = self._library.rtcNewScene(self._device)
-        self._library.rtcSetSceneBuildQuality(
-            self.scene, _MEDIUM
-        )  # built anew each tick in 0.2 ms, and met by every ray
+        # that takes 0.2 ms in each tick, and every ray meets it
+        self._library.rtcSetSceneBuildQuality(self.scene, _MEDIUM)
         self._instances: list[int] = []
         self._mesh: I32 = np.zeros(0, np.int32)
         self.pose_of: F32 = np.zeros((0, 3, 4), np.float32)
