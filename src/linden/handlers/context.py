@@ -11,7 +11,7 @@ from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
 
-SCENE_S = 1.5
+SCENE_S = 1.2
 """How long a call waits at most for the scene that sensors look at."""
 MOMENT_S = 0.1
 """How long a frame of asynchronous mode does, before calls have their turn."""
