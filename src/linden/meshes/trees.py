@@ -168,7 +168,7 @@ def _sprays(solid: F64, count: int, rng: np.random.Generator) -> F64:
     level = np.sqrt(1.0 - up * up)
     out = np.column_stack([level * np.cos(angle), level * np.sin(angle), up])
     # the crown reaches as far as the farthest corner that lies that way
-    reach = (solid @ out.T).max(axis=0, initial=0.0)
+    reach = (solid[:, None] * out).sum(axis=2).max(axis=0, initial=0.0)
     middle = out * (reach * rng.uniform(0.8, 0.92, count))[:, None]
     u = np.cross(out, rng.normal(size=(count, 3)))
     u /= np.linalg.norm(u, axis=1)[:, None]
@@ -179,11 +179,17 @@ def _sprays(solid: F64, count: int, rng: np.random.Generator) -> F64:
 
 
 def _turned(points: F64, rng: np.random.Generator) -> F64:
-    """Return points turned about the origin, any way."""
-    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
-    if np.linalg.det(turn) < 0.0:
-        turn[:, 0] *= -1.0
-    turned: F64 = points @ turn.T
+    """Return points turned about the origin, any way: by a quaternion of length 1, drawn evenly."""
+    drawn = rng.normal(size=4)
+    w, x, y, z = (drawn / np.sqrt((drawn * drawn).sum())).tolist()
+    turn = np.array(
+        [
+            (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+            (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+            (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+        ]
+    )
+    turned: F64 = (points[:, None] * turn).sum(axis=2)
     return turned
 
 

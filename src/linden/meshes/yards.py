@@ -10,8 +10,9 @@ from linden.ground import Ground
 from linden.meshes.mesh import Material, Mesh, join
 from linden.meshes.patches import Frames, Look, boxes, polygons
 from linden.meshes.road import CONCRETE
+from linden.scene.neighbourhood import with_house
 from linden.scene.objects import Kind, Scene
-from linden.scene.yards import DRIVE_ASIDE_M, DRIVE_HALF_M, Drive, drives, has_porch, lots_of
+from linden.scene.yards import DRIVE_ASIDE_M, DRIVE_HALF_M, Drive, drives, has_porch
 from linden.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
@@ -121,7 +122,7 @@ def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground, lawn: Grou
     """Return drives from the kerb to the house and paths to front doors; they lie on the lawn and are no objects."""
     under = _Under(ground, lawn)
     drive = drives(lots, scene)
-    house = lots_of(lots, scene)
+    house = with_house(lots)
     rows = np.searchsorted(scene.boxes["thing"], np.flatnonzero(scene.things["kind"] == Kind.HOUSE))
     box = scene.boxes[rows]
     front = np.hypot(*(box["centre"][:, :2] - lots["front_m"][house]).T) - box["half"][:, 0]

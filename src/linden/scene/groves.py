@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.ground import Ground
-from linden.scene.bins import bins_of
+from linden.scene.nearby import nearby
 from linden.scene.neighbourhood import SEED, TRUNK_HALF_M, TRUNK_HEIGHT_M, between
 from linden.scene.objects import Kind, Scene, assembled, boxes_on, things_with
 from linden.values.enums import SemanticTag
@@ -31,7 +31,9 @@ def groves(lots: NDArray[np.void], others: Scene, avoid_m: F64, ground: Ground) 
     draw = np.random.default_rng([SEED, 3]).random((len(places), 2))
     places = places[draw[:, 0] < SHARE]
     thick = draw[draw[:, 0] < SHARE, 1]
-    open_land = far_from_roads(places, ground) & ~_beside(places, others.boxes, FROM_OTHERS_M)
+    open_land = far_from_roads(places, ground) & ~nearby(
+        places, others.boxes["centre"][:, :2], np.hypot(*others.boxes["half"][:, :2].T) + FROM_OTHERS_M
+    )
     open_land &= _away_from(places, avoid_m)
     places, thick = places[open_land], thick[open_land]
     height, _ = ground.surfaces_under(np.column_stack([places, np.full(len(places), _HIGH_M)]))
@@ -71,21 +73,6 @@ def far_from_roads(places: F64, ground: Ground) -> NDArray[np.bool_]:
             shifted = places + away * np.array([np.cos(angle), np.sin(angle)])
             far &= ground.surfaces_under(np.column_stack([shifted, np.full(len(places), _HIGH_M)]))[1] < 0
     return far
-
-
-def _beside(places: F64, boxes: NDArray[np.void], reach_m: float) -> NDArray[np.bool_]:
-    """Return which places lie within a reach of any box."""
-    reach = np.hypot(boxes["half"][:, 0], boxes["half"][:, 1]) + reach_m
-    bins = bins_of(boxes["centre"][:, :2], reach)
-    x0, y0, per_m, columns, rows = bins.frame.tolist()
-    beside = np.zeros(len(places), bool)
-    for nth, (x, y) in enumerate(places.tolist()):
-        column, row = int((x - x0) * per_m), int((y - y0) * per_m)
-        if 0 <= column < columns and 0 <= row < rows:
-            number = row * int(columns) + column
-            near = bins.items[bins.start[number] : bins.start[number + 1]]
-            beside[nth] = (np.hypot(*(boxes["centre"][near, :2] - (x, y)).T) < reach[near]).any()
-    return beside
 
 
 def _away_from(places: F64, line_m: F64) -> NDArray[np.bool_]:

@@ -6,6 +6,7 @@ Nobody has counted the cars of Linden's kerbs; the share of lots with one before
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.scene.nearby import nearby
 from linden.scene.neighbourhood import SEED, between, on_lots
 from linden.scene.objects import Kind, Scene, assembled, boxes_on, things_with
 from linden.scene.surveyed import surveyed
@@ -69,6 +70,5 @@ def _clear(base: F64, facts: MapFacts) -> Flags:
     stops = surveyed(facts.geo_origin_deg).stops_m
     clear = np.ones(len(base), bool)
     for others, reach_m in ((signals, FROM_SIGNAL_M), (stops, FROM_STOP_M), (spawns, FROM_SPAWN_M)):
-        away = base[:, None, :2] - others[None]
-        clear &= ~(away[..., 0] ** 2 + away[..., 1] ** 2 < reach_m**2).any(axis=1)
+        clear &= ~nearby(base[:, :2], others, reach_m)
     return clear

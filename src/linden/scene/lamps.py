@@ -26,6 +26,7 @@ class Lamps:
     Attributes:
         pending: whether the last frame tells of a change.
         day_night_cycle: whether the sun switches the lamps.
+        changes: how often lamps have changed.
     """
 
     def __init__(self, scene: Scene) -> None:
@@ -38,6 +39,7 @@ class Lamps:
         }
         self.pending = False
         self.day_night_cycle = True
+        self.changes = 0
         self._to_tell = 0
 
     def states(self) -> tuple[LightState, ...]:
@@ -63,6 +65,7 @@ class Lamps:
 
     def tell(self) -> None:
         """Let the next snapshots say that lamps have changed."""
+        self.changes += 1
         self._to_tell = _FRAMES_THAT_TELL
 
     def turn_page(self) -> None:

@@ -43,8 +43,24 @@ assert HOUSE_WIDTH_M[1] < LOT_WIDTH_M
 
 def furnish(lots: NDArray[np.void], ground: Ground) -> Scene:
     """Return what stands on the lots: houses, then trees, then lamps, each in the order of the lots."""
-    draw = np.random.default_rng(SEED).random((len(lots), 9))  # a row a lot: no lot depends on what stands on another
+    draw = _draw(lots)
     return join([_houses(lots, ground, draw), _trees(lots, ground, draw), _lamps(lots, ground)])
+
+
+def _draw(lots: NDArray[np.void]) -> F64:
+    """Return what is drawn for each lot (N, 9): no lot depends on what stands on another."""
+    return np.random.default_rng(SEED).random((len(lots), 9))
+
+
+def with_house(lots: NDArray[np.void]) -> NDArray[np.intp]:
+    """Return the lots that houses stand on, in the order of the houses."""
+    return np.flatnonzero(_draw(lots)[:, 0] >= VACANT)
+
+
+def tree_side(lots: NDArray[np.void]) -> F64:
+    """Return for each lot on which hand its tree stands (1 right, -1 left), 0 where it has none."""
+    draw = _draw(lots)
+    return np.where(draw[:, 6] < WITH_TREE, np.sign(draw[:, 7] - 0.5), 0.0)
 
 
 def _houses(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:

@@ -79,6 +79,7 @@ def _beside(stop: F64, kerb: F64, others: Scene, ground: Ground) -> tuple[F64, f
     x, y, _ = SHELTER_HALF_M
     corners = np.array([(a, b) for a in (-x, 0.0, x) for b in (-y, 0.0, y)])
     taken = others.boxes["centre"][:, :2]
+    taken = taken[np.abs(taken - stop).max(axis=1) < 2.0 * _SEARCH_M + _CLEAR_M]
     for shift in (0.0, 3.0, -3.0, 6.0, -6.0, 9.0, -9.0, 12.0, -12.0):
         for deeper in (0.0, 0.5, 1.0, 1.5, 2.0, 3.0):
             middle = stop + (away + x + _BEHIND_M + deeper) * out + shift * along

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.ground import Ground
-from linden.scene.neighbourhood import HOUSE_WIDTH_M, LOTS_A_LAMP, SEED, between, on_lots
+from linden.scene.neighbourhood import HOUSE_WIDTH_M, LOTS_A_LAMP, SEED, between, on_lots, tree_side, with_house
 from linden.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
 from linden.values.enums import SemanticTag
 from linden.world.map_lots import LOT_DEPTH_M, LOT_WIDTH_M
@@ -46,7 +46,7 @@ class Drive(NamedTuple):
 
 def yards(lots: NDArray[np.void], houses: Scene, drive: Drive, ground: Ground) -> Scene:
     """Return what lies around the houses that stand on the lots and have these drives."""
-    lot_of_house = lots_of(lots, houses)
+    lot_of_house = with_house(lots)
     draw = _draw(lots)
     open_left = np.setdiff1d(lot_of_house, drive.lot[drive.side < 0.0])
     box = houses.boxes[np.searchsorted(houses.boxes["thing"], _house_rows(houses))]
@@ -62,13 +62,13 @@ def yards(lots: NDArray[np.void], houses: Scene, drive: Drive, ground: Ground) -
 
 def drives(lots: NDArray[np.void], houses: Scene) -> Drive:
     """Return the drives of the lots that have one."""
-    lot, rows = lots_of(lots, houses), _house_rows(houses)
+    lot, rows = with_house(lots), _house_rows(houses)
     with_porch = has_porch(lots)[lot]
     draw = np.random.default_rng([SEED, 2]).random((len(lots), 2))[lot]
     box = houses.boxes[np.searchsorted(houses.boxes["thing"], rows)]
     front = np.hypot(*(box["centre"][:, :2] - lots["front_m"][lot]).T) - box["half"][:, 0]
     side = np.where((draw[:, 1] < 0.5) | (lot % LOTS_A_LAMP == 0), -1.0, 1.0)
-    side = np.where(_tree_side(lots, houses)[lot] == side, -side, side)
+    side = np.where(tree_side(lots)[lot] == side, -side, side)
     chosen = (draw[:, 0] < DRIVES) & ((lot % LOTS_A_LAMP != 0) | (side < 0.0))
     length = front - np.where(with_porch, PORCH_DEPTH_M + 0.1, 0.1)
     return Drive(lot[chosen], side[chosen], length[chosen])
@@ -86,36 +86,6 @@ def _draw(lots: NDArray[np.void]) -> F64:
 
 def _house_rows(houses: Scene) -> I64:
     return np.flatnonzero(houses.things["kind"] == Kind.HOUSE).astype(np.int64)
-
-
-def lots_of(lots: NDArray[np.void], houses: Scene, kind: Kind = Kind.HOUSE) -> I64:
-    """Return the lot that each thing of a kind stands on; they come in the order of the lots, then those on none."""
-    things = houses.things[houses.things["kind"] == kind]
-    found, at = np.empty(len(things), np.int64), 0
-    cosine, sine, fronts = np.cos(lots["yaw_rad"]), np.sin(lots["yaw_rad"]), lots["front_m"]
-    for row, (base, yaw) in enumerate(zip(things["base"], things["yaw_rad"], strict=True)):
-        while at < len(lots):
-            x, y = base[:2] - fronts[at]
-            aside, inwards = cosine[at] * y - sine[at] * x, cosine[at] * x + sine[at] * y
-            if lots["yaw_rad"][at] == yaw and abs(aside) < 0.5 * LOT_WIDTH_M and 0.0 < inwards < LOT_DEPTH_M:
-                break
-            at += 1
-        else:
-            return found[:row]  # the others stand on the open land
-        found[row] = at
-        at += 1
-    return found
-
-
-def _tree_side(lots: NDArray[np.void], scene: Scene) -> F64:
-    """Return for each lot on which hand its tree stands, 0 where it has none."""
-    rows = lots_of(lots, scene, Kind.TREE)
-    base = scene.things["base"][scene.things["kind"] == Kind.TREE][: len(rows)]
-    away = base[:, :2] - lots["front_m"][rows]
-    yaw = lots["yaw_rad"][rows]
-    side = np.zeros(len(lots))
-    side[rows] = np.sign(np.cos(yaw) * away[:, 1] - np.sin(yaw) * away[:, 0])
-    return side
 
 
 def _porches(box: NDArray[np.void], things: NDArray[np.void], draw: F64) -> Scene:
