@@ -10,12 +10,12 @@ CELL_PX = (480, 300)
 COLUMNS = 3
 CAPTION_PX = 22
 WINDOWS = (
-    ("manual_control.py: behind the car", "Linden_manual_control.py_--sync", "*-before-2.jpg"),
-    ("manual_control.py: semantic", "Linden_manual_control.py_--sync", "*-before-7.jpg"),
-    ("manual_control.py: instances", "Linden_manual_control.py_--sync", "*-before-ctrl-1.jpg"),
-    ("manual_control.py: events", "Linden_manual_control.py_--sync", "*-before-ctrl-3.jpg"),
-    ("manual_control.py: optical flow", "Linden_manual_control.py_--sync", "*-before-ctrl-5.jpg"),
-    ("manual_control.py: normals", "Linden_manual_control.py_--sync", "*-before-1.jpg"),
+    ("manual_control.py: behind the car", "Linden_manual_control.py_--sync", "*-p.jpg"),
+    ("manual_control.py: semantic", "Linden_manual_control.py_--sync", "*-6.jpg"),
+    ("manual_control.py: instances", "Linden_manual_control.py_--sync", "*-8.jpg"),
+    ("manual_control.py: events", "Linden_manual_control.py_--sync", "*-ctrl-2.jpg"),
+    ("manual_control.py: optical flow", "Linden_manual_control.py_--sync", "*-ctrl-4.jpg"),
+    ("manual_control.py: normals", "Linden_manual_control.py_--sync", "*-ctrl-5.jpg"),
     ("visualize_multiple_sensors.py", "Linden_visualize_multiple_sensors.py", "0?.jpg"),
     ("client_bounding_boxes.py", "Linden_client_bounding_boxes.py", "0?.jpg"),
     ("bounding_boxes.py (Town01)", "Town01_bounding_boxes.py", "0?.jpg"),

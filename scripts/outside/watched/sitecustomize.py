@@ -24,9 +24,10 @@ class Watch:
         self.folder, self.keys, self.pace_s = folder, keys, pace_s
         self.next_s: float | None = None
         self.taken = 0
+        self.pressed = ""
 
     def look(self) -> None:
-        """Take the picture that is due, and press the key after it."""
+        """Take the picture that is due, named after the key before it, and press the next."""
         now_s = time.monotonic()
         if self.next_s is None:
             self.next_s = now_s + self.pace_s
@@ -34,12 +35,12 @@ class Watch:
         if now_s < self.next_s or self.taken >= MOST_PICTURES or surface is None:
             return
         self.next_s = now_s + self.pace_s
-        key = self.keys.pop(0) if self.keys else ""
-        name = f"{self.taken:02d}{'-before-' if key else ''}{key.replace('+', '-')}.jpg"
+        name = f"{self.taken:02d}{self.pressed and '-'}{self.pressed.replace('+', '-')}.jpg"
         pygame.image.save(surface, os.path.join(self.folder, name))  # noqa: PTH118 - as little as can be in their process
         self.taken += 1
-        if key:
-            _press(key)
+        self.pressed = self.keys.pop(0) if self.keys else ""
+        if self.pressed:
+            _press(self.pressed)
 
 
 def _press(key: str) -> None:
