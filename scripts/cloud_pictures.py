@@ -43,26 +43,47 @@ class View(NamedTuple):
     far_m: float = 260.0
 
 
-def read(file: Path) -> tuple[F64, NDArray[np.uint32]]:
-    """Return all points and their labels.
+class Ground(NamedTuple):
+    """The lowest point of each square of GROUND_CELL_M, m, and where the squares begin."""
+
+    low_m: F64  # (2,)
+    high_m: F64  # (2,)
+    lowest_m: F64  # (across, up)
+
+    def above(self, points: F64) -> F64:
+        """Return how high (N,) points are over the lowest one of their square, m."""
+        height: F64 = points[:, 2] - self.lowest_m[tuple(self.square_of(points).T)]
+        return height
+
+    def square_of(self, points: F64) -> NDArray[np.int64]:
+        """Return the column and row (N, 2) of points."""
+        return np.floor((points[:, :2] - self.low_m) / GROUND_CELL_M).astype(np.int64)
+
+
+def ground_of(file: Path) -> Ground:
+    """Read the file once, for what is lowest everywhere.
 
     Raises:
-        SystemExit: the cloud has none.
+        SystemExit: the points have no labels.
     """
-    clouds = list(clouds_of(file))
-    if any(cloud.label is None for cloud in clouds):
-        raise SystemExit(f"{file} has no labels; make it with --labels")
-    return np.concatenate([cloud.points_m for cloud in clouds]), np.concatenate([cloud.label for cloud in clouds])
-
-
-def above_ground(points: F64) -> F64:
-    """Return how high (N,) each point is over the lowest one of its neighbourhood, m."""
-    cell = np.floor((points[:, :2] - points[:, :2].min(axis=0)) / GROUND_CELL_M).astype(np.int64)
-    number = cell[:, 0] * (cell[:, 1].max() + 1) + cell[:, 1]
-    lowest = np.full(number.max() + 1, np.inf)
-    np.minimum.at(lowest, number, points[:, 2])
-    height: F64 = points[:, 2] - lowest[number]
-    return height
+    low, high = np.full(2, np.inf), np.full(2, -np.inf)
+    for cloud in clouds_of(file):
+        if cloud.label is None:
+            raise SystemExit(f"{file} has no labels; make it with --labels")
+        low, high = (
+            np.minimum(low, cloud.points_m[:, :2].min(axis=0)),
+            np.maximum(high, cloud.points_m[:, :2].max(axis=0)),
+        )
+    ground = Ground(low, high, np.full(tuple(((high - low) // GROUND_CELL_M + 1).astype(int)), np.inf))
+    for cloud in clouds_of(file):
+        square = ground.square_of(cloud.points_m)
+        order = np.lexsort((-cloud.points_m[:, 2], square[:, 1], square[:, 0]))  # the lowest of a square comes last
+        column, row = square[order].T
+        lowest = ground.lowest_m
+        last = np.append((column[1:] != column[:-1]) | (row[1:] != row[:-1]), [True])
+        at = column[last], row[last]
+        lowest[at] = np.minimum(lowest[at], cloud.points_m[order[last], 2])
+    return ground
 
 
 def colours(height_m: F64, label: NDArray[np.uint32]) -> Picture:
@@ -79,25 +100,36 @@ def colours(height_m: F64, label: NDArray[np.uint32]) -> Picture:
     return found
 
 
-def whole(points: F64, height_m: F64, colour: Picture) -> Picture:
-    """Return everything from above, north being up; the highest point of a pixel is the one that is seen."""
-    low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
-    metres = (high - low).max() / (WHOLE_PIXELS * FINER)
-    column, row = np.floor((points[:, :2] - low) / metres).astype(np.int64).T
-    across, down = (int(size / metres) // FINER * FINER + FINER for size in high - low)
-    sheet = np.empty((down, across, 3), np.uint8)
-    sheet[:] = BACKGROUND
-    order = np.argsort(height_m, kind="stable")
-    sheet[down - 1 - row[order], column[order]] = colour[order]
-    print(f"from above: {metres * FINER:.2f} m a pixel, {high[0] - low[0]:.0f} m x {high[1] - low[1]:.0f} m")
-    return sheet.reshape(down // FINER, FINER, across // FINER, FINER, 3).mean(axis=(1, 3)).astype(np.uint8)
+class Sheet:
+    """Everything from above, north being up; the highest point of a pixel is the one that is seen."""
+
+    def __init__(self, ground: Ground) -> None:
+        size = ground.high_m - ground.low_m
+        self._low, self._metres = ground.low_m, size.max() / (WHOLE_PIXELS * FINER)
+        across, down = (int(length / self._metres) // FINER * FINER + FINER for length in size)
+        self._colour = np.tile(BACKGROUND.astype(np.uint8), (down, across, 1))
+        self._height_m = np.full((down, across), -np.inf)
+        print(f"from above: {self._metres * FINER:.2f} m a pixel, {size[0]:.0f} m x {size[1]:.0f} m")
+
+    def draw(self, points: F64, height_m: F64, colour: Picture) -> None:
+        """Add points."""
+        order = np.argsort(height_m, kind="stable")
+        column, up = np.floor((points[order, :2] - self._low) / self._metres).astype(np.int64).T
+        at = len(self._colour) - 1 - up, column
+        highest = height_m[order] >= self._height_m[at]
+        at = at[0][highest], at[1][highest]
+        self._height_m[at], self._colour[at] = height_m[order][highest], colour[order][highest]
+
+    def picture(self) -> Picture:
+        """Return it, thin things counting for what they are."""
+        down, across, _ = self._colour.shape
+        parts = self._colour.reshape(down // FINER, FINER, across // FINER, FINER, 3)
+        return parts.mean(axis=(1, 3)).astype(np.uint8)
 
 
 def close_up(points: F64, colour: Picture, view: View) -> Picture:
     """Return what a camera among the points sees of them."""
     apart = points - (view.x_m, view.y_m, 0.0)
-    near = np.flatnonzero((np.abs(apart[:, :2]) < view.far_m).all(axis=1))
-    apart, colour = apart[near], colour[near]
     at_foot = np.hypot(apart[:, 0], apart[:, 1]) < 15.0
     apart[:, 2] -= apart[at_foot, 2].min() + view.above_m
     yaw, down = math.radians(view.heading_deg), math.radians(view.down_deg)
@@ -126,16 +158,22 @@ def main() -> None:
     parser.add_argument("--folder", type=Path, default=Path("docs/images"))
     parser.add_argument("--at", type=float, nargs=4, default=(0.0, 0.0, 14.0, 40.0), metavar=("X", "Y", "UP", "DEG"))
     arguments = parser.parse_args()
-    points, label = read(arguments.file)
-    height_m = above_ground(points)
-    colour = colours(height_m, label)
     view = View(*arguments.at, 18.0)
-    for name, sheet in (
-        ("pointcloud-map.jpg", whole(points, height_m, colour)),
-        ("pointcloud-close.jpg", close_up(points, colour, view)),
+    ground = ground_of(arguments.file)
+    sheet, near, tints = Sheet(ground), [], []
+    for cloud in clouds_of(arguments.file):
+        height_m = ground.above(cloud.points_m)
+        colour = colours(height_m, cloud.label)
+        sheet.draw(cloud.points_m, height_m, colour)
+        seen = (np.abs(cloud.points_m[:, :2] - (view.x_m, view.y_m)) < view.far_m).all(axis=1)
+        near.append(cloud.points_m[seen])
+        tints.append(colour[seen])
+    for name, picture in (
+        ("pointcloud-map.jpg", sheet.picture()),
+        ("pointcloud-close.jpg", close_up(np.concatenate(near), np.concatenate(tints), view)),
     ):
-        matplotlib.image.imsave(arguments.folder / name, sheet, pil_kwargs={"quality": 84, "optimize": True})
-        print(f"{arguments.folder / name}: {sheet.shape[1]} x {sheet.shape[0]}")
+        matplotlib.image.imsave(arguments.folder / name, picture, pil_kwargs={"quality": 84, "optimize": True})
+        print(f"{arguments.folder / name}: {picture.shape[1]} x {picture.shape[0]}")
 
 
 if __name__ == "__main__":
