@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from concurrent.futures import Future, wait
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,15 +9,12 @@ from numpy.typing import NDArray
 
 from linden.casting.crew import in_background
 from linden.casting.rays import CPU, Instances
-from linden.meshes.mesh import LampOf, Mesh
-from linden.scene.lamps import is_night
-from linden.scene.objects import Kind as Thing
+from linden.meshes.mesh import Mesh
 from linden.scene.objects import Scene
 from linden.sensors.seen import NO_ACTOR_FROM, Seen
 from linden.simulation.company import Company
+from linden.simulation.shining import Shining
 from linden.simulation.stage import Stage, Wanted, build
-from linden.values.enums import TrafficLightState
-from linden.values.episode import LightState
 from linden.world.blueprints import BlueprintLibrary, Kind
 from linden.world.maps import LoadedMap
 
@@ -32,11 +28,6 @@ OBJECTS_FROM = NO_ACTOR_FROM + 0x8000
 """Ids of objects that are no actors begin here: no actor has one, nor one that is the same in its lowest 16 bits."""
 
 _OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
-_LENS = {
-    TrafficLightState.RED: LampOf.TRAFFIC_RED,
-    TrafficLightState.YELLOW: LampOf.TRAFFIC_YELLOW,
-    TrafficLightState.GREEN: LampOf.TRAFFIC_GREEN,
-}
 
 
 def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
@@ -77,6 +68,7 @@ class Seeing:
         self._coming: tuple[Wanted, Future[Stage]] | None = None
         self._episode: Episode | None = None
         self._signals: tuple[Episode, U32] | None = None
+        self._shining = Shining()
         self._frame = -1
         self._instances: Instances | None = None
 
@@ -109,7 +101,7 @@ class Seeing:
         stage.caster.pose(instances)
         if self._signals is None or self._signals[0] is not episode:
             self._signals = episode, _object_ids(episode)  # lights and signs are there as long as the episode
-        lights, colour = _object_lights(episode)
+        shine = self._shining.of(episode)
         return Seen(
             caster=stage.caster,
             standing=stage.standing,
@@ -117,8 +109,8 @@ class Seeing:
             faces=stage.faces,
             instances=instances,
             object_id=self._signals[1],
-            object_lights=lights,
-            object_light_colour=colour,
+            object_lights=shine.lights,
+            object_light_colour=shine.colour,
             weather=episode.weather,
             now_s=episode.elapsed_s,
         )
@@ -160,28 +152,3 @@ def _object_ids(episode: "Episode") -> U32:
     of_actors = things < len(signal_ids)
     ids[of_actors] = signal_ids[things[of_actors]]
     return ids
-
-
-def _object_lights(episode: "Episode") -> tuple[U32, NDArray[np.uint8]]:
-    """Return what shines of each box (O,), LampOf bits, and what colour (O, 3) a street lamp has."""
-    scene = episode.surroundings.scene
-    shining, colour = np.zeros(len(scene.things), np.uint32), np.zeros((len(scene.things), 3), np.uint8)
-    kinds = scene.things["kind"]
-    lights = np.flatnonzero(kinds == Thing.TRAFFIC_LIGHT)
-    bits = np.zeros(max(TrafficLightState) + 1, np.uint32)
-    for state, lens in _LENS.items():
-        bits[state] = 1 << lens
-    shining[lights] = bits[episode.traffic.state.colour[: len(lights)]]
-    lamps = kinds == Thing.STREET_LAMP
-    shining[lamps], colour[lamps] = _lamps(episode.surroundings.lamps.states())
-    if is_night(episode.weather):
-        shining[kinds == Thing.HOUSE] = 1 << LampOf.WINDOW
-    things = scene.boxes["thing"]
-    return shining[things], colour[things]
-
-
-@lru_cache(maxsize=1)
-def _lamps(states: tuple[LightState, ...]) -> tuple[U32, NDArray[np.uint8]]:
-    """Return what shines of each street lamp (N,), LampOf bits, and its colour (N, 3)."""
-    shining = np.array([int(lamp.active) << LampOf.STREET for lamp in states], np.uint32)
-    return shining, np.array([lamp.color for lamp in states], np.uint8).reshape(-1, 3)
