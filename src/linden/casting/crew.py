@@ -1,13 +1,20 @@
-"""Work in threads: on long arrays by all processors at once, and beside other work."""
+"""Work in threads: on long arrays by all processors at once, and beside other work.
+
+The threads are daemons: a process that is told to end does not wait for them. Those of ``concurrent.futures`` it would
+wait for, and for ever where the signal came in the moment in which one was started.
+"""
 
 import os
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from functools import lru_cache
 from itertools import count
-from typing import TypeVar
+from queue import SimpleQueue
+from threading import Thread
+from typing import TypeAlias, TypeVar
 
 Made = TypeVar("Made")
+Task: TypeAlias = tuple[Callable[[], None], "Future[None]"]
 
 FEWEST = 512
 """Rays; a shorter stretch costs more to hand out than to work on."""
@@ -21,8 +28,24 @@ def processors() -> int:
 
 
 @lru_cache(maxsize=1)
-def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(max(1, processors() - 1), thread_name_prefix="rays")
+def _tasks() -> "SimpleQueue[Task]":
+    """Return what the threads take their tasks from, one thread for each processor but that of who asks."""
+    tasks: SimpleQueue[Task] = SimpleQueue()
+
+    def serve() -> None:
+        while True:
+            _do(*tasks.get())
+
+    for _ in range(processors() - 1):
+        Thread(target=serve, name="rays", daemon=True).start()
+    return tasks
+
+
+def _do(work: Callable[[], Made], done: "Future[Made]") -> None:
+    try:
+        done.set_result(work())
+    except BaseException as error:  # noqa: BLE001 - it is raised again where the result is asked for
+        done.set_exception(error)
 
 
 def in_stretches(total: int, work: Callable[[int, int], None], *, multiple: int) -> None:
@@ -42,15 +65,16 @@ def in_stretches(total: int, work: Callable[[int, int], None], *, multiple: int)
         while (start := next(turn) * length) < total:
             work(start, min(total, start + length))
 
-    helpers: list[Future[None]] = [_pool().submit(take) for _ in range(min(hands, -(-total // length)) - 1)]
+    helpers = [Future[None]() for _ in range(min(hands, -(-total // length)) - 1)]
+    for helper in helpers:
+        _tasks().put((take, helper))
     take()
     for helper in helpers:
         helper.result()
 
 
-def in_background(work: Callable[[], Made]) -> Future[Made]:
+def in_background(work: Callable[[], Made]) -> "Future[Made]":
     """Return what will have been made by a thread of its own, which may wait for others."""
-    hand = ThreadPoolExecutor(1, thread_name_prefix="background")
-    made = hand.submit(work)
-    hand.shutdown(wait=False)
+    made: Future[Made] = Future()
+    Thread(target=_do, args=(work, made), name="background", daemon=True).start()
     return made
