@@ -79,7 +79,7 @@ TEN_CAMERAS = (
 )
 """All kinds, and three of them twice, so that some look out of one place together."""
 AT_ONCE = 9
-"""How many of them show something in the first frame: a camera for events has nothing to compare it with."""
+"""How many of them show something in the first frame: one for events has nothing to compare it with."""
 
 
 def camera_cycles(target: Target, count: int, done: Done) -> str:
@@ -89,12 +89,13 @@ def camera_cycles(target: Target, count: int, done: Done) -> str:
     car = world.spawn_actor(library.find("vehicle.tesla.model3"), world.get_map().get_spawn_points()[0])
     world.tick()
     seen: list[int] = []
-    for number in range(1, count + 1):
+    for _ in range(count):
         cameras = [_camera(world, library, kind, car) for kind in TEN_CAMERAS]
         for camera in cameras:
             camera.listen(lambda picture: seen.append(len(picture)))
+        expected, patient_until_s = len(seen) + AT_ONCE, time.monotonic() + 1.0
         world.tick()
-        while len(seen) < AT_ONCE * number:
+        while len(seen) < expected and time.monotonic() < patient_until_s:
             time.sleep(0.001)
         for camera in cameras:
             camera.stop()
