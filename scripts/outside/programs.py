@@ -59,7 +59,7 @@ def _endless(*arguments: str, limit_s: float = ENDLESS_S, keys: str = "") -> Pro
     return Program("examples", arguments, limit_s=limit_s, is_endless=True, keys=keys)
 
 
-EVERY_CAMERA = "p ctrl+2 ctrl+4 ctrl+5 2 3 4 5 6 7 8 ctrl+1 ctrl+3 1 tab tab tab g c c"
+EVERY_CAMERA = "p 2 3 4 5 6 ctrl+2 ctrl+4 ctrl+5 7 8 ctrl+1 ctrl+3 1 tab tab tab g c c"
 """In manual_control.py: the autopilot, each of its sensors, other places of the camera, the radar, the weather."""
 
 EXAMPLES = (
