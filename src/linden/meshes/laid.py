@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 
 ASIDE_M, ABOVE_M = 0.01, 0.003
 """How far a straight piece may leave the sampled edge; upwards less, for paint lies 6 mm above its lane."""
-LONGEST_M = 30.0  # long slanting pieces have large bounds, and rays meet bounds first
+LONGEST_M = 40.0  # long slanting pieces have large bounds, and rays meet bounds first
 _MOST_TURNS = 24
 
 

@@ -14,9 +14,9 @@ F64 = NDArray[np.float64]
 
 ASPHALT = (74, 74, 76)
 WORN_ASPHALT = (84, 83, 81)  # where cars stand, not drive
-CONCRETE = (168, 164, 156)
-KERB_STONE = (150, 147, 140)
-GRASS = (88, 108, 60)
+CONCRETE = (156, 151, 141)
+KERB_STONE = (142, 138, 130)
+GRASS = (92, 107, 68)
 GRAVEL = (128, 120, 110)
 RED_ASPHALT = (112, 72, 62)
 

@@ -22,7 +22,7 @@ _BARK = np.array([(84, 68, 54), (96, 82, 68), (70, 58, 48)])
 _SHAPES = 6
 _CONIFERS = 0.14
 _CLUMPS, _CLUMPS_BEHIND = 3, 2
-_TWIGS = 26
+_TWIGS = 24
 """Of a crown that is seen from near: single sprays of leaves that stand out of its clumps."""
 _ROOT_M = 0.3  # how far a trunk reaches into the ground
 _SKIRTS = ((0.10, 0.50, 0.26), (0.32, 0.76, 0.20), (0.58, 1.0, 0.13))

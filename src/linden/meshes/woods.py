@@ -15,7 +15,7 @@ Flags = NDArray[np.bool_]
 _SEED = 41
 _CELL_M = 20.0
 _NEAREST, _OUTER, _FARTHEST = 3, 6, 12  # cells from the next road
-_SHARE, _OUTER_SHARE = 0.012, 0.045
+_SHARE, _OUTER_SHARE = 0.012, 0.038
 """How many cells have trees, between the streets and beyond the outermost."""
 _HIGH_M = 1e6
 
