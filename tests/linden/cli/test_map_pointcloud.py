@@ -13,15 +13,19 @@ from fakes.pcd_files import pcd
 from linden.cli import main
 from linden.pointcloud.pcd_reading import clouds_of
 from linden.values.enums import SemanticTag
-from opendrive_texts import street_through_junction
+from opendrive_texts import lane, line, opendrive, road, section, street_through_junction
 
 QUICK = ["--every", "20", "--columns", "300", "--channels", "16", "--range", "50"]
 
 
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+
+
 @pytest.fixture
-def town(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """A street from west to east on level ground; what is derived of it is kept in a folder of the test's."""
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+def town(tmp_path: Path) -> str:
+    """A street from west to east on level ground."""
     file = tmp_path / "town.xodr"
     file.write_text(street_through_junction())
     return str(file)
@@ -113,6 +117,20 @@ def test_what_does_not_go_together_is_told(
     assert pointcloud(*arguments) == 2
     assert told in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_labels_that_nobody_gave_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = pcd(tmp_path / "a.pcd", {axis: np.float32([1.0]) for axis in "xyz"}, "ascii")
+    assert pointcloud("--from", file, "--labels", "-o", tmp_path / "b.pcd") == 2
+    assert f"--labels: not every file of {file} has a field label" in capsys.readouterr().err
+
+
+def test_a_map_without_a_lane_to_drive_on_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "path.xodr").write_text(
+        opendrive(road(1, 9.0, line(0, 0, 0, 0, 9), section(right=lane(-1, "walking"))))
+    )
+    assert pointcloud(tmp_path / "path.xodr", "-o", tmp_path / "b.pcd") == 2
+    assert "path has no driving lane, so there is nowhere to drive" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -64,6 +64,12 @@ def test_kept_scans_come_back_where_they_were(tmp_path: Path) -> None:
         assert again.cloud.label.tolist() == scan.cloud.label.tolist()
 
 
+def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UserError, match=r"cannot write to .*file/scans: Not a directory"):
+        next(kept_scans([], tmp_path / "file" / "scans"))
+
+
 def test_scans_of_another_drive_are_not_mixed_with_these(tmp_path: Path) -> None:
     pcd(tmp_path / "000007.pcd", POINT, "binary")
     with pytest.raises(UserError, match="holds scans already; name a new folder"):

@@ -35,6 +35,13 @@ def test_twelve_numbers_are_a_matrix_for_each_file_in_turn(tmp_path: Path) -> No
     np.testing.assert_allclose(second @ [1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0])
 
 
+def test_a_file_that_cannot_be_read_or_written_is_told(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"cannot read .*none\.txt"):
+        read_poses(tmp_path / "none.txt", [])
+    with pytest.raises(UserError, match=r"cannot write .*poses\.txt: No such file"):
+        write_poses(tmp_path / "none" / "poses.txt", [])
+
+
 @pytest.mark.parametrize(
     ("text", "told"),
     [
