@@ -34,7 +34,8 @@ def _name() -> str:
     """Return a file's name that tells what numba goes by: the sources as they lie there, the machine."""
     sources = sorted(file for pattern in _COMPILED for file in _PACKAGE.glob(pattern))
     stamps = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in sources]
-    return f"{hashlib.sha256(f'{stamps} {machine()}'.encode()).hexdigest()[:32]}.compiled"
+    where = os.environ.get("NUMBA_CACHE_DIR")
+    return f"{hashlib.sha256(f'{stamps} {where} {machine()}'.encode()).hexdigest()[:32]}.compiled"
 
 
 def _compiled_files() -> list[str]:

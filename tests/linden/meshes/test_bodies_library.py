@@ -1,22 +1,25 @@
-"""Claims about the meshes of all blueprints as they are kept."""
+"""Bodies' meshes out of the cache."""
 
 from pathlib import Path
 
 import numpy as np
+import pytest
 
+from linden.meshes import bodies_library
 from linden.meshes.bodies import Bodies
-from linden.meshes.bodies_library import bodies_of
+from linden.meshes.bodies_library import bodies_of, keep_bodies
 from linden.world.blueprints import BlueprintLibrary
 from linden.world.map_cache import MapCache
 
-LIBRARY = BlueprintLibrary.load()
 
-
-def test_what_was_kept_is_what_was_made_and_lies_where_it_can_be_read_in_place(tmp_path: Path) -> None:
-    made, cache = Bodies(LIBRARY), MapCache(tmp_path)
-    for kept in (bodies_of(LIBRARY, cache), bodies_of(LIBRARY, cache)):
-        assert kept.all_parts.keys() == made.all_parts.keys()
-        for ours, theirs in zip(made.meshes, kept.meshes, strict=True):
-            assert all(np.array_equal(one, other) for one, other in zip(ours, theirs, strict=True))
-            assert theirs.vertices_m.flags.aligned
-            assert theirs.triangles.flags.aligned
+def test_what_is_kept_is_what_was_made_and_is_not_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    library, cache = BlueprintLibrary.load(), MapCache(tmp_path)
+    keep_bodies(library, cache)
+    monkeypatch.setattr(bodies_library, "_made", lambda _library: pytest.fail("they are kept"))
+    kept, made = bodies_of(library, cache), Bodies(library)
+    assert kept.all_parts == made.all_parts
+    assert len(kept.meshes) == len(made.meshes)
+    for here, there in zip(kept.meshes, made.meshes, strict=True):
+        for column, expected in zip(here, there, strict=True):
+            assert column.dtype == expected.dtype
+            np.testing.assert_array_equal(column, expected)
