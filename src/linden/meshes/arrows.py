@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.ground import Ground
 from linden.meshes.mesh import Mesh, join
-from linden.meshes.painted import flat
+from linden.meshes.painted import Canvas
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import LaneType
+from linden.world.map_facts import MapFacts
 
 F64 = NDArray[np.float64]
 
@@ -41,10 +41,10 @@ class _Approach(NamedTuple):
     forwards: bool  # in the direction of s
 
 
-def arrows(opendrive: OpenDrive, ground: Ground) -> Mesh:
+def arrows(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
     """Return all arrows of a map."""
-    tables = tables_of(opendrive)
-    return join([flat(piece, ground) for piece in _pieces(opendrive, tables)])
+    tables, canvas = tables_of(opendrive), Canvas(facts)
+    return join([canvas.flat(piece) for piece in _pieces(opendrive, tables)])
 
 
 def _pieces(opendrive: OpenDrive, tables: Tables) -> Iterator[F64]:

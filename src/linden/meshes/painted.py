@@ -9,11 +9,12 @@ from linden.ground import Ground
 from linden.meshes.markings import PAINT_HEIGHT_M, WHITE
 from linden.meshes.mesh import Material, Mesh, join
 from linden.meshes.patches import Look, polygons
-from linden.meshes.road import GRASS, KERB_STONE
+from linden.meshes.road import GRASS, KERB_STONE, is_paved
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.furniture import RoadObject
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import SemanticTag
+from linden.world.map_facts import MapFacts
 
 F64 = NDArray[np.float64]
 
@@ -25,9 +26,9 @@ _UP = (0.0, 0.0, 1.0)
 _HIGH_M = 1e6
 
 
-def across_lanes(opendrive: OpenDrive, ground: Ground) -> Mesh:
+def across_lanes(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
     """Return everything painted that the map gives as an object with an outline, and its islands."""
-    tables = tables_of(opendrive)
+    tables, canvas = tables_of(opendrive), Canvas(facts)
     found: list[Mesh] = []
     for index, road in enumerate(tables.roads):
         for thing in road.objects:
@@ -36,13 +37,13 @@ def across_lanes(opendrive: OpenDrive, ground: Ground) -> Mesh:
                 continue
             kind = thing.type.lower()
             if thing.is_crosswalk:
-                found += [flat(piece, ground) for piece in _bars(outline)]
+                found += [canvas.flat(piece) for piece in _bars(outline)]
             elif kind == "roadmark" and "yield" in thing.name.lower():
-                found += [flat(piece, ground) for piece in _teeth(outline, _towards(tables, index, thing))]
+                found += [canvas.flat(piece) for piece in _teeth(outline, _towards(tables, index, thing))]
             elif kind == "roadmark":
-                found.append(flat(outline, ground))
+                found.append(canvas.flat(outline))
             elif kind == "trafficisland":
-                found.append(_island(outline, ground))
+                found.append(_island(outline, facts.ground))
     return join(found)
 
 
@@ -125,10 +126,25 @@ def _clipped(polygon: F64, at: F64, inward: F64) -> F64:
     return np.array(kept).reshape(-1, 2)
 
 
-def flat(outline: F64, ground: Ground) -> Mesh:
-    """Return a painted area that lies on the road."""
-    height, _ = ground.surfaces_under(np.column_stack([outline, np.full(len(outline), _HIGH_M)]))
-    return polygons(np.column_stack([outline, height + PAINT_HEIGHT_M])[None], _PAINT, _UP)
+class Canvas:
+    """What paint lies on: lanes of asphalt."""
+
+    def __init__(self, facts: MapFacts) -> None:
+        self.ground = facts.ground
+        self._paved = is_paved(facts.lanes["type_bits"])[facts.lane_of_triangle]
+
+    def flat(self, outline: F64) -> Mesh:
+        """Return a painted area; what of it reaches over a kerb lies below what is there, as if cut off by it."""
+        height, triangle = self.ground.surfaces_under(np.column_stack([outline, np.full(len(outline), _HIGH_M)]))
+        paved = (triangle >= 0) & self._paved[triangle]
+        if not paved.any():
+            return join([])
+        known = np.flatnonzero(paved)
+        for row in np.flatnonzero(~paved):
+            nearest = known[np.hypot(*(outline[known] - outline[row]).T).argmin()]
+            slope = self.ground.planes[triangle[nearest], 7:9]
+            height[row] = height[nearest] + slope @ (outline[row] - outline[nearest])
+        return polygons(np.column_stack([outline, height + PAINT_HEIGHT_M])[None], _PAINT, _UP)
 
 
 def _island(outline: F64, ground: Ground) -> Mesh:

@@ -66,8 +66,8 @@ def streets(lanes: Laid, opendrive: OpenDrive, facts: MapFacts) -> Mesh:
             surface(lanes),
             kerbs(lanes, facts.ground),
             lines(lanes),
-            across_lanes(opendrive, facts.ground),
-            arrows(opendrive, facts.ground),
+            across_lanes(opendrive, facts),
+            arrows(opendrive, facts),
         ]
     )
 

@@ -17,7 +17,7 @@ def painted(name: str, kind: str, corners: list[tuple[float, float]], t: float =
         objects=f'<object id="1" name="{name}" type="{kind}" s="30" t="{t}" zOffset="0" hdg="0" orientation="none">'
         f"<outline>{outline}</outline></object>"
     )
-    return across_lanes(parse(text), derive(text).ground)
+    return across_lanes(parse(text), derive(text))
 
 
 def area_m2(mesh: Mesh) -> float:
@@ -53,3 +53,14 @@ def test_an_island_is_grass_within_a_kerb() -> None:
     mesh = painted("Island", "trafficIsland", [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
     assert {Material.GRASS, Material.CONCRETE} == {Material(kind) for kind in mesh.faces["material"]}
     assert mesh.vertices_m[:, 2].max() == pytest.approx(0.15, abs=1e-3)
+
+
+def test_a_crosswalk_that_reaches_over_the_kerb_does_not_climb_it() -> None:
+    mesh = painted("Crosswalk", "crosswalk", [(-1.5, -3.9), (1.5, -3.9), (1.5, 3.9), (-1.5, 3.9)])
+    assert np.abs(mesh.vertices_m[:, 1]).max() > 3.6  # the pavement, 0.15 m high, begins at 3.5
+    np.testing.assert_allclose(mesh.vertices_m[:, 2], PAINT_HEIGHT_M, atol=1e-4)
+
+
+def test_no_paint_lies_on_a_pavement() -> None:
+    outline = [(-1.5, 3.7), (1.5, 3.7), (1.5, 4.9), (-1.5, 4.9)]
+    assert len(painted("Crosswalk", "crosswalk", outline).triangles) == 0
