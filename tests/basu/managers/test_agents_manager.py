@@ -184,3 +184,29 @@ def test_a_plan_that_is_none_is_the_agents_failure() -> None:
 
     with pytest.raises(AgentCrashedError, match="what is no list of locations"):
         made(Plans).own_route()
+
+
+def sensing(given: Any, file: str | None = None) -> AgentsManager:
+    wishes = {} if file is None else {"sensors": file}
+    return made(type("Sensing", (Docile,), {"sensors": lambda _: given, "config": lambda _: wishes}))
+
+
+def test_an_agent_may_give_its_sensors_itself_or_leave_them_to_the_file() -> None:
+    assert made(Docile).own_sensors() is None
+    (camera,) = sensing([{"type": "sensor.camera.rgb", "id": "FRONT", "z": 2.4, "width": 64}]).own_sensors() or ()
+    assert (camera.id, camera.z_m, camera.attributes) == ("FRONT", 2.4, (("image_size_x", "64"),))
+
+
+@pytest.mark.parametrize(
+    ("given", "file", "sentence"),
+    [
+        ("config/rig.json", None, r"sensors\(\) of Sensing returned str; it must return a list of dicts"),
+        ({"type": "sensor.other.gnss"}, None, "returned dict"),
+        (7, None, "returned int"),
+        ([{"type": "sensor.other.gnss"}], None, r"sensors\(\) of Sensing: sensor 1 needs a 'type' and an 'id'"),
+        ([], "config/rig.json", "gives a sensor set, and config\\(\\) the file config/rig.json; give one of them"),
+    ],
+)
+def test_a_sensor_set_that_is_none_gets_a_sentence(given: Any, file: str | None, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        sensing(given, file).own_sensors()
