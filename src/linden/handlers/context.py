@@ -11,8 +11,9 @@ from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
 
-SCENE_S = 1.2
-"""How long a call waits at most for the scene that sensors look at."""
+SCENE_S = 0.8
+"""How long a call waits at most for the scene that sensors look at: two may stand in line, the Traffic Manager's behind
+the program's own."""
 MOMENT_S = 0.1
 """How long a frame of asynchronous mode does, before calls have their turn."""
 
