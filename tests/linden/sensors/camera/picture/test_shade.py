@@ -1,8 +1,10 @@
 """The light along rays: the stages of the CPU against the same parts put together ray after ray."""
 
+import numba
 import numpy as np
 import pytest
 
+from fleet import slow_uncompiled
 from linden.casting.rays import NOTHING, STATIC, Hits, Rays
 from linden.meshes.mesh import LampOf, Material
 from linden.scene.weather import CLEAR_NOON
@@ -72,7 +74,18 @@ def lamps(*, shining: bool) -> LampGrid:
     return LampGrid(-160.0, -160.0, np.arange(cells + 1, dtype=np.int32), np.zeros(cells, np.int32), lamp)
 
 
-@pytest.mark.parametrize("weather", [CLEAR_NOON, RAIN, NIGHT], ids=["noon", "rain", "night"])
+only_compiled = pytest.mark.skipif(bool(numba.config.DISABLE_JIT), reason="rows of lamps are records to numba alone")
+
+
+@slow_uncompiled
+@pytest.mark.parametrize(
+    "weather",
+    [
+        pytest.param(CLEAR_NOON, id="noon"),
+        pytest.param(RAIN, id="rain"),
+        pytest.param(NIGHT, id="night", marks=only_compiled),
+    ],
+)
 def test_eight_rays_at_a_time_get_the_light_that_each_gets_alone(weather: WeatherParameters) -> None:
     dice = np.random.default_rng(11)
     rays, hits, faces, relief, places = world(dice)
