@@ -83,18 +83,20 @@ def kerbs(laid: Laid, ground: Ground) -> Mesh:
     across = outer - inner
     across[:, 2] = 0.0
     beside = _outer_heights(laid)
-    look = Look(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
+    stone = Look(Material.CONCRETE, SemanticTag.SIDEWALKS, KERB_STONE)
+    asphalt = Look(Material.ASPHALT, SemanticTag.ROADS, ASPHALT)  # so that none shows in a gap between turns
     road_z = inner[:, 2] - tables.heights_inner.value(laid.lane, laid.s_m, laid.probe_m)
     within = np.where(np.isnan(beside), road_z, beside)
-    is_inside_of_another = np.isin(laid.lane, tables.lanes["inside"])
+    is_outermost = ~np.isin(laid.lane, tables.lanes["inside"])
     raised = outer[:, 2] - road_z > _LEAST_STEP_M
-    is_last = raised | ~_beside_road(outer, across, ground)
+    is_last = is_outermost & ~raised & ~_beside_road(outer, across, ground)
     is_first = (tables.lanes["inside"][laid.lane] < 0) & ~_beside_road(inner, -across, ground)
     faces = [
-        _between(laid, inner, within, inner[:, 2] - within > _LEAST_STEP_M, -across, look),
-        _between(laid, inner, within, within - inner[:, 2] > _LEAST_STEP_M, across, look),
-        _between(laid, outer, outer[:, 2] - _SKIRT_M, is_last & ~is_inside_of_another, across, look),
-        _between(laid, inner, inner[:, 2] - _SKIRT_M, is_first, -across, look),
+        _between(laid, inner, within, inner[:, 2] - within > _LEAST_STEP_M, -across, stone),
+        _between(laid, inner, within, within - inner[:, 2] > _LEAST_STEP_M, across, stone),
+        _between(laid, outer, outer[:, 2] - _SKIRT_M, is_outermost & raised, across, stone),
+        _between(laid, outer, outer[:, 2] - _SKIRT_M, is_last, across, asphalt),
+        _between(laid, inner, inner[:, 2] - _SKIRT_M, is_first, -across, asphalt),
     ]
     return join(faces)
 
