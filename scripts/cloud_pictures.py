@@ -1,4 +1,4 @@
-"""Draws a labelled point cloud map: the whole of it from above, and a close-up from a roof.
+"""Draws a labelled point cloud map: the whole of it and its middle from above, and a close-up from a roof.
 
     linden map pointcloud Linden -o linden.pcd --labels
     python scripts/cloud_pictures.py linden.pcd [--folder docs/images]
@@ -26,6 +26,7 @@ BACKGROUND = np.array([10, 12, 16])
 WHOLE_PIXELS = 1300
 FINER = 2  # pixels drawn for each that is kept, so that thin things count for what they are
 GROUND_CELL_M = 8.0
+MIDDLE_M, MIDDLE_HALF_M = np.array([150.0, 60.0]), np.array([420.0, 300.0])  # the streets around the transit centre
 TALLEST_M = 9.0  # what is higher above the ground has the last colour
 
 
@@ -101,11 +102,11 @@ def colours(height_m: F64, label: NDArray[np.uint32]) -> Picture:
 
 
 class Sheet:
-    """Everything from above, north being up; the highest point of a pixel is the one that is seen."""
+    """A rectangle from above, north being up; the highest point of a pixel is the one that is seen."""
 
-    def __init__(self, ground: Ground) -> None:
-        size = ground.high_m - ground.low_m
-        self._low, self._metres = ground.low_m, size.max() / (WHOLE_PIXELS * FINER)
+    def __init__(self, low_m: F64, high_m: F64) -> None:
+        size = high_m - low_m
+        self._low, self._high, self._metres = low_m, high_m, size.max() / (WHOLE_PIXELS * FINER)
         across, down = (int(length / self._metres) // FINER * FINER + FINER for length in size)
         self._colour = np.tile(BACKGROUND.astype(np.uint8), (down, across, 1))
         self._height_m = np.full((down, across), -np.inf)
@@ -113,7 +114,9 @@ class Sheet:
 
     def draw(self, points: F64, height_m: F64, colour: Picture) -> None:
         """Add points."""
-        order = np.argsort(height_m, kind="stable")
+        inside = ((points[:, :2] >= self._low) & (points[:, :2] <= self._high)).all(axis=1)
+        order = np.flatnonzero(inside)
+        order = order[np.argsort(height_m[order], kind="stable")]
         column, up = np.floor((points[order, :2] - self._low) / self._metres).astype(np.int64).T
         at = len(self._colour) - 1 - up, column
         highest = height_m[order] >= self._height_m[at]
@@ -152,7 +155,7 @@ def close_up(points: F64, colour: Picture, view: View) -> Picture:
 
 
 def main() -> None:
-    """Write both pictures."""
+    """Write the pictures."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", type=Path)
     parser.add_argument("--folder", type=Path, default=Path("docs/images"))
@@ -160,16 +163,19 @@ def main() -> None:
     arguments = parser.parse_args()
     view = View(*arguments.at, 18.0)
     ground = ground_of(arguments.file)
-    sheet, near, tints = Sheet(ground), [], []
+    sheets = Sheet(ground.low_m, ground.high_m), Sheet(MIDDLE_M - MIDDLE_HALF_M, MIDDLE_M + MIDDLE_HALF_M)
+    near, tints = [], []
     for cloud in clouds_of(arguments.file):
         height_m = ground.above(cloud.points_m)
         colour = colours(height_m, cloud.label)
-        sheet.draw(cloud.points_m, height_m, colour)
+        for sheet in sheets:
+            sheet.draw(cloud.points_m, height_m, colour)
         seen = (np.abs(cloud.points_m[:, :2] - (view.x_m, view.y_m)) < view.far_m).all(axis=1)
         near.append(cloud.points_m[seen])
         tints.append(colour[seen])
     for name, picture in (
-        ("pointcloud-map.jpg", sheet.picture()),
+        ("pointcloud-map.jpg", sheets[0].picture()),
+        ("pointcloud-middle.jpg", sheets[1].picture()),
         ("pointcloud-close.jpg", close_up(np.concatenate(near), np.concatenate(tints), view)),
     ):
         matplotlib.image.imsave(arguments.folder / name, picture, pil_kwargs={"quality": 84, "optimize": True})
