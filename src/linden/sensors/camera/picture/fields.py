@@ -1,6 +1,6 @@
 """What is known of a block of rays while it is shaded: an array of floats, field after field, one of whole numbers."""
 
-BLOCK = 512
+BLOCK = 256
 """Rays; what is known of them fits into a processor's nearest memory, and those of one material are still many.
 
 Each field is BLOCK long, so the compiler sees that what a loop writes is not what it reads, and does eight at once.
