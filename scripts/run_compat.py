@@ -17,7 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-SILENT_S = 240.0
+SILENT_S = 360.0
 """Longer than any test may take by the time-out in pyproject.toml; a process that says nothing for so long is stuck."""
 LAST_WORDS_S = 15.0
 TRIES = 2

@@ -23,15 +23,15 @@ _SKY = np.array(
         (-14.0, 0.0013, 0.0020, 0.0048, 0.0040, 0.0042, 0.0065),
         (-6.0, 0.0120, 0.0210, 0.0520, 0.0900, 0.0680, 0.0720),
         (0.0, 0.0750, 0.1100, 0.2200, 0.6200, 0.3000, 0.1300),
-        (6.0, 0.1300, 0.2100, 0.3800, 0.7800, 0.5000, 0.2800),
-        (15.0, 0.1450, 0.2700, 0.5100, 0.8000, 0.6700, 0.5400),
+        (6.0, 0.1400, 0.2100, 0.3600, 0.8800, 0.5000, 0.2400),
+        (15.0, 0.1600, 0.2700, 0.4700, 0.9200, 0.6600, 0.4200),
         (25.0, 0.1500, 0.3200, 0.6300, 0.7200, 0.7800, 0.8400),
         (45.0, 0.1500, 0.3500, 0.7100, 0.7600, 0.8500, 0.9500),
         (90.0, 0.1600, 0.3800, 0.7700, 0.8000, 0.9000, 1.0000),
     ]
 )
-_SUN_ABOVE_AIR = np.array([2.30, 2.24, 2.16])
-_OPTICAL_DEPTH = np.array([0.10, 0.16, 0.28])  # of clear air at the zenith: red, green, blue
+_SUN_ABOVE_AIR = np.array([2.30, 2.28, 2.33])
+_OPTICAL_DEPTH = np.array([0.10, 0.175, 0.335])  # of clear air at the zenith: red, green, blue
 _SUN_RADIUS_DEG = 0.27
 _MOONLIGHT = np.array([0.010, 0.013, 0.020])
 _CLEAR_FOG_PER_M = 0.0004
@@ -73,15 +73,18 @@ def air(weather: WeatherParameters, now_s: float) -> Air:
     grey = cover**2
     gloom = 1.0 - 0.4 * rain
     zenith, horizon = gloom * _overcast(day[:3], grey), gloom * _overcast(day[3:], grey)
-    sun = sunlight(height_deg) * (1.0 - 0.97 * cover**1.5) * (1.0 - 0.6 * rain)
+    mist = 1.0 - (1.0 - _share(given.fog_density)) ** 3  # of the sun's light, what it spreads over the whole sky
+    clear = sunlight(height_deg) * (1.0 - 0.97 * cover**1.5) * (1.0 - 0.6 * rain)
+    sun = (1.0 - mist) * clear
     light_of_day = float(day[3:].mean())
     towards = _direction(given.sun_azimuth_angle, height_deg)
     above = (0.50 * zenith + 0.26 * horizon) * (1.0 + 0.35 * grey) + 0.9 * _MOONLIGHT * (1.0 - 0.5 * grey)
+    above += 0.45 * max(0.0, towards[2]) * mist * clear
     fog = 0.85 * horizon + 0.10 * zenith + 0.06 * sun
     return Air(
         *towards,
         sun=_colour(sun),
-        glow=_colour(np.array([1.3, 0.42, 0.06]) * _bump(height_deg, 1.0, 7.0) * (1.0 - 0.8 * grey)),
+        glow=_colour(np.array([1.3, 0.42, 0.06]) * _bump(height_deg, 3.0, 11.0) * (1.0 - 0.8 * grey)),
         zenith=_colour(zenith),
         horizon=_colour(horizon),
         above=_colour(above),

@@ -16,7 +16,7 @@ def test_the_sun_reddens_and_fades_as_it_sets_and_is_gone_by_night() -> None:
 
 
 def test_sunlight_through_one_air_mass_is_what_beer_and_lambert_say() -> None:
-    assert sunlight(90.0) == pytest.approx(np.array([2.30, 2.24, 2.16]) * np.exp([-0.10, -0.16, -0.28]), rel=1e-3)
+    assert sunlight(90.0) == pytest.approx(np.array([2.30, 2.28, 2.33]) * np.exp([-0.10, -0.175, -0.335]), rel=1e-3)
 
 
 @pytest.mark.parametrize("height_deg", [-90.0, -45.0, -20.0, 5.0, 20.0, 45.0, 90.0])
@@ -48,3 +48,10 @@ def test_no_weather_gives_a_number_that_is_none() -> None:
         for height in (-90.0, 0.0, 90.0):
             made = air(WeatherParameters(*([value] * 14))._replace(sun_altitude_angle=height), 1.0)
             assert np.isfinite(np.concatenate([np.ravel(field) for field in made])).all()
+
+
+def test_fog_spreads_the_suns_light_over_the_sky() -> None:
+    clear, foggy = air(CLEAR_NOON, 0.0), air(CLEAR_NOON._replace(fog_density=60.0), 0.0)
+    assert max(foggy.sun) < 0.1 * max(clear.sun)
+    assert min(foggy.above) > 1.3 * min(clear.above)
+    assert brightness(foggy) > 0.4 * brightness(clear)
