@@ -168,8 +168,7 @@ def test_a_sensor_that_the_simulator_cannot_serve_gets_a_sentence(run: Runner, t
     (tmp_path / "ears.json").write_text('[{"type": "sensor.other.v2x", "id": "EAR"}]')
     code, result = run(doing(tmp_path, "return None", str(tmp_path / "ears.json")))
     assert (code, result["status"]) == (2, "SetupFailed")
-    assert "sensor 'EAR' (sensor.other.v2x) of" in result["message"]
-    assert "cannot be served by this simulator" in result["message"]
+    assert "ears.json: sensor 'EAR' (sensor.other.v2x) cannot be served by this simulator" in result["message"]
 
 
 @pytest.mark.slow
