@@ -14,7 +14,8 @@ KINDS = ("depth", "semantic", "instance", "normals", "flow", "coloured")
 
 
 def test_stages_of_the_gpu_make_the_pictures_of_the_cpu() -> None:
-    simulated = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": str(TESTS)}
+    path = os.pathsep.join([str(TESTS), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]).rstrip(os.pathsep)
+    simulated = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": path}
     program = TESTS / "fakes" / "gpu_in_python.py"
     done = subprocess.run([sys.executable, program], env=simulated, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
