@@ -4,6 +4,7 @@ Building it takes a second. So it begins in the background when such a sensor is
 is left of it. What is built is the same whenever it began.
 """
 
+from functools import cache as once
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -57,15 +58,22 @@ def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
     # here, not above: a server that nobody looks with does without
     from linden.casting.choose import caster_of  # noqa: PLC0415 - see above
     from linden.sensors.camera.picture.rgb import looks_of  # noqa: PLC0415 - see above
-    from linden.sensors.warming import warm_up  # noqa: PLC0415 - see above
 
     standing = present_of(whole, wanted.present)
     caster = in_background(lambda: caster_of(standing, bodies.meshes, device))
     if device == CPU:
-        warm_up()  # out of the cache, where a start compiled everything
+        _load_kernels()
     faces = table_of(standing, bodies.meshes)
     looks_of(standing, bodies.meshes)
     return Stage(wanted.scene, wanted.statics, standing, faces, caster.result())
+
+
+@once
+def _load_kernels() -> None:
+    """Load what a first picture needs of machine code, out of the cache, where a start compiled everything."""
+    from linden.sensors.warming import warm_up  # noqa: PLC0415 - as in build
+
+    warm_up()
 
 
 def present_of(mesh: Mesh, present: NDArray[np.bool_]) -> Mesh:

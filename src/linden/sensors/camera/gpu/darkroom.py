@@ -18,10 +18,9 @@ from linden.sensors.camera.gpu.kernels import KERNELS
 from linden.sensors.camera.gpu.letters import Array, Letters, lit, of_light, of_motion, of_owners, posed
 from linden.sensors.camera.gpu.shading import Shading
 from linden.sensors.camera.picture.relief import Relief
-from linden.sensors.camera.picture.rgb import light_of, looks_of
+from linden.sensors.camera.picture.rgb import light_of, looks_of, places_of
 from linden.sensors.camera.picture.shadows import shines
 from linden.sensors.camera.picture.spots import Places
-from linden.sensors.camera.rays import directions, pixel_of_ray
 from linden.sensors.camera.spec import CameraSpec, Film, Picture
 from linden.sensors.looking import Look
 from linden.sensors.seen import Faces, Seen
@@ -66,18 +65,17 @@ class GpuDarkroom:
 
     def _paint(self, kind: str, desk: Desk, spec: CameraSpec, look: Look) -> Waiting:
         """Begin a picture of what was measured."""
-        pixel, image = self._pixel(spec), self._image(desk, spec, kind)
+        pixel, image = self._shelf.pixel(spec), self._image(desk, spec, kind)
         columns = self._columns(kind, desk, spec, look)
         kernel, count = getattr(KERNELS, kind), desk.sheet.room
-        work = lambda: desk.gpu.launch(kernel, count, *columns, pixel, image, count)  # noqa: E731 - said in a word
-        desk.run(kind, self._moves, work)
+        desk.run(kind, self._moves, lambda: desk.gpu.launch(kernel, count, *columns, pixel, image, count))
         return desk.gpu.fetching(image)
 
     def _columns(self, kind: str, desk: Desk, spec: CameraSpec, look: Look) -> tuple[Any, ...]:
         """Return what the kernel of a kind is given before the picture."""
         sheet = desk.sheet
         if kind == "depth":
-            return sheet.hits.distance_m, self._directions(spec)
+            return sheet.hits.distance_m, self._shelf.directions(spec)
         if kind == "normals":
             return sheet.hits, desk.sent("view", {"view": posed(look.pose)})["view"]
         if kind == "flow":
@@ -92,10 +90,11 @@ class GpuDarkroom:
 
     def _shine(self, desk: Desk, spec: CameraSpec, film: Film, look: Look) -> Waiting:
         """Begin a picture of light."""
-        here, stage = light_of(look.pose, look.seen), self._on(look.seen)
-        places = self._once("places", look, lambda: Places(**self._sent("places", here.places._asdict())))
+        stage = self._on(look.seen)
+        places = self._once("places", look, lambda: Places(**self._sent("places", places_of(look.seen)._asdict())))
+        here = light_of(look.pose, look.seen, places)
         desk.gpu.after(self._gpu)
-        light = lit(places, desk.sent("light", of_light(here, film, look.pose)))
+        light = lit(here.places, desk.sent("light", of_light(here, film, look.pose)))
         image = self._image(desk, spec, "coloured")
         shading = Shading(desk, self._shelf, spec, film, *stage, light, image, sunny=shines(here.air))
         desk.run(("coloured", film, shading.sunny), self._moves, shading.whole)
@@ -119,7 +118,7 @@ class GpuDarkroom:
             if taken == len(self._desks[spec]):
                 self._desks[spec].append(Desk(self._caster, spec))
             desk = self._desks[spec][taken]
-            sheet, towards = desk.sheet, self._directions(spec)
+            sheet, towards = desk.sheet, self._shelf.directions(spec)
             desk.gpu.after(self._gpu)
             view = desk.sent("aim", {"view": posed(look.pose)})["view"]
 
@@ -155,12 +154,6 @@ class GpuDarkroom:
             relief = looks_of(seen.standing, seen.bodies).relief
             self._stage = Faces(*map(self._gpu.put, seen.faces)), Relief(*map(self._gpu.put, relief))
         return self._stage
-
-    def _directions(self, spec: CameraSpec) -> Array:
-        return self._shelf.kept(("directions", spec), lambda: directions(spec))
-
-    def _pixel(self, spec: CameraSpec) -> Array:
-        return self._shelf.kept(("pixel", spec), lambda: pixel_of_ray(spec))
 
     @staticmethod
     def _image(desk: Desk, spec: CameraSpec, kind: str) -> Array:

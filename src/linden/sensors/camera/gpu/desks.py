@@ -10,7 +10,7 @@ from linden.casting.gpu import Gpu, Mailbox
 from linden.casting.warp_caster import WarpCaster
 from linden.sensors.camera.gpu.sheets import Sheet
 from linden.sensors.camera.picture.edges import SAMPLES
-from linden.sensors.camera.rays import directions
+from linden.sensors.camera.rays import directions, pixel_of_ray
 from linden.sensors.camera.spec import CameraSpec
 
 _EDGES = 6
@@ -29,6 +29,14 @@ class Shelf:
         if key not in self._kept:
             self._kept[key] = self._gpu.put(make())
         return self._kept[key]
+
+    def directions(self, spec: CameraSpec) -> Any:  # noqa: ANN401 - an array of numba's
+        """Return (N, 3): see ``rays.directions``."""
+        return self.kept(("directions", spec), lambda: directions(spec))
+
+    def pixel(self, spec: CameraSpec) -> Any:  # noqa: ANN401 - an array of numba's
+        """Return (N,): see ``rays.pixel_of_ray``."""
+        return self.kept(("pixel", spec), lambda: pixel_of_ray(spec))
 
     def numbers(self, count: int) -> Any:  # noqa: ANN401 - an array of numba's
         """Return 0, 1, 2, ... up to ``count`` at least."""

@@ -20,8 +20,9 @@ from linden.compiled import fingerprint
 from linden.sensors.camera.labels import depth_loop, instance_loop, normals_loop, semantic_loop
 from linden.sensors.camera.motion import Eye, flow_loop
 from linden.sensors.camera.picture.develop import develop_loop, excess_loop
-from linden.sensors.camera.picture.edges import SAMPLES, mark_loop, split_loop
+from linden.sensors.camera.picture.edges import SAMPLES, mark_loop, mean_loop, split_loop
 from linden.sensors.camera.picture.lamps import LampGrid
+from linden.sensors.camera.picture.noise import narrow
 from linden.sensors.camera.picture.relief import Relief
 from linden.sensors.camera.picture.rgb import BRIGHTEST
 from linden.sensors.camera.picture.shade import shade_loop
@@ -37,7 +38,7 @@ cuda: Any = numba_cuda
 """What it offers it makes up as it is loaded: nothing of that is typed."""
 
 _CAMERA = Path(__file__).parents[1]
-_BRIGHTEST = np.float32(BRIGHTEST)
+_BRIGHTEST = narrow(BRIGHTEST)
 
 
 def _build(built_of: int) -> SimpleNamespace:  # noqa: C901, PLR0915 - many small ones, each by itself
@@ -160,11 +161,7 @@ def _build(built_of: int) -> SimpleNamespace:  # noqa: C901, PLR0915 - many smal
     def mean(samples: Array, rows: Array, first: int, light: Array, asked: Array) -> None:
         i = cuda.grid(1)
         if SAMPLES * i < asked[0] and built_of >= 0:
-            for channel in range(3):
-                total = np.float32(0.0)
-                for sample in range(SAMPLES):
-                    total += min(samples[SAMPLES * i + sample, channel], _BRIGHTEST)
-                light[rows[first + i], channel] = total / np.float32(SAMPLES)
+            mean_loop(samples, _BRIGHTEST, rows[first:], light, i, i + 1)
 
     @kernel
     def excess(light: Array, factor: Array, over: Array, count: int) -> None:

@@ -10,7 +10,7 @@ from linden.sensors.camera.picture import develop
 from linden.sensors.camera.picture.edges import SAMPLES, offsets
 from linden.sensors.camera.picture.relief import Relief
 from linden.sensors.camera.picture.spots import SHINE
-from linden.sensors.camera.rays import directions, pixel_of_ray, tile_counts
+from linden.sensors.camera.rays import tile_counts
 from linden.sensors.camera.spec import CameraSpec, Film
 from linden.sensors.seen import Faces
 
@@ -71,10 +71,9 @@ class Shading:
     def _refine(self, first: int) -> None:
         """Take more rays of edges, from number ``first`` on as many as there is room for."""
         spec, fine, most = self._spec, self._desk.fine, self.edges_at_once
-        towards = self._shelf.kept(("directions", spec), lambda: directions(spec))
         aside = self._shelf.kept(("offsets", spec), lambda: offsets(spec))
         pose = aside, self._lit.view, fine.rays, fine.asked, most
-        self._gpu.launch(KERNELS.split, most, towards, self._rows, self.found, first, *pose)
+        self._gpu.launch(KERNELS.split, most, self._shelf.directions(spec), self._rows, self.found, first, *pose)
         fine.cast()
         self._shine(fine, 0.5)
         self._gpu.launch(KERNELS.mean, most, fine.light, self._rows, first, self._desk.sheet.light, fine.asked)
@@ -96,6 +95,5 @@ class Shading:
         gpu.launch(KERNELS.excess, tiles, sheet.light, factor, over, tiles)
         gpu.launch(KERNELS.spread, tiles, over, downwards, across, across, halo, tiles)
         gpu.launch(KERNELS.spread, tiles, halo, sideways, across, 1, over, tiles)
-        pixel = shelf.kept(("pixel", self._spec), lambda: pixel_of_ray(self._spec))
-        made = pixel, self._spec.width_px, self._lit.rain, table, self._image, sheet.room
+        made = shelf.pixel(self._spec), self._spec.width_px, self._lit.rain, table, self._image, sheet.room
         gpu.launch(KERNELS.film, sheet.room, sheet.light, factor, over.reshape(down, across, 3), across, *made)

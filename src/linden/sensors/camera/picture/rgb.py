@@ -63,7 +63,7 @@ class Light(NamedTuple):
 
 def picture(spec: CameraSpec, film: Film, pose: Transform, rays: Rays, hits: Hits, seen: Seen) -> NDArray[np.uint8]:
     """Return (height, width, 4) bytes B, G, R, A of what a camera at ``pose`` sees along its rays."""
-    lit = light_of(pose, seen)
+    lit = light_of(pose, seen, places_of(seen))
     pixel_rad = 1.0 / spec.focal_px
     sun = sunny(seen.caster, rays, hits, lit.air)
     light = shone(rays, hits, sun, pixel_rad, lit, seen)
@@ -81,14 +81,15 @@ def shone(rays: Rays, hits: Hits, sun: Sunshine, pixel_rad: float, lit: Light, s
     return shaded(rays, hits, sun.lit, pixel_rad, seen.faces, lit.looks.relief, lit.places, lit.air, lit.lamps)
 
 
-def light_of(pose: Transform, seen: Seen) -> Light:
-    """Return what lights what a camera at ``pose`` sees."""
+def light_of(pose: Transform, seen: Seen, places: Places) -> Light:
+    """Return what lights what a camera at ``pose`` sees; ``places`` are the same for all cameras of a moment."""
     looks = looks_of(seen.standing, seen.bodies)
     lamps = lamps_near(np.array(pose.location), seen, looks.standing_lamps, looks.body_lamps)
-    return Light(air(seen.weather, seen.now_s), looks, _places(seen), lamps)
+    return Light(air(seen.weather, seen.now_s), looks, places, lamps)
 
 
-def _places(seen: Seen) -> Places:
+def places_of(seen: Seen) -> Places:
+    """Return what pictures know of what stands and of each body."""
     bodies = seen.instances
     world = np.concatenate([np.eye(3, 4, dtype=np.float32)[None], bodies.pose])
     back = np.empty_like(world)
