@@ -74,12 +74,13 @@ def run(arguments: argparse.Namespace) -> int:
     # here, not above: `linden --help` does not pay for them
     from tqdm import tqdm  # noqa: PLC0415 - see above
 
-    from linden.pointcloud.merge import merge  # noqa: PLC0415 - see above
+    from linden.pointcloud.merge import merge, working_folder  # noqa: PLC0415 - see above
     from linden.pointcloud.pcd_writing import PcdWriter  # noqa: PLC0415 - see above
 
     job = _driven(arguments) if arguments.source is None else _existing(arguments)
     with (
         broken_off_cleanly(),
+        working_folder() as folder,  # before anybody sees that the work has begun, and so before anybody breaks it off
         PcdWriter(arguments.output, job.remark, labelled=job.labelled) as writer,
         tqdm(
             total=job.amount,
@@ -88,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
             mininterval=0.1 if sys.stderr.isatty() else _QUIET_S,
         ) as bar,
     ):
-        merged = merge(job.scans, writer, arguments.voxel, bar.update)
+        merged = merge(job.scans, writer, arguments.voxel, Path(folder), bar.update)
     _say(f"{arguments.output}: {merged.written:,} of {merged.came:,} points, {_size(arguments.output)}")
     _say(job.remark)
     return 0

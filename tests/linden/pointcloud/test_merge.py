@@ -19,7 +19,7 @@ def test_one_point_is_left_of_each_cell_and_all_where_there_are_none(
 ) -> None:
     told: list[int] = []
     with PcdWriter(tmp_path / "a.pcd", "") as writer:
-        merged = merge(iter(SCANS), writer, voxel_m, told.append)
+        merged = merge(iter(SCANS), writer, voxel_m, tmp_path, told.append)
     assert merged == (6, written)
     assert told == [1, 1, 1]
     assert sum(len(cloud.points_m) for cloud in clouds_of(tmp_path / "a.pcd")) == written
@@ -34,5 +34,5 @@ def test_scans_are_taken_one_at_a_time(tmp_path: Path) -> None:
             yield scan
 
     with PcdWriter(tmp_path / "a.pcd", "") as writer:
-        merge(scans(), writer, 0.1, lambda _amount: asked.append("done"))
+        merge(scans(), writer, 0.1, tmp_path, lambda _amount: asked.append("done"))
     assert asked == ["scan", "done"] * 3
