@@ -5,6 +5,10 @@ from __future__ import annotations
 import enum
 from typing import NamedTuple
 
+EXIT_CODES = (
+    "exit status: 0 completed, 1 the agent failed, 2 something given was wrong, 3 the simulator failed, 130 interrupted"
+)
+
 
 class Fault(enum.Enum):
     """Who answers for the end of a run; the value is the exit code."""

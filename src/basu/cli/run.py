@@ -1,0 +1,98 @@
+"""``basu run``: drives an agent along its route and scores the drive."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from basu.cli.scoring import add_scoring, adjusted
+from basu.errors import UserError
+from basu.metrics.score import Scoring
+from basu.options import RunOptions
+from basu.outcome import EXIT_CODES
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+LATER = {
+    "record": "recording follows with the RecordingManager",
+    "resume": "resuming an interrupted campaign follows with campaigns",
+    "hud": "the head-up display follows",
+    "sumo": "SUMO co-simulation follows with the TrafficManager",
+}
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """The command ``run``."""
+    run = commands.add_parser(
+        "run", help="drive a route and score the drive", description=run_agent.__doc__, epilog=EXIT_CODES
+    )
+    run.add_argument(
+        "agent", nargs="?", metavar="AGENT", help="a name (`basu list`), FILE.py, or FILE.py:Class (default: basic)"
+    )
+    run.add_argument("--agent", dest="agent_option", metavar="AGENT", help="the same, in ScenarioRunner's way")
+    run.add_argument("--host", help="a simulator that runs already (default: start one, end it afterwards)")
+    run.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
+    run.add_argument(
+        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
+    )
+    run.add_argument("--routes", metavar="FILE", help="route XML (default: as the agent's config says)")
+    run.add_argument("--route-id", metavar="ID", help="only this route of the file (default: all)")
+    run.add_argument("--repetitions", type=int, default=1, metavar="N", help="(default: %(default)s)")
+    run.add_argument("--seed", type=int, default=0, help="of all that is random (default: %(default)s)")
+    run.add_argument(
+        "--output", type=Path, default=Path("runs"), metavar="DIR", help="for run folders (default: %(default)s)"
+    )
+    run.add_argument(
+        "--step-limit",
+        type=float,
+        default=10.0,
+        metavar="S",
+        help="wall time for one step of the agent (default: %(default)s)",
+    )
+    run.add_argument("--debug", action="store_true", help="show the traceback of an agent that fails")
+    for name, why in LATER.items():
+        run.add_argument(f"--{name}", action="store_true", help=f"not in this version: {why}")
+    add_scoring(run)
+    run.set_defaults(command=run_agent)
+
+
+def run_agent(arguments: argparse.Namespace) -> int:
+    """Drive an agent along its route, faster than real time, and leave a scored run folder."""
+    for name, why in LATER.items():
+        if getattr(arguments, name):
+            raise UserError(f"--{name} is not there yet: {why}; run without it")
+    if arguments.agent is not None and arguments.agent_option is not None:
+        raise UserError(f"two agents are named, {arguments.agent} and {arguments.agent_option}; name one")
+    if arguments.repetitions < 1:
+        raise UserError(f"--repetitions is {arguments.repetitions}; it must be at least 1")
+    for option in ("timeout", "step_limit"):
+        if not getattr(arguments, option) > 0.0:
+            raise UserError(f"--{option.replace('_', '-')} is {getattr(arguments, option)} s; it must be positive")
+    options = RunOptions(
+        agent=arguments.agent or arguments.agent_option or "basic",
+        host=arguments.host,
+        port=arguments.port,
+        timeout_s=arguments.timeout,
+        routes=arguments.routes,
+        route_id=arguments.route_id,
+        repetitions=arguments.repetitions,
+        seed=arguments.seed,
+        output=arguments.output,
+        step_limit_s=arguments.step_limit,
+        debug=arguments.debug,
+    )
+    scoring = adjusted(Scoring(), arguments)
+    from basu.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
+
+    before = signal.signal(signal.SIGTERM, _terminated)  # ends a run as Ctrl-C does: what was measured is written
+    try:
+        return run(options, scoring)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _terminated(_number: int, _frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt
