@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from basu.errors import UserError
+from basu.routing.route_weather import WeatherMark, read_weather
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -47,14 +48,29 @@ class RouteDescription:
     points: tuple[RoutePoint, ...]
     stops: tuple[StopMark, ...]
     source: str  # file name, for sentences
+    weather: tuple[WeatherMark, ...] = ()  # as the file gives it along the way; empty where it gives none
 
 
 def read_routes(path: Path) -> tuple[RouteDescription, ...]:
     """Read every route of a file, and of the files that it includes (``<include file="…">``, seen from itself).
 
     Raises:
-        UserError: the file is missing, empty, not route XML, or holds a point that is not one.
+        UserError: the file is missing, empty, not route XML, holds a point that is not one, or an id twice.
     """
+    routes = _read(path, ())
+    first: dict[str, str] = {}
+    for route in routes:
+        if route.id in first:
+            raise UserError(
+                f"route file {path}: the id '{route.id}' is given twice (in {first[route.id]} and {route.source}); "
+                "each route needs its own"
+            )
+        first[route.id] = route.source
+    return routes
+
+
+def _read(path: Path, including: tuple[Path, ...]) -> tuple[RouteDescription, ...]:
+    """The routes of one file; ``including`` are the files that led here."""
     try:
         text = path.read_bytes()
     except OSError as error:
@@ -67,17 +83,20 @@ def read_routes(path: Path) -> tuple[RouteDescription, ...]:
         root = etree.fromstring(text, etree.XMLParser(resolve_entities=False, no_network=True))
     except etree.XMLSyntaxError as error:
         raise UserError(f"route file {path} is not XML: {error}") from error
-    included = [route for element in root.iterfind("include") for route in read_routes(_included(path, element))]
+    chain = (*including, path.resolve())
+    included = [
+        route for element in root.iterfind("include") for route in _read(_included(path, element, chain), chain)
+    ]
     elements = [root] if root.tag == "route" else list(root.iter("route"))
     if not elements and not included:
         raise UserError(f"route file {path} holds no <route> (its outermost element is <{root.tag}>)")
     return (*included, *(_description(element, path) for element in elements))
 
 
-def _included(path: Path, element: etree._Element) -> Path:
-    """The file that an <include> of ``path`` names."""
+def _included(path: Path, element: etree._Element, chain: tuple[Path, ...]) -> Path:
+    """The file that an <include> of ``path`` names; none of the ``chain`` that led to it."""
     name = element.get("file")
-    if not name or (path.parent / name).resolve() == path.resolve():
+    if not name or (path.parent / name).resolve() in chain:
         raise UserError(
             f"route file {path}, line {element.sourceline}: <include> must name another file in its attribute 'file'"
         )
@@ -102,7 +121,9 @@ def _description(element: etree._Element, path: Path) -> RouteDescription:
         StopMark(id=e.get("id") or str(number), name=e.get("name") or f"stop {number}", point=_point(e, path))
         for number, e in enumerate(element.iterfind("stops/stop"), start=1)
     )
-    return RouteDescription(id=identity, town=town, points=points, stops=stops, source=str(path))
+    return RouteDescription(
+        id=identity, town=town, points=points, stops=stops, source=str(path), weather=read_weather(element, path)
+    )
 
 
 def _point(element: etree._Element, path: Path) -> RoutePoint:

@@ -78,3 +78,16 @@ def test_a_mistake_gets_a_sentence(tmp_path: Path, text: str, sentence: str) -> 
 def test_a_missing_file_gets_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"nowhere.xml cannot be read .* `basu list`"):
         read_routes(tmp_path / "nowhere.xml")
+
+
+def test_two_routes_of_one_id_get_a_sentence(tmp_path: Path) -> None:
+    double = LEADERBOARD_2.replace("</routes>", LEADERBOARD_2.removeprefix("<routes>"))
+    with pytest.raises(UserError, match="the id '3' is given twice"):
+        read_routes(written(tmp_path, double))
+
+
+def test_files_that_include_each_other_get_a_sentence(tmp_path: Path) -> None:
+    written(tmp_path, '<routes><include file="other.xml"/></routes>')
+    (tmp_path / "other.xml").write_text('<routes><include file="route.xml"/></routes>')
+    with pytest.raises(UserError, match="must name another file"):
+        read_routes(tmp_path / "route.xml")
