@@ -14,13 +14,13 @@ from basu.errors import (
     SimulatorError,
     UserError,
 )
-from basu.managers.base_manager import Frame, Run, ego_in
+from basu.managers.base_manager import Frame, Live, Run, ego_in
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.routes_manager import RoutesManager
 from basu.outcome import Outcome, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from basu.history import History
     from basu.managers.agents_manager import AgentsManager
@@ -54,19 +54,25 @@ def drive(
     scoring: Scoring,
     *,
     why_gone: Callable[[], str | None],
-    on_tick: Callable[[RoutesManager, MetricsManager, Frame], None],
+    observers: Callable[[Live], Sequence[BaseManager]],
 ) -> Driven:
-    """Drive one run to its end, whatever that is; ``why_gone`` tells whether the simulator is still there."""
+    """Drive one run to its end, whatever that is.
+
+    ``why_gone`` tells whether the simulator is still there; ``observers`` makes those who look on and change
+    nothing; they are ticked after all others.
+    """
     routes = RoutesManager()
     metrics = MetricsManager(agents, routes, scoring)
-    managers: tuple[BaseManager, ...] = (sensors, routes, metrics, agents)
+    live = Live(agents, sensors, routes, metrics)
+    onlookers = tuple(observers(live))
+    managers: tuple[BaseManager, ...] = (sensors, routes, metrics, agents, *onlookers)
     began_s = time.perf_counter()
     bug = agent_error = None
     try:
         for manager in managers:
             manager.setup(run)
         began_s = time.perf_counter()
-        outcome = _until_over(run, agents, sensors, routes, metrics, on_tick)
+        outcome = _until_over(run, live, onlookers)
     except KeyboardInterrupt:
         outcome = Outcome(Status.INTERRUPTED, "interrupted by the user")
     except AgentError as error:
@@ -88,15 +94,9 @@ def drive(
     return Driven(outcome, history, wall_s, metrics.first_frame, bug, agent_error)
 
 
-def _until_over(
-    run: Run,
-    agents: AgentsManager,
-    sensors: SensorsManager,
-    routes: RoutesManager,
-    metrics: MetricsManager,
-    on_tick: Callable[[RoutesManager, MetricsManager, Frame], None],
-) -> Outcome:
+def _until_over(run: Run, live: Live, onlookers: tuple[BaseManager, ...]) -> Outcome:
     """Tick, sense, ask the agent, apply, record; until the route manager says that it is over."""
+    agents, sensors, routes, metrics = live
     frame = _next_frame(run, None)
     while True:
         sensors.tick(frame)
@@ -106,7 +106,8 @@ def _until_over(
         finally:  # what the agent failed in is recorded as well
             routes.tick(frame)
             metrics.tick(frame)
-        on_tick(routes, metrics, frame)
+        for onlooker in onlookers:
+            onlooker.tick(frame)
         if routes.outcome is not None:
             return routes.outcome
         run.vehicle.apply_control(agents.control)

@@ -17,7 +17,7 @@ from basu.drive import drive
 from basu.errors import UserError
 from basu.managers.agent_loader import load_agent
 from basu.managers.agents_manager import AgentsManager
-from basu.managers.base_manager import Run
+from basu.managers.base_manager import BaseManager, Live, Run
 from basu.managers.sensor_file import read_sensors
 from basu.managers.sensors_manager import SensorsManager
 from basu.options import STEP_S
@@ -176,7 +176,6 @@ def _one(
         asking("getting the vehicle ready"),
         ticked_by_us(world, STEP_S),
         vehicle_at_start(world, route, agents.config.vehicle) as vehicle,
-        ProgressBar(route.length_m, STEP_S) as bar,
     ):
         world.set_weather(weather_called(agents.config.weather))
         this_run = Run(
@@ -190,7 +189,7 @@ def _one(
             seed=options.seed,
             timeout_s=options.timeout_s,
         )
-        driven = drive(this_run, agents, sensors, scoring, why_gone=simulator.why_gone, on_tick=bar.tick)
+        driven = drive(this_run, agents, sensors, scoring, why_gone=simulator.why_gone, observers=_observers)
     if options.debug and driven.agent_error is not None:
         traceback.print_exception(driven.agent_error)
     label = _label(description, prepared)
@@ -217,6 +216,11 @@ def _agents_own(agents: AgentsManager, given: RouteDescription) -> RouteDescript
     if points is None:
         return None
     return RouteDescription(id=f"{given.id}-own", town=given.town, points=points, stops=(), source=given.source)
+
+
+def _observers(live: Live) -> list[BaseManager]:
+    """Who looks on while a run lasts."""
+    return [ProgressBar(live)]
 
 
 def _label(description: RouteDescription, prepared: Plan) -> str:

@@ -5,9 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from basu.history import FRAME, Collision, Facts, History, LaneInvasion, Recorder, Vehicle
+from basu.history.model import NO_LIGHT
 from basu.routing import Control, ControlKind, Route, Stop
 
 STEP_S = 0.05
+DRIVING = 2  # carla.LaneType
 VEHICLE = Vehicle(type_id="vehicle.easymile.ez10", front_m=2.0, rear_m=2.0, width_m=2.0)
 
 
@@ -62,9 +64,15 @@ def driven(
             "y_m": lateral_m,
             "velocity_x_mps": speed_mps,
             "speed_limit_mps": limit_mps,
-            "traffic_light_state": -1,
+            "traffic_light_state": NO_LIGHT,
             "route_s_m": x_m,
             "lateral_m": lateral_m,
+            "route_light": NO_LIGHT,
+            "road_id": 1,
+            "lane_id": -1,
+            "lane_type": DRIVING,
+            "lane_offset_m": lateral_m,
+            "lane_width_m": 3.5,
         }
         recorder.frame([float(values.get(name, 0.0)) for name in FRAME.names or ()])
         x_m += speed_mps * STEP_S
@@ -73,7 +81,13 @@ def driven(
     for invasion in lane_invasions:
         recorder.lane_invasion(invasion)
     return recorder.history(
-        Facts(step_s=STEP_S, vehicle=VEHICLE, route=route or straight_route(), actor_types={9: "vehicle.audi.tt"})
+        Facts(
+            step_s=STEP_S,
+            vehicle=VEHICLE,
+            route=route or straight_route(),
+            actor_types={9: "vehicle.audi.tt"},
+            actor_sizes={9: (2.0, 0.9)},
+        )
     )
 
 

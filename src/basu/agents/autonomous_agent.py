@@ -46,6 +46,7 @@ class AutonomousAgent(ABC):
         route: the route to follow, joined along the lanes; None where the run has none.
         config_values: what ``config`` returned, completed by BASU with what the command line overrode.
         time_step_s: simulated seconds between two calls of ``run_step``.
+        manual: whether a person drives at the moment; an agent that lets persons drive keeps it true meanwhile.
     """
 
     client: carla.Client
@@ -55,6 +56,7 @@ class AutonomousAgent(ABC):
     route: Route | None
     config_values: Mapping[str, Any]
     time_step_s: float
+    manual: bool = False
 
     def bind(
         self,

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 HISTORY_FILE, FACTS_FILE = "history.parquet", "route.json"
-FACTS_SCHEMA_VERSION = 1
+FACTS_SCHEMA_VERSION = 2
 
 
 def write_history(folder: Path, history: History) -> None:
@@ -69,6 +69,7 @@ def facts_to_json(facts: Facts) -> str:
                 "width_m": vehicle.width_m,
             },
             "actor_types": {str(key): facts.actor_types[key] for key in sorted(facts.actor_types)},
+            "actor_sizes": {str(key): list(facts.actor_sizes[key]) for key in sorted(facts.actor_sizes)},
             "route": route_to_json(facts.route),
         }
     )
@@ -83,6 +84,7 @@ def facts_from_json(text: str) -> Facts:
         step_s=document["step_s"],
         vehicle=Vehicle(**document["vehicle"]),
         actor_types={int(key): value for key, value in document["actor_types"].items()},
+        actor_sizes={int(key): (half[0], half[1]) for key, half in document["actor_sizes"].items()},
         route=route_from_json(document["route"]),
     )
 

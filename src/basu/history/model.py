@@ -44,9 +44,21 @@ FRAME = np.dtype(
         ("hand_brake", "<i1"),
         ("reverse", "<i1"),
         ("speed_limit_mps", "<f8"),  # as the simulator posts it to the vehicle; 0 where it posts none
-        ("traffic_light_state", "<i1"),  # carla.TrafficLightState of the light the vehicle stands under, -1 for none
+        (
+            "traffic_light_state",
+            "<i1",
+        ),  # carla.TrafficLightState of the light the vehicle stands under, NO_LIGHT for none
         ("route_s_m", "<f8"),  # progress along the planned route
         ("lateral_m", "<f8"),  # off the route, positive to the right
+        ("route_light", "<i1"),  # of the next light on the route that the rear has not passed, as above
+        ("manual", "<i1"),  # a person drives
+        ("road_id", "<i4"),  # the lane under the vehicle's origin, whatever its type
+        ("lane_id", "<i4"),
+        ("lane_type", "<i4"),  # carla.LaneType; 0 where there is no lane
+        ("lane_offset_m", "<f8"),  # off that lane's middle, positive to the right; nan where there is none
+        ("lane_heading_rad", "<f8"),  # the vehicle's yaw less the lane's; nan where there is none
+        ("lane_width_m", "<f8"),  # nan where there is none
+        ("in_junction", "<i1"),
     ]
 )
 
@@ -63,6 +75,7 @@ OTHER = np.dtype(
         ("velocity_y_mps", "<f8"),
     ]
 )
+NO_LIGHT = -1
 NEAREST, NEAR_M = 16, 60.0  # how many others are recorded, and out to which distance
 
 
@@ -102,6 +115,7 @@ class Facts:
     vehicle: Vehicle
     route: Route
     actor_types: Mapping[int, str]  # blueprint ids of all who were ever near
+    actor_sizes: Mapping[int, tuple[float, float]]  # half the length and half the width of their boxes, m
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

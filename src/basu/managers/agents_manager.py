@@ -42,6 +42,11 @@ class AgentsManager(BaseManager):
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
         self.control = carla.VehicleControl(brake=1.0)
 
+    @property
+    def manual(self) -> bool:
+        """Whether a person drives, and not the agent."""
+        return bool(self._agent.manual)
+
     def own_route(self) -> tuple[RoutePoint, ...] | None:
         """The points of the agent's own plan (``get_initial_route_locations``), None where it has none."""
         given = self._ask("get_initial_route_locations", self._setup_limit_s, self._agent.get_initial_route_locations)

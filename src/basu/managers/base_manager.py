@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     import carla
 
     from basu.managers.agent_config import AgentConfig
+    from basu.managers.agents_manager import AgentsManager
+    from basu.managers.metrics_manager import MetricsManager
+    from basu.managers.routes_manager import RoutesManager
+    from basu.managers.sensors_manager import SensorsManager
     from basu.routing import Route
 
 
@@ -86,6 +90,15 @@ def ego_in(snapshot: carla.ActorSnapshot) -> Ego:
         radians(spin.y),
         radians(spin.z),
     )
+
+
+class Live(NamedTuple):
+    """The managers of a run, for whoever looks on while it lasts."""
+
+    agents: AgentsManager
+    sensors: SensorsManager
+    routes: RoutesManager
+    metrics: MetricsManager
 
 
 class BaseManager(ABC):

@@ -9,8 +9,11 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
+from basu.history.model import NO_LIGHT
 from basu.managers.base_manager import BaseManager
+from basu.managers.lane_under import lane_under
 from basu.managers.neighbours import Neighbours
+from basu.managers.route_lights import RouteLights
 from basu.metrics.score import Scores, Scoring, score
 
 if TYPE_CHECKING:
@@ -21,7 +24,6 @@ if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
     from basu.managers.routes_manager import RoutesManager
 
-NO_LIGHT = -1
 MPS_PER_KMH = 1.0 / 3.6
 
 
@@ -57,6 +59,7 @@ class MetricsManager(BaseManager):
             rear_m=box.extent.x - box.location.x,
             width_m=2.0 * box.extent.y,
         )
+        self._lights = RouteLights(run.world, run.route, self._vehicle.rear_m)
         library = run.world.get_blueprint_library()
         for name, hear in (
             ("sensor.other.collision", self._hear_collision),
@@ -89,6 +92,9 @@ class MetricsManager(BaseManager):
                 light,
                 progress.s_m,
                 progress.lateral_m,
+                self._lights.next_state(progress.s_m),
+                self._agents.manual,
+                *lane_under(self._run.carla_map, frame.ego),
             )
         )
         self._recorder.others(self._neighbours.near(frame))
@@ -111,6 +117,7 @@ class MetricsManager(BaseManager):
             vehicle=self._vehicle,
             route=self._run.route,
             actor_types=dict(self._neighbours.met),
+            actor_sizes=dict(self._neighbours.sizes),
         )
         return self._recorder.history(facts)
 

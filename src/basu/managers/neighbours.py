@@ -17,20 +17,21 @@ MOVING_KINDS = ("vehicle.", "walker.")
 
 
 class Neighbours:
-    """Vehicles and walkers other than the ego. ``met`` holds the type of each that was ever near."""
+    """Vehicles and walkers other than the ego. ``met`` holds the type of each that was ever near, ``sizes`` its box."""
 
     def __init__(self, world: carla.World, ego_id: int) -> None:
         self._world, self._ego_id = world, ego_id
-        self._types: dict[int, str] = {}
+        self._actors: dict[int, carla.Actor] = {}
         self._count = -1
         self.met: dict[int, str] = {}
+        self.sizes: dict[int, tuple[float, float]] = {}  # half the length and half the width, m
 
     def near(self, frame: Frame) -> list[tuple[float, ...]]:
         """Rows of ``history.OTHER``, the nearest first, ties by id."""
         if len(frame.snapshot) != self._count or frame.tick % LOOK_AGAIN_TICKS == 0:
             self._look_again(len(frame.snapshot))
         found: list[tuple[float, int, carla.ActorSnapshot]] = []
-        for actor_id in self._types:
+        for actor_id in self._actors:
             actor = frame.snapshot.find(actor_id)
             if actor is None:
                 continue
@@ -43,15 +44,18 @@ class Neighbours:
     def _look_again(self, count: int) -> None:
         """Take the moving actors out of the world's list; costs no call to the server unless somebody is new."""
         self._count = count
-        self._types = {
-            actor.id: actor.type_id
+        self._actors = {
+            actor.id: actor
             for actor in self._world.get_actors()
             if actor.id != self._ego_id and actor.type_id.startswith(MOVING_KINDS)
         }
 
     def _row(self, tick: int, actor_id: int, actor: carla.ActorSnapshot) -> tuple[float, ...]:
         """One row, in the order of ``history.OTHER``."""
-        self.met[actor_id] = self._types[actor_id]
+        if actor_id not in self.met:
+            met = self._actors[actor_id]
+            self.met[actor_id] = met.type_id
+            self.sizes[actor_id] = (met.bounding_box.extent.x, met.bounding_box.extent.y)
         transform, velocity = actor.get_transform(), actor.get_velocity()
         at = transform.location
         return (tick, actor_id, at.x, at.y, at.z, math.radians(transform.rotation.yaw), velocity.x, velocity.y)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.history import OTHER, Facts, History, LaneInvasion, Recorder
+from basu.history import FRAME, OTHER, Facts, History, LaneInvasion, Recorder
 from basu.history.files import FACTS_FILE, HISTORY_FILE, read_history, write_history
 from basu.metrics.score import Scoring, infractions, score
 from basu.routing import Stop
@@ -99,7 +99,7 @@ def test_a_record_cut_short_is_refused_in_a_sentence(tmp_path: Path) -> None:
 def test_facts_of_another_version_are_refused_in_a_sentence(tmp_path: Path) -> None:
     write_history(tmp_path, eventful())
     text = (tmp_path / FACTS_FILE).read_text()
-    (tmp_path / FACTS_FILE).write_text(text.replace('"schema_version": 1', '"schema_version": 99'))
+    (tmp_path / FACTS_FILE).write_text(text.replace('"schema_version": 2', '"schema_version": 99'))
     with pytest.raises(UserError, match="schema version 99"):
         read_history(tmp_path)
 
@@ -107,9 +107,9 @@ def test_facts_of_another_version_are_refused_in_a_sentence(tmp_path: Path) -> N
 def test_events_are_ordered_whatever_the_order_of_their_arrival() -> None:
     recorder = Recorder()
     for tick in range(10):
-        recorder.frame([float(tick)] + [0.0] * 25)
+        recorder.frame([float(tick)] + [0.0] * (len(FRAME) - 1))
     for tick, other in ((7, 2), (3, 9), (7, 1), (10, 1)):
         recorder.collision(hit(tick, "vehicle.audi.tt", other))
-    facts = Facts(step_s=0.05, vehicle=VEHICLE, route=straight_route(), actor_types={})
+    facts = Facts(step_s=0.05, vehicle=VEHICLE, route=straight_route(), actor_types={}, actor_sizes={})
     found = recorder.history(facts).collisions
     assert [(c.tick, c.other_id) for c in found] == [(3, 9), (7, 1), (7, 2)]  # the one after the last frame is left out

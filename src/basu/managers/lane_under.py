@@ -1,0 +1,46 @@
+"""Which lane lies under the vehicle's middle, and how the vehicle stands in it: asked of the client's map."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import carla
+
+if TYPE_CHECKING:
+    from basu.managers.base_manager import Ego
+
+
+class LaneUnder(NamedTuple):
+    """One frame's lane, in the order of the columns of ``history.FRAME``."""
+
+    road_id: int
+    lane_id: int
+    lane_type: int  # the value of carla.LaneType; 0 where there is no lane
+    lane_offset_m: float  # of the vehicle's origin from the lane's middle, positive to the right; nan without a lane
+    lane_heading_rad: float  # the vehicle's yaw less the lane's, in -pi..pi; nan without a lane
+    lane_width_m: float  # nan without a lane
+    in_junction: bool
+
+
+NO_LANE = LaneUnder(0, 0, 0, math.nan, math.nan, math.nan, in_junction=False)
+
+
+def lane_under(carla_map: carla.Map, ego: Ego) -> LaneUnder:
+    """The lane, of whatever type, that the vehicle's origin lies on."""
+    place = carla.Location(ego.x_m, ego.y_m, ego.z_m)
+    waypoint = carla_map.get_waypoint(place, project_to_road=False, lane_type=carla.LaneType.Any)
+    if waypoint is None:
+        return NO_LANE
+    middle = waypoint.transform
+    yaw_rad = math.radians(middle.rotation.yaw)
+    to_x_m, to_y_m = ego.x_m - middle.location.x, ego.y_m - middle.location.y
+    return LaneUnder(
+        road_id=waypoint.road_id,
+        lane_id=waypoint.lane_id,
+        lane_type=int(waypoint.lane_type),
+        lane_offset_m=to_y_m * math.cos(yaw_rad) - to_x_m * math.sin(yaw_rad),
+        lane_heading_rad=math.remainder(ego.yaw_rad - yaw_rad, math.tau),
+        lane_width_m=waypoint.lane_width,
+        in_junction=waypoint.is_junction,
+    )
