@@ -1,0 +1,82 @@
+"""Claims about reading the keyboard through pygame, with SDL's dummy driver."""
+
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from basu.errors import UserError
+from basu.manual.devices import Devices, check_display
+from basu.manual.inputs import Held, Input, Strike
+
+pygame: Any = pytest.importorskip("pygame")
+
+
+@pytest.fixture
+def devices(monkeypatch: pytest.MonkeyPatch) -> Iterator[Devices]:
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    pygame.display.init()
+    pygame.display.set_mode((64, 64))
+    yield Devices()
+    pygame.display.quit()
+
+
+def key(kind: str, name: str) -> None:
+    pygame.event.post(pygame.event.Event(getattr(pygame, kind), key=getattr(pygame, f"K_{name}")))
+
+
+def test_keys_hold_from_down_to_up(devices: Devices) -> None:
+    key("KEYDOWN", "w")
+    key("KEYDOWN", "LEFT")
+    assert devices.read(0) == Input(Held.THROTTLE | Held.LEFT)
+    key("KEYUP", "LEFT")
+    assert devices.read(1) == Input(Held.THROTTLE)
+    key("KEYUP", "w")
+    assert devices.read(2) == Input()
+
+
+def test_a_tap_between_two_ticks_is_not_lost(devices: Devices) -> None:
+    key("KEYDOWN", "SPACE")
+    key("KEYUP", "SPACE")
+    assert devices.read(0) == Input(Held.HAND_BRAKE)
+    assert devices.read(1) == Input()
+
+
+@pytest.mark.parametrize(
+    ("name", "meant"),
+    [
+        ("q", Strike.REVERSE),
+        ("p", Strike.AUTOPILOT),
+        ("h", Strike.HELP),
+        ("TAB", Strike.VIEW),
+        ("F12", Strike.SCREENSHOT),
+        ("ESCAPE", Strike.QUIT),
+    ],
+)
+def test_struck_keys_mean_something_once(devices: Devices, name: str, meant: Strike) -> None:
+    key("KEYDOWN", name)
+    assert devices.read(0) == Input(strikes=(meant,))
+    assert devices.read(1) == Input()
+
+
+def test_closing_the_window_quits(devices: Devices) -> None:
+    pygame.event.post(pygame.event.Event(pygame.QUIT))
+    assert devices.read(0).strikes == (Strike.QUIT,)
+
+
+def test_without_pygame_a_sentence_says_how_to_get_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pygame", None)
+    with pytest.raises(UserError, match=r"pip install 'linden\[hud\]'"):
+        check_display()
+
+
+def test_without_a_display_a_sentence_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    pygame.display.quit()
+    try:
+        with pytest.raises(UserError, match=r"no window can be opened here.*SDL_VIDEODRIVER=dummy"):
+            check_display()
+    finally:
+        pygame.display.quit()
