@@ -16,8 +16,8 @@ import carla
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.errors import UserError
 
-BUILT_IN = {"basic": "basu.agents.basic", "forward": "basu.agents.forward"}
-LATER = ("behavioral", "human")  # named in the thesis; refused by name until they are there
+BUILT_IN = {"basic": "basu.agents.basic", "forward": "basu.agents.forward", "human": "basu.agents.human"}
+LATER = ("behavioral",)  # named in the thesis; refused by name until they are there
 
 
 class LoadedAgent(NamedTuple):

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
     from basu.managers.agent_loader import LoadedAgent
     from basu.managers.base_manager import Frame, Run
+    from basu.manual.person import Person
 
 T = TypeVar("T")
 SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first tick, not during it
@@ -30,8 +31,15 @@ SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first 
 class AgentsManager(BaseManager):
     """Holds the agent. After ``tick``, ``control`` is what it answered; before its first answer, the brake is on."""
 
-    def __init__(self, loaded: LoadedAgent, *, step_limit_s: float, routes: str | None) -> None:
-        """Make the agent and ask for its wishes; ``routes`` is the command line's, which goes before the agent's."""
+    def __init__(
+        self, loaded: LoadedAgent, *, step_limit_s: float, routes: str | None, person: Person | None = None
+    ) -> None:
+        """Make the agent and ask for its wishes.
+
+        ``routes`` is the command line's, which goes before the agent's; ``person`` may take over from the agent.
+        """
+        self.person = person
+        self._by_hand = False
         self._sensor_data: dict[str, tuple[int, Any]] = {}
         self._step_limit_s = step_limit_s
         self._setup_limit_s = max(SETUP_LIMIT_S, step_limit_s)
@@ -45,7 +53,7 @@ class AgentsManager(BaseManager):
     @property
     def manual(self) -> bool:
         """Whether a person drives, and not the agent."""
-        return bool(self._agent.manual)
+        return self._by_hand or bool(self._agent.manual)
 
     def own_route(self) -> tuple[RoutePoint, ...] | None:
         """The points of the agent's own plan (``get_initial_route_locations``), None where it has none."""
@@ -89,6 +97,7 @@ class AgentsManager(BaseManager):
             time_step_s=run.step_s,
         )
         self._bound = True
+        self._step_s = run.step_s
         self._ask("setup", self._setup_limit_s, self._agent.setup)
 
     def perceive(self, sensor_data: dict[str, tuple[int, Any]]) -> None:
@@ -96,11 +105,14 @@ class AgentsManager(BaseManager):
         self._sensor_data = sensor_data
 
     def tick(self, frame: Frame) -> None:
-        """Ask for a control."""
-        del frame
+        """Ask for a control, and the person whether it counts."""
         data = self._sensor_data
         answer = self._ask("run_step", self._step_limit_s, lambda: self._agent.run_step(data))
         self.control = checked(answer, self._name)
+        if self.person is not None:
+            by_hand = self.person.step(frame.tick, self._step_s, self.control)
+            self._by_hand = by_hand is not None
+            self.control = by_hand or self.control
 
     def close(self) -> None:
         """Let the agent put its things away, where it was bound."""

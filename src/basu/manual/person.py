@@ -23,7 +23,7 @@ class Person:
     """
 
     def __init__(self, source: InputSource, *, drives_first: bool, taken_by_any_input: bool, live: bool) -> None:
-        self._source = source
+        self.source = source
         self._taken_by_any_input = taken_by_any_input
         self._hands = Hands()
         self._reverse = False
@@ -40,7 +40,7 @@ class Person:
             dt_s: simulated time from tick to tick.
             agents: the control of the one who is relieved: the wheel is taken over as it stands.
         """
-        self.latest = done = self._source.read(tick)
+        self.latest = done = self.source.read(tick)
         if self._takes_or_gives(done):
             self._hands = Hands(steer=float(agents.steer))
             self._reverse = bool(agents.reverse)
