@@ -64,7 +64,7 @@ def test_one_of_several_agents_is_named_behind_a_colon(tmp_path: Path) -> None:
     [
         ("basik", "no agent called 'basik'; did you mean 'basic'"),
         ("zzz", "there are basic, forward, or name a Python file"),
-        ("human", "the agent 'human' follows in a later version"),
+        ("behavioral", "the agent 'behavioral' follows in a later version"),
         ("behavioral", "the agent 'behavioral' follows in a later version"),
         ("nowhere.py", "file nowhere.py does not exist"),
     ],
