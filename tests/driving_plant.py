@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.driving.driver import Command, Driver, make_task
+from basu.agents.driving.driver import Command, Driver
 from basu.agents.driving.longitudinal import DriveModel
+from basu.agents.driving.task import make_task
 from basu.agents.rules.traffic_lights import Light
 from basu.agents.scene import Body, Ego, Kind, Other
 from basu.routing import Control, ControlKind, Route, Stop

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.agents.autonomous_agent import AutonomousAgent
-from basu.agents.driving.driver import Driver, make_task
+from basu.agents.driving.driver import Driver
 from basu.agents.driving.longitudinal import HOLD_BRAKE
+from basu.agents.driving.task import make_task
 from basu.agents.perception import Lights, Perception, see_ego
 from basu.agents.vehicle_facts import SHUTTLE, read_facts
 from basu.errors import UserError

@@ -1,4 +1,4 @@
-"""What the basic agent knows at one instant: itself, the others, and what the rules of the road ask of it.
+"""What the driving agents know at one instant: themselves, the others, and what the rules of the road ask of them.
 
 World frame throughout: CARLA's (metres, x east, y south, angles in rad clockwise from above).
 """
@@ -65,6 +65,7 @@ class Urgency(enum.IntEnum):
     GENTLE = 0  # a speed to slow down to, a service stop: late is better than rough
     FIRM = 1  # a stop line: firm braking, no more
     VITAL = 2  # somebody's body: all that the tyres give
+    RESERVE = 3  # likewise, where comfort is looked after already: hard braking as soon as nothing less will do
 
 
 class Restriction(NamedTuple):

@@ -8,17 +8,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from basu.agents.driving.manner import BASIC
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from basu.agents.driving.manner import Manner
     from basu.agents.driving.path import Path
 
-LATERAL_ACCEL_MPS2 = 0.9  # in bends; the passengers' limit of 1.0 less a margin for tracking
-LATERAL_JERK_MPS3 = 0.9  # on the way into and out of bends, likewise
+LATERAL_ACCEL_MPS2 = BASIC.lateral_accel_mps2
+LATERAL_JERK_MPS3 = BASIC.lateral_jerk_mps3
 SLOWEST_MPS = 1.5  # no bend is driven slower than this
 STEP_MPS = 0.1  # bends are driven at multiples of this, so that a bend is one speed and not a shiver of many
 AROUND_M = 1.5  # the least limit this near before and behind holds, for the same reason
-POSTED_MARGIN_MPS = 0.25  # kept below a posted limit
 SAVED_MPS = 0.1  # a slowdown is left out where the next one already brings the speed this near to it
 BRAKING_MPS2 = 0.8  # assumed in deciding which slowdowns matter; the planner brakes a little harder
 
@@ -37,11 +39,16 @@ class SpeedProfile:
         return [(self.slowdown_s_m[i] - s_m, self.slowdown_mps[i]) for i in range(first, end)]
 
 
-def bend_limit_mps(curvature_1pm: NDArray[np.float64], spacing_m: float) -> NDArray[np.float64]:
+def bend_limit_mps(
+    curvature_1pm: NDArray[np.float64],
+    spacing_m: float,
+    accel_mps2: float = LATERAL_ACCEL_MPS2,
+    jerk_mps3: float = LATERAL_JERK_MPS3,
+) -> NDArray[np.float64]:
     """The speed at which neither sideways push (v² k) nor its onset (v³ dk/ds) is felt too much. (N,) to (N,)."""
     bend = np.maximum(np.abs(curvature_1pm), 1e-6)
     onset = np.maximum(np.abs(np.gradient(curvature_1pm, spacing_m)), 1e-9)
-    slow = np.minimum(np.sqrt(LATERAL_ACCEL_MPS2 / bend), np.cbrt(LATERAL_JERK_MPS3 / onset))
+    slow = np.minimum(np.sqrt(accel_mps2 / bend), np.cbrt(jerk_mps3 / onset))
     around = round(AROUND_M / spacing_m)
     slowest_near = np.lib.stride_tricks.sliding_window_view(np.pad(slow, around, mode="edge"), 2 * around + 1).min(
         axis=1
@@ -57,7 +64,9 @@ def reachable_mps(limit_mps: NDArray[np.float64], spacing_m: float, braking_mps2
     return speeds
 
 
-def make_profile(path: Path, posted_mps: NDArray[np.float64], cap_mps: float, spacing_m: float) -> SpeedProfile:
+def make_profile(
+    path: Path, posted_mps: NDArray[np.float64], cap_mps: float, spacing_m: float, manner: Manner = BASIC
+) -> SpeedProfile:
     """Combine the limits along a path.
 
     Args:
@@ -65,9 +74,13 @@ def make_profile(path: Path, posted_mps: NDArray[np.float64], cap_mps: float, sp
         posted_mps: (N,) the posted limits beside them, nan where there is none.
         cap_mps: what the vehicle does at most.
         spacing_m: between the points.
+        manner: what bends may feel like, and what is kept to a posted limit.
     """
-    posted = np.where(np.isnan(posted_mps), np.inf, posted_mps - POSTED_MARGIN_MPS)
-    limit = np.minimum(np.minimum(posted, cap_mps), bend_limit_mps(np.asarray(path.curvature_1pm), spacing_m))
+    posted = np.where(np.isnan(posted_mps), np.inf, posted_mps + manner.above_limit_mps)
+    bends = bend_limit_mps(
+        np.asarray(path.curvature_1pm), spacing_m, manner.lateral_accel_mps2, manner.lateral_jerk_mps3
+    )
+    limit = np.minimum(np.minimum(posted, cap_mps), bends)
     limit = np.maximum(limit, SLOWEST_MPS)
     places: list[int] = []
     next_mps, next_index = np.inf, len(limit)

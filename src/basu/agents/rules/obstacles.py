@@ -11,11 +11,13 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.rules.corridor import AHEAD_M, Strip
+from basu.agents.rules.following import MOVING_MPS, floor, follow_mps2
 from basu.agents.scene import Kind, Restriction, Urgency
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from basu.agents.driving.manner import Following
     from basu.agents.driving.path import Path, Place
     from basu.agents.rules.corridor import Footprint
     from basu.agents.scene import Body, Ego, Other
@@ -46,15 +48,24 @@ class Sight(NamedTuple):
 
 
 class Obstacles:
-    """All other bodies; remembers only for whom it waits, so as not to waver."""
+    """All other bodies; remembers only for whom it waits, so as not to waver.
 
-    def __init__(self, path: Path, body: Body) -> None:
-        self._path = path
+    Attributes:
+        path: what is driven along; whoever goes round something changes it.
+        follow_mps2: after a step, the most acceleration that keeps the distance to a moving leader; inf without one.
+    """
+
+    def __init__(self, path: Path, body: Body, following: Following | None = None) -> None:
+        """Without ``following``, leaders are kept off like everything else: at the distance comfort stops in."""
+        self.path = path
+        self.follow_mps2 = math.inf
         self._body = body
+        self._following = following
         self._waited_for: frozenset[int] = frozenset()
 
     def step(self, ego: Ego, place: Place, others: Sequence[Other]) -> list[Restriction]:
         """What the others ask for now."""
+        self.follow_mps2 = math.inf
         near = [other for other in others if self._is_near(ego, other)]
         if not near:
             self._waited_for = frozenset()
@@ -65,7 +76,7 @@ class Obstacles:
             place.s_m + body.front_m,
             body.half_width_m + SIDE_MARGIN_M,
             body.front_m + body.rear_m,
-            Strip(self._path, place),
+            Strip(self.path, place),
         )
         found: list[Restriction] = []
         waited_for: list[int] = []
@@ -74,12 +85,25 @@ class Obstacles:
                 continue
             now = sight.strip.footprint(other)
             if now is not None and now.overlaps(sight.half_width_m):
-                found.extend(_in_the_way(sight, now, other))
+                found.extend(self._in_the_way(sight, now, other))
             elif (restriction := self._about_to_step_in(sight, other)) is not None:
                 found.append(restriction)
                 waited_for.append(other.id)
         self._waited_for = frozenset(waited_for)
         return found
+
+    def _in_the_way(self, sight: Sight, now: Footprint, other: Other) -> Iterable[Restriction]:
+        """What a body asks for that reaches into the strip: nothing beside or behind us, else to follow or to stop."""
+        gap_m = now.from_s_m - sight.front_s_m
+        if gap_m < -2.0 * CONTACT_M:
+            return
+        ahead_mps = other.velocity_x_mps * math.cos(now.heading_rad) + other.velocity_y_mps * math.sin(now.heading_rad)
+        if self._following is not None and other.kind is Kind.VEHICLE and ahead_mps > MOVING_MPS:
+            following = follow_mps2(gap_m, max(sight.ego.speed_mps, 0.0), ahead_mps, self._following)
+            self.follow_mps2 = min(self.follow_mps2, following)
+            yield floor(gap_m, ahead_mps)
+        else:
+            yield _stopping_for(gap_m, ahead_mps, other)
 
     @staticmethod
     def _is_near(ego: Ego, other: Other) -> bool:
@@ -112,16 +136,12 @@ class Obstacles:
         )
 
 
-def _in_the_way(sight: Sight, now: Footprint, other: Other) -> Iterable[Restriction]:
-    """The restriction for a body that reaches into the strip, unless it is beside or behind us."""
-    gap_m = now.from_s_m - sight.front_s_m
-    if gap_m < -2.0 * CONTACT_M:
-        return
-    ahead_mps = other.velocity_x_mps * math.cos(now.heading_rad) + other.velocity_y_mps * math.sin(now.heading_rad)
+def _stopping_for(gap_m: float, ahead_mps: float, other: Other) -> Restriction:
+    """Stop behind a body, which itself drives on for what comfortable braking takes it."""
     square = max(ahead_mps, 0.0) ** 2
     drives_on_m = square / (2.0 * LEADER_BRAKING_MPS2)
     drives_on_at_least_m = square / (2.0 * WORST_BRAKING_MPS2)
-    yield Restriction(
+    return Restriction(
         gap_m - STANDOFF_M + drives_on_m,
         0.0,
         Urgency.VITAL,

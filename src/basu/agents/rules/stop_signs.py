@@ -9,22 +9,24 @@
 from __future__ import annotations
 
 import enum
+import math
 from typing import TYPE_CHECKING
 
 from basu.agents.rules.conflicts import crossing, waiting
-from basu.agents.rules.lines import hold_at, is_resting_at
+from basu.agents.rules.gaps import START_S
+from basu.agents.rules.lines import BEFORE_LINE_M, hold_at, is_resting_at
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.agents.rules.conflicts import Zone
+    from basu.agents.rules.gaps import GapRule
     from basu.agents.scene import Ego, Other, Restriction
 
 REST_S = 1.2  # how long one stands at least
 COURTESY_S = 4.0  # who was there first and has not moved by then is parked, or waves us on
 IMPATIENCE_S = 45.0  # after this a gap that is just long enough will do, so that no stream of cars holds one for ever
 BEYOND_M = 1.0  # a bumper this far over the line is in the crossing, where stopping endangers
-START_S = 1.5  # from the decision until the vehicle really moves, with a margin
 PULL_AWAY_MPS2 = 0.8  # how it accelerates over the crossing
 SHORT_GAP_S = 3.0  # the gap that will do after the patience is spent
 
@@ -40,11 +42,14 @@ class Phase(enum.Enum):
 class StopSign:
     """One stop sign on the way; a route that passes it twice has it twice."""
 
-    def __init__(self, line_s_m: float, zone: Zone, body_length_m: float) -> None:
+    def __init__(self, line_s_m: float, zone: Zone, body_length_m: float, rule: GapRule | None = None) -> None:
+        """Without a ``rule``, a gap is long enough in which ``PULL_AWAY_MPS2`` brings the vehicle through."""
         self.line_s_m = line_s_m
         self.phase = Phase.APPROACHING
         self._zone = zone
-        self._needed_gap_s = START_S + (2.0 * (zone.length_m + body_length_m) / PULL_AWAY_MPS2) ** 0.5
+        self._rule = rule
+        self._way_m = zone.length_m + body_length_m + BEFORE_LINE_M
+        self._needed_gap_s = START_S + math.sqrt(2.0 * (zone.length_m + body_length_m) / PULL_AWAY_MPS2)
         self._rest_since_s = 0.0
         self._before_us: frozenset[int] = frozenset()
 
@@ -69,5 +74,10 @@ class StopSign:
             self._before_us &= waiting(self._zone, ego, others)  # who has set off is seen as crossing from now on
             if self._before_us:
                 return False
-        gap_s = self._needed_gap_s if rested_s < IMPATIENCE_S else min(SHORT_GAP_S, self._needed_gap_s)
-        return not crossing(self._zone, ego, others, gap_s)
+        return not crossing(self._zone, ego, others, self._gap_s(rested_s))
+
+    def _gap_s(self, rested_s: float) -> float:
+        """How long nobody may come."""
+        if self._rule is not None:
+            return self._rule.needed_s(self._way_m, 0.0, rested_s)
+        return self._needed_gap_s if rested_s < IMPATIENCE_S else min(SHORT_GAP_S, self._needed_gap_s)

@@ -6,11 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from basu.agents.driving.manner import BASIC
 from basu.agents.driving.path import SPACING_M, Path, make_path
 from basu.agents.driving.speed_profile import (
     BRAKING_MPS2,
     LATERAL_ACCEL_MPS2,
-    POSTED_MARGIN_MPS,
     SAVED_MPS,
     SLOWEST_MPS,
     STEP_MPS,
@@ -35,7 +35,7 @@ def laid_out(pieces: list[tuple[float, float]], posted_mps: float, cap_mps: floa
 def test_no_speed_is_above_a_limit(pieces: list[tuple[float, float]], posted_mps: float, cap_mps: float) -> None:
     path, profile = laid_out(pieces, posted_mps, cap_mps)
     speeds = np.array(profile.limit_mps)
-    assert (speeds <= max(min(posted_mps - POSTED_MARGIN_MPS, cap_mps), SLOWEST_MPS) + 1e-9).all()
+    assert (speeds <= max(min(posted_mps + BASIC.above_limit_mps, cap_mps), SLOWEST_MPS) + 1e-9).all()
     sideways = speeds**2 * np.abs(path.curvature_1pm)
     assert sideways[speeds > SLOWEST_MPS].max(initial=0.0) <= LATERAL_ACCEL_MPS2 + 1e-9
 
