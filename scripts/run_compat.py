@@ -1,5 +1,7 @@
 """The tests of the official client, each file in a process of its own: ``run_compat.py [pytest's options]``.
 
+As many files at a time as WORKERS says (2).
+
 That client's threads race each other: when it drops a stream that it has just asked for it may end its process
 (``bad_weak_ptr``), and its Traffic Manager may miss the wake-up of a tick and stand still for ever, where no time-out
 of Python's reaches it. docs/traffic.md and benchmarks/soak.py have the evidence. So a file whose process was ended by
@@ -12,9 +14,12 @@ import selectors
 import signal
 import subprocess
 import sys
+import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).parents[1]
 SILENT_S = 360.0
@@ -26,18 +31,12 @@ NO_TESTS = 5
 
 
 def main(options: list[str]) -> int:
-    """Run all files; return 0 where all passed."""
-    failed, again = [], []
-    for file in sorted((ROOT / "tests" / "compat").glob("test_*.py")):
-        name = file.relative_to(ROOT).as_posix()
-        for number in range(TRIES):
-            print(f"{name}{' once more' * (number > 0)}", flush=True)
-            code = run([sys.executable, "-m", "coverage", "run", "-m", "pytest", "--no-header", name, *options])
-            if code >= 0:
-                break
-            again.append(f"{name}: its process {'stood still' if code == STUCK else f'was ended by signal {-code}'}")
-        if code not in {0, NO_TESTS}:
-            failed.append(name)
+    """Run all files, some at a time; return 0 where all passed."""
+    files = sorted((ROOT / "tests" / "compat").glob("test_*.py"))
+    with ThreadPoolExecutor(int(os.environ.get("WORKERS", "2"))) as workers:
+        ended = list(workers.map(lambda file: told(file.relative_to(ROOT).as_posix(), options), files))
+    again = [sentence for end in ended for sentence in end.again]
+    failed = [end.name for end in ended if end.code not in {0, NO_TESTS}]
     for sentence in again:
         print(f"run_compat: {sentence}")
     for name in failed:
@@ -45,19 +44,47 @@ def main(options: list[str]) -> int:
     return 1 if failed else 0
 
 
+class Ended(NamedTuple):
+    """How the tests of a file ended."""
+
+    name: str
+    code: int
+    again: tuple[str, ...]  # why it was run once more, in a sentence
+
+
+def told(name: str, options: list[str]) -> Ended:
+    """Run a file's tests, once more where the client took its process along, and show what they said."""
+    again: list[str] = []
+    code = 0
+    for number in range(TRIES):
+        code, said = run([sys.executable, "-m", "coverage", "run", "-m", "pytest", "--no-header", name, *options])
+        with SHOWING:
+            print(f"{name}{' once more' * (number > 0)}", flush=True)
+            sys.stdout.buffer.write(said)
+            sys.stdout.buffer.flush()
+        if code >= 0:
+            break
+        again.append(f"{name}: its process {'stood still' if code == STUCK else f'was ended by signal {-code}'}")
+    return Ended(name, code, tuple(again))
+
+
+SHOWING = threading.Lock()
+"""What one file said is shown in one piece."""
+
 STUCK = -1000
 """Instead of a return code."""
 
 
-def run(command: list[str], silent_s: float = SILENT_S) -> int:
-    """Run a command and show what it says; return its code, minus the signal that ended it, or STUCK."""
+def run(command: list[str], silent_s: float = SILENT_S) -> tuple[int, bytes]:
+    """Run a command; return its code, minus the signal that ended it, or STUCK, and what it said."""
+    said: list[bytes] = []
     with subprocess.Popen(
         command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True
     ) as process:
-        stuck = not _shown(process, silent_s)
+        stuck = not _heard(process, said, silent_s)
         if stuck:
             process.send_signal(signal.SIGABRT)  # pytest then shows where each thread is
-            _shown(process, LAST_WORDS_S)
+            _heard(process, said, LAST_WORDS_S)
         try:
             code = process.wait(LAST_WORDS_S)
         except subprocess.TimeoutExpired:
@@ -66,11 +93,11 @@ def run(command: list[str], silent_s: float = SILENT_S) -> int:
             with suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-    return STUCK if stuck else code
+    return STUCK if stuck else code, b"".join(said)
 
 
-def _shown(process: "subprocess.Popen[bytes]", silent_s: float) -> bool:
-    """Pass on what a process says until it says no more; return False where it is silent for too long first."""
+def _heard(process: "subprocess.Popen[bytes]", said: list[bytes], silent_s: float) -> bool:
+    """Hear a process until it says no more; return False where it is silent for too long first."""
     assert process.stdout is not None
     with selectors.DefaultSelector() as selector:
         selector.register(process.stdout, selectors.EVENT_READ)
@@ -78,12 +105,11 @@ def _shown(process: "subprocess.Popen[bytes]", silent_s: float) -> bool:
         while time.monotonic() - heard_s < silent_s:
             if not selector.select(1.0):
                 continue
-            said = os.read(process.stdout.fileno(), 1 << 16)
-            if not said:
+            words = os.read(process.stdout.fileno(), 1 << 16)
+            if not words:
                 return True
             heard_s = time.monotonic()
-            sys.stdout.buffer.write(said)
-            sys.stdout.buffer.flush()
+            said.append(words)
     return False
 
 

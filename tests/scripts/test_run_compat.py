@@ -33,5 +33,10 @@ def runner() -> ModuleType:
 )  # fmt: skip
 def test_how_a_process_ended_is_told(runner: ModuleType, program: str, expected: str) -> None:
     runner.LAST_WORDS_S = 0.3
-    code = runner.run([sys.executable, "-c", program], silent_s=1.5)
+    code, _said = runner.run([sys.executable, "-c", program], silent_s=1.5)
     assert code == (runner.STUCK if expected == "stuck" else int(expected))
+
+
+def test_what_a_process_said_is_kept_in_order(runner: ModuleType) -> None:
+    program = "import sys; print('first', flush=True); print('second', file=sys.stderr)"
+    assert runner.run([sys.executable, "-c", program]) == (0, b"first\nsecond\n")
