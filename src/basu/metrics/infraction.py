@@ -1,12 +1,11 @@
-"""What can be held against a driver, what each costs, and the evidence that every one of them carries."""
+"""What can be held against a driver, what each costs, what is only told, and the evidence that all of it carries."""
 
 from __future__ import annotations
 
 import enum
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -15,21 +14,34 @@ if TYPE_CHECKING:
 
 
 class Infraction(enum.Enum):
-    """The kinds of section 5.2.1 of the thesis."""
+    """What enters the score: the kinds of section 5.2.1 of the thesis, and red lights, which its route has none of."""
 
     COLLISION_PEDESTRIAN = "collision_pedestrian"
     COLLISION_VEHICLE = "collision_vehicle"
     COLLISION_STATIC = "collision_static"
+    RED_LIGHT = "red_light"
     STOP_SIGN = "stop_sign"
     SPEEDING = "speeding"
 
 
+class Incident(enum.Enum):
+    """What is told and not scored."""
+
+    OUTSIDE_LANES = "outside_lanes"
+    WRONG_WAY = "wrong_way"
+    ROUTE_DEVIATION = "route_deviation"
+    DISENGAGEMENT = "disengagement"
+    BLOCKED = "blocked"
+    ROUTE_TIMEOUT = "route_timeout"
+
+
 # Factor on the infraction score for each occurrence: section 5.2.1 of the thesis, the collisions and the stop sign
-# as in the CARLA leaderboard.
+# as in the CARLA leaderboard; so is the red light, for routes that have one.
 DEFAULT_PENALTIES: Mapping[Infraction, float] = {
     Infraction.COLLISION_PEDESTRIAN: 0.50,
     Infraction.COLLISION_VEHICLE: 0.60,
     Infraction.COLLISION_STATIC: 0.65,
+    Infraction.RED_LIGHT: 0.70,
     Infraction.STOP_SIGN: 0.80,
     Infraction.SPEEDING: 0.80,
 }
@@ -37,9 +49,9 @@ DEFAULT_PENALTIES: Mapping[Infraction, float] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evidence:
-    """One infraction: when, where, how fast, and with whom."""
+    """One infraction or incident: when, where, how fast, and with whom."""
 
-    kind: Infraction
+    kind: Infraction | Incident
     tick: int
     t_s: float
     x_m: float  # of the vehicle under test, CARLA frame
@@ -52,7 +64,7 @@ class Evidence:
 
 
 def evidence(
-    history: History, kind: Infraction, tick: int, *, speed_mps: float, other: str | None, detail: str
+    history: History, kind: Infraction | Incident, tick: int, *, speed_mps: float, other: str | None, detail: str
 ) -> Evidence:
     """The evidence for what happened in ``tick``, its place and time from the record."""
     frame = history.frames[tick]
@@ -71,6 +83,6 @@ def evidence(
 
 
 def counts(found: tuple[Evidence, ...]) -> dict[Infraction, int]:
-    """How often each kind occurred; kinds that did not are left out."""
-    kinds, numbers = np.unique([e.kind.value for e in found], return_counts=True)
-    return {Infraction(str(kind)): int(number) for kind, number in zip(kinds, numbers, strict=True)}
+    """How often each kind of infraction occurred; kinds that did not are left out."""
+    number = Counter(e.kind for e in found)
+    return {kind: number[kind] for kind in Infraction if number[kind]}

@@ -10,22 +10,26 @@ from basu.errors import UserError
 from basu.metrics.collisions import collisions
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, counts
 from basu.metrics.path_following import path_following
-from basu.metrics.speeding import speeding
+from basu.metrics.red_lights import red_lights
+from basu.metrics.route_deviation import THRESHOLD_M
+from basu.metrics.speeding import TOLERANCE_MPS, speeding
 from basu.metrics.stop_signs import stop_signs
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from basu.history import History
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scoring:
-    """What each infraction costs and how much each part of the score weighs: adjustable, with the thesis's values."""
+    """What each infraction costs, how much each part weighs, and what is tolerated: adjustable, the thesis's values."""
 
     penalties: Mapping[Infraction, float] = field(default_factory=lambda: dict(DEFAULT_PENALTIES))
     infraction_weight: float = 0.8
     path_following_weight: float = 0.2
+    speeding_tolerance_mps: float = TOLERANCE_MPS  # above the posted limit
+    route_deviation_m: float = THRESHOLD_M  # from the planned line; farther out is outside the plan
 
     def __post_init__(self) -> None:
         total = self.infraction_weight + self.path_following_weight
@@ -37,6 +41,12 @@ class Scoring:
         for kind, penalty in self.penalties.items():
             if not 0.0 <= penalty <= 1.0:
                 raise UserError(f"the penalty of {kind.value} is {penalty}; it is a factor and must lie in 0..1")
+        for name, value in (
+            ("speeding_tolerance_mps", self.speeding_tolerance_mps),
+            ("route_deviation_m", self.route_deviation_m),
+        ):
+            if not 0.0 <= value < math.inf:
+                raise UserError(f"{name} is {value}; it must be a number that is not negative")
 
 
 class Scores(NamedTuple):
@@ -47,9 +57,16 @@ class Scores(NamedTuple):
     path_following: float
 
 
-def infractions(history: History) -> tuple[Evidence, ...]:
+def infractions(history: History, scoring: Scoring | None = None) -> tuple[Evidence, ...]:
     """Every infraction of a run, in the order in which they happened."""
-    found = (*collisions(history), *stop_signs(history), *speeding(history))
+    tolerance_mps = TOLERANCE_MPS if scoring is None else scoring.speeding_tolerance_mps
+    return in_order(
+        (*collisions(history), *red_lights(history), *stop_signs(history), *speeding(history, tolerance_mps))
+    )
+
+
+def in_order(found: Iterable[Evidence]) -> tuple[Evidence, ...]:
+    """Evidence in the order in which it happened, the same however it was found."""
     return tuple(sorted(found, key=lambda e: (e.tick, e.kind.value, e.other or "")))
 
 
@@ -65,6 +82,6 @@ def driving_score(infraction: float, path: float, scoring: Scoring) -> float:
 
 def score(history: History, scoring: Scoring) -> Scores:
     """The scores of a recorded run."""
-    infraction = infraction_score(counts(infractions(history)), scoring)
+    infraction = infraction_score(counts(infractions(history, scoring)), scoring)
     path = path_following(history).score
     return Scores(driving_score(infraction, path, scoring), infraction, path)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.infraction import Evidence, Infraction, evidence
+from basu.metrics.stretches import stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,14 +19,14 @@ ON_ROUTE_M = 2.0  # from the planned line; nearer than this the vehicle is on th
 LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of driving
 
 
-def speeding(history: History) -> tuple[Evidence, ...]:
-    """One infraction for each episode: it begins ``TOLERANCE_MPS`` over and ends back at the limit.
+def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Evidence, ...]:
+    """One infraction for each episode: it begins ``tolerance_mps`` over and ends back at the limit.
 
     Whose limit holds, :func:`limits_mps` says.
     """
     speed_mps, limit_mps = history.speed_mps(), limits_mps(history)
     found = []
-    for first, end in _episodes(speed_mps, limit_mps):
+    for first, end in _episodes(speed_mps, limit_mps, tolerance_mps):
         if (end - first) * history.facts.step_s < LEAST_S:
             continue
         fastest = first + int(np.argmax(speed_mps[first:end] - limit_mps[first:end]))
@@ -61,13 +62,13 @@ def limits_mps(history: History) -> NDArray[np.float64]:
     return np.where(off_route | np.isnan(planned), elsewhere, planned)
 
 
-def _episodes(speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64]) -> list[tuple[int, int]]:
+def _episodes(
+    speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64], tolerance_mps: float
+) -> list[tuple[int, int]]:
     """(first, end) of each stretch that exceeds the tolerance somewhere and the limit throughout."""
-    over = np.concatenate([[False], speed_mps > limit_mps, [False]])
-    edges = np.flatnonzero(np.diff(over.astype(np.int8)))
-    beyond = speed_mps > limit_mps + TOLERANCE_MPS
+    beyond = speed_mps > limit_mps + tolerance_mps
     found = []
-    for first, end in edges.reshape(-1, 2).tolist():
+    for first, end in stretches(speed_mps > limit_mps):
         if beyond[first:end].any():
             found.append((first + int(np.argmax(beyond[first:end])), end))
     return found

@@ -1,0 +1,62 @@
+"""Disengagements: how often a person took over from the agent, and the miles from one to the next.
+
+A disengagement is the change from the agent to a person while the vehicle is under test (as California's rules for
+reports on autonomous vehicles have it, 13 CCR 227.02 and 227.50: the autonomous mode is deactivated). A drive that a
+person begins has none until the agent had the vehicle; handing back to the agent is none. Miles per disengagement are
+the miles that the agent drove, over their number; without one there is no such figure, only the miles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from basu.metrics.infraction import Evidence, Incident, evidence
+from basu.metrics.stretches import chords, path_m, stretches, total_m
+
+if TYPE_CHECKING:
+    from basu.history import History
+
+M_PER_MILE = 1609.344
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Disengagements:
+    """How often a person took over."""
+
+    events: tuple[Evidence, ...]
+    autonomous_m: float  # that the agent drove
+    manual_m: float  # that a person drove
+    miles_per_disengagement: float | None  # None where there was none
+
+
+def disengagements(history: History) -> Disengagements:
+    """Count the takeovers and measure the way that the agent drove."""
+    manual = history.frames["manual"] != 0
+    pieces = chords(path_m(history.frames))
+    by_person = manual[pieces.end]
+    speed_mps = history.speed_mps()
+    events = []
+    for first, end in stretches(manual):
+        if first == 0:
+            continue
+        seconds = (end - first) * history.facts.step_s
+        until = f"for {seconds:.1f} s" if end < len(manual) else "to the end"
+        alone_m = total_m(pieces.length_m[~by_person & (pieces.end < first)])
+        events.append(
+            evidence(
+                history,
+                Incident.DISENGAGEMENT,
+                first,
+                speed_mps=float(speed_mps[first]),
+                other="a person",
+                detail=f"a person took over at {speed_mps[first]:.2f} m/s, after {alone_m:.0f} m by the agent, {until}",
+            )
+        )
+    autonomous_m = total_m(pieces.length_m[~by_person])
+    return Disengagements(
+        events=tuple(events),
+        autonomous_m=autonomous_m,
+        manual_m=total_m(pieces.length_m[by_person]),
+        miles_per_disengagement=autonomous_m / M_PER_MILE / len(events) if events else None,
+    )

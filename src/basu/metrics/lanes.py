@@ -1,0 +1,103 @@
+"""Outside the lanes and against them: how far, which share of the way, and where.
+
+Outside is, as in the CARLA leaderboard (ScenarioRunner, ``OutsideRouteLanesTest``), a vehicle whose middle is more than
+0.5 m beyond the edge of the nearest driving or parking lane; on a pavement it is told as such. A vehicle whose middle
+lies in a lane of traffic that comes towards it is in a wrong lane. Wrong way is to move against the direction of the
+lane under one's middle: overtaking through the opposite lane does, and so does reversing along one's own.
+
+In junctions, where lanes lie over one another, nobody is in a wrong lane or on the wrong way: the leaderboard says the
+same. Metres are of the driven path (equation 5.2), a share is of all of it.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from basu.metrics.infraction import Incident
+from basu.metrics.shares import Share, share_of
+from basu.metrics.stretches import chords, path_m, total_m
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from basu.history import History
+
+BEYOND_M = 0.5  # ALLOWED_OUT_DISTANCE of leaderboard 2.0 and 2.1; 1.0 has 1.3
+AGAINST_RAD = np.radians(120.0)  # between two directions; MAX_VEHICLE_ANGLE of the leaderboard
+MOVING_MPS = 0.1
+FORGIVEN_M = 2.0  # a stretch against the lane no longer than this; nuPlan's direction compliance forgives as much
+# values of carla.LaneType
+DRIVING, SIDEWALK = 2, 32
+
+
+class Where(enum.Enum):
+    """In which way a vehicle is outside its lanes."""
+
+    OFF_ROAD = "off_road"
+    SIDEWALK = "sidewalk"
+    WRONG_LANE = "wrong_lane"
+
+
+WORDS = {Where.OFF_ROAD: "off the road", Where.SIDEWALK: "on the pavement", Where.WRONG_LANE: "in a wrong lane"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OutsideLanes:
+    """How much of a drive was outside the lanes, in all and by the way of it."""
+
+    total: Share
+    metres_by_where: dict[Where, float]
+
+
+def outside_lanes(history: History) -> OutsideLanes:
+    """How far the vehicle went outside its lanes, one event for each stretch."""
+    where = wheres(history)
+    told = [WORDS[way] for way in Where]
+    total = share_of(
+        history,
+        where >= 0,
+        Incident.OUTSIDE_LANES,
+        lambda first, end: told[int(np.bincount(where[first:end]).argmax())],
+    )
+    pieces = chords(path_m(history.frames))
+    at = where[pieces.end]
+    metres = {way: total_m(pieces.length_m[at == index]) for index, way in enumerate(Where)}
+    return OutsideLanes(total=total, metres_by_where=metres)
+
+
+def wrong_way(history: History) -> Share:
+    """How far the vehicle moved against the direction of its lane, one event for each stretch of 2 m and more."""
+    frames = history.frames
+    moving = np.hypot(frames["velocity_x_mps"], frames["velocity_y_mps"]) > MOVING_MPS
+    course_rad = np.arctan2(frames["velocity_y_mps"], frames["velocity_x_mps"])
+    lane_rad = frames["yaw_rad"] - frames["lane_heading_rad"]
+    against = np.cos(course_rad - lane_rad) < np.cos(AGAINST_RAD)  # nan, where there is no lane, is not
+    directed = (frames["lane_type"] == DRIVING) & (frames["in_junction"] == 0)
+    return share_of(
+        history,
+        moving & directed & against,
+        Incident.WRONG_WAY,
+        lambda _first, _end: "against the direction of its lane",
+        forgiven_m=FORGIVEN_M,
+    )
+
+
+def wheres(history: History) -> NDArray[np.int64]:
+    """(T,) the index in ``Where`` of each frame, -1 within the lanes."""
+    frames = history.frames
+    off = frames["off_lane_m"] > BEYOND_M
+    oncoming = (
+        (frames["lane_type"] == DRIVING)
+        & (frames["in_junction"] == 0)
+        & (np.abs(frames["lane_heading_rad"]) > AGAINST_RAD)
+    )
+    order = list(Where)
+    found = np.full(len(frames), -1, dtype=np.int64)
+    found[oncoming] = order.index(Where.WRONG_LANE)
+    found[off] = order.index(Where.OFF_ROAD)
+    found[off & (frames["lane_type"] == SIDEWALK)] = order.index(Where.SIDEWALK)
+    return found

@@ -1,0 +1,133 @@
+"""Red lights: what each light on the route showed when the vehicle's rear crossed its line.
+
+The rule is that of the CARLA leaderboard (ScenarioRunner, ``RunningRedLightTest``, the same in its versions 1.0, 2.0
+and 2.1): a light is run when it is red in a frame in which the line lies under the vehicle's tail, the piece from 0.8
+of half its length behind its middle to 1 m behind its bumper. So who enters on yellow and has the tail on the line when
+it turns red has run it, and who stops beyond the line with the tail still before it has not. What it showed when the
+front crossed is told too.
+
+Off the planned lane the route's lights are not the vehicle's. There, leaving the zone of a light forwards while it is
+red has run it: the simulator says under which light a vehicle stands.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from basu.history.model import NO_LIGHT
+from basu.metrics.infraction import Evidence, Infraction, evidence
+from basu.metrics.stretches import stretches
+from basu.routing import ControlKind
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from basu.history import History
+    from basu.routing import Control, Route
+
+STATES = ("red", "yellow", "green", "off", "unknown")  # the values of carla.TrafficLightState
+RED = 0
+TAIL_FROM, TAIL_BEHIND_M = 0.8, 1.0  # of half the length; beyond the bumper
+BESIDE = 0.6  # of the lane's width off its middle: farther out the line is not crossed (leaderboard 2.x; 1.0 has 0.4)
+MOVING_MPS = 0.1
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LightPassed:
+    """What a light on the route showed when the vehicle passed it."""
+
+    light: Control
+    tick: int  # in which the tail began to cross the line; where it was run, the first one on red
+    front_state: str  # what it showed when the front bumper crossed
+    state: str  # what it showed in ``tick``
+    speed_mps: float  # in ``tick``
+    run: bool
+
+
+def lights_passed(history: History) -> tuple[LightPassed, ...]:
+    """Every traffic light on the route whose line the vehicle's tail crossed, in order."""
+    vehicle, frames = history.facts.vehicle, history.frames
+    s_m, shown = frames["route_s_m"], frames["route_light"]
+    half_m = (vehicle.front_m + vehicle.rear_m) / 2.0
+    beside = np.abs(frames["lateral_m"]) > BESIDE * _lane_width_m(history.facts.route, s_m)
+    speed_mps = history.speed_mps()
+    found = []
+    for light in history.facts.route.controls:
+        if light.kind is not ControlKind.TRAFFIC_LIGHT:
+            continue
+        under_tail = (s_m - TAIL_FROM * half_m >= light.s_m) & (s_m - half_m - TAIL_BEHIND_M <= light.s_m)
+        tail = np.flatnonzero(under_tail & ~beside & (shown != NO_LIGHT))
+        if len(tail) == 0:
+            continue
+        red = tail[shown[tail] == RED]
+        tick = int(red[0]) if len(red) else int(tail[0])
+        front = int(np.argmax(s_m + vehicle.front_m >= light.s_m))
+        found.append(
+            LightPassed(
+                light=light,
+                tick=tick,
+                front_state=_state(shown[front]),
+                state=_state(shown[tick]),
+                speed_mps=float(speed_mps[tick]),
+                run=len(red) > 0,
+            )
+        )
+    return tuple(found)
+
+
+def red_lights(history: History) -> tuple[Evidence, ...]:
+    """One infraction for each red light that was run, on the route or beside it."""
+    on_route = tuple(
+        evidence(
+            history,
+            Infraction.RED_LIGHT,
+            passed.tick,
+            speed_mps=passed.speed_mps,
+            other=f"traffic light {passed.light.landmark_id}",
+            detail=(
+                f"the rear crossed the line of traffic light {passed.light.landmark_id} on red at "
+                f"{passed.speed_mps:.2f} m/s; it was {passed.front_state} when the front crossed"
+            ),
+        )
+        for passed in lights_passed(history)
+        if passed.run
+    )
+    return tuple(sorted((*on_route, *_off_route(history)), key=lambda found: found.tick))
+
+
+def _off_route(history: History) -> tuple[Evidence, ...]:
+    """Lights that do not belong to the route, run where the vehicle is beside it."""
+    frames = history.frames
+    state, yaw_rad = frames["traffic_light_state"], frames["yaw_rad"]
+    forward_mps = frames["velocity_x_mps"] * np.cos(yaw_rad) + frames["velocity_y_mps"] * np.sin(yaw_rad)
+    beside = np.abs(frames["lateral_m"]) > BESIDE * _lane_width_m(history.facts.route, frames["route_s_m"])
+    found = []
+    for _, end in stretches(state != NO_LIGHT):
+        if end == len(frames) or state[end - 1] != RED or not beside[end] or forward_mps[end] <= MOVING_MPS:
+            continue
+        speed_mps = float(history.speed_mps()[end])
+        found.append(
+            evidence(
+                history,
+                Infraction.RED_LIGHT,
+                end,
+                speed_mps=speed_mps,
+                other="traffic light off the route",
+                detail=f"left the zone of a light off the route on red at {speed_mps:.2f} m/s",
+            )
+        )
+    return tuple(found)
+
+
+def _lane_width_m(route: Route, s_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(T,) the width of the planned lane at each place along the route."""
+    index = np.clip(np.searchsorted(route.s_m, s_m, side="right") - 1, 0, None)
+    return route.lane_width_m[index]
+
+
+def _state(value: int) -> str:
+    """A carla.TrafficLightState in words."""
+    return "not known" if value == NO_LIGHT else STATES[int(value)]

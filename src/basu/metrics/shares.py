@@ -1,0 +1,69 @@
+"""How much of a drive something held: metres of the driven path, their share of it, seconds, and each stretch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from basu.metrics.infraction import Evidence, Incident, evidence
+from basu.metrics.stretches import chords, path_m, stretches, total_m
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from basu.history import History
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Share:
+    """How much of a drive something held."""
+
+    metres: float  # of the driven path, equation 5.2
+    share: float  # of the whole driven path, 0..1; 0 for a drive that went nowhere
+    seconds: float
+    events: tuple[Evidence, ...]  # one a stretch
+
+
+def share_of(
+    history: History,
+    holds: NDArray[np.bool_],
+    kind: Incident,
+    words: Callable[[int, int], str],
+    *,
+    forgiven_m: float = 0.0,
+) -> Share:
+    """Measure where ``holds`` (T,); ``words`` says what it was from frame to frame.
+
+    A stretch whose path is no longer than ``forgiven_m`` does not count.
+    """
+    pieces = chords(path_m(history.frames))
+    speed_mps = history.speed_mps()
+    metres, ticks, events = 0.0, 0, []
+    for first, end in stretches(holds):
+        within = (pieces.end >= first) & (pieces.end < end)
+        length_m = total_m(pieces.length_m[within])
+        if length_m <= forgiven_m and forgiven_m > 0.0:
+            continue
+        metres += length_m
+        ticks += end - first
+        seconds = (end - first) * history.facts.step_s
+        events.append(
+            evidence(
+                history,
+                kind,
+                first,
+                speed_mps=float(speed_mps[first]),
+                other=None,
+                detail=f"{words(first, end)} for {length_m:.1f} m and {seconds:.1f} s",
+            )
+        )
+    driven_m = total_m(pieces.length_m)
+    return Share(
+        metres=metres,
+        share=metres / driven_m if driven_m > 0.0 else 0.0,
+        seconds=ticks * history.facts.step_s,
+        events=tuple(events),
+    )
