@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
     from basu.managers.sensors_manager import SensorsManager
+    from basu.managers.traffic_manager import TrafficManager
     from basu.metrics.score import Scoring
 
 STATUS_OF: dict[type[AgentError], Status] = {
@@ -51,6 +52,7 @@ def drive(
     run: Run,
     agents: AgentsManager,
     sensors: SensorsManager,
+    traffic: TrafficManager,
     scoring: Scoring,
     *,
     why_gone: Callable[[], str | None],
@@ -65,7 +67,7 @@ def drive(
     metrics = MetricsManager(agents, routes, scoring)
     live = Live(agents, sensors, routes, metrics)
     onlookers = tuple(observers(live))
-    managers: tuple[BaseManager, ...] = (sensors, routes, metrics, agents, *onlookers)
+    managers: tuple[BaseManager, ...] = (traffic, sensors, routes, metrics, agents, *onlookers)
     began_s = time.perf_counter()
     bug = agent_error = None
     try:

@@ -20,7 +20,10 @@ class Traffic(NamedTuple):
     @property
     def nobody(self) -> bool:
         """Whether the vehicle under test is to be alone."""
-        return self == Traffic()
+        return self == NOBODY
+
+
+NOBODY = Traffic()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +41,7 @@ class RunOptions:
     seed: int = 0  # of the first repetition; each further one has the next
     weather: str | None = None  # None: as the route file or else the agent's config says
     vehicle: str | None = None  # None: as the agent's config says
-    traffic: Traffic = Traffic()
+    traffic: Traffic = NOBODY
     record: bool = False
     output: Path = Path("runs")
     series: str | None = None  # the folder in `output` that holds all runs and their totals

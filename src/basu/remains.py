@@ -11,23 +11,29 @@ import numpy as np
 
 import basu
 from basu.history.files import write_history
+from basu.managers.recording_manager import LOG_FILE
+from basu.metrics.score import Scoring
 from basu.options import STEP_S
 from basu.report import picture
 from basu.report.console import table
-from basu.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, point_latest, write_json
+from basu.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, write_json
 from basu.report.result import result
+from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
     from datetime import datetime
     from pathlib import Path
 
     from basu.drive import Driven
     from basu.managers.agent_config import AgentConfig
     from basu.managers.agent_loader import LoadedAgent
-    from basu.metrics.score import Scoring
     from basu.options import RunOptions
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
+
+OWN_ROUTE = "-own"  # behind the id of a route that the agent has planned itself
+ROUTE_WEATHER = "of the route file"
 
 
 def run_config(
@@ -36,19 +42,25 @@ def run_config(
     loaded: LoadedAgent,
     wishes: AgentConfig,
     description: RouteDescription,
-    own_simulator: bool,  # noqa: FBT001 - passed on as it is written
+    *,
+    own_simulator: bool,
     started: datetime,
+    seed: int,
+    traffic: Mapping[str, int],
+    log: str | None,
 ) -> dict[str, Any]:
     """What is needed to run it again."""
-    again = ["basu", "run", options.agent, "--route-id", description.id, "--seed", str(options.seed)]
     return {
         "started": started.isoformat(timespec="seconds"),
-        "command": again if options.routes is None else [*again, "--routes", options.routes],
+        "command": command(options, scoring, description, seed),
         "agent": {"name": loaded.name, "class": loaded.agent_class.__name__, "file": options.agent},
         "agent_config": asdict(wishes),
         "route": description.id,
         "town": description.town,
-        "seed": options.seed,
+        "seed": seed,
+        "weather": weather_name(options, wishes, description),
+        "traffic": {**traffic, "density_per_km": options.traffic.density_per_km},
+        "recording": _recording(options, log, own_simulator=own_simulator),
         "step_s": STEP_S,
         "step_limit_s": options.step_limit_s,
         "own_simulator": own_simulator,
@@ -66,8 +78,45 @@ def run_config(
     }
 
 
-def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, config: dict[str, Any]) -> None:
-    """Write the folder of a run and show its table."""
+def command(options: RunOptions, scoring: Scoring, description: RouteDescription, seed: int) -> list[str]:
+    """The command that does this run again."""
+    usual, traffic = Scoring(), options.traffic
+    changed = [
+        f"{kind.value}={factor}" for kind, factor in scoring.penalties.items() if factor != usual.penalties[kind]
+    ]
+    values: list[tuple[str, object]] = [
+        ("--routes", options.routes),
+        ("--route-id", description.id.removesuffix(OWN_ROUTE)),
+        ("--seed", seed),
+        ("--weather", options.weather),
+        ("--vehicle", options.vehicle),
+        ("--vehicles", traffic.vehicles or None),
+        ("--walkers", traffic.walkers or None),
+        ("--traffic-density", traffic.density_per_km),
+        *(("--penalty", text) for text in changed),
+    ]
+    if scoring.infraction_weight != usual.infraction_weight:
+        values.append(("--infraction-weight", scoring.infraction_weight))
+    words = [word for option, value in values if value is not None for word in (option, str(value))]
+    return ["basu", "run", options.agent, *words, *(["--record"] if options.record else [])]
+
+
+def weather_name(options: RunOptions, wishes: AgentConfig, description: RouteDescription) -> str:
+    """What the weather of a run is called: a preset, or that the route file gives it."""
+    return ROUTE_WEATHER if options.weather is None and description.weather else wishes.weather
+
+
+def _recording(options: RunOptions, log: str | None, *, own_simulator: bool) -> dict[str, str] | None:
+    """Where CARLA's log lies: in the run's folder, or where somebody else's simulator keeps it."""
+    if log is None:
+        return None
+    if own_simulator:
+        return {"file": LOG_FILE, "where": "run folder"}
+    return {"file": log, "where": f"disk of the simulator at {options.host}:{options.port}"}
+
+
+def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, config: dict[str, Any]) -> dict[str, Any]:
+    """Write the folder of a run and show its table; the result."""
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
     meta = {
@@ -80,18 +129,26 @@ def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, conf
         "seed": config["seed"],
         "agent": config["agent"],
         "vehicle": config["agent_config"]["vehicle"],
-        "weather": config["agent_config"]["weather"],
+        "weather": config["weather"],
+        "traffic": config["traffic"],
         "route": config["route"],
         "town": config["town"],
         "versions": config["versions"],
     }
     document = result(driven.outcome, history, scoring, meta)
-    print(table(document))
+    text = table(document)
+    print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
+    write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
     if history is not None:
         write_history(folder, history)
-        title = f"{config['agent']['name']} on route {config['route']} of {config['town']}: {document['status']}"
-        picture.draw(folder / PICTURE_FILE, history, lanes.streets(), title)
-    point_latest(folder)
-    print(f"result folder     {folder}")
+        picture.draw(folder / PICTURE_FILE, history, lanes.streets(), f"{_heading(config)}: {document['status']}")
+    if config["recording"] is not None:
+        print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
+    return document
+
+
+def _heading(config: dict[str, Any]) -> str:
+    """What a run was, in a line."""
+    return f"{config['agent']['name']} on route {config['route']} of {config['town']}"

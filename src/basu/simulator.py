@@ -15,6 +15,7 @@ import sys
 import threading
 import time
 from collections import deque
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,8 +24,10 @@ import carla
 from basu.errors import SimulatorError, UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from typing import IO
+
+    from basu.options import RunOptions
 
 READY = re.compile(r"ready, rpc port (\d+)")
 START_LIMIT_S = 600.0  # a first start compiles kernels, on a machine that may be busy with other things
@@ -34,16 +37,55 @@ LAST_LINES = 20  # of a server's log, kept to explain its end
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
 
 
+@dataclass(frozen=True, slots=True)
+class Simulator:
+    """A simulator that answers."""
+
+    client: carla.Client
+    own: bool
+    why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
+
+
+@contextlib.contextmanager
+def simulator_for(options: RunOptions) -> Iterator[Simulator]:
+    """The simulator at --host, or one of our own that is ended in every case.
+
+    Raises:
+        UserError: nobody answers at --host.
+        SimulatorError: our own did not start.
+    """
+    if options.host is not None:
+        client = connect(options.host, options.port, options.timeout_s)
+        yield Simulator(client, own=False, why_gone=lambda: _silence(client, options))
+        return
+    server = OwnServer(options.output if options.record else None)
+    try:
+        yield Simulator(connect("127.0.0.1", server.port, options.timeout_s), own=True, why_gone=server.gone)
+    finally:
+        server.end()
+
+
+def _silence(client: carla.Client, options: RunOptions) -> str | None:
+    """Ask somebody else's simulator whether it is still there."""
+    try:
+        client.get_server_version()
+    except RuntimeError:
+        return f"the simulator at {options.host}:{options.port} does not answer any more"
+    return None
+
+
 class OwnServer:
     """A ``linden serve`` of our own, on ports that the system chose, still until the first tick."""
 
-    def __init__(self) -> None:
-        """Start it and wait for its ready line.
+    def __init__(self, recordings: Path | None = None) -> None:
+        """Start it and wait for its ready line; it may write logs below the folder ``recordings``.
 
         Raises:
             SimulatorError: it ended, or was not ready in time.
         """
         command = [*linden_command(), "serve", "--port", "0", "--sync"]
+        if recordings is not None:
+            command += ["--recordings", str(recordings.resolve())]
         self._process = subprocess.Popen(  # noqa: S603 - our own command, arguments of our own
             command,
             stdin=subprocess.DEVNULL,

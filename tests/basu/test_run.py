@@ -55,7 +55,7 @@ class Rammer(AutonomousAgent):
     def destroy(self):
         self.parked.destroy()
 """
-RESULT_FILES = {"config.json", "history.parquet", "path.png", "result.json", "route.json"}
+RESULT_FILES = {"config.json", "history.parquet", "path.png", "result.json", "result.txt", "route.json"}
 Runner = Callable[..., tuple[int, dict[str, Any]]]
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
@@ -10,14 +11,13 @@ from typing import TYPE_CHECKING, NoReturn
 from basu.cli.scoring import add_scoring, adjusted
 from basu.errors import UserError
 from basu.metrics.score import Scoring
-from basu.options import RunOptions
+from basu.options import RunOptions, Traffic
 from basu.outcome import EXIT_CODES
 
 if TYPE_CHECKING:
     from types import FrameType
 
 LATER = {
-    "record": "recording follows with the RecordingManager",
     "resume": "resuming an interrupted campaign follows with campaigns",
     "hud": "the head-up display follows",
     "sumo": "SUMO co-simulation follows with the TrafficManager",
@@ -39,9 +39,20 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
     )
     run.add_argument("--routes", metavar="FILE", help="route XML (default: as the agent's config says)")
-    run.add_argument("--route-id", metavar="ID", help="only this route of the file (default: all)")
+    which = run.add_mutually_exclusive_group()
+    which.add_argument("--route-id", metavar="ID", help="only this route of the file (default: all)")
+    which.add_argument("--routes-subset", metavar="LIST", help="only these routes of the file, such as 0-3,7")
     run.add_argument("--repetitions", type=int, default=1, metavar="N", help="(default: %(default)s)")
-    run.add_argument("--seed", type=int, default=0, help="of all that is random (default: %(default)s)")
+    run.add_argument(
+        "--seed",
+        type=int,
+        default=0,
+        help="of all that is random; each further repetition has the next (default: %(default)s)",
+    )
+    run.add_argument("--weather", metavar="NAME", help="a preset of CARLA's (default: the route file's or the agent's)")
+    run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: the agent's)")
+    _add_traffic(run)
+    run.add_argument("--record", action="store_true", help="have the simulator write CARLA's log, recording.log")
     run.add_argument(
         "--output", type=Path, default=Path("runs"), metavar="DIR", help="for run folders (default: %(default)s)"
     )
@@ -57,6 +68,31 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         run.add_argument(f"--{name}", action="store_true", help=f"not in this version: {why}")
     add_scoring(run)
     run.set_defaults(command=run_agent)
+
+
+def _add_traffic(run: argparse.ArgumentParser) -> None:
+    """Others on the road."""
+    vehicles = run.add_mutually_exclusive_group()
+    vehicles.add_argument(
+        "--vehicles", type=int, default=0, metavar="N", help="others on the road, led by the Traffic Manager"
+    )
+    vehicles.add_argument(
+        "--traffic-density", type=float, metavar="N", help="vehicles on a km of driving lane within 300 m of the route"
+    )
+    run.add_argument("--walkers", type=int, default=0, metavar="N", help="walkers on the pavements near the route")
+
+
+def _traffic(arguments: argparse.Namespace) -> Traffic:
+    """The traffic that was asked for.
+
+    Raises:
+        UserError: a number below zero.
+    """
+    for option in ("vehicles", "walkers", "traffic_density"):
+        number = getattr(arguments, option)
+        if number is not None and not 0 <= number < math.inf:
+            raise UserError(f"--{option.replace('_', '-')} is {number}; it must be 0 or more")
+    return Traffic(arguments.vehicles, arguments.walkers, arguments.traffic_density)
 
 
 def run_agent(arguments: argparse.Namespace) -> int:
@@ -78,8 +114,13 @@ def run_agent(arguments: argparse.Namespace) -> int:
         timeout_s=arguments.timeout,
         routes=arguments.routes,
         route_id=arguments.route_id,
+        routes_subset=arguments.routes_subset,
         repetitions=arguments.repetitions,
         seed=arguments.seed,
+        weather=arguments.weather,
+        vehicle=arguments.vehicle,
+        traffic=_traffic(arguments),
+        record=arguments.record,
         output=arguments.output,
         step_limit_s=arguments.step_limit,
         debug=arguments.debug,

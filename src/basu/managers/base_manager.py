@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import carla
 
     from basu.managers.agent_config import AgentConfig
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from basu.managers.routes_manager import RoutesManager
     from basu.managers.sensors_manager import SensorsManager
     from basu.routing import Route
+    from basu.routing.route_weather import WeatherMark
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,6 +34,8 @@ class Run:
     step_s: float  # simulated time from tick to tick
     seed: int
     timeout_s: float  # of wall time to wait for the simulator
+    folder: Path  # of the run; has another name until the run is over
+    weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
 
 
 class Ego(NamedTuple):

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import carla
+
+from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
 from basu.outcome import Outcome, Status
 from basu.routing.progress import Progress, advance
+from basu.routing.route_weather import weather_at
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
@@ -16,6 +20,7 @@ AT_END_M = 1.0  # nearer to the end of the route than this, the run is over
 PARKED_M, PARKED_MPS = 5.0, 0.1  # at rest this near to the end, too
 DEVIATION_M = 30.0  # from the route; the CARLA leaderboard's InRouteTest has the same
 BLOCKED_S, BLOCKED_MPS = 180.0, 0.1  # at rest for so long; the leaderboard's ActorBlockedTest has the same
+WEATHER_TICKS = 20  # a second of simulated time, between two changes of weather along the route
 ALLOWANCE_S, SLOWEST_MPS, STOP_S = 120.0, 1.5, 60.0  # time for a route: a start, a walking pace, its service stops
 
 
@@ -37,6 +42,9 @@ class RoutesManager(BaseManager):
         self._route = run.route
         self._step_s = run.step_s
         self._limit_s = time_limit_s(run.route)
+        self._world, self._weather = run.world, run.weather
+        if self._weather:
+            self._let_weather(0.0)
 
     def tick(self, frame: Frame) -> None:
         """Advance along the route and judge."""
@@ -46,9 +54,21 @@ class RoutesManager(BaseManager):
         if speed_mps >= BLOCKED_MPS:
             self._moved_tick = frame.tick
         self.outcome = self._judge(frame.tick, speed_mps)
+        if len(self._weather) > 1 and frame.tick % WEATHER_TICKS == 0:
+            self._let_weather(100.0 * self.progress.s_m / self._route.length_m)
 
     def close(self) -> None:
         """Nothing was taken."""
+
+    def _let_weather(self, percent: float) -> None:
+        """Let there be the weather that the route file has so far along the way."""
+        weather = carla.WeatherParameters()
+        for name, value in weather_at(self._weather, percent).items():
+            setattr(weather, name, value)
+        try:
+            self._world.set_weather(weather)
+        except RuntimeError as error:
+            raise SimulatorError(f"the simulator did not take the weather of the route: {error}") from error
 
     def _judge(self, tick: int, speed_mps: float) -> Outcome | None:
         """The end of the run, if this is it."""

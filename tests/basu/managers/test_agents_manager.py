@@ -3,6 +3,7 @@
 import math
 import sys
 import time
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -47,6 +48,7 @@ def made(agent_class: type[AutonomousAgent], limit_s: float = 30.0, routes: str 
             step_s=0.05,
             seed=0,
             timeout_s=1.0,
+            folder=Path(),
         )
     )
     return manager

@@ -14,7 +14,7 @@ STEP_S = 0.05
 
 def begun(length_m: float = 100.0) -> RoutesManager:
     manager = RoutesManager()
-    manager.setup(SimpleNamespace(route=straight_route(length_m), step_s=STEP_S))
+    manager.setup(SimpleNamespace(route=straight_route(length_m), step_s=STEP_S, world=None, weather=()))
     return manager
 
 

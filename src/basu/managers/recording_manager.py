@@ -1,0 +1,52 @@
+"""CARLA's own log of a run, written by the simulator: what a recorder file can be asked later, and replayed from."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING
+
+from basu.errors import UserError
+from basu.managers.base_manager import BaseManager
+
+if TYPE_CHECKING:
+    from basu.managers.base_manager import Frame, Run
+
+LOG_FILE = "recording.log"
+ADDITIONAL_DATA = True  # velocities, boxes, physics: what questions are asked of
+
+
+class RecordingManager(BaseManager):
+    """Has the simulator record from the first step to the last. ``path`` is where the simulator says it writes."""
+
+    def __init__(self, name: str) -> None:
+        """Record as ``name``: a path where simulator and benchmark share a disk, else a plain name."""
+        self._name = name
+        self._run: Run | None = None
+        self.path: str | None = None
+
+    def setup(self, run: Run) -> None:
+        """Begin; who is there already is written as of the first frame.
+
+        Raises:
+            UserError: the simulator cannot write it.
+        """
+        try:
+            path = run.client.start_recorder(self._name, ADDITIONAL_DATA)
+        except RuntimeError as error:
+            raise UserError(f"--record: the simulator cannot write its log: {error}") from error
+        if not path:
+            raise UserError(
+                f"--record: the simulator could not write its log {self._name} and did not say why; "
+                "see whether its disk is full, or run without --record"
+            )
+        self._run, self.path = run, str(path)
+
+    def tick(self, frame: Frame) -> None:
+        """The simulator writes each frame itself."""
+
+    def close(self) -> None:
+        """End the log."""
+        if self._run is not None:
+            run, self._run = self._run, None
+            with contextlib.suppress(RuntimeError):  # the simulator is gone; every whole frame is in the file
+                run.client.stop_recorder()

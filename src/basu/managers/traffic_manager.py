@@ -1,0 +1,217 @@
+"""Other traffic: vehicles led by CARLA's Traffic Manager, walkers by its crowd, all of it drawn from one seed."""
+
+from __future__ import annotations
+
+import contextlib
+import random
+import socket
+from typing import TYPE_CHECKING
+
+import carla
+import numpy as np
+
+from basu.errors import SimulatorError, UserError
+from basu.managers.base_manager import BaseManager
+from basu.managers.traffic_places import CLEAR_M, REACH_M, suitable, vehicles_for
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from numpy.typing import NDArray
+
+    from basu.managers.base_manager import Frame, Run
+    from basu.options import Traffic
+
+GAP_M = 2.5  # that vehicles keep to whom they follow; generate_traffic.py of CARLA has the same
+CROSSING_SHARE = 0.1  # of the walkers may leave the pavement where there is no crosswalk
+LANE_STEP_M = 10.0  # between the places that driving lanes are measured by
+DROP_M = 1.0  # walkers are put above the pavement, as in CARLA's examples
+ATTEMPTS_A_WALKER = 400  # places drawn from the whole town until one lies within reach
+PARTING_TICKS = 2  # for the client to forget who is gone
+
+
+class TrafficManager(BaseManager):
+    """Puts others on the road before the run and takes them away after it. ``count`` says how many there are."""
+
+    def __init__(self, traffic: Traffic) -> None:
+        self._traffic = traffic
+        self._manager: carla.TrafficManager | None = None
+        self._leaders: list[carla.Actor] = []
+        self._ids: list[int] = []
+        self._timeout_s = 0.0
+        self.count = {"vehicles": 0, "walkers": 0}
+
+    def setup(self, run: Run) -> None:
+        """Spawn everybody and hand them over to their leaders.
+
+        Raises:
+            UserError: there is no room for so many.
+            SimulatorError: the simulator did not let us.
+        """
+        if self._traffic.nobody:
+            return
+        self._run, self._timeout_s = run, run.timeout_s
+        self._route_m = run.route.points_m[:, :2]
+        at = run.vehicle.get_location()
+        self._ego_m = (at.x, at.y)
+        dice = random.Random(run.seed)  # noqa: S311 - to be had again by its seed, not to be a secret
+        try:
+            vehicles = self._spawn_vehicles(self._wanted_vehicles(), dice)
+            walkers = self._spawn_walkers(self._traffic.walkers, dice)
+            run.world.tick(run.timeout_s)
+            self._lead_vehicles(vehicles)
+            self._lead_walkers(walkers)
+        except RuntimeError as error:
+            raise SimulatorError(f"the simulator failed at getting the traffic ready: {error}") from error
+        self.count = {"vehicles": len(vehicles), "walkers": len(walkers)}
+
+    def tick(self, frame: Frame) -> None:
+        """The client itself leads everybody in each step."""
+
+    def close(self) -> None:
+        """Take everybody away, the leaders first."""
+        with contextlib.suppress(RuntimeError):  # the simulator is gone, and everybody with it
+            self._destroy_all()
+        if self._manager is not None:
+            manager, self._manager = self._manager, None
+            with contextlib.suppress(RuntimeError):  # likewise
+                manager.shut_down()
+
+    def _destroy_all(self) -> None:
+        """Leaders, walkers and vehicles; and a moment for the client to forget them."""
+        ids, self._ids = self._ids, []
+        leaders, self._leaders = self._leaders, []
+        if not ids:
+            return
+        for leader in leaders:
+            leader.stop()
+        commands = [carla.command.DestroyActor(actor_id) for actor_id in reversed(ids)]
+        self._run.client.apply_batch_sync(commands, False)
+        for _ in range(PARTING_TICKS):
+            self._run.world.tick(self._timeout_s)
+
+    def _wanted_vehicles(self) -> int:
+        """The number that was asked for, or that makes up the density that was."""
+        if self._traffic.density_per_km is None:
+            return self._traffic.vehicles
+        lanes = [w for w in self._run.carla_map.generate_waypoints(LANE_STEP_M) if not w.is_junction]
+        near = suitable(_places_m([w.transform for w in lanes]), self._route_m, self._ego_m)
+        return vehicles_for(self._traffic.density_per_km, len(near) * LANE_STEP_M / 1000.0)
+
+    def _spawn_vehicles(self, count: int, dice: random.Random) -> list[int]:
+        """So many cars at shuffled spawn points of the map, their models and colours drawn."""
+        if count == 0:
+            return []
+        points = self._run.carla_map.get_spawn_points()
+        near = [points[index] for index in suitable(_places_m(points), self._route_m, self._ego_m)]
+        dice.shuffle(near)
+        models = [model for model in self._models("vehicle.*") if _is_car(model)]
+        spawned: list[int] = []
+        tried = 0
+        while len(spawned) < count and tried < len(near):
+            batch = near[tried : tried + count - len(spawned)]
+            tried += len(batch)
+            spawned += self._spawned([(_painted(dice.choice(models), dice), point, 0) for point in batch])
+        if len(spawned) < count:
+            raise UserError(
+                f"{count} vehicles were asked for, and {len(spawned)} found room on the {len(near)} spawn points "
+                f"that lie within {REACH_M:.0f} m of the route and {CLEAR_M:.0f} m away from its start; ask for fewer"
+            )
+        return spawned
+
+    def _spawn_walkers(self, count: int, dice: random.Random) -> list[int]:
+        """So many walkers at random places of the pavements near the route."""
+        if count == 0:
+            return []
+        self._run.world.set_pedestrians_seed(self._run.seed)
+        models = self._models("walker.pedestrian.*")
+        spawned: list[int] = []
+        for _ in range(ATTEMPTS_A_WALKER):
+            places = self._pavement(count - len(spawned))
+            spawned += self._spawned([(dice.choice(models), place, 0) for place in places])
+            if len(spawned) == count:
+                return spawned
+        raise UserError(
+            f"{count} walkers were asked for, and {len(spawned)} found room on the pavements within {REACH_M:.0f} m of "
+            "the route; ask for fewer"
+        )
+
+    def _pavement(self, count: int) -> list[carla.Transform]:
+        """At most so many places near the route, out of as many drawn from the whole town."""
+        drawn = [self._run.world.get_random_location_from_navigation() for _ in range(max(count, 20))]
+        if any(place is None for place in drawn):
+            raise UserError(
+                f"walkers were asked for, and {self._run.route.town} has no mesh of pavements for them to walk on; "
+                "run without --walkers"
+            )
+        poses = [carla.Transform(place + carla.Location(z=DROP_M)) for place in drawn]
+        return [poses[index] for index in suitable(_places_m(poses), self._route_m, self._ego_m)[:count]]
+
+    def _lead_vehicles(self, vehicles: list[int]) -> None:
+        """Hand the vehicles over to a Traffic Manager of their own."""
+        if not vehicles:
+            return
+        self._manager = self._run.client.get_trafficmanager(_free_port())
+        self._manager.set_synchronous_mode(True)
+        self._manager.set_random_device_seed(self._run.seed)
+        self._manager.set_global_distance_to_leading_vehicle(GAP_M)
+        for vehicle in self._actors(vehicles):
+            vehicle.set_autopilot(True, self._manager.get_port())
+
+    def _lead_walkers(self, walkers: list[int]) -> None:
+        """Give each walker a leader that sends it to places of the pavements, one after the other."""
+        if not walkers:
+            return
+        world = self._run.world
+        leader = world.get_blueprint_library().find("controller.ai.walker")
+        leaders = self._spawned([(leader, carla.Transform(), walker) for walker in walkers])
+        world.tick(self._timeout_s)
+        self._leaders = self._actors(leaders)
+        world.set_pedestrians_cross_factor(CROSSING_SHARE)
+        for each, walker in zip(self._leaders, self._actors(walkers), strict=True):
+            each.start()
+            each.go_to_location(world.get_random_location_from_navigation())
+            each.set_max_speed(float(walker.attributes["speed"]))
+
+    def _models(self, pattern: str) -> list[carla.ActorBlueprint]:
+        """The simulator's blueprints of a kind, in an order that does not depend on it."""
+        return sorted(self._run.world.get_blueprint_library().filter(pattern), key=lambda model: str(model.id))
+
+    def _spawned(self, wanted: Sequence[tuple[carla.ActorBlueprint, carla.Transform, int]]) -> list[int]:
+        """Spawn by blueprint, pose and parent (0: none); the ids of those who found room."""
+        spawn: Callable[..., object] = carla.command.SpawnActor
+        commands = [spawn(model, pose, parent) if parent else spawn(model, pose) for model, pose, parent in wanted]
+        answers = self._run.client.apply_batch_sync(commands, False)
+        ids = [int(answer.actor_id) for answer in answers if not answer.has_error()]
+        self._ids += ids
+        return ids
+
+    def _actors(self, ids: list[int]) -> list[carla.Actor]:
+        """The actors of these ids, in their order."""
+        found = {actor.id: actor for actor in self._run.world.get_actors(ids)}
+        return [found[actor_id] for actor_id in ids]
+
+
+def _places_m(poses: Sequence[carla.Transform]) -> NDArray[np.float64]:
+    """(N, 2) where poses stand in the plane."""
+    return np.array([(pose.location.x, pose.location.y) for pose in poses], dtype=np.float64).reshape(-1, 2)
+
+
+def _is_car(model: carla.ActorBlueprint) -> bool:
+    """Neither lorry nor bus nor two wheels: what generate_traffic.py calls safe."""
+    return bool(model.has_attribute("base_type") and model.get_attribute("base_type").as_str() == "car")
+
+
+def _painted(model: carla.ActorBlueprint, dice: random.Random) -> carla.ActorBlueprint:
+    """A car of a colour that is drawn, for the Traffic Manager to drive."""
+    if model.has_attribute("color"):
+        model.set_attribute("color", dice.choice(list(model.get_attribute("color").recommended_values)))
+    model.set_attribute("role_name", "autopilot")
+    return model
+
+
+def _free_port() -> int:
+    """A port that nobody listens on."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

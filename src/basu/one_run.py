@@ -1,0 +1,160 @@
+"""One run: a fresh world, the vehicle at the beginning of its route, the drive, and the draft of its folder."""
+
+from __future__ import annotations
+
+import shutil
+import traceback
+from dataclasses import replace
+from datetime import datetime, timezone
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.drive import drive
+from basu.managers.base_manager import BaseManager, Live, Run
+from basu.managers.recording_manager import LOG_FILE, RecordingManager
+from basu.managers.sensors_manager import SensorsManager
+from basu.managers.traffic_manager import TrafficManager
+from basu.options import STEP_S
+from basu.progress_bar import ProgressBar
+from basu.remains import OWN_ROUTE, leave, run_config
+from basu.report.folder import make_draft
+from basu.routing import lane_graph, plan
+from basu.simulator import asking, ticked_by_us, weather_called, world_of
+from basu.vehicle import vehicle_at_start
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    import carla
+
+    from basu.drive import Driven
+    from basu.managers.agents_manager import AgentsManager
+    from basu.metrics.score import Scoring
+    from basu.options import RunOptions
+    from basu.outcome import Outcome
+    from basu.preparation import Job, Plan
+    from basu.routing import Route
+    from basu.routing.lane_graph import LaneGraph
+    from basu.routing.route_file import RouteDescription
+    from basu.simulator import Simulator
+
+
+class Session(NamedTuple):
+    """What all runs of one command share."""
+
+    options: RunOptions
+    scoring: Scoring
+    plan: Plan
+    simulator: Simulator
+
+
+class Finished(NamedTuple):
+    """A run that is over and written."""
+
+    outcome: Outcome
+    draft: Path  # its folder, not yet under its name
+    document: dict[str, Any]  # its result
+    bug: Exception | None  # an error of our own, to be raised once all is in its place
+
+
+class Ground(NamedTuple):
+    """The town with the route on it."""
+
+    world: carla.World
+    lanes: LaneGraph
+    description: RouteDescription
+    route: Route
+
+
+def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str, fresh: bool) -> Finished:
+    """Make one run and write its folder as a draft for ``name`` in ``output``.
+
+    ``fresh`` begins the world anew, where the simulator is our own.
+
+    Raises:
+        UserError, AgentError: it cannot be begun like this.
+        SimulatorError: the simulator failed before it began.
+    """
+    started = datetime.now(timezone.utc)
+    ground = _ground(session.simulator, agents, job, fresh=fresh)
+    draft = make_draft(output, name)
+    traffic = TrafficManager(session.options.traffic)
+    log = str((draft / LOG_FILE).resolve()) if session.simulator.own else f"{name}.log"
+    recording = RecordingManager(log) if session.options.record else None
+    try:
+        driven = _driven(session, agents, ground, job.seed, draft, traffic, recording)
+    except BaseException:  # nothing was driven: nothing is left behind
+        shutil.rmtree(draft, ignore_errors=True)
+        raise
+    if session.options.debug and driven.agent_error is not None:
+        traceback.print_exception(driven.agent_error)
+    config = run_config(
+        session.options,
+        session.scoring,
+        session.plan.loaded,
+        agents.config,
+        ground.description,
+        own_simulator=session.simulator.own,
+        started=started,
+        seed=job.seed,
+        traffic=traffic.count,
+        log=None if recording is None else recording.path,
+    )
+    document = leave(draft, driven, session.scoring, ground.lanes, config)
+    return Finished(driven.outcome, draft, document, driven.bug)
+
+
+def _ground(simulator: Simulator, agents: AgentsManager, job: Job, *, fresh: bool) -> Ground:
+    """The world with the route's town in it, and the route on its lanes."""
+    town = job.description.town
+    with asking(f"loading {town}"):
+        if fresh and simulator.own:
+            simulator.client.reload_world(reset_settings=False)
+        world = world_of(simulator.client, town)
+    carla_map = world.get_map()
+    lanes = lane_graph.build(carla_map)
+    points = agents.own_route()
+    description = job.description
+    if points is not None:
+        description = replace(description, id=f"{description.id}{OWN_ROUTE}", points=points, stops=())
+    return Ground(world, lanes, description, plan(carla_map, description, lanes))
+
+
+def _driven(
+    session: Session,
+    agents: AgentsManager,
+    ground: Ground,
+    seed: int,
+    folder: Path,
+    traffic: TrafficManager,
+    recording: RecordingManager | None,
+) -> Driven:
+    """The drive, with everything that the simulator was asked for given back afterwards."""
+    options, simulator, world = session.options, session.simulator, ground.world
+
+    def observers(live: Live) -> Sequence[BaseManager]:
+        return [ProgressBar(live), *([] if recording is None else [recording])]
+
+    with (
+        asking("getting the vehicle ready"),
+        ticked_by_us(world, STEP_S),
+        vehicle_at_start(world, ground.route, agents.config.vehicle) as vehicle,
+    ):
+        world.set_weather(weather_called(agents.config.weather))
+        this_run = Run(
+            client=simulator.client,
+            world=world,
+            carla_map=world.get_map(),
+            vehicle=vehicle,
+            route=ground.route,
+            config=agents.config,
+            step_s=STEP_S,
+            seed=seed,
+            timeout_s=options.timeout_s,
+            folder=folder,
+            weather=() if options.weather is not None else ground.description.weather,
+        )
+        sensors = SensorsManager(*session.plan.sensors)
+        return drive(
+            this_run, agents, sensors, traffic, session.scoring, why_gone=simulator.why_gone, observers=observers
+        )
