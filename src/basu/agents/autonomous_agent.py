@@ -46,6 +46,7 @@ class AutonomousAgent(ABC):
         route: the route to follow, joined along the lanes; None where the run has none.
         config_values: what ``config`` returned, completed by BASU with what the command line overrode.
         time_step_s: simulated seconds between two calls of ``run_step``.
+        server_address: host and port of the simulator, for an agent that connects by itself.
         manual: whether a person drives at the moment; an agent that lets persons drive keeps it true meanwhile.
     """
 
@@ -56,7 +57,9 @@ class AutonomousAgent(ABC):
     route: Route | None
     config_values: Mapping[str, Any]
     time_step_s: float
+    server_address: tuple[str, int]
     manual: bool = False
+    tells_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
 
     def bind(
         self,
@@ -68,6 +71,7 @@ class AutonomousAgent(ABC):
         route: Route | None,
         config_values: Mapping[str, Any],
         time_step_s: float,
+        server_address: tuple[str, int] = ("127.0.0.1", 2000),
     ) -> None:
         """Hand the agent its run. BASU calls this once, before ``setup``; an agent does not override it."""
         self.client = client
@@ -77,6 +81,7 @@ class AutonomousAgent(ABC):
         self.route = route
         self.config_values = config_values
         self.time_step_s = time_step_s
+        self.server_address = server_address
 
     @abstractmethod
     def setup(self) -> None:

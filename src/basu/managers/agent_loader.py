@@ -1,4 +1,4 @@
-"""Finds an agent's class: by name among BASU's own, or in a Python file of anybody's."""
+"""Finds an agent's class: by name among BASU's own, or in a Python file of BASU's kind or the leaderboard's."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ import carla
 
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.errors import UserError
+from basu.leaderboard.adapter import LeaderboardAgent, adapted
+from basu.leaderboard.foreign import ENTRY_POINT, foreign_agent
+from basu.leaderboard.modules import stand_in
 
 BUILT_IN = {"basic": "basu.agents.basic", "forward": "basu.agents.forward", "human": "basu.agents.human"}
 LATER = ("behavioral",)  # named in the thesis; refused by name until they are there
@@ -28,12 +31,26 @@ class LoadedAgent(NamedTuple):
     file: Path | None
 
 
-def load_agent(wanted: str) -> LoadedAgent:
+def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     """The agent called ``wanted``: a name, ``file.py``, or ``file.py:ClassName`` where a file holds several.
+
+    ``agent_config`` is the text of ``--agent-config``: agents of the leaderboard and of ScenarioRunner take one, mostly
+    a file's name.
 
     Raises:
         UserError: there is none, the file does not load, or it holds no agent or more than one.
     """
+    loaded = _find(wanted, agent_config)
+    if agent_config is not None and not issubclass(loaded.agent_class, LeaderboardAgent):
+        raise UserError(
+            f"the agent '{wanted}' takes no --agent-config: that is for agents of the leaderboard and of "
+            "ScenarioRunner; leave it away"
+        )
+    return loaded
+
+
+def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
+    """The agent by its name or from its file."""
     if wanted in BUILT_IN:
         module = importlib.import_module(BUILT_IN[wanted])
         return LoadedAgent(_only(_agents_in(module.__dict__, module.__name__), wanted), wanted, None)
@@ -47,7 +64,12 @@ def load_agent(wanted: str) -> LoadedAgent:
         raise UserError(f"there is no agent called '{wanted}'; {hint}")
     if not path.is_file():
         raise UserError(f"the agent's file {path} does not exist; check the name and the folder you are in")
-    agents = _agents_in(*_run_file(path))
+    namespace, module_name = _run_file(path)
+    agents = _agents_in(namespace, module_name)
+    if ENTRY_POINT in namespace or not agents:
+        foreign = foreign_agent(namespace, module_name, str(path), class_name or None)
+        if foreign is not None:
+            return LoadedAgent(adapted(foreign, agent_config), path.stem, path)
     if class_name:
         agents = [agent for agent in agents if agent.__name__ == class_name]
     return LoadedAgent(_only(agents, str(path)), path.stem, path)
@@ -58,6 +80,7 @@ def _run_file(path: Path) -> tuple[dict[str, object], str]:
 
     The thesis prints its sample agent without import lines (figure 4.9); such a file is complete here.
     """
+    stand_in()
     name = f"basu_agent_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None, "a path that ends in .py has a loader"
@@ -94,7 +117,10 @@ def _agents_in(namespace: dict[str, object], module_name: str) -> list[type[Auto
 def _only(agents: list[type[AutonomousAgent]], where: str) -> type[AutonomousAgent]:
     """The one agent there is, complete."""
     if not agents:
-        raise UserError(f"{where} holds no subclass of AutonomousAgent; see `examples/` for how an agent looks")
+        raise UserError(
+            f"{where} holds no subclass of AutonomousAgent, of BASU's, the leaderboard's or ScenarioRunner's; "
+            "see `examples/` for how an agent looks"
+        )
     concrete = [agent for agent in agents if not inspect.isabstract(agent)]
     if not concrete:
         missing = ", ".join(sorted(agents[0].__abstractmethods__))

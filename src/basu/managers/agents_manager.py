@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import carla
 
-from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, UserError
+from basu.errors import AgentCrashedError, AgentError, AgentInvalidControlError, AgentTimedOutError, UserError
 from basu.managers.agent_config import AgentConfig, parse_config
 from basu.managers.base_manager import BaseManager
 from basu.managers.sensor_file import SensorSpec, parse_sensors
@@ -68,11 +68,23 @@ class AgentsManager(BaseManager):
             ) from error
 
     def own_sensors(self) -> tuple[SensorSpec, ...] | None:
-        """The agent's own sensor set (``sensors``), None where it has none.
+        """The agent's own sensor set (``sensors``), None where it has none; empty where it tells it late.
 
         Raises:
             UserError: it is no list of sensors, or the agent names a sensor file as well.
         """
+        return () if self._agent.tells_sensors_late else self._told_sensors()
+
+    def late_sensors(self) -> tuple[SensorSpec, ...]:
+        """The sensor set of an agent that can tell it only now that it is set up; empty for all others.
+
+        Raises:
+            UserError: as ``own_sensors``.
+        """
+        return (self._told_sensors() or ()) if self._agent.tells_sensors_late else ()
+
+    def _told_sensors(self) -> tuple[SensorSpec, ...] | None:
+        """What ``sensors`` says, read."""
         given = self._ask("sensors", self._setup_limit_s, self._agent.sensors)
         if given is None:
             return None
@@ -128,6 +140,8 @@ class AgentsManager(BaseManager):
             raise AgentTimedOutError(
                 f"{method}() of {self._name} took longer than its limit of {limit_s:g} s"
             ) from None
+        except (AgentError, UserError):
+            raise  # it has its sentence
         except (Exception, SystemExit) as error:
             where = traceback.extract_tb(error.__traceback__)[-1]
             raise AgentCrashedError(

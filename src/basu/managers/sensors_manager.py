@@ -36,9 +36,14 @@ PARTING_TICKS = 3
 class SensorsManager(BaseManager):
     """After ``tick``, ``data`` holds each sensor's latest measurement with the frame it was made in, by sensor id."""
 
-    def __init__(self, specs: tuple[SensorSpec, ...], source: str) -> None:
-        """Take a sensor set; ``source`` says in complaints who gave it."""
-        self._specs, self._source = specs, source
+    def __init__(
+        self,
+        specs: tuple[SensorSpec, ...],
+        source: str,
+        late: Callable[[], tuple[SensorSpec, ...]] = tuple,
+    ) -> None:
+        """Take a sensor set; ``source`` says in complaints who gave it; ``late`` gives more once all is set up."""
+        self._specs, self._source, self._late = specs, source, late
         self._world: Any = None
         self._actors: list[Any] = []
         self._news = threading.Condition()
@@ -49,6 +54,7 @@ class SensorsManager(BaseManager):
 
     def setup(self, run: Run) -> None:
         """Attach the sensors to the vehicle."""
+        self._specs += self._late()
         if not self._specs:
             return
         self._world = run.world
