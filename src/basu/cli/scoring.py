@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import argparse
 import json
+from dataclasses import replace
 from pathlib import Path
 
 from basu.errors import UserError
 from basu.metrics.infraction import Infraction
 from basu.metrics.score import Scoring
+from basu.metrics.scoring_json import read_scoring_file, scoring_from_json
 
 
 def add_scoring(command: argparse.ArgumentParser) -> None:
     """What is adjustable in the score."""
     kinds = ", ".join(kind.value for kind in Infraction)
+    command.add_argument(
+        "--scoring",
+        type=Path,
+        metavar="FILE",
+        help="a JSON file with what differs from the thesis's scoring; the options below go before it",
+    )
     command.add_argument(
         "--penalty",
         action="append",
@@ -24,14 +32,28 @@ def add_scoring(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--infraction-weight", type=float, metavar="W", help="path following weighs 1 - W (default: 0.8)"
     )
+    command.add_argument(
+        "--speeding-tolerance",
+        type=float,
+        metavar="M/S",
+        help="how far above the posted limit speeding begins (default: 1.0)",
+    )
+    command.add_argument(
+        "--route-deviation",
+        type=float,
+        metavar="M",
+        help="how far from the planned line the vehicle is outside the plan (default: 2.0)",
+    )
 
 
 def adjusted(scoring: Scoring, arguments: argparse.Namespace) -> Scoring:
-    """``scoring`` with what the command line changed.
+    """``scoring``, or that of the file the command line names, with what its options changed.
 
     Raises:
-        UserError: a kind there is not, or a number that is none.
+        UserError: a kind there is not, a number that is none, or a file that is no scoring.
     """
+    if arguments.scoring is not None:
+        scoring = read_scoring_file(arguments.scoring)
     penalties = dict(scoring.penalties)
     for text in arguments.penalty:
         name, _, number = text.partition("=")
@@ -40,8 +62,15 @@ def adjusted(scoring: Scoring, arguments: argparse.Namespace) -> Scoring:
         except ValueError:
             kinds = ", ".join(kind.value for kind in Infraction)
             raise UserError(f"--penalty {text}: write KIND=FACTOR, the kind one of {kinds}") from None
-    weight = scoring.infraction_weight if arguments.infraction_weight is None else arguments.infraction_weight
-    return Scoring(penalties=penalties, infraction_weight=weight, path_following_weight=1.0 - weight)
+    changed: dict[str, float] = {}
+    if arguments.infraction_weight is not None:
+        changed["infraction_weight"] = arguments.infraction_weight
+        changed["path_following_weight"] = 1.0 - arguments.infraction_weight
+    if arguments.speeding_tolerance is not None:
+        changed["speeding_tolerance_mps"] = arguments.speeding_tolerance
+    if arguments.route_deviation is not None:
+        changed["route_deviation_m"] = arguments.route_deviation
+    return replace(scoring, penalties=penalties, **changed)
 
 
 def read_scoring(path: Path) -> Scoring:
@@ -54,10 +83,6 @@ def read_scoring(path: Path) -> Scoring:
         return Scoring()
     try:
         given = json.loads(path.read_text(encoding="utf-8"))["scoring"]
-        return Scoring(
-            penalties={Infraction(kind): float(penalty) for kind, penalty in given["penalties"].items()},
-            infraction_weight=given["infraction_weight"],
-            path_following_weight=given["path_following_weight"],
-        )
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(f"{path} is not the config of a run: {error!r}") from error
+    return scoring_from_json(given, str(path))

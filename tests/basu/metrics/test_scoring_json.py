@@ -1,0 +1,56 @@
+"""Claims about scorings as files: what may be left out, what is refused and how."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from basu.errors import UserError
+from basu.metrics.infraction import Infraction
+from basu.metrics.score import Scoring
+from basu.metrics.scoring_json import read_scoring_file, scoring_from_json, scoring_to_json
+
+
+def test_a_scoring_survives_a_round_trip() -> None:
+    scoring = Scoring(infraction_weight=0.7, path_following_weight=0.3, route_deviation_m=1.5)
+    assert scoring_from_json(json.loads(json.dumps(scoring_to_json(scoring))), "here") == scoring
+
+
+def test_a_file_says_only_what_differs(tmp_path: Path) -> None:
+    path = tmp_path / "mild.json"
+    path.write_text('{"penalties": {"speeding": 0.9}, "infraction_weight": 0.5}', encoding="utf-8")
+    found = read_scoring_file(path)
+    assert found.penalties == {**Scoring().penalties, Infraction.SPEEDING: 0.9}
+    assert (found.infraction_weight, found.path_following_weight) == (0.5, 0.5)
+
+
+def test_a_scoring_written_before_red_lights_cost_anything_takes_the_usual_factor() -> None:
+    old = {"penalties": {"stop_sign": 0.8}, "infraction_weight": 0.8, "path_following_weight": 0.2}
+    assert scoring_from_json(old, "here") == Scoring()
+
+
+@pytest.mark.parametrize(
+    ("document", "sentence"),
+    [
+        ({"penaltys": {}}, "has the key 'penaltys', which means nothing in a scoring; did you mean 'penalties'"),
+        ({"penalties": {"stop_sing": 0.5}}, "has the key 'stop_sing'.*did you mean 'stop_sign'"),
+        ({"penalties": [1]}, r"'penalties' is \[1\]; it must be an object"),
+        ({"penalties": {"speeding": "much"}}, "the penalty of speeding is 'much'; it must be a number"),
+        ({"penalties": {"speeding": 1.2}}, "the penalty of speeding is 1.2; it is a factor"),
+        ({"infraction_weight": 0.8, "path_following_weight": 0.3}, "must be non-negative and sum to 1"),
+        ({"infraction_weight": True}, "infraction_weight is True; it must be a number"),
+        ({"speeding_tolerance_mps": -1}, "speeding_tolerance_mps is -1.0; it must be a number that is not negative"),
+        ([], "a scoring is a JSON object"),
+    ],
+)
+def test_what_is_no_scoring_is_refused_with_a_sentence(document: object, sentence: str) -> None:
+    with pytest.raises(UserError, match=f"^the file: .*{sentence}|^the file {sentence}"):
+        scoring_from_json(document, "the file")
+
+
+def test_a_file_that_is_not_there_or_no_json_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="cannot be read: No such file"):
+        read_scoring_file(tmp_path / "none.json")
+    (tmp_path / "bad.json").write_text("{", encoding="utf-8")
+    with pytest.raises(UserError, match="is no JSON"):
+        read_scoring_file(tmp_path / "bad.json")
