@@ -65,6 +65,6 @@ class Table:
     @cached_property
     def _span_of(self) -> dict[int, tuple[int, int]]:
         """Where in ``_by_actor`` each actor's rows stand."""
-        ids, begins = np.unique(self.rows["id"][self._by_actor], return_index=True)
-        ends = np.append(begins[1:], len(self.rows))
-        return {int(actor): (int(begin), int(end)) for actor, begin, end in zip(ids, begins, ends, strict=True)}
+        ids, begins, counts = np.unique(self.rows["id"][self._by_actor], return_index=True, return_counts=True)
+        spans = zip(ids.tolist(), begins.tolist(), counts.tolist(), strict=True)
+        return {actor: (begin, begin + count) for actor, begin, count in spans}
