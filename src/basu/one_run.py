@@ -152,9 +152,10 @@ def _driven(
             seed=seed,
             timeout_s=options.timeout_s,
             folder=folder,
+            server_address=simulator.address,
             weather=() if options.weather is not None else ground.description.weather,
         )
-        sensors = SensorsManager(*session.plan.sensors)
+        sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors)
         return drive(
             this_run, agents, sensors, traffic, session.scoring, why_gone=simulator.why_gone, observers=observers
         )

@@ -59,7 +59,7 @@ def prepare(options: RunOptions) -> Plan:
     Raises:
         UserError, AgentError: nothing can be started like this.
     """
-    loaded = load_agent(options.agent)
+    loaded = load_agent(options.agent, options.agent_config)
     agents = new_agents(loaded, options, options.seed)
     config = agents.config
     weather_called(config.weather)

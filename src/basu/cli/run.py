@@ -8,6 +8,7 @@ import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from basu.cli.hud import add_hud, hud_options
 from basu.cli.scoring import add_scoring, adjusted
 from basu.errors import UserError
 from basu.metrics.score import Scoring
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 LATER = {
     "resume": "resuming an interrupted campaign follows with campaigns",
-    "hud": "the head-up display follows",
     "sumo": "SUMO co-simulation follows with the TrafficManager",
 }
 
@@ -33,6 +33,9 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "agent", nargs="?", metavar="AGENT", help="a name (`basu list`), FILE.py, or FILE.py:Class (default: basic)"
     )
     run.add_argument("--agent", dest="agent_option", metavar="AGENT", help="the same, in ScenarioRunner's way")
+    run.add_argument(
+        "--agent-config", metavar="FILE", help="handed to the setup of an agent of the leaderboard or ScenarioRunner"
+    )
     run.add_argument("--host", help="a simulator that runs already (default: start one, end it afterwards)")
     run.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
     run.add_argument(
@@ -66,6 +69,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument("--debug", action="store_true", help="show the traceback of an agent that fails")
     for name, why in LATER.items():
         run.add_argument(f"--{name}", action="store_true", help=f"not in this version: {why}")
+    add_hud(run)
     add_scoring(run)
     run.set_defaults(command=run_agent)
 
@@ -109,6 +113,7 @@ def run_agent(arguments: argparse.Namespace) -> int:
             raise UserError(f"--{option.replace('_', '-')} is {getattr(arguments, option)} s; it must be positive")
     options = RunOptions(
         agent=arguments.agent or arguments.agent_option or "basic",
+        agent_config=arguments.agent_config,
         host=arguments.host,
         port=arguments.port,
         timeout_s=arguments.timeout,
@@ -124,6 +129,7 @@ def run_agent(arguments: argparse.Namespace) -> int:
         output=arguments.output,
         step_limit_s=arguments.step_limit,
         debug=arguments.debug,
+        **hud_options(arguments)._asdict(),
     )
     scoring = adjusted(Scoring(), arguments)
     from basu.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
