@@ -1,9 +1,9 @@
 """What a standing passenger feels: the accelerations of the floor under the feet, in the vehicle's own axes.
 
-A passenger is a box of balance on a floor that is pushed about, so what counts is the specific force: acceleration of the
-place one stands at, less gravity, along the vehicle's axes. A slope is felt like a push, and in a bend the place matters:
-the terms of the yaw acceleration and of the centripetal acceleration about the vehicle's origin are in it, as are those
-of pitch and roll. Mechanics: Goldstein, Classical Mechanics, 3rd ed., equation 4.86 and section 4.10.
+Whoever stands has to balance on a floor that is pushed about, so what counts is the specific force: acceleration of
+the place one stands at, less gravity, along the vehicle's axes. A slope is felt like a push, and in a bend the place
+matters: the terms of the yaw acceleration and of the centripetal acceleration about the vehicle's origin are in it, as
+are those of pitch and roll. Mechanics: Goldstein, Classical Mechanics, 3rd ed., sections 4.9 and 4.10.
 """
 
 from __future__ import annotations
@@ -105,8 +105,8 @@ def _axes(
 def _lever(arm_m: NDArray[np.float64], step_s: float) -> NDArray[np.float64]:
     """(T - 1, 3) acceleration of the place relative to the vehicle's origin, from the arm (T, 3) in the world.
 
-    The second difference centred on the middle of each step, where the velocities' difference lies too. It holds the yaw,
-    pitch and roll accelerations and the centripetal terms without asking which way an angular velocity is counted.
+    The second difference centred on the middle of each step, where the velocities' difference lies too. It holds the
+    yaw, pitch and roll accelerations and the centripetal terms without asking which way a spin is counted.
     """
     inner = (arm_m[3:] - arm_m[2:-1] - arm_m[1:-2] + arm_m[:-3]) / (2.0 * step_s**2)
     return np.concatenate([inner[:1], inner, inner[-1:]])

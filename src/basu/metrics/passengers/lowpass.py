@@ -5,8 +5,8 @@ no longer. Its weighting Wd also cuts what is slower than 0.4 Hz, and with it th
 what a standing passenger has to lean against. Here the a-v transition of Wd stands alone (ISO 8041-1, table of
 parameters: f3 = f4 = 2 Hz, Q4 = 0.63), turned into a digital filter by the bilinear transform, exact at 2 Hz.
 
-A recorded step of 0.05 s can show nothing above 10 Hz. The digital filter passes 102 % at 1 Hz, 89 % at 2 Hz, 46 % at 4 Hz
-(the analogue one 51 %), 11 % at 8 Hz (25 %) and nothing at 10 Hz; a sudden push of 1 is answered with 1.06 at most.
+A recorded step of 0.05 s can show nothing above 10 Hz. The digital filter passes 102 % at 1 Hz, 89 % at 2 Hz, 46 % at
+4 Hz (the analogue one 51 %), 11 % at 8 Hz (25 %), nothing at 10 Hz; a sudden push of 1 is answered with 1.06 at most.
 """
 
 from __future__ import annotations

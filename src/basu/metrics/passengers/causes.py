@@ -1,0 +1,154 @@
+"""What was ahead when a harsh stop began, found in the record: a line, a stop, somebody, a bend, or nothing.
+
+Looked for is whatever asks for less speed within the reach of a braking that nobody minds: a second to think, then
+1.0 m/s² (`balance.STEP_MPS2`), and two metres to spare. What is farther away is no reason to brake harshly yet. A stop
+with no such reason is a phantom stop, as that of 20 February 2020 was.
+"""
+
+from __future__ import annotations
+
+import enum
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from basu.metrics.passengers.balance import STEP_MPS2
+from basu.metrics.passengers.in_the_way import in_the_way
+from basu.metrics.speeding import limits_mps
+from basu.routing import ControlKind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from basu.history import History
+    from basu.metrics.passengers.harsh_stops import HarshStop
+
+THINK_S, SPARE_M = 1.0, 2.0
+BEYOND_M = 1.0  # a line this far behind the front bumper is still braked for
+CONTACT_S = 0.5  # a braking that begins this near to a contact is the contact's
+SLOWER_MPS = 0.5  # a limit or bend asks for a slowdown only where it is lower than the speed by this
+BEND_M = 6.0  # over which a bend's curvature is taken
+RED, YELLOW = 0, 1  # carla.TrafficLightState
+LOOK_BACK_S = 2.0  # what the vehicle did before a phantom stop
+
+
+class Kind(enum.Enum):
+    """What a harsh stop was for."""
+
+    CONTACT = "contact"
+    ACTOR = "actor"
+    STOP_SIGN = "stop_sign"
+    YIELD_SIGN = "yield_sign"
+    TRAFFIC_LIGHT = "traffic_light"
+    SERVICE_STOP = "service_stop"
+    ROUTE_END = "route_end"
+    LIMIT = "limit"
+    BEND = "bend"
+    NOTHING = "nothing"
+
+
+class Cause(NamedTuple):
+    """One reason, and the braking from the stop's onset on that would have met it."""
+
+    kind: Kind
+    away_m: float  # from the front bumper; nan for nothing
+    needed_mps2: float  # 0 for nothing
+    detail: str
+
+
+def cause(history: History, stop: HarshStop) -> Cause:
+    """The reason that asked for most, or `Kind.NOTHING` with what can be said about it."""
+    found = max(_reasons(history, stop), key=lambda reason: reason.needed_mps2, default=None)
+    return _nothing(history, stop) if found is None else found
+
+
+def reach_m(speed_mps: float) -> float:
+    """How far ahead something may be a reason."""
+    return speed_mps * THINK_S + speed_mps**2 / (2.0 * STEP_MPS2) + SPARE_M
+
+
+def _reasons(history: History, stop: HarshStop) -> Iterator[Cause]:
+    """Everything within reach that asked for less speed."""
+    yield from _contacts(history, stop)
+    yield from _lines(history, stop)
+    yield from _halts(history, stop)
+    yield from _slowdowns(history, stop)
+    for actor in in_the_way(history, stop.onset_tick, reach_m(stop.from_mps)):
+        yield _reason(Kind.ACTOR, stop, actor.away_m, actor.speed_mps, actor.name)
+
+
+def _reason(kind: Kind, stop: HarshStop, away_m: float, target_mps: float, name: str) -> Cause:
+    """A reason to be no faster than ``target_mps`` after ``away_m``."""
+    excess = max(0.0, stop.from_mps**2 - target_mps**2)
+    needed_mps2 = excess / (2.0 * max(away_m, 0.5))
+    return Cause(kind, away_m, needed_mps2, f"{name} {away_m:.1f} m ahead asked for {needed_mps2:.2f} m/s²")
+
+
+def _contacts(history: History, stop: HarshStop) -> Iterator[Cause]:
+    """A collision explains any braking."""
+    slack = round(CONTACT_S / history.facts.step_s)
+    for event in history.collisions:
+        if stop.onset_tick - slack <= event.tick <= stop.tick:
+            yield Cause(Kind.CONTACT, 0.0, stop.strongest_mps2, f"the vehicle hit {event.other_type}")
+            return
+
+
+def _lines(history: History, stop: HarshStop) -> Iterator[Cause]:
+    """Stop and yield lines ahead, and traffic lights that do not show green."""
+    front_s_m = float(history.frames["route_s_m"][stop.onset_tick]) + history.facts.vehicle.front_m
+    shown = history.frames["route_light"][stop.onset_tick : stop.tick + 1]
+    for control in history.facts.route.controls:
+        away_m = control.s_m - front_s_m
+        if not -BEYOND_M <= away_m <= reach_m(stop.from_mps):
+            continue
+        if control.kind is ControlKind.TRAFFIC_LIGHT and not np.isin(shown, (RED, YELLOW)).any():
+            continue
+        name = f"{control.kind.value.replace('_', ' ')} {control.landmark_id}"
+        yield _reason(Kind(control.kind.value), stop, max(away_m, 0.0), 0.0, name)
+
+
+def _halts(history: History, stop: HarshStop) -> Iterator[Cause]:
+    """Service stops, where the vehicle's origin halts, and the end of the route."""
+    route, at_m = history.facts.route, float(history.frames["route_s_m"][stop.onset_tick])
+    ends = [(Kind.SERVICE_STOP, s.s_m, f"service stop '{s.name}'") for s in route.stops]
+    for kind, s_m, name in [*ends, (Kind.ROUTE_END, route.length_m, "the end of the route")]:
+        if -BEYOND_M <= s_m - at_m <= reach_m(stop.from_mps):
+            yield _reason(kind, stop, max(s_m - at_m, 0.0), 0.0, name)
+
+
+def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
+    """A limit, here or ahead, below the speed; a bend too tight for it."""
+    route, tick = history.facts.route, stop.onset_tick
+    at_m = float(history.frames["route_s_m"][tick])
+    here_mps = float(limits_mps(history)[tick])
+    if here_mps < stop.from_mps - SLOWER_MPS:
+        yield _reason(Kind.LIMIT, stop, 0.0, here_mps, f"the limit of {here_mps:.1f} m/s, exceeded already,")
+    ahead = np.flatnonzero((route.s_m > at_m) & (route.s_m <= at_m + reach_m(stop.from_mps)))
+    for index in ahead.tolist():
+        limit_mps = float(route.speed_limit_mps[index])
+        if limit_mps < stop.from_mps - SLOWER_MPS:
+            yield _reason(
+                Kind.LIMIT, stop, float(route.s_m[index]) - at_m, limit_mps, f"a limit of {limit_mps:.1f} m/s"
+            )
+            break
+    for index in ahead.tolist():
+        other = min(int(np.searchsorted(route.s_m, route.s_m[index] + BEND_M)), len(route.s_m) - 1)
+        turn_rad = np.angle(np.exp(1j * (route.yaw_rad[other] - route.yaw_rad[index])))
+        curvature_1pm = abs(float(turn_rad)) / max(float(route.s_m[other] - route.s_m[index]), 1.0)
+        bend_mps = (STEP_MPS2 / max(curvature_1pm, 1e-6)) ** 0.5
+        if bend_mps < stop.from_mps - SLOWER_MPS:
+            name = f"a bend of {1.0 / curvature_1pm:.0f} m radius"
+            yield _reason(Kind.BEND, stop, float(route.s_m[index]) - at_m, bend_mps, name)
+            return
+
+
+def _nothing(history: History, stop: HarshStop) -> Cause:
+    """A phantom stop, with what the vehicle did in the seconds before it."""
+    frames, tick = history.frames, stop.onset_tick
+    before = frames[max(0, tick - round(LOOK_BACK_S / history.facts.step_s)) : tick + 1]
+    drift_m = float(np.ptp(before["lateral_m"]))
+    detail = (
+        f"nothing was ahead within {reach_m(stop.from_mps):.1f} m; in the {LOOK_BACK_S:.0f} s before, the place across "
+        f"the route changed by {drift_m:.2f} m and the steering by {float(np.ptp(before['steer'])):.3f} of full lock"
+    )
+    return Cause(Kind.NOTHING, float("nan"), 0.0, detail)

@@ -1,0 +1,128 @@
+"""Near misses: with whom the vehicle would soon have collided, and whose place it took just before or after.
+
+Time to collision (Hayward 1972): how long until both boxes touch if both go on as they do, the vehicle under test on
+its present bend, the other straight ahead. Post-encroachment time (Allen, Shin and Cooper 1978): how long between one's
+leaving a place and the other's coming to it; asked only where their ways cross at 30 degrees or more, for who follows
+in a lane takes the same places all the time. Crossings and the 1.5 s of time to collision are those of the Surrogate
+Safety Assessment Model (FHWA-HRT-08-051, 2008), which screens with a post-encroachment time of 5 s; what is called a
+near miss here is one of 1.5 s, a definition of ours.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from basu.metrics.passengers.boxes import other_boxes, own_boxes, time_to_touch_s, touching
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from basu.history import History
+
+NEAR_S = 1.5  # a time to collision or a post-encroachment time up to this is a near miss
+SEEN_S = 3.0  # up to this it is told of
+LEG_S = 0.25  # the vehicle's bend is followed in straight legs of this
+CROSSING_RAD = math.radians(30.0)
+STILL_MPS = 0.1  # two who both stand are in no danger from each other
+
+
+class Party(NamedTuple):
+    """Somebody who came close; times are inf where they never fell to `SEEN_S`."""
+
+    name: str  # blueprint id and actor id
+    ttc_s: float  # least time to collision
+    ttc_tick: int  # when, -1 for never
+    pet_s: float  # least post-encroachment time
+    pet_tick: int  # when the second of the two came to the place, -1 for never
+    is_near_miss: bool
+    detail: str
+
+
+def near_misses(history: History) -> tuple[Party, ...]:
+    """Everybody who came within `SEEN_S` of the vehicle in one of the two measures, by actor id."""
+    if len(history.others) == 0:
+        return ()
+    own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
+    ttc_s = _times_to_collision_s(history, own, others)
+    pet_s, pet_tick = _post_encroachment_s(history, own, others)
+    hit = {event.other_id for event in history.collisions}
+    found = []
+    for key in sorted({int(key) for key in np.unique(history.others["id"])} - hit):
+        rows = np.flatnonzero(history.others["id"] == key)
+        soonest, closest = rows[np.argmin(ttc_s[rows])], rows[np.argmin(pet_s[rows])]
+        if min(ttc_s[soonest], pet_s[closest]) <= SEEN_S:
+            found.append(_party(history, key, ttc_s[soonest], soonest, pet_s[closest], int(pet_tick[closest])))
+    return tuple(found)
+
+
+def _party(history: History, key: int, ttc_s: float, soonest: int, pet_s: float, pet_tick: int) -> Party:
+    """The evidence about one actor."""
+    name = f"{history.facts.actor_types.get(key, 'somebody')} (actor {key})"
+    row, ttc_tick = history.others[soonest], int(history.others["tick"][soonest])
+    said = []
+    if ttc_s <= SEEN_S:
+        speeds = history.speed_mps()[ttc_tick], math.hypot(row["velocity_x_mps"], row["velocity_y_mps"])
+        at_s = float(history.frames["t_s"][ttc_tick])
+        said.append(f"{ttc_s:.2f} s from a collision at {at_s:.1f} s, at {speeds[0]:.1f} and {speeds[1]:.1f} m/s")
+    if pet_s <= SEEN_S:
+        said.append(f"in each other's place within {pet_s:.2f} s at {float(history.frames['t_s'][pet_tick]):.1f} s")
+    return Party(
+        name=name,
+        ttc_s=float(ttc_s),
+        ttc_tick=ttc_tick if ttc_s <= SEEN_S else -1,
+        pet_s=float(pet_s),
+        pet_tick=pet_tick if pet_s <= SEEN_S else -1,
+        is_near_miss=bool(min(ttc_s, pet_s) <= NEAR_S),
+        detail=f"{name}: {', '.join(said)}",
+    )
+
+
+def _times_to_collision_s(
+    history: History, own: NDArray[np.float64], others: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(M,) for each row of others, inf beyond `SEEN_S`."""
+    frames, tick = history.frames, history.others["tick"]
+    turning_radps = np.gradient(np.unwrap(frames["yaw_rad"]), history.facts.step_s) if len(frames) > 1 else np.zeros(1)
+    velocity_mps = np.column_stack([frames["velocity_x_mps"], frames["velocity_y_mps"]])[tick]
+    theirs_mps = np.column_stack([history.others["velocity_x_mps"], history.others["velocity_y_mps"]])
+    speeds_mps = np.hypot(*velocity_mps.T) + np.hypot(*theirs_mps.T)
+    away_m = np.hypot(*(others[:, :2] - own[tick, :2]).T) - np.hypot(*others[:, 3:].T) - np.hypot(*own[tick, 3:].T)
+    rows = np.flatnonzero((speeds_mps > STILL_MPS) & (away_m <= speeds_mps * SEEN_S))
+    found = np.full(len(others), np.inf)
+    a, b, turn_radps = own[tick[rows]], others[rows].copy(), turning_radps[tick[rows]]
+    mine, theirs = velocity_mps[rows], theirs_mps[rows]
+    for leg in range(round(SEEN_S / LEG_S)):
+        touch_s = time_to_touch_s(a, b, theirs - mine)
+        fresh = (touch_s <= LEG_S) & np.isinf(found[rows])
+        found[rows[fresh]] = leg * LEG_S + touch_s[fresh]
+        a, b = a.copy(), b.copy()
+        a[:, :2] += mine * LEG_S
+        b[:, :2] += theirs * LEG_S
+        a[:, 2] += turn_radps * LEG_S
+        cos, sin = np.cos(turn_radps * LEG_S), np.sin(turn_radps * LEG_S)
+        mine = np.column_stack([mine[:, 0] * cos - mine[:, 1] * sin, mine[:, 0] * sin + mine[:, 1] * cos])
+    return found
+
+
+def _post_encroachment_s(
+    history: History, own: NDArray[np.float64], others: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """(M,) for each row of others the least time to the vehicle's being where they are, and the later tick."""
+    tick, step_s = history.others["tick"].astype(np.int64), history.facts.step_s
+    moving = np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > STILL_MPS
+    radius_m = np.hypot(*others[:, 3:].T) + (np.hypot(*own[0, 3:]) if len(own) else 0.0)
+    found, later = np.full(len(others), np.inf), np.full(len(others), -1, dtype=np.int64)
+    for gap in range(1, round(SEEN_S / step_s) + 1):
+        for lag in (gap, -gap):
+            mine = tick + lag
+            rows = np.flatnonzero(moving & (mine >= 0) & (mine < len(own)) & np.isinf(found))
+            at = own[mine[rows]]
+            near = np.hypot(*(others[rows, :2] - at[:, :2]).T) <= radius_m[rows]
+            crossing = np.abs(np.sin(others[rows, 2] - at[:, 2])) >= math.sin(CROSSING_RAD)
+            rows, at = rows[near & crossing], at[near & crossing]
+            rows = rows[touching(at, others[rows])]
+            found[rows], later[rows] = gap * step_s, np.maximum(tick[rows], tick[rows] + lag)
+    return found, later
