@@ -9,6 +9,7 @@ from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.drive import drive
+from basu.hud.seat import onlookers_for
 from basu.managers.base_manager import BaseManager, Live, Run
 from basu.managers.recording_manager import LOG_FILE, RecordingManager
 from basu.managers.sensors_manager import SensorsManager
@@ -133,7 +134,7 @@ def _driven(
     options, simulator, world = session.options, session.simulator, ground.world
 
     def observers(live: Live) -> Sequence[BaseManager]:
-        return [ProgressBar(live), *([] if recording is None else [recording])]
+        return [ProgressBar(live), *([] if recording is None else [recording]), *onlookers_for(options, live)]
 
     with (
         asking("getting the vehicle ready"),

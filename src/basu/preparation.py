@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.errors import UserError
+from basu.hud.seat import person_for
 from basu.managers.agent_loader import load_agent
 from basu.managers.agents_manager import AgentsManager
 from basu.managers.sensor_file import read_sensors
@@ -84,7 +85,8 @@ def new_agents(loaded: LoadedAgent, options: RunOptions, seed: int) -> AgentsMan
     """A fresh agent, with everything random in Python begun anew."""
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
-    agents = AgentsManager(loaded, step_limit_s=options.step_limit_s, routes=options.routes)
+    person = person_for(options, loaded.agent_class)
+    agents = AgentsManager(loaded, step_limit_s=options.step_limit_s, routes=options.routes, person=person)
     agents.config = replace(
         agents.config,
         weather=options.weather or agents.config.weather,
