@@ -90,6 +90,7 @@ def command(options: RunOptions, scoring: Scoring, description: RouteDescription
         ("--seed", seed),
         ("--weather", options.weather),
         ("--vehicle", options.vehicle),
+        ("--keys", options.keys),
         ("--vehicles", traffic.vehicles or None),
         ("--walkers", traffic.walkers or None),
         ("--traffic-density", traffic.density_per_km),
