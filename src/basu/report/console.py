@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from basu.report.measures_table import measured
+
 
 def table(document: dict[str, Any]) -> str:
     """A result as lines of text."""
@@ -23,7 +25,7 @@ def table(document: dict[str, Any]) -> str:
     stops = document["stops"]
     if stops:
         lines.append(f"service stops     {sum(stop['served'] for stop in stops)} of {len(stops)} served")
-    return "\n".join(lines)
+    return "\n".join([*lines, *measured(document)])
 
 
 def _figures(document: dict[str, Any]) -> list[tuple[str, str]]:

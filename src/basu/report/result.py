@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,11 +11,12 @@ from basu.metrics.infraction import counts
 from basu.metrics.lane_invasion import lane_invasions
 from basu.metrics.path_following import path_following
 from basu.metrics.score import driving_score, infraction_score, infractions
+from basu.metrics.scoring_json import scoring_to_json
 from basu.metrics.stop_signs import signs_passed
+from basu.report.measures import NOTHING, measures, told
 
 if TYPE_CHECKING:
     from basu.history import History
-    from basu.metrics.infraction import Evidence
     from basu.metrics.score import Scoring
     from basu.outcome import Outcome
 
@@ -33,11 +33,7 @@ def result(outcome: Outcome, history: History | None, scoring: Scoring, meta: di
         "fault": outcome.status.fault.name.lower(),
         "message": outcome.message,
         **judgement(history, scoring),
-        "scoring": {
-            "penalties": {kind.value: penalty for kind, penalty in scoring.penalties.items()},
-            "infraction_weight": scoring.infraction_weight,
-            "path_following_weight": scoring.path_following_weight,
-        },
+        "scoring": scoring_to_json(scoring),
         "meta": meta,
     }
 
@@ -45,8 +41,8 @@ def result(outcome: Outcome, history: History | None, scoring: Scoring, meta: di
 def judgement(history: History | None, scoring: Scoring) -> dict[str, Any]:
     """Scores, infractions and all that is reported beside them: the part that comes from the record."""
     if history is None or len(history.frames) == 0:
-        return {"scores": None, "infractions": [], "stop_signs": [], "stops": [], "reported": None}
-    found = infractions(history)
+        return {"scores": None, "infractions": [], "stop_signs": [], "stops": [], **NOTHING, "reported": None}
+    found = infractions(history, scoring)
     path = path_following(history)
     infraction = infraction_score(counts(found), scoring)
     return {
@@ -55,7 +51,7 @@ def judgement(history: History | None, scoring: Scoring) -> dict[str, Any]:
             "infraction": infraction,
             "path_following": path.score,
         },
-        "infractions": [_infraction(e) for e in found],
+        "infractions": [told(e) for e in found],
         "stop_signs": [
             {
                 "id": passed.sign.landmark_id,
@@ -68,13 +64,9 @@ def judgement(history: History | None, scoring: Scoring) -> dict[str, Any]:
             for passed in signs_passed(history)
         ],
         "stops": _service_stops(history),
+        **measures(history, scoring),
         "reported": _reported(history, path.driven_m, path.planned_m),
     }
-
-
-def _infraction(found: Evidence) -> dict[str, Any]:
-    """One infraction with its evidence."""
-    return {**asdict(found), "kind": found.kind.value}
 
 
 def _service_stops(history: History) -> list[dict[str, Any]]:
