@@ -13,6 +13,7 @@ import basu
 from basu.history.files import write_history
 from basu.managers.recording_manager import LOG_FILE
 from basu.metrics.score import Scoring
+from basu.metrics.scoring_json import scoring_to_json
 from basu.options import STEP_S
 from basu.report import picture
 from basu.report.console import table
@@ -64,11 +65,7 @@ def run_config(
         "step_s": STEP_S,
         "step_limit_s": options.step_limit_s,
         "own_simulator": own_simulator,
-        "scoring": {
-            "penalties": {kind.value: penalty for kind, penalty in scoring.penalties.items()},
-            "infraction_weight": scoring.infraction_weight,
-            "path_following_weight": scoring.path_following_weight,
-        },
+        "scoring": scoring_to_json(scoring),
         "versions": {
             "basu": basu.__version__,
             "carla": version("carla"),
@@ -96,8 +93,13 @@ def command(options: RunOptions, scoring: Scoring, description: RouteDescription
         ("--traffic-density", traffic.density_per_km),
         *(("--penalty", text) for text in changed),
     ]
-    if scoring.infraction_weight != usual.infraction_weight:
-        values.append(("--infraction-weight", scoring.infraction_weight))
+    for option, number, usually in (
+        ("--infraction-weight", scoring.infraction_weight, usual.infraction_weight),
+        ("--speeding-tolerance", scoring.speeding_tolerance_mps, usual.speeding_tolerance_mps),
+        ("--route-deviation", scoring.route_deviation_m, usual.route_deviation_m),
+    ):
+        if number != usually:
+            values.append((option, number))
     words = [word for option, value in values if value is not None for word in (option, str(value))]
     return ["basu", "run", options.agent, *words, *(["--record"] if options.record else [])]
 
