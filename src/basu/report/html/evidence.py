@@ -1,0 +1,134 @@
+"""The evidence of each infraction: the sentence, the figures, the place seen from above and the speed around it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from basu.report.markup import TIMES, e, figure, number
+from basu.report.plots import marks
+from basu.report.plots.chart import Line, Mark, chart
+from basu.report.plots.town_map import box, view
+from basu.report.streets import Bounds
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from xml.etree.ElementTree import Element
+
+    from basu.history import History
+    from basu.report.plots.signals import Signals
+
+PICTURED = 60  # infractions that have pictures; a drive with more of them is told in words from there on
+CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
+AROUND_S = 8.0  # of speed, before and after
+UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others whose size is not recorded
+
+
+def evidence(history: History, felt: Signals, document: dict[str, Any]) -> Element:
+    """The section of all infractions, each one to be opened and linked to."""
+    infractions = document["infractions"]
+    section = e("section", e("h2", "Infractions"), id="infractions")
+    if not infractions:
+        section.append(e("p", "None."))
+    so_far = 1.0
+    for index, infraction in enumerate(infractions, start=1):
+        factor = document["scoring"]["penalties"].get(infraction["kind"])
+        so_far *= 1.0 if factor is None else factor
+        pictures = []
+        if index <= PICTURED:
+            pictures = [close_up(history, infraction), _speed(felt, infraction, index)]
+        section.append(
+            e(
+                "details",
+                e(
+                    "summary",
+                    marks.symbol(infraction["kind"], str(index)),
+                    e("b", marks.words(infraction["kind"])),
+                    f" at {infraction['t_s']:.1f} s",
+                ),
+                e("p", infraction["detail"]),
+                e("div", *pictures, class_="pictures") if pictures else None,
+                _facts(infraction, factor, so_far),
+                class_="evidence",
+                id=marks.anchor(index),
+                data_t=infraction["t_s"],
+            )
+        )
+    return section
+
+
+def close_up(history: History, infraction: dict[str, Any]) -> Element:
+    """The place from above: the vehicle under test, dark, and who was near it in that tick."""
+    x_m, y_m = infraction["x_m"], infraction["y_m"]
+    bounds = Bounds(x_m - CLOSE_M[0], y_m - CLOSE_M[1], x_m + CLOSE_M[0], y_m + CLOSE_M[1])
+    frame, vehicle = history.frames[infraction["tick"]], history.facts.vehicle
+    picture = e(
+        "svg",
+        e("title", f"The place from above, {2 * CLOSE_M[0]:g} m by {2 * CLOSE_M[1]:g} m, north is up"),
+        e("use", href="#map-streets"),
+        e("use", href="#map-paths"),
+        viewBox=view(bounds),
+        role="img",
+    )
+    for other in history.others[history.others["tick"] == infraction["tick"]]:
+        half_m = history.facts.actor_sizes.get(int(other["id"]), UNKNOWN_HALF_M)
+        kind = history.facts.actor_types.get(int(other["id"]), "")
+        picture.append(
+            _body(other["x_m"], other["y_m"], other["yaw_rad"], half_m[0], half_m[0], half_m[1], f"other {kind[:6]}")
+        )
+    half_width_m = vehicle.width_m / 2.0
+    picture.append(
+        _body(frame["x_m"], frame["y_m"], frame["yaw_rad"], vehicle.front_m, vehicle.rear_m, half_width_m, "own")
+    )
+    caption = e("figcaption", e("b", "Place"), f", {2 * CLOSE_M[0]:g} m across; the vehicle is dark, others are light")
+    return e("figure", caption, e("div", picture, class_="map", style=box(bounds, 480.0)))
+
+
+def _body(
+    x_m: float, y_m: float, yaw_rad: float, front_m: float, rear_m: float, half_width_m: float, style: str
+) -> Element:
+    """A vehicle or walker from above, pointed at its front."""
+    outline = [
+        (front_m, 0.0),
+        (front_m * 0.6, half_width_m),
+        (-rear_m, half_width_m),
+        (-rear_m, -half_width_m),
+        (front_m * 0.6, -half_width_m),
+    ]
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    places = (
+        f"{number(x_m + ahead_m * cos - right_m * sin)},{number(y_m + ahead_m * sin + right_m * cos)}"
+        for ahead_m, right_m in outline
+    )
+    return e("polygon", points=" ".join(places), class_=style)
+
+
+def _speed(felt: Signals, infraction: dict[str, Any], index: int) -> Element:
+    """Speed and limit around the moment."""
+    near = np.flatnonzero(np.abs(felt.t_s - infraction["t_s"]) <= AROUND_S)
+    curves: Sequence[Line] = (
+        Line("driven", felt.speed_mps[near], "first"),
+        Line("limit", felt.limit_mps[near], "limit", steps=True),
+    )
+    moment = Mark(infraction["t_s"], str(index), f"the moment of infraction {index}", f"#{marks.anchor(index)}")
+    return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
+
+
+def _facts(infraction: dict[str, Any], factor: float | None, so_far: float) -> Element:
+    """The figures in a line of terms."""
+    terms = [
+        ("time", f"{infraction['t_s']:.2f} s, tick {infraction['tick']}"),
+        ("speed", f"{infraction['speed_mps']:.2f} m/s"),
+        ("along the route", f"{infraction['route_s_m']:.1f} m"),
+        ("place", f"x {infraction['x_m']:.2f} m, y {infraction['y_m']:.2f} m"),
+        ("other party", infraction["other"] or "none"),
+        (
+            "costs",
+            "nothing in this score"
+            if factor is None
+            else f"{TIMES} {factor:g}; infraction score so far {figure(so_far)}",
+        ),
+    ]
+    return e("dl", *(e("div", e("dt", name), e("dd", text)) for name, text in terms))

@@ -1,0 +1,66 @@
+"""A run's folder read back: what a report, a comparison and an experiment are made from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from basu.errors import UserError
+from basu.history.files import HISTORY_FILE, read_history
+from basu.report.folder import CONFIG_FILE, RESULT_FILE
+from basu.report.streets import read_streets
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from basu.history import History
+    from basu.report.streets import Line
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRecord:
+    """All that a run left."""
+
+    name: str  # of its folder
+    config: dict[str, Any]  # config.json
+    result: dict[str, Any]  # result.json
+    history: History | None  # None where nothing was driven
+    streets: list[Line]
+
+    @property
+    def agent(self) -> str:
+        """Who drove, as its author called it."""
+        return str(self.result["meta"]["agent"]["name"])
+
+
+def read_run(folder: Path) -> RunRecord:
+    """Read a run's folder.
+
+    Raises:
+        UserError: it is none, or one of its files is not what it should be.
+    """
+    if not folder.is_dir():
+        raise UserError(f"{folder} is no folder; name a run's, such as runs/latest")
+    return RunRecord(
+        name=folder.resolve().name,
+        config=_document(folder / CONFIG_FILE),
+        result=_document(folder / RESULT_FILE),
+        history=read_history(folder) if (folder / HISTORY_FILE).exists() else None,
+        streets=read_streets(folder),
+    )
+
+
+def _document(path: Path) -> dict[str, Any]:
+    """A JSON object in a file."""
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UserError(
+            f"{path.parent} is no run's folder: {path.name} cannot be read ({error.strerror}); name one of `basu run`"
+        ) from error
+    except ValueError as error:
+        raise UserError(f"{path} is not JSON: {error}; the run has to be driven again") from error
+    if not isinstance(document, dict):
+        raise UserError(f"{path} holds no JSON object; the run has to be driven again")
+    return document
