@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from basu.routing import Control, ControlKind, Route, Stop
+from basu.routing.timetable import timetable_from_json, timetable_to_json
 
 ARRAYS = ("points_m", "s_m", "yaw_rad", "lane_width_m", "speed_limit_mps", "is_junction", "road_id", "lane_id")
 
@@ -20,6 +21,8 @@ def route_to_json(route: Route) -> dict[str, Any]:
         document[name] = getattr(route, name).tolist()
     document["speed_limit_mps"] = [None if math.isnan(limit) else limit for limit in document["speed_limit_mps"]]
     document["stops"] = [asdict(stop) for stop in route.stops]
+    if route.timetable is not None:
+        document["timetable"] = timetable_to_json(route.timetable)
     document["controls"] = [{**asdict(control), "kind": control.kind.value} for control in route.controls]
     return document
 
@@ -33,6 +36,7 @@ def route_from_json(document: dict[str, Any]) -> Route:
         town=document["town"],
         speed_limit_mps=np.array(limits, dtype=np.float64),
         stops=tuple(Stop(**stop) for stop in document["stops"]),
+        timetable=timetable_from_json(document["timetable"]) if "timetable" in document else None,
         controls=tuple(Control(**{**c, "kind": ControlKind(c["kind"])}) for c in document["controls"]),
         **arrays,
     )

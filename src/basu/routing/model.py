@@ -11,6 +11,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from basu.routing.timetable import Timetable
+
 
 class ControlKind(enum.Enum):
     """What makes a driver stop or give way."""
@@ -62,6 +64,7 @@ class Route:
     lane_id: NDArray[np.int64]  # (N,)
     stops: tuple[Stop, ...] = ()  # in the order in which the route passes them
     controls: tuple[Control, ...] = ()  # likewise
+    timetable: Timetable | None = None  # when it is due at its stops; None where nobody said
     waypoints: tuple[carla.Waypoint, ...] = field(default=(), repr=False)  # (N,)
 
     @property

@@ -57,6 +57,7 @@ def plan(carla_map: carla.Map, description: RouteDescription, lanes: LaneGraph |
         road_id=road_id,
         lane_id=lane_id,
         stops=_stops(description, points_m, s_m, yaw_rad),
+        timetable=description.timetable,
         controls=controls_on(
             carla_map.get_all_landmarks(),
             road_id=road_id,

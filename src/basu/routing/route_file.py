@@ -15,6 +15,7 @@ from lxml import etree
 
 from basu.errors import UserError
 from basu.routing.route_weather import WeatherMark, read_weather
+from basu.routing.timetable import Timetable, read_timetable
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,6 +49,7 @@ class RouteDescription:
     points: tuple[RoutePoint, ...]
     stops: tuple[StopMark, ...]
     source: str  # file name, for sentences
+    timetable: Timetable | None = None  # from the file that the attribute 'timetable' names, seen from this one
     weather: tuple[WeatherMark, ...] = ()  # as the file gives it along the way; empty where it gives none
 
 
@@ -121,8 +123,15 @@ def _description(element: etree._Element, path: Path) -> RouteDescription:
         StopMark(id=e.get("id") or str(number), name=e.get("name") or f"stop {number}", point=_point(e, path))
         for number, e in enumerate(element.iterfind("stops/stop"), start=1)
     )
+    timetable = element.get("timetable")
     return RouteDescription(
-        id=identity, town=town, points=points, stops=stops, source=str(path), weather=read_weather(element, path)
+        id=identity,
+        town=town,
+        points=points,
+        stops=stops,
+        source=str(path),
+        timetable=None if timetable is None else read_timetable(path.parent / timetable, [stop.id for stop in stops]),
+        weather=read_weather(element, path),
     )
 
 
