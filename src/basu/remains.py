@@ -18,7 +18,10 @@ from basu.options import STEP_S
 from basu.report import picture
 from basu.report.console import table
 from basu.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, write_json
+from basu.report.html.page import write_report
+from basu.report.reading import RunRecord
 from basu.report.result import result
+from basu.report.streets import around, write_streets
 from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
@@ -147,6 +150,9 @@ def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, conf
     if history is not None:
         write_history(folder, history)
         picture.draw(folder / PICTURE_FILE, history, lanes.streets(), f"{_heading(config)}: {document['status']}")
+    streets = [] if history is None else around(lanes.streets(), history)
+    write_streets(folder, streets)
+    write_report(folder, RunRecord(name=folder.name, config=config, result=document, history=history, streets=streets))
     if config["recording"] is not None:
         print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return document
