@@ -52,6 +52,11 @@ class SensorsManager(BaseManager):
         self._timeout_s = 0.0
         self.data: dict[str, tuple[int, Any]] = {}
 
+    @property
+    def types(self) -> dict[str, str]:
+        """The blueprint id of each sensor, by the id it has in the set."""
+        return {spec.id: spec.type_id for spec in self._specs}
+
     def setup(self, run: Run) -> None:
         """Attach the sensors to the vehicle."""
         self._specs += self._late()
