@@ -55,7 +55,16 @@ class Rammer(AutonomousAgent):
     def destroy(self):
         self.parked.destroy()
 """
-RESULT_FILES = {"config.json", "history.parquet", "path.png", "result.json", "result.txt", "route.json"}
+RESULT_FILES = {
+    "config.json",
+    "history.parquet",
+    "path.png",
+    "report.html",
+    "result.json",
+    "result.txt",
+    "route.json",
+    "streets.json",
+}
 Runner = Callable[..., tuple[int, dict[str, Any]]]
 
 
