@@ -14,7 +14,7 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.driving.driver import Driver
 from basu.agents.driving.longitudinal import HOLD_BRAKE
 from basu.agents.driving.task import make_task
-from basu.agents.perception import Lights, Perception, see_ego
+from basu.agents.perception import RADIUS_M, Lights, Perception, see_ego
 from basu.agents.vehicle_facts import SHUTTLE, read_facts
 from basu.errors import UserError
 from basu.routing import ControlKind
@@ -29,14 +29,15 @@ if TYPE_CHECKING:
 class BasicAgent(AutonomousAgent):
     """A careful driver; from ``setup`` on, ``driver`` holds its plan and may be looked at."""
 
+    sight_m = RADIUS_M  # how far others are looked at
     driver: Driver | None = None
     facts: VehicleFacts | None = None
 
     def setup(self) -> None:
         """Look up the lights on the way; the vehicle is read at the first step, when it stands where it starts."""
         if self.route is None:
-            raise UserError("the basic agent follows a route and was given none; name one with --routes")
-        self._perception = Perception(self.world, self.vehicle.id)
+            raise UserError(f"{type(self).__name__} follows a route and was given none; name one with --routes")
+        self._perception = Perception(self.world, self.vehicle.id, self.sight_m)
         lights = [c.landmark_id for c in self.route.controls if c.kind is ControlKind.TRAFFIC_LIGHT]
         self._lights = Lights(self.world, lights)
 

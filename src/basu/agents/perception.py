@@ -1,4 +1,4 @@
-"""The basic agent's eyes: who is around, from the one snapshot of a tick that the client has received anyway."""
+"""The driving agents' eyes: who is around, from the one snapshot of a tick that the client has received anyway."""
 
 from __future__ import annotations
 
@@ -30,13 +30,14 @@ class _Shape(NamedTuple):
 class Perception:
     """Remembers what each actor is, so that a tick asks the server only about those it has never seen."""
 
-    def __init__(self, world: carla.World, own_id: int) -> None:
+    def __init__(self, world: carla.World, own_id: int, radius_m: float = RADIUS_M) -> None:
         self._world = world
+        self._radius_m = radius_m
         self._shapes: dict[int, _Shape | None] = {own_id: None}  # None: nothing that one could drive into
 
     def others(self, snapshot: carla.WorldSnapshot, ego: Ego) -> list[Other]:
-        """All bodies within ``RADIUS_M``, in the snapshot's order."""
-        shapes = self._shapes
+        """All bodies within the radius, in the snapshot's order."""
+        shapes, radius_m = self._shapes, self._radius_m
         bodies = [actor for actor in snapshot if shapes.get(actor.id, actor) is not None]
         unknown = [actor.id for actor in bodies if actor.id not in shapes]
         if unknown:
@@ -48,7 +49,7 @@ class Perception:
                 continue
             pose = actor.get_transform()
             at = pose.location
-            if abs(at.x - ego.x_m) < RADIUS_M and abs(at.y - ego.y_m) < RADIUS_M:
+            if abs(at.x - ego.x_m) < radius_m and abs(at.y - ego.y_m) < radius_m:
                 found.append(_other(actor, pose, shape))
         return found
 

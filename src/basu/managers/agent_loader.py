@@ -19,8 +19,15 @@ from basu.leaderboard.adapter import LeaderboardAgent, adapted
 from basu.leaderboard.foreign import ENTRY_POINT, foreign_agent
 from basu.leaderboard.modules import stand_in
 
-BUILT_IN = {"basic": "basu.agents.basic", "forward": "basu.agents.forward", "human": "basu.agents.human"}
-LATER = ("behavioral",)  # named in the thesis; refused by name until they are there
+BUILT_IN = {
+    "basic": "basu.agents.basic",
+    "behavioral": "basu.agents.behavioral",
+    "behavioral-cautious": "basu.agents.behavioral_cautious",
+    "behavioral-aggressive": "basu.agents.behavioral_aggressive",
+    "deviating": "basu.agents.deviating",
+    "forward": "basu.agents.forward",
+    "human": "basu.agents.human",
+}
 
 
 class LoadedAgent(NamedTuple):
@@ -54,8 +61,6 @@ def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
     if wanted in BUILT_IN:
         module = importlib.import_module(BUILT_IN[wanted])
         return LoadedAgent(_only(_agents_in(module.__dict__, module.__name__), wanted), wanted, None)
-    if wanted in LATER:
-        raise UserError(f"the agent '{wanted}' follows in a later version; there are {', '.join(BUILT_IN)}")
     text, _, class_name = wanted.partition(":") if ".py:" in wanted else (wanted, "", "")
     path = Path(text)
     if path.suffix != ".py":

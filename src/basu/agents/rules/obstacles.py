@@ -27,6 +27,7 @@ STANDOFF_M = 2.0  # kept to what stands ahead
 CONTACT_M = 0.4  # the last of it, kept even in an emergency
 LEADER_BRAKING_MPS2 = 1.5
 WORST_BRAKING_MPS2 = 6.0
+REACTION_S, ONCOMING_BRAKING_MPS2 = 1.0, 4.0  # of one who comes towards us in our own way
 STEP_IN_M = 1.5  # kept to the place where somebody is about to step in
 SLOWEST_MPS = 0.2  # who moves slower than this is not about to step in
 PULL_AWAY_MPS2 = 0.9  # the soonest one can be somewhere
@@ -102,6 +103,10 @@ class Obstacles:
             following = follow_mps2(gap_m, max(sight.ego.speed_mps, 0.0), ahead_mps, self._following)
             self.follow_mps2 = min(self.follow_mps2, following)
             yield floor(gap_m, ahead_mps)
+        elif self._following is not None and ahead_mps < -MOVING_MPS:
+            # it comes towards us: it needs a moment to see that, and its way to stop
+            comes_m = -ahead_mps * REACTION_S + ahead_mps * ahead_mps / (2.0 * ONCOMING_BRAKING_MPS2)
+            yield _stopping_for(gap_m - comes_m, 0.0, other)
         else:
             yield _stopping_for(gap_m, ahead_mps, other)
 
