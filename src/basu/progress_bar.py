@@ -43,7 +43,7 @@ class ProgressBar(BaseManager):
         if frame.tick % UPDATE_TICKS or self._bar is None:
             return
         if frame.tick and frame.tick % SCORE_TICKS == 0:
-            self._score = f"{self._live.metrics.scores().driving:.3f}"
+            self._score = f"{self._live.metrics.scores_so_far().driving:.3f}"
         faster = frame.tick * self._step_s / max(1e-6, time.perf_counter() - self._began_s)
         self._bar.set_postfix_str(f"score so far {self._score}, {faster:.0f}x real time", refresh=False)
         self._bar.update(self._live.routes.progress.s_m / 1000.0 - self._bar.n)

@@ -1,6 +1,7 @@
 """Records of drives that never took place, for claims about metrics: a straight road east, a vehicle on it."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -41,6 +42,11 @@ def straight_route(
 def stop_sign(s_m: float, landmark_id: str = "7") -> Control:
     """A stop sign whose line lies across the straight road."""
     return Control(kind=ControlKind.STOP_SIGN, landmark_id=landmark_id, s_m=s_m, x_m=s_m, y_m=0.0, z_m=0.0, yaw_rad=0.0)
+
+
+def traffic_light(s_m: float, landmark_id: str = "12") -> Control:
+    """A traffic light whose line lies across the straight road."""
+    return replace(stop_sign(s_m, landmark_id), kind=ControlKind.TRAFFIC_LIGHT)
 
 
 def driven(

@@ -14,7 +14,7 @@ from basu.managers.base_manager import BaseManager
 from basu.managers.lane_under import lane_under
 from basu.managers.neighbours import Neighbours
 from basu.managers.route_lights import RouteLights
-from basu.metrics.score import Scores, Scoring, score
+from basu.metrics.so_far import SoFar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import Frame, Run
     from basu.managers.routes_manager import RoutesManager
+    from basu.metrics.infraction import Evidence
+    from basu.metrics.score import Scores, Scoring
 
 MPS_PER_KMH = 1.0 / 3.6
 
@@ -31,7 +33,8 @@ class MetricsManager(BaseManager):
     """Records the run with a collision and a lane-invasion sensor of its own."""
 
     def __init__(self, agents: AgentsManager, routes: RoutesManager, scoring: Scoring) -> None:
-        self._agents, self._routes, self._scoring = agents, routes, scoring
+        self._agents, self._routes = agents, routes
+        self._so_far, self._looked_at_ticks = SoFar(scoring), 0
         self._recorder = Recorder()
         self._sensors: list[Any] = []
         self._events: list[tuple[int, Callable[[int], None]]] = []  # server frame, and what records it by tick
@@ -112,18 +115,36 @@ class MetricsManager(BaseManager):
     def history(self) -> History:
         """The record until now."""
         self._take_events()
-        facts = Facts(
+        return self._recorder.history(self._facts())
+
+    def infractions_so_far(self) -> tuple[Evidence, ...]:
+        """Every infraction until now; may be asked each second of the longest run."""
+        self._look()
+        return self._so_far.infractions
+
+    def scores_so_far(self) -> Scores:
+        """The scores until now, the way ahead counted as not driven; may be asked as often."""
+        self._look()
+        return self._so_far.scores
+
+    def _look(self) -> None:
+        """Take what is new into account, once a frame."""
+        if self.ticks == self._looked_at_ticks:
+            return
+        self._looked_at_ticks = self.ticks
+        self._take_events()
+        facts = self._facts()
+        self._so_far.advance(lambda first: self._recorder.window(first, facts))
+
+    def _facts(self) -> Facts:
+        """What does not change, as far as it is known."""
+        return Facts(
             step_s=self._run.step_s,
             vehicle=self._vehicle,
             route=self._run.route,
             actor_types=dict(self._neighbours.met),
             actor_sizes=dict(self._neighbours.sizes),
         )
-        return self._recorder.history(facts)
-
-    def scores(self) -> Scores:
-        """The scores until now."""
-        return score(self.history(), self._scoring)
 
     def _take_events(self) -> None:
         """Move what the client's threads have brought into the record, by tick."""

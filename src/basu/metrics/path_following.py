@@ -24,17 +24,20 @@ class PathFollowing(NamedTuple):
 
 
 def path_following(history: History) -> PathFollowing:
-    """Score the driven against the planned length.
+    """Score the driven against the planned length."""
+    progress_m = float(history.frames["route_s_m"].max(initial=0.0))
+    return compared(arc_length_m(path_m(history.frames)), progress_m, history.facts.route.length_m)
 
-    Equation 5.3 assumes that both paths end at the same place. Where a run ends early that does not hold, and driving
-    in circles would add length; then no more than the progress along the plan counts as driven.
+
+def compared(driven_m: float, progress_m: float, planned_m: float) -> PathFollowing:
+    """Equation 5.3, which assumes that both paths end at the same place.
+
+    Where a run ends early that does not hold, and driving in circles would add length; then no more than the progress
+    along the plan counts as driven.
     """
-    route, frames = history.facts.route, history.frames
-    driven_m = arc_length_m(path_m(frames))
-    progress_m = float(frames["route_s_m"].max(initial=0.0))
-    if route.length_m - progress_m > ARRIVED_M:
+    if planned_m - progress_m > ARRIVED_M:
         driven_m = min(driven_m, progress_m)
-    return PathFollowing(driven_m, route.length_m, min(1.0, driven_m / route.length_m))
+    return PathFollowing(driven_m, planned_m, min(1.0, driven_m / planned_m))
 
 
 def arc_length_m(points_m: NDArray[np.float64]) -> float:
