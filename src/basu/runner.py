@@ -8,13 +8,20 @@ from typing import TYPE_CHECKING
 from basu.one_run import Session, run_one
 from basu.outcome import Status
 from basu.preparation import new_agents, prepare
-from basu.report.folder import point_latest, publish, run_name
+from basu.report.folder import plain, point_latest, publish, run_name
+from basu.series import conditions, open_series
 from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
-    from basu.managers.agents_manager import AgentsManager
+    from pathlib import Path
+
     from basu.metrics.score import Scoring
+    from basu.one_run import Finished
     from basu.options import RunOptions
+    from basu.preparation import Job, Plan
+    from basu.series import Series
+
+BREAKING_OFF = frozenset({Status.INTERRUPTED, Status.SIMULATOR_FAILED})  # no further run would fare better
 
 
 def run(options: RunOptions, scoring: Scoring) -> int:
@@ -25,21 +32,54 @@ def run(options: RunOptions, scoring: Scoring) -> int:
         SimulatorError: there is no simulator to run in.
     """
     prepared = prepare(options)
+    series = _series(options, scoring, prepared)
+    jobs = [job for job in prepared.jobs if series is None or job.number not in series.done]
+    worst = 0 if series is None else series.worst()
+    try:
+        if jobs:
+            worst = max(worst, _run_all(options, scoring, prepared, series, jobs))
+    finally:
+        if series is not None:
+            print(series.table())
+            print(f"series folder     {series.folder}")
+    return worst
+
+
+def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | None:
+    """The series that all runs belong to, where one was asked for."""
+    if options.series is None:
+        return None
+    folder = options.output / plain(options.series)
+    given = conditions(options, scoring, prepared)
+    return open_series(folder, given, prepared.jobs, prepared.loaded.name, resume=options.resume)
+
+
+def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Series | None, jobs: list[Job]) -> int:
+    """Run one job after the other in one simulator."""
     worst = 0
-    agents: AgentsManager | None = prepared.agents
     with simulator_for(options) as simulator:
         session = Session(options, scoring, prepared, simulator)
-        for job in prepared.jobs:
-            agents = agents or new_agents(prepared.loaded, options, job.seed)
-            name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
-            done = run_one(session, agents, job, output=options.output, name=name, fresh=job.number > 0)
-            agents = None
-            folder = publish(done.draft, name)
-            point_latest(folder)
-            print(f"result folder     {folder}")
-            if done.bug is not None:
-                raise done.bug
+        for nth, job in enumerate(jobs):
+            is_prepared = nth == 0 and job.seed == options.seed
+            agents = prepared.agents if is_prepared else new_agents(prepared.loaded, options, job.seed)
+            if series is not None:
+                print(f"run {job.number + 1} of {len(prepared.jobs)}")
+                done = run_one(session, agents, job, output=series.folder, name=series.name(job), fresh=nth > 0)
+                folder = series.publish(done.draft, job, done.document)
+            else:
+                name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
+                done = run_one(session, agents, job, output=options.output, name=name, fresh=nth > 0)
+                folder = publish(done.draft, name)
+            _told(done, folder, options.output)
             worst = max(worst, done.outcome.status.fault.value)
-            if done.outcome.status in {Status.INTERRUPTED, Status.SIMULATOR_FAILED}:
-                return worst
+            if done.outcome.status in BREAKING_OFF:
+                break
     return worst
+
+
+def _told(done: Finished, folder: Path, output: Path) -> None:
+    """Say where a run lies; raise what was wrong with us."""
+    point_latest(folder, output)
+    print(f"result folder     {folder}")
+    if done.bug is not None:
+        raise done.bug

@@ -18,7 +18,7 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]
     return main(arguments), capsys.readouterr().err
 
 
-@pytest.mark.parametrize("option", ["resume", "sumo"])
+@pytest.mark.parametrize("option", ["sumo"])
 def test_an_option_of_a_later_version_is_refused_before_anything_starts(
     capsys: pytest.CaptureFixture[str], option: str
 ) -> None:

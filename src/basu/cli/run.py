@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from types import FrameType
 
 LATER = {
-    "resume": "resuming an interrupted campaign follows with campaigns",
     "sumo": "SUMO co-simulation follows with the TrafficManager",
 }
 
@@ -59,6 +58,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument(
         "--output", type=Path, default=Path("runs"), metavar="DIR", help="for run folders (default: %(default)s)"
     )
+    run.add_argument(
+        "--series", metavar="NAME", help="keep all runs in a folder of this name, with their totals in series.json"
+    )
+    run.add_argument("--resume", action="store_true", help="go on with a --series that was broken off")
     run.add_argument(
         "--step-limit",
         type=float,
@@ -108,6 +111,8 @@ def run_agent(arguments: argparse.Namespace) -> int:
         raise UserError(f"two agents are named, {arguments.agent} and {arguments.agent_option}; name one")
     if arguments.repetitions < 1:
         raise UserError(f"--repetitions is {arguments.repetitions}; it must be at least 1")
+    if arguments.resume and arguments.series is None:
+        raise UserError("--resume goes on with a series; name it with --series, as when it was begun")
     for option in ("timeout", "step_limit"):
         if not getattr(arguments, option) > 0.0:
             raise UserError(f"--{option.replace('_', '-')} is {getattr(arguments, option)} s; it must be positive")
@@ -127,6 +132,8 @@ def run_agent(arguments: argparse.Namespace) -> int:
         traffic=_traffic(arguments),
         record=arguments.record,
         output=arguments.output,
+        series=arguments.series,
+        resume=arguments.resume,
         step_limit_s=arguments.step_limit,
         debug=arguments.debug,
         **hud_options(arguments)._asdict(),

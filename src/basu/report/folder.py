@@ -67,21 +67,19 @@ def publish(draft: Path, name: str) -> Path:
         number += 1
 
 
-def point_latest(folder: Path) -> None:
-    """Let ``latest`` beside ``folder`` point to it.
+def point_latest(folder: Path, output: Path) -> None:
+    """Let ``latest`` in ``output`` point to ``folder``, which lies somewhere below.
 
     Raises:
         UserError: the file system has no symbolic links, or the folder cannot be written.
     """
-    draft = folder.with_name(f".{LATEST}.part")
+    draft, latest = output / f".{LATEST}.part", output / LATEST
     try:
         draft.unlink(missing_ok=True)
-        draft.symlink_to(folder.name, target_is_directory=True)
-        draft.replace(folder.with_name(LATEST))
+        draft.symlink_to(folder.relative_to(output), target_is_directory=True)
+        draft.replace(latest)
     except OSError as error:
-        raise UserError(
-            f"{folder.with_name(LATEST)} could not be pointed to {folder.name}: {error.strerror}"
-        ) from error
+        raise UserError(f"{latest} could not be pointed to {folder.name}: {error.strerror}") from error
 
 
 def write_json(path: Path, document: dict[str, Any]) -> None:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from basu.metrics.score import Scoring
     from basu.outcome import Outcome
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 SERVED_M = 3.0  # a service stop is served when the vehicle came to rest within this along the route
 AT_REST_MPS = 0.1
 

@@ -49,7 +49,7 @@ def test_a_draft_is_no_run_for_whoever_looks_for_runs(tmp_path: Path) -> None:
 def test_latest_points_to_the_newest(tmp_path: Path) -> None:
     for _ in range(2):
         folder = made(tmp_path)
-        point_latest(folder)
+        point_latest(folder, tmp_path)
         assert (tmp_path / "latest").resolve() == folder.resolve()
 
 
@@ -64,7 +64,7 @@ def test_something_else_called_latest_is_not_overwritten(tmp_path: Path) -> None
     (tmp_path / "latest").mkdir()
     (tmp_path / "latest" / "thesis.tex").write_text("years of work")
     with pytest.raises(UserError, match="latest could not be pointed"):
-        point_latest(made(tmp_path))
+        point_latest(made(tmp_path), tmp_path)
     assert (tmp_path / "latest" / "thesis.tex").exists()
 
 

@@ -32,7 +32,7 @@ def test_the_keys_that_programs_read_are_there() -> None:
     assert found["fault"] == "nobody"
     assert set(found["scores"]) == {"driving", "infraction", "path_following"}
     assert found["meta"] is META
-    assert found["schema_version"] == 1
+    assert found["schema_version"] == 2
 
 
 def test_an_infraction_carries_time_place_speed_and_the_other_party() -> None:
