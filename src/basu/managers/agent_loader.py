@@ -27,6 +27,7 @@ BUILT_IN = {
     "deviating": "basu.agents.deviating",
     "forward": "basu.agents.forward",
     "human": "basu.agents.human",
+    "incident": "basu.agents.incident",
 }
 
 
