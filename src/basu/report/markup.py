@@ -40,6 +40,11 @@ def extended(element: Element, children: Iterable[Element | str | None]) -> Elem
     return element
 
 
+def words(name: str) -> str:
+    """A name as it stands in a file, as people write it."""
+    return name.replace("_", " ")
+
+
 def number(value: float, digits: int = 2) -> str:
     """A number as short as it can be at so many digits."""
     text = f"{value:.{digits}f}"

@@ -1,13 +1,13 @@
-"""The evidence of each infraction: the sentence, the figures, the place seen from above and the speed around it."""
+"""The evidence of each finding: the sentence, the figures, the place seen from above and the speed around it."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.report.markup import TIMES, e, figure, number
+from basu.report.markup import DASH, TIMES, e, figure, number, words
 from basu.report.plots import marks
 from basu.report.plots.chart import Line, Mark, chart
 from basu.report.plots.town_map import box, view
@@ -18,52 +18,52 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
     from basu.history import History
+    from basu.report.findings import Finding
     from basu.report.plots.signals import Signals
 
-PICTURED = 60  # infractions that have pictures; a drive with more of them is told in words from there on
+PICTURED = 60  # findings that have pictures; a drive with more of them is told in words from there on
 CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
 AROUND_S = 8.0  # of speed, before and after
 UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others whose size is not recorded
 
 
-def evidence(history: History, felt: Signals, document: dict[str, Any]) -> Element:
-    """The section of all infractions, each one to be opened and linked to."""
-    infractions = document["infractions"]
-    section = e("section", e("h2", "Infractions"), id="infractions")
-    if not infractions:
-        section.append(e("p", "None."))
+def evidence(history: History, felt: Signals, found: Sequence[Finding]) -> list[Element]:
+    """The infractions, and what is not scored, each one to be opened and linked to."""
+    scored = e("section", e("h2", "Infractions"), id="infractions")
+    rest = e("section", e("h2", "Seen, not scored"), id="events")
     so_far = 1.0
-    for index, infraction in enumerate(infractions, start=1):
-        factor = document["scoring"]["penalties"].get(infraction["kind"])
-        so_far *= 1.0 if factor is None else factor
-        pictures = []
-        if index <= PICTURED:
-            pictures = [close_up(history, infraction), _speed(felt, infraction, index)]
-        section.append(
-            e(
-                "details",
-                e(
-                    "summary",
-                    marks.symbol(infraction["kind"], str(index)),
-                    e("b", marks.words(infraction["kind"])),
-                    f" at {infraction['t_s']:.1f} s",
-                ),
-                e("p", infraction["detail"]),
-                e("div", *pictures, class_="pictures") if pictures else None,
-                _facts(infraction, factor, so_far),
-                class_="evidence",
-                id=marks.anchor(index),
-                data_t=infraction["t_s"],
-            )
-        )
-    return section
+    for order, finding in enumerate(found):
+        so_far *= 1.0 if finding.factor is None else finding.factor
+        pictures = None
+        if order < PICTURED:
+            pictures = e("div", close_up(history, finding), _speed(felt, finding), class_="pictures")
+        (rest if finding.factor is None else scored).append(_one(finding, pictures, so_far))
+    for section in (scored, rest):
+        if len(section) == 1:
+            section.append(e("p", "None."))
+    return [scored, rest]
 
 
-def close_up(history: History, infraction: dict[str, Any]) -> Element:
+def _one(finding: Finding, pictures: Element | None, so_far: float) -> Element:
+    """One of them, closed at first."""
+    symbol = marks.symbol(finding.kind, finding.label, scored=finding.factor is not None)
+    return e(
+        "details",
+        e("summary", symbol, e("b", words(finding.kind)), f" at {finding.t_s:.1f} s"),
+        e("p", finding.detail),
+        pictures,
+        _facts(finding, so_far),
+        class_="evidence",
+        id=finding.anchor,
+        data_t=finding.t_s,
+    )
+
+
+def close_up(history: History, finding: Finding) -> Element:
     """The place from above: the vehicle under test, dark, and who was near it in that tick."""
-    x_m, y_m = infraction["x_m"], infraction["y_m"]
+    x_m, y_m = finding.x_m, finding.y_m
     bounds = Bounds(x_m - CLOSE_M[0], y_m - CLOSE_M[1], x_m + CLOSE_M[0], y_m + CLOSE_M[1])
-    frame, vehicle = history.frames[infraction["tick"]], history.facts.vehicle
+    frame, vehicle = history.frames[finding.tick], history.facts.vehicle
     picture = e(
         "svg",
         e("title", f"The place from above, {2 * CLOSE_M[0]:g} m by {2 * CLOSE_M[1]:g} m, north is up"),
@@ -72,7 +72,7 @@ def close_up(history: History, infraction: dict[str, Any]) -> Element:
         viewBox=view(bounds),
         role="img",
     )
-    for other in history.others[history.others["tick"] == infraction["tick"]]:
+    for other in history.others[history.others["tick"] == finding.tick]:
         half_m = history.facts.actor_sizes.get(int(other["id"]), UNKNOWN_HALF_M)
         kind = history.facts.actor_types.get(int(other["id"]), "")
         picture.append(
@@ -105,30 +105,32 @@ def _body(
     return e("polygon", points=" ".join(places), class_=style)
 
 
-def _speed(felt: Signals, infraction: dict[str, Any], index: int) -> Element:
+def _speed(felt: Signals, finding: Finding) -> Element:
     """Speed and limit around the moment."""
-    near = np.flatnonzero(np.abs(felt.t_s - infraction["t_s"]) <= AROUND_S)
+    near = np.flatnonzero(np.abs(felt.t_s - finding.t_s) <= AROUND_S)
     curves: Sequence[Line] = (
         Line("driven", felt.speed_mps[near], "first"),
         Line("limit", felt.limit_mps[near], "limit", steps=True),
     )
-    moment = Mark(infraction["t_s"], str(index), f"the moment of infraction {index}", f"#{marks.anchor(index)}")
+    moment = Mark(finding.t_s, finding.label, finding.title, f"#{finding.anchor}")
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 
-def _facts(infraction: dict[str, Any], factor: float | None, so_far: float) -> Element:
+def _facts(finding: Finding, so_far: float) -> Element:
     """The figures in a line of terms."""
     terms = [
-        ("time", f"{infraction['t_s']:.2f} s, tick {infraction['tick']}"),
-        ("speed", f"{infraction['speed_mps']:.2f} m/s"),
-        ("along the route", f"{infraction['route_s_m']:.1f} m"),
-        ("place", f"x {infraction['x_m']:.2f} m, y {infraction['y_m']:.2f} m"),
-        ("other party", infraction["other"] or "none"),
-        (
-            "costs",
-            "nothing in this score"
-            if factor is None
-            else f"{TIMES} {factor:g}; infraction score so far {figure(so_far)}",
-        ),
+        ("time", f"{finding.t_s:.2f} s, tick {finding.tick}"),
+        ("speed", DASH if finding.speed_mps is None else f"{finding.speed_mps:.2f} m/s"),
+        ("along the route", f"{finding.route_s_m:.1f} m"),
+        ("place", f"x {finding.x_m:.2f} m, y {finding.y_m:.2f} m"),
+        ("other party", finding.other or "none"),
+        ("costs", _cost(finding.factor, so_far)),
     ]
     return e("dl", *(e("div", e("dt", name), e("dd", text)) for name, text in terms))
+
+
+def _cost(factor: float | None, so_far: float) -> str:
+    """What a finding does to the score."""
+    if factor is None:
+        return "nothing in the driving score"
+    return f"{TIMES} {factor:g}; infraction score so far {figure(so_far)}"

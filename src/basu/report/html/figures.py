@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.report.markup import DASH, e
-from basu.report.plots.marks import words
+from basu.report.markup import DASH, e, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from basu.report.findings import findings
 from basu.report.html import figures
 from basu.report.html.evidence import evidence
 from basu.report.html.plots import charts
@@ -23,9 +24,11 @@ from basu.report.streets import bounds_of
 from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
     from basu.history import History
+    from basu.report.findings import Finding
     from basu.report.plots.signals import Signals
     from basu.report.reading import RunRecord
 
@@ -51,15 +54,15 @@ def report(run: RunRecord) -> bytes:
     if history is None:
         extended(body, [score_card(document), _again(run)])
         return page(f"{run.agent}: {document['status']}", body)
-    felt = signals(history)
+    felt, found = signals(history), findings(document)
     extended(
         body,
         [
             score_card(document),
-            _map(run, history),
-            e("section", e("h2", "Timeline"), timeline(history, felt, document)),
-            charts(history, felt, document["infractions"]),
-            evidence(history, felt, document),
+            _map(run, history, found),
+            e("section", e("h2", "Timeline"), timeline(history, felt, document, found)),
+            charts(history, felt, found),
+            *evidence(history, felt, found),
             reported(document),
             _again(run),
             e("script", _samples(history, felt), type="application/json", id="samples"),
@@ -94,7 +97,7 @@ def _head_of(run: RunRecord) -> Element:
     return e("header", e("h1", run.agent), e("p", f"{where}; started {meta['started']}"), ended)
 
 
-def _map(run: RunRecord, history: History) -> Element:
+def _map(run: RunRecord, history: History, found: Sequence[Finding]) -> Element:
     """The map, its legend, and the one control of the page: the moment that all plots show."""
     legend = e("p", class_="legends")
     for style, words in (("planned", "planned path"), ("driven", "driven path")):
@@ -105,7 +108,7 @@ def _map(run: RunRecord, history: History) -> Element:
         [
             e("span", e("i", class_="sign"), "stop sign", class_="legend"),
             e("span", e("i", class_="last"), "end of the drive", class_="legend"),
-            e("span", "numbers: infractions, each opens its evidence", class_="legend"),
+            e("span", "numbers: infractions, letters: not scored; each opens its evidence", class_="legend"),
             None if run.streets else e("span", "this run's folder has no streets", class_="legend"),
         ],
     )
@@ -118,7 +121,7 @@ def _map(run: RunRecord, history: History) -> Element:
         class_="moment",
         hidden="hidden",
     )
-    return e("section", e("h2", "Map"), legend, town_map(history, run.streets, run.result["infractions"]), control)
+    return e("section", e("h2", "Map"), legend, town_map(history, run.streets, found), control)
 
 
 def _again(run: RunRecord) -> Element:

@@ -2,34 +2,41 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
 from basu.metrics.speeding import TOLERANCE_MPS
 from basu.report.markup import e
-from basu.report.plots import marks
 from basu.report.plots.chart import Line, Mark, Shade, chart
 from basu.report.plots.signals import stretches
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Sequence
     from xml.etree.ElementTree import Element
 
     from basu.history import History
+    from basu.report.findings import Finding
     from basu.report.plots.signals import Signals
 
 # what standing volunteers could recover from (docs/passengers.md has the sources), both ways
-RECOVERABLE_MPS2 = ((1.0, "1.0"), (-1.0, ""), (2.5, "2.5"), (-2.5, ""))
+RECOVERABLE = (
+    (STEP_MPS2, f"{STEP_MPS2:g}: with a step"),
+    (-STEP_MPS2, ""),
+    (GRIP_MPS2, f"{GRIP_MPS2:g}: holding on"),
+    (-GRIP_MPS2, ""),
+)
+FELT_KINDS = {"harsh_stop", "phantom_stop", "near_miss"}
 
 
-def charts(history: History, felt: Signals, infractions: Sequence[dict[str, Any]]) -> Element:
+def charts(history: History, felt: Signals, found: Sequence[Finding]) -> Element:
     """All charts of a run."""
     by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
     return e(
         "section",
         e("h2", "Plots"),
-        _speed(felt, by_hand, infractions),
+        _speed(felt, by_hand, _flags(f for f in found if f.factor is not None)),
         chart(
             felt.t_s,
             [
@@ -37,9 +44,10 @@ def charts(history: History, felt: Signals, infractions: Sequence[dict[str, Any]
                 Line("across, + to the right", felt.across_mps2, "second"),
             ],
             title="Acceleration",
+            marks=_flags(f for f in found if f.kind in FELT_KINDS),
             unit="m/s²",
             id_="acceleration",
-            levels=RECOVERABLE_MPS2,
+            levels=RECOVERABLE,
             shades=by_hand,
             least_range=(-1.2, 1.2),
         ),
@@ -55,20 +63,16 @@ def charts(history: History, felt: Signals, infractions: Sequence[dict[str, Any]
         _offset(history, felt, by_hand),
         e(
             "p",
-            "Acceleration and jerk are means over 0.5 s. Hatched: driven by hand; cross-hatched: above the limit.",
+            "Acceleration and jerk: at a standing passenger's place, filtered. Hatched: by hand; crossed: too fast.",
             class_="note",
         ),
     )
 
 
-def _speed(felt: Signals, by_hand: Sequence[Shade], infractions: Sequence[dict[str, Any]]) -> Element:
+def _speed(felt: Signals, by_hand: Sequence[Shade], flags: Sequence[Mark]) -> Element:
     """Speed against the posted limit, with the infractions where they happened."""
     over = felt.speed_mps > np.where(np.isnan(felt.limit_mps), np.inf, felt.limit_mps + TOLERANCE_MPS)
     shades = [*by_hand, *(Shade(begin_s, end_s, "over") for begin_s, end_s in stretches(over, felt.t_s))]
-    flags = [
-        Mark(infraction["t_s"], str(index), marks.title(index, infraction), f"#{marks.anchor(index)}")
-        for index, infraction in enumerate(infractions, start=1)
-    ]
     curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
     return chart(felt.t_s, curves, title="Speed", unit="m/s", id_="speed", shades=shades, marks=flags)
 
@@ -81,3 +85,8 @@ def _offset(history: History, felt: Signals, by_hand: Sequence[Shade]) -> Elemen
         title, values = "Distance to the planned line", history.frames["lateral_m"].astype(np.float64)
     curves = [Line("+ to the right", values, "first")]
     return chart(felt.t_s, curves, title=title, unit="m", id_="offset", shades=by_hand, least_range=(-0.5, 0.5))
+
+
+def _flags(found: Iterable[Finding]) -> list[Mark]:
+    """Flags that open the evidence."""
+    return [Mark(finding.t_s, finding.label, finding.title, f"#{finding.anchor}") for finding in found]

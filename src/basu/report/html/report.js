@@ -63,7 +63,7 @@
     showTime(Number(found.dataset.t));
   }
   addEventListener("hashchange", openNamed);
-  for (const link of document.querySelectorAll('a[href^="#infraction-"]')) {
+  for (const link of document.querySelectorAll('a[href^="#"]')) {
     link.addEventListener("click", () => link.hash === location.hash && openNamed()); // no change, no event
   }
   openNamed();

@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from basu.report.html import figures
-from basu.report.markup import TIMES, e, figure, percent
+from basu.report.markup import DASH, TIMES, e, figure, percent, words
 from basu.report.plots import marks
 
 if TYPE_CHECKING:
@@ -20,8 +20,8 @@ def score_card(document: dict[str, Any]) -> Element:
     card = e("section", e("h2", "Score"), class_="card")
     card.append(e("div", _thesis(document), _penalties(document), class_="cards"))
     others = [
-        figures.table(figures.rows(document[key]), caption)
-        for key, caption in (("leaderboard", "CARLA leaderboard"), ("passengers", "Standing passengers"))
+        render(document[key])
+        for key, render in (("leaderboard", _leaderboard), ("passengers", _passengers))
         if document.get(key)
     ]
     if others:
@@ -73,7 +73,7 @@ def _penalties(document: dict[str, Any]) -> Element:
     body = [
         e(
             "tr",
-            e("th", marks.symbol(kind), marks.words(kind), scope="row"),
+            e("th", marks.symbol(kind), words(kind), scope="row"),
             e("td", str(counts[kind])),
             e("td", f"{penalty:g}"),
             e("td", figure(penalty ** counts[kind])),
@@ -88,6 +88,63 @@ def _penalties(document: dict[str, Any]) -> Element:
         class_="total",
     )
     return e("div", e("table", e("thead", head), e("tbody", *body, total)))
+
+
+def _leaderboard(editions: dict[str, dict[str, Any]]) -> Element:
+    """The same drive as the CARLA leaderboard would have scored it, an edition a column."""
+    rows = (
+        ("driving score, 0 to 100", "driving"),
+        ("route completion, %", "route_completion"),
+        ("infraction penalty", "infraction_penalty"),
+        ("ended by", "ended_by"),
+        ("not measured", "not_measured"),
+    )
+    head = e("tr", e("th", "edition", scope="col"), *(e("th", name, scope="col") for name in editions))
+    body = [
+        e("tr", e("th", name, scope="row"), *(e("td", _plain(edition.get(key))) for edition in editions.values()))
+        for name, key in rows
+    ]
+    table = e("table", e("caption", "CARLA leaderboard"), e("thead", head), e("tbody", *body), class_="editions")
+    return e("div", table)
+
+
+def _plain(value: object) -> str:
+    """A cell of the leaderboard's table."""
+    if isinstance(value, list):
+        return ", ".join(words(str(item)) for item in value) or "nothing"
+    return figure(value) if isinstance(value, float | int) else words(str(value)) if value else DASH
+
+
+def _passengers(verdict: dict[str, Any]) -> Element:
+    """Whether standing passengers would have stood the ride, and what they hold against it."""
+    word, style = ("passed", "nobody") if verdict["passed"] else ("failed", "agent")
+    comfort = figure(verdict["comfort_score"])
+    shown: dict[str, Any] = {
+        key: verdict[key] for key in ("comfort_parts", "largest", "balance", "vibration") if key in verdict
+    }
+    return e(
+        "div",
+        e("table", e("caption", "Standing passengers")),
+        e("p", e("b", word, class_=f"status {style}"), f" comfort score {comfort}, from 0 (bad) to 1 (good)"),
+        e("ul", *(e("li", reason) for reason in verdict["reasons"])) if verdict["reasons"] else None,
+        e("details", e("summary", "figures"), figures.table(figures.rows(shown))),
+        _service(verdict["service"]) if verdict.get("service") else None,
+    )
+
+
+def _service(visits: list[dict[str, Any]]) -> Element:
+    """The service stops against the timetable."""
+    head = e("tr", *(e("th", text, scope="col") for text in ("stop", "arrival", "planned", "late", "dwell")))
+    seconds = ("arrival_s", "planned_arrival_s", "delay_s", "dwell_s")
+    body = [
+        e(
+            "tr",
+            e("th", f"{visit['stop_id']} {visit['name']}", scope="row"),
+            *(e("td", DASH if visit[key] is None else f"{visit[key]:.0f} s") for key in seconds),
+        )
+        for visit in visits
+    ]
+    return e("table", e("caption", "Service"), e("thead", head), e("tbody", *body))
 
 
 def _bar(score: float) -> Element:

@@ -1,14 +1,16 @@
-"""Marks of infractions: a number in a shape that tells the kind without colour, and the words for both."""
+"""Marks of infractions: a number in a shape that tells the kind without colour, hollow where it is not scored."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from basu.report.markup import e, number
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
+
+    from basu.report.findings import Finding
 
 CORNERS = {  # of a regular polygon, and its turn in degrees; a circle for every other kind
     "collision_pedestrian": (3, -90.0),
@@ -21,11 +23,6 @@ CORNERS = {  # of a regular polygon, and its turn in degrees; a circle for every
 SHAPES = {3: "triangle", 4: "square", 5: "pentagon", 6: "hexagon", 8: "octagon"}
 
 
-def words(name: str) -> str:
-    """A name as it stands in a file, as people write it."""
-    return name.replace("_", " ")
-
-
 def shape(kind: str) -> str:
     """What the mark of a kind looks like, in a word."""
     if kind == "collision_static":
@@ -33,8 +30,8 @@ def shape(kind: str) -> str:
     return SHAPES[CORNERS[kind][0]] if kind in CORNERS else "circle"
 
 
-def symbol(kind: str, label: str = "") -> Element:
-    """The mark of a kind, with a number in it."""
+def symbol(kind: str, label: str = "", *, scored: bool = True) -> Element:
+    """The mark of a kind with its label in it; hollow where it does not enter the score."""
     if kind in CORNERS:
         corners, turn_deg = CORNERS[kind]
         radius = {3: 13.0, 4: 12.5}.get(corners, 11.0)
@@ -45,14 +42,18 @@ def symbol(kind: str, label: str = "") -> Element:
     else:
         outline = e("circle", cx=12, cy=12, r=10)
     text = e("text", label, x=12, y=16.5 if kind == "collision_pedestrian" else 15.5, text_anchor="middle")
-    return e("svg", outline, text, viewBox="-1 -1 26 26", class_="symbol", aria_hidden="true")
+    style = "symbol" if scored else "symbol hollow"
+    return e("svg", outline, text, viewBox="-1 -1 26 26", class_=style, aria_hidden="true")
 
 
-def title(index: int, infraction: dict[str, Any]) -> str:
-    """An infraction in a line; ``index`` counts from 1."""
-    return f"Infraction {index}: {words(infraction['kind'])} at {infraction['t_s']:.1f} s"
-
-
-def anchor(index: int) -> str:
-    """Where the evidence of an infraction stands in the page; ``index`` counts from 1."""
-    return f"infraction-{index}"
+def link(finding: Finding, style: str) -> Element:
+    """A mark that opens the evidence of what it marks; ``style`` places it."""
+    return e(
+        "a",
+        symbol(finding.kind, finding.label, scored=finding.factor is not None),
+        href=f"#{finding.anchor}",
+        class_="at mark",
+        title=finding.title,
+        aria_label=finding.title,
+        style=style,
+    )

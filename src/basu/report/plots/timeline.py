@@ -16,8 +16,10 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
     from basu.history import History
+    from basu.report.findings import Finding
     from basu.report.plots.signals import Signals
 
+CROWDED, LOWER_PX = 0.02, 14  # marks nearer than this share of the time are shown lower, by so much
 SERVED_M = 3.0  # as `report.result` judges service stops
 
 
@@ -31,11 +33,12 @@ class Span(NamedTuple):
     title: str
 
 
-def timeline(history: History, felt: Signals, document: dict[str, Any]) -> Element:
+def timeline(history: History, felt: Signals, document: dict[str, Any], found: Sequence[Finding]) -> Element:
     """All rows; ``document`` is the run's result."""
     begin_s, end_s = float(felt.t_s[0]), max(float(felt.t_s[-1]), float(felt.t_s[0]) + 1e-3)
     rows = [
-        ("infractions", _infractions(document["infractions"], begin_s, end_s)),
+        ("infractions", _marks([f for f in found if f.factor is not None], begin_s, end_s)),
+        ("not scored", _marks([f for f in found if f.factor is None], begin_s, end_s)),
         ("stop signs", _signs(document["stop_signs"], begin_s, end_s)),
         ("service stops", _spans(_services(history, felt), begin_s, end_s)),
         ("standing", _spans(_standing(felt), begin_s, end_s)),
@@ -55,26 +58,15 @@ def timeline(history: History, felt: Signals, document: dict[str, Any]) -> Eleme
     return body
 
 
-def _infractions(infractions: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> list[Element]:
+def _marks(found: Sequence[Finding], begin_s: float, end_s: float) -> list[Element]:
     """A mark for each, a link to its evidence."""
-    found, last_share, height = [], -1.0, 0
-    for index, infraction in enumerate(infractions, start=1):
-        at = (infraction["t_s"] - begin_s) / (end_s - begin_s)
-        height = (height + 1) % 3 if at - last_share < 0.02 else 0  # those at one time, one below the other
+    placed, last_share, height = [], -1.0, 0
+    for finding in sorted(found, key=lambda finding: finding.t_s):
+        at = (finding.t_s - begin_s) / (end_s - begin_s)
+        height = (height + 1) % 3 if at - last_share < CROWDED else 0  # those at one time, one below the other
         last_share = at
-        title = marks.title(index, infraction)
-        found.append(
-            e(
-                "a",
-                marks.symbol(infraction["kind"], str(index)),
-                href=f"#{marks.anchor(index)}",
-                class_="at mark",
-                title=title,
-                aria_label=title,
-                style=f"left:{percent(at)};--down:{height * 14}px",
-            )
-        )
-    return found
+        placed.append(marks.link(finding, f"left:{percent(at)};--down:{height * LOWER_PX}px"))
+    return placed
 
 
 def _signs(signs: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> list[Element]:

@@ -1,4 +1,4 @@
-"""The map of a run: streets, the planned and the driven path, signs, service stops and numbered infractions.
+"""The map of a run: streets, the planned and the driven path, signs, service stops and marks of what was found.
 
 Lines are SVG in metres of CARLA's frame (x east, y south: north is up without any turning). Words and marks are HTML at
 shares of its width and height, so that they keep their size on a telephone and can be reached by keyboard.
@@ -6,7 +6,7 @@ shares of its width and height, so that they keep their size on a telephone and 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.history import History
+    from basu.report.findings import Finding
     from basu.report.streets import Bounds, Line
 
 TOLERANCE_M = 0.1  # which the paths may be off
@@ -32,7 +33,7 @@ CROWDED = 0.022  # marks nearer than this share of the map's larger side are sta
 STACKED_PX, SERVICE_PX = 22, 17
 
 
-def town_map(history: History, streets: Sequence[Line], infractions: Sequence[dict[str, Any]]) -> Element:
+def town_map(history: History, streets: Sequence[Line], found: Sequence[Finding]) -> Element:
     """The whole map; its lines have ids, so that close-ups use them again."""
     bounds = bounds_of(history)
     frame = e("div", class_="map", id="map", style=box(bounds))
@@ -52,7 +53,7 @@ def town_map(history: History, streets: Sequence[Line], infractions: Sequence[di
     frame.append(_word("", float(frames["x_m"][-1]), float(frames["y_m"][-1]), bounds, "last", "where the drive ended"))
     frame.extend(_signs(history, bounds))
     frame.extend(_services(history, bounds))
-    frame.extend(_infractions(infractions, bounds))
+    frame.extend(_marks(found, bounds))
     frame.append(e("i", class_="here", id="here", hidden="hidden"))
     frame.append(_scale(bounds))
     return frame
@@ -125,25 +126,13 @@ def _signs(history: History, bounds: Bounds) -> list[Element]:
     ]
 
 
-def _infractions(infractions: Sequence[dict[str, Any]], bounds: Bounds) -> list[Element]:
-    """A mark for each infraction, those at one place stacked, each a link to its evidence."""
-    found = []
-    heights = _stacked([(i["x_m"], i["y_m"]) for i in infractions], bounds)
-    for index, (infraction, height) in enumerate(zip(infractions, heights, strict=True), start=1):
-        title = marks.title(index, infraction)
-        where = place(infraction["x_m"], infraction["y_m"], bounds)
-        found.append(
-            e(
-                "a",
-                marks.symbol(infraction["kind"], str(index)),
-                href=f"#{marks.anchor(index)}",
-                class_="at mark",
-                title=title,
-                aria_label=title,
-                style=f"{where};--up:{STACKED_PX * height}px",
-            )
-        )
-    return found
+def _marks(found: Sequence[Finding], bounds: Bounds) -> list[Element]:
+    """A mark for each finding, those at one place stacked, each a link to its evidence."""
+    heights = _stacked([(finding.x_m, finding.y_m) for finding in found], bounds)
+    return [
+        marks.link(finding, f"{place(finding.x_m, finding.y_m, bounds)};--up:{STACKED_PX * height}px")
+        for finding, height in zip(found, heights, strict=True)
+    ]
 
 
 def _scale(bounds: Bounds) -> Element:
