@@ -67,7 +67,8 @@ def drive(
     metrics = MetricsManager(agents, routes, scoring)
     live = Live(agents, sensors, routes, metrics)
     onlookers = tuple(observers(live))
-    managers: tuple[BaseManager, ...] = (traffic, sensors, routes, metrics, agents, *onlookers)
+    # the agent before its sensors: one of another program's says only once it is set up what it wants to see
+    managers: tuple[BaseManager, ...] = (traffic, agents, sensors, routes, metrics, *onlookers)
     began_s = time.perf_counter()
     bug = agent_error = None
     try:

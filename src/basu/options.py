@@ -31,6 +31,7 @@ class RunOptions:
     """The options of one ``basu run``, parsed."""
 
     agent: str = "basic"
+    agent_config: str | None = None  # for agents of the leaderboard and of ScenarioRunner
     host: str | None = None  # None: start a simulator of our own
     port: int = 2000
     timeout_s: float = 20.0
@@ -49,7 +50,8 @@ class RunOptions:
     step_limit_s: float = 10.0  # wall time that one step of the agent may take
     debug: bool = False
     hud: str | None = None  # one of HUD_VIEWS: with a window
-    hud_size: tuple[int, int] = (960, 540)  # of the window and its camera, in pixels
+    hud_size: tuple[int, int] = (960, 540)  # of the window, in pixels
+    hud_camera: tuple[int, int] = (480, 270)  # of its camera, likewise
     hud_screenshot: Path | None = None
     keys: str | None = None  # a session of keys to play
     record_keys: Path | None = None

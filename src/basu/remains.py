@@ -85,6 +85,7 @@ def command(options: RunOptions, scoring: Scoring, description: RouteDescription
         f"{kind.value}={factor}" for kind, factor in scoring.penalties.items() if factor != usual.penalties[kind]
     ]
     values: list[tuple[str, object]] = [
+        ("--agent-config", options.agent_config),
         ("--routes", options.routes),
         ("--route-id", description.id.removesuffix(OWN_ROUTE)),
         ("--seed", seed),

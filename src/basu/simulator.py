@@ -42,6 +42,7 @@ class Simulator:
     """A simulator that answers."""
 
     client: carla.Client
+    address: tuple[str, int]
     own: bool
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
 
@@ -56,11 +57,12 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
     """
     if options.host is not None:
         client = connect(options.host, options.port, options.timeout_s)
-        yield Simulator(client, own=False, why_gone=lambda: _silence(client, options))
+        yield Simulator(client, (options.host, options.port), own=False, why_gone=lambda: _silence(client, options))
         return
     server = OwnServer(options.output if options.record else None)
     try:
-        yield Simulator(connect("127.0.0.1", server.port, options.timeout_s), own=True, why_gone=server.gone)
+        client = connect("127.0.0.1", server.port, options.timeout_s)
+        yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone)
     finally:
         server.end()
 

@@ -93,5 +93,10 @@ class LeaderboardAgent(AutonomousAgent):
 
 def adapted(foreign: ForeignAgent, conf_file: str | None) -> type[LeaderboardAgent]:
     """A class of BASU's for one of theirs, called as theirs is."""
-    members = {"foreign": foreign, "conf_file": conf_file or "", "__doc__": foreign.agent_class.__doc__}
+    members = {
+        "foreign": foreign,
+        "conf_file": conf_file or "",
+        "__doc__": foreign.agent_class.__doc__,
+        "__module__": __name__,
+    }
     return type(foreign.agent_class.__name__, (LeaderboardAgent,), members)

@@ -107,6 +107,7 @@ class AgentsManager(BaseManager):
             route=run.route,
             config_values=asdict(self.config),
             time_step_s=run.step_s,
+            server_address=run.server_address,
         )
         self._bound = True
         self._step_s = run.step_s

@@ -35,6 +35,7 @@ class Run:
     seed: int
     timeout_s: float  # of wall time to wait for the simulator
     folder: Path  # of the run; has another name until the run is over
+    server_address: tuple[str, int] = ("127.0.0.1", 2000)
     weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
 
 
