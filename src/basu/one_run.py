@@ -11,16 +11,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.drive import drive
 from basu.hud.seat import onlookers_for
 from basu.managers.base_manager import BaseManager, Live, Run
-from basu.managers.recording_manager import LOG_FILE, RecordingManager
+from basu.managers.recording_manager import RecordingManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.traffic_manager import TrafficManager
 from basu.options import STEP_S
 from basu.progress_bar import ProgressBar
+from basu.recording.sources import LOG_FILE
 from basu.remains import OWN_ROUTE, leave, run_config
 from basu.report.folder import make_draft
 from basu.routing import lane_graph, plan
 from basu.simulator import asking, ticked_by_us, weather_called, world_of
 from basu.vehicle import vehicle_at_start
+from basu.viewer.onlooker import viewer_for
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -134,7 +136,8 @@ def _driven(
     options, simulator, world = session.options, session.simulator, ground.world
 
     def observers(live: Live) -> Sequence[BaseManager]:
-        return [ProgressBar(live), *([] if recording is None else [recording]), *onlookers_for(options, live)]
+        recorder = [] if recording is None else [recording]
+        return [ProgressBar(live), *recorder, *onlookers_for(options, live), *viewer_for(options, live)]
 
     with (
         asking("getting the vehicle ready"),

@@ -44,6 +44,7 @@ class RunOptions:
     vehicle: str | None = None  # None: as the agent's config says
     traffic: Traffic = NOBODY
     record: bool = False
+    viewer: bool = False  # stream the run to Rerun's viewer, and keep it
     output: Path = Path("runs")
     series: str | None = None  # the folder in `output` that holds all runs and their totals
     resume: bool = False

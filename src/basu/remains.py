@@ -11,10 +11,10 @@ import numpy as np
 
 import basu
 from basu.history.files import write_history
-from basu.managers.recording_manager import LOG_FILE
 from basu.metrics.score import Scoring
 from basu.metrics.scoring_json import scoring_to_json
 from basu.options import STEP_S
+from basu.recording.sources import LOG_FILE
 from basu.report import picture
 from basu.report.console import table
 from basu.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, write_json

@@ -14,6 +14,7 @@ from basu.errors import UserError
 from basu.metrics.score import Scoring
 from basu.options import RunOptions, Traffic
 from basu.outcome import EXIT_CODES
+from basu.viewer.stream import require
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -55,6 +56,11 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: the agent's)")
     _add_traffic(run)
     run.add_argument("--record", action="store_true", help="have the simulator write CARLA's log, recording.log")
+    run.add_argument(
+        "--viewer",
+        action="store_true",
+        help="stream the run to Rerun's viewer, and keep it as run.rrd beside the result",
+    )
     run.add_argument(
         "--output", type=Path, default=Path("runs"), metavar="DIR", help="for run folders (default: %(default)s)"
     )
@@ -131,6 +137,7 @@ def run_agent(arguments: argparse.Namespace) -> int:
         vehicle=arguments.vehicle,
         traffic=_traffic(arguments),
         record=arguments.record,
+        viewer=arguments.viewer,
         output=arguments.output,
         series=arguments.series,
         resume=arguments.resume,
@@ -138,6 +145,8 @@ def run_agent(arguments: argparse.Namespace) -> int:
         debug=arguments.debug,
         **hud_options(arguments)._asdict(),
     )
+    if options.viewer:
+        require()
     scoring = adjusted(Scoring(), arguments)
     from basu.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
 

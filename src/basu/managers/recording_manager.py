@@ -7,16 +7,20 @@ from typing import TYPE_CHECKING
 
 from basu.errors import UserError
 from basu.managers.base_manager import BaseManager
+from basu.recording.sources import MAP_FILE
+from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
 
-LOG_FILE = "recording.log"
 ADDITIONAL_DATA = True  # velocities, boxes, physics: what questions are asked of
 
 
 class RecordingManager(BaseManager):
-    """Has the simulator record from the first step to the last. ``path`` is where the simulator says it writes."""
+    """Has the simulator record from the first step to the last, and keeps the map that the log lies in.
+
+    ``path`` is where the simulator says that it writes the log.
+    """
 
     def __init__(self, name: str) -> None:
         """Record as ``name``: a path where simulator and benchmark share a disk, else a plain name."""
@@ -40,6 +44,7 @@ class RecordingManager(BaseManager):
                 "see whether its disk is full, or run without --record"
             )
         self._run, self.path = run, str(path)
+        write_bytes(run.folder / MAP_FILE, run.carla_map.to_opendrive().encode())
 
     def tick(self, frame: Frame) -> None:
         """The simulator writes each frame itself."""
