@@ -58,6 +58,12 @@ def bounds_of(history: History, margin_m: float = MARGIN_M) -> Bounds:
     )
 
 
+def union(found: Sequence[Bounds]) -> Bounds:
+    """The rectangle around all of them."""
+    west_m, north_m, east_m, south_m = zip(*found, strict=True)
+    return Bounds(min(west_m), min(north_m), max(east_m), max(south_m))
+
+
 def around(streets: Sequence[NDArray[np.float64]], history: History) -> list[Line]:
     """Those of ``streets``, lanes' centre lines (K, 2) in m, that come near the run; straight stretches thinned out."""
     west_m, north_m, east_m, south_m = bounds_of(history)

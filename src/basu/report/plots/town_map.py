@@ -59,6 +59,28 @@ def town_map(history: History, streets: Sequence[Line], found: Sequence[Finding]
     return frame
 
 
+def plain_map(
+    history: History, streets: Sequence[Line], bounds: Bounds, places: Sequence[tuple[Element, float, float]]
+) -> Element:
+    """A small map without words: paths on streets, with symbols at places (x, y in m)."""
+    picture = e(
+        "svg",
+        e("title", "Map of the planned and the driven path"),
+        e("path", d=lines(streets), class_="streets"),
+        *paths(history),
+        viewBox=view(bounds),
+        role="img",
+    )
+    frame = e("div", picture, class_="map", style=box(bounds, height_px=520.0))
+    plan, frames = history.facts.route.points_m, history.frames
+    frame.append(_word("A", float(plan[0, 0]), float(plan[0, 1]), bounds, "end", "A: where the plan begins"))
+    frame.append(_word("B", float(plan[-1, 0]), float(plan[-1, 1]), bounds, "end", "B: where the plan ends"))
+    frame.append(_word("", float(frames["x_m"][-1]), float(frames["y_m"][-1]), bounds, "last", "end of the drive"))
+    frame.extend(e("span", symbol, class_="at mark", style=place(x_m, y_m, bounds)) for symbol, x_m, y_m in places)
+    frame.append(_scale(bounds))
+    return frame
+
+
 def paths(history: History) -> list[Element]:
     """The plan, wide and pale, and on it the drive."""
     frames = history.frames
