@@ -9,6 +9,7 @@ from pathlib import Path
 
 from basu.errors import UserError
 from basu.metrics.infraction import Infraction
+from basu.metrics.passengers.comfort_score import ComfortWeights, weights_from
 from basu.metrics.score import Scoring
 from basu.metrics.scoring_json import read_scoring_file, scoring_from_json
 
@@ -44,6 +45,14 @@ def add_scoring(command: argparse.ArgumentParser) -> None:
         metavar="M",
         help="how far from the planned line the vehicle is outside the plan (default: 2.0)",
     )
+    parts = ", ".join(ComfortWeights().named())
+    command.add_argument(
+        "--comfort-weight",
+        action="append",
+        default=[],
+        metavar="NAME=W",
+        help=f"how much a part of the comfort score counts; may be given several times; parts: {parts}",
+    )
 
 
 def adjusted(scoring: Scoring, arguments: argparse.Namespace) -> Scoring:
@@ -62,6 +71,7 @@ def adjusted(scoring: Scoring, arguments: argparse.Namespace) -> Scoring:
         except ValueError:
             kinds = ", ".join(kind.value for kind in Infraction)
             raise UserError(f"--penalty {text}: write KIND=FACTOR, the kind one of {kinds}") from None
+    weights = _comfort_weights(scoring.comfort_weights, arguments.comfort_weight)
     changed: dict[str, float] = {}
     if arguments.infraction_weight is not None:
         changed["infraction_weight"] = arguments.infraction_weight
@@ -70,7 +80,19 @@ def adjusted(scoring: Scoring, arguments: argparse.Namespace) -> Scoring:
         changed["speeding_tolerance_mps"] = arguments.speeding_tolerance
     if arguments.route_deviation is not None:
         changed["route_deviation_m"] = arguments.route_deviation
-    return replace(scoring, penalties=penalties, **changed)
+    return replace(scoring, penalties=penalties, comfort_weights=weights, **changed)
+
+
+def _comfort_weights(weights: ComfortWeights, given: list[str]) -> ComfortWeights:
+    """Weights with what ``NAME=W`` changes."""
+    named = weights.named()
+    for text in given:
+        name, _, number = text.partition("=")
+        try:
+            named[name] = float(number)
+        except ValueError:
+            raise UserError(f"--comfort-weight {text}: write NAME=W, the name one of {', '.join(named)}") from None
+    return weights_from(named, "--comfort-weight")
 
 
 def read_scoring(path: Path) -> Scoring:

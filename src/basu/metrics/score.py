@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu.errors import UserError
 from basu.metrics.collisions import collisions
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, counts
+from basu.metrics.passengers.comfort_score import ComfortWeights
 from basu.metrics.path_following import path_following
 from basu.metrics.red_lights import red_lights
 from basu.metrics.route_deviation import THRESHOLD_M
@@ -30,6 +31,7 @@ class Scoring:
     path_following_weight: float = 0.2
     speeding_tolerance_mps: float = TOLERANCE_MPS  # above the posted limit
     route_deviation_m: float = THRESHOLD_M  # from the planned line; farther out is outside the plan
+    comfort_weights: ComfortWeights = field(default_factory=ComfortWeights)  # of the passengers' own score, not of this
 
     def __post_init__(self) -> None:
         total = self.infraction_weight + self.path_following_weight

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
+from basu.metrics.passengers.comfort_score import ComfortWeights, weights_from
 from basu.metrics.score import Scoring
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ def scoring_to_json(scoring: Scoring) -> dict[str, Any]:
     return {
         "penalties": {kind.value: penalty for kind, penalty in scoring.penalties.items()},
         **{name: getattr(scoring, name) for name in NUMBERS},
+        "comfort_weights": scoring.comfort_weights.named(),
     }
 
 
@@ -40,14 +42,15 @@ def scoring_from_json(document: object, source: str) -> Scoring:
     if not isinstance(document, dict):
         raise UserError(f"{source}: a scoring is a JSON object, such as {{'penalties': {{'stop_sign': 0.7}}}}")
     for key in document:
-        _known(str(key), ("penalties", *NUMBERS), source)
+        _known(str(key), ("penalties", "comfort_weights", *NUMBERS), source)
     numbers = {name: _number(document[name], f"{source}: {name}") for name in NUMBERS if name in document}
     given = [name for name in WEIGHTS if name in numbers]
     if len(given) == 1:
         other = WEIGHTS[1 - WEIGHTS.index(given[0])]
         numbers[other] = 1.0 - numbers[given[0]]
+    weights = _comfort_weights(document.get("comfort_weights", {}), source)
     try:
-        return Scoring(penalties=_penalties(document.get("penalties", {}), source), **numbers)
+        return Scoring(penalties=_penalties(document.get("penalties", {}), source), comfort_weights=weights, **numbers)
     except UserError as error:
         raise UserError(f"{source}: {error}") from None
 
@@ -75,6 +78,15 @@ def _penalties(given: object, source: str) -> dict[Infraction, float]:
         _known(str(kind), [known.value for known in Infraction], source)
     changed = {Infraction(kind): _number(factor, f"{source}: the penalty of {kind}") for kind, factor in given.items()}
     return {**DEFAULT_PENALTIES, **changed}
+
+
+def _comfort_weights(given: object, source: str) -> ComfortWeights:
+    """The weights of the passengers' score, the default ones where none is given."""
+    if not isinstance(given, dict):
+        raise UserError(f"{source}: 'comfort_weights' is {given!r}; it must be an object of parts and weights")
+    return weights_from(
+        {name: _number(w, f"{source}: the comfort weight of {name}") for name, w in given.items()}, source
+    )
 
 
 def _known(key: str, names: Iterable[str], source: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from basu.report.measures_table import measured
+from basu.report.passengers_table import felt
 
 
 def table(document: dict[str, Any]) -> str:
@@ -25,7 +26,7 @@ def table(document: dict[str, Any]) -> str:
     stops = document["stops"]
     if stops:
         lines.append(f"service stops     {sum(stop['served'] for stop in stops)} of {len(stops)} served")
-    return "\n".join([*lines, *measured(document)])
+    return "\n".join([*lines, *measured(document), *felt(document)])
 
 
 def _figures(document: dict[str, Any]) -> list[tuple[str, str]]:

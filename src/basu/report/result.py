@@ -9,6 +9,8 @@ import numpy as np
 from basu.metrics.comfort import comfort
 from basu.metrics.infraction import counts
 from basu.metrics.lane_invasion import lane_invasions
+from basu.metrics.passengers.as_json import passengers_to_json
+from basu.metrics.passengers.verdict import judge
 from basu.metrics.path_following import path_following
 from basu.metrics.score import driving_score, infraction_score, infractions
 from basu.metrics.scoring_json import scoring_to_json
@@ -41,7 +43,8 @@ def result(outcome: Outcome, history: History | None, scoring: Scoring, meta: di
 def judgement(history: History | None, scoring: Scoring) -> dict[str, Any]:
     """Scores, infractions and all that is reported beside them: the part that comes from the record."""
     if history is None or len(history.frames) == 0:
-        return {"scores": None, "infractions": [], "stop_signs": [], "stops": [], **NOTHING, "reported": None}
+        nothing = {"scores": None, "infractions": [], "stop_signs": [], "stops": [], **NOTHING}
+        return {**nothing, "passengers": None, "reported": None}
     found = infractions(history, scoring)
     path = path_following(history)
     infraction = infraction_score(counts(found), scoring)
@@ -65,6 +68,7 @@ def judgement(history: History | None, scoring: Scoring) -> dict[str, Any]:
         ],
         "stops": _service_stops(history),
         **measures(history, scoring),
+        "passengers": passengers_to_json(history, judge(history, scoring.comfort_weights)),
         "reported": _reported(history, path.driven_m, path.planned_m),
     }
 

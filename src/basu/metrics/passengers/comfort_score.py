@@ -2,7 +2,7 @@
 
 It is a convention of this project, made of figures that are each defined by a source; the weights are adjustable.
 
-    balance       1 - share of the moving time in which one has to step / 0.1, at least 0
+    balance       1 - share of the moving time in which one has to step / 0.1, at least 0; 0 once a step was not enough
     harsh_stops   0.7 for each harsh stop that had a cause, 0.4 for each that had none, multiplied
     vibration     1 where the total value is "not uncomfortable" (0.315 m/s²), 0 from "very uncomfortable" (1.25 m/s²)
     near_misses   0.6 for each party that was nearly hit, multiplied
@@ -83,7 +83,7 @@ def parts(
 ) -> dict[str, float]:
     """Each part that can be measured; ``phantom`` says of each harsh stop whether it had no cause."""
     found = {
-        "balance": max(0.0, 1.0 - balance.step_share / STEP_SHARE),
+        "balance": 0.0 if balance.grip_s > 0.0 else max(0.0, 1.0 - balance.step_share / STEP_SHARE),
         "harsh_stops": math.prod(PHANTOM if nothing else CAUSED for nothing in phantom),
         "vibration": float(np.interp(vibration.total_mps2, [SMOOTH_MPS2, ROUGH_MPS2], [1.0, 0.0])),
         "near_misses": NEAR_MISS ** sum(party.is_near_miss for party in parties),

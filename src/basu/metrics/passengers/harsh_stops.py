@@ -64,7 +64,7 @@ def _one(felt: Felt, braking_mps2: NDArray[np.float64], first: int, last: int, a
         tick=strongest,
         end_tick=end,
         t_s=float(felt.t_s[onset]),
-        from_mps=float(speed_mps[onset]),
+        from_mps=float(speed_mps[max(0, onset - 2) : onset + 1].max()),  # the filter is a step or two late
         to_mps=to_mps,
         strongest_mps2=float(braking_mps2[strongest]),
         jerk_mps3=float(np.abs(felt.jerk_along_mps3[onset : end + 1]).max()),
