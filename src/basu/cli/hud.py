@@ -12,11 +12,16 @@ if TYPE_CHECKING:
     import argparse
 
 
+WINDOWS = (640, 480), (7680, 4320)  # the panel and the help page need the smallest
+PICTURES = (64, 48), (3840, 2160)
+
+
 class HudOptions(NamedTuple):
     """The fields of ``RunOptions`` that are set here."""
 
     hud: str | None
     hud_size: tuple[int, int]
+    hud_camera: tuple[int, int]
     hud_screenshot: Path | None
     keys: str | None
     record_keys: Path | None
@@ -32,7 +37,13 @@ def add_hud(run: argparse.ArgumentParser) -> None:
         help=f"watch in a window, and take over with P: {' or '.join(HUD_VIEWS)} (default: %(const)s)",
     )
     run.add_argument(
-        "--hud-size", default="960x540", metavar="WxH", help="of the window and its camera (default: %(default)s)"
+        "--hud-size", default="960x540", metavar="WxH", help="of the window, in pixels (default: %(default)s)"
+    )
+    run.add_argument(
+        "--hud-camera",
+        default="480x270",
+        metavar="WxH",
+        help="of the HUD's camera: its pictures take most of the time (default: %(default)s)",
     )
     run.add_argument(
         "--hud-screenshot", type=Path, metavar="FILE", help="PNG of the window, written at the end and by F12"
@@ -55,15 +66,23 @@ def hud_options(arguments: argparse.Namespace) -> HudOptions:
         )
     if arguments.hud_screenshot is not None and view is None:
         raise UserError("--hud-screenshot takes a picture of the window; add --hud")
-    return HudOptions(view, _size(arguments.hud_size), arguments.hud_screenshot, arguments.keys, arguments.record_keys)
+    return HudOptions(
+        hud=view,
+        hud_size=_size("--hud-size", arguments.hud_size, WINDOWS),
+        hud_camera=_size("--hud-camera", arguments.hud_camera, PICTURES),
+        hud_screenshot=arguments.hud_screenshot,
+        keys=arguments.keys,
+        record_keys=arguments.record_keys,
+    )
 
 
-def _size(text: str) -> tuple[int, int]:
-    """Width and height in pixels."""
+def _size(option: str, text: str, allowed: tuple[tuple[int, int], tuple[int, int]]) -> tuple[int, int]:
+    """Width and height in pixels, within the smallest and the largest that are allowed."""
     width, _, height = text.partition("x")
     if not (width.isascii() and height.isascii() and width.isdigit() and height.isdigit()):
-        raise UserError(f"--hud-size {text}: write WIDTHxHEIGHT in pixels, as in 960x540")
+        raise UserError(f"{option} {text}: write WIDTHxHEIGHT in pixels, as in 960x540")
     size = int(width), int(height)
-    if not (480 <= size[0] <= 7680 and 320 <= size[1] <= 4320):
-        raise UserError(f"--hud-size {text}: a window is from 480x320 to 7680x4320")
+    (least_width, least_height), (most_width, most_height) = allowed
+    if not (least_width <= size[0] <= most_width and least_height <= size[1] <= most_height):
+        raise UserError(f"{option} {text}: it may be from {least_width}x{least_height} to {most_width}x{most_height}")
     return size

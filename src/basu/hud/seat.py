@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from basu.agents.human import HumanAgent
 from basu.errors import UserError
+from basu.hud.hud import Hud
 from basu.managers.base_manager import BaseManager
 from basu.manual.devices import Devices, check_display
 from basu.manual.person import Person
-from basu.manual.session import Session, Setting, Tape, read_session, write_session
+from basu.manual.session import Played, Session, Setting, Tape, read_session, write_session
 from basu.utils.packaged import find
 
 if TYPE_CHECKING:
@@ -28,14 +30,19 @@ def person_for(options: RunOptions, agent_class: type[AutonomousAgent]) -> Perso
         UserError: no window can be opened, or there is no such session.
     """
     by_hand = issubclass(agent_class, HumanAgent)
-    has_window = options.hud is not None or (by_hand and options.keys is None)
-    if has_window:
+    devices = None
+    if _has_window(options, by_hand=by_hand):
         check_display()
-    if options.keys is None and not has_window:
-        if options.record_keys is not None:
-            raise UserError("--record-keys records what a person does, and nobody sits there; add --hud")
+        devices = Devices()
+    source: InputSource
+    if options.keys is not None:
+        source = Played(read_session(find(options.keys, "session of keys")), devices)
+    elif devices is not None:
+        source = devices
+    elif options.record_keys is not None:
+        raise UserError("--record-keys records what a person does, and nobody sits there; add --hud")
+    else:
         return None
-    source: InputSource = Devices() if options.keys is None else read_session(find(options.keys, "session of keys"))
     return Person(
         source if options.record_keys is None else Tape(source),
         drives_first=by_hand,
@@ -46,18 +53,32 @@ def person_for(options: RunOptions, agent_class: type[AutonomousAgent]) -> Perso
 
 def onlookers_for(options: RunOptions, live: Live) -> list[BaseManager]:
     """Those who look on at a run with this person and window."""
-    found: list[BaseManager] = []
     person = live.agents.person
-    if person is not None:
-        found.append(KeysManager(person, options.record_keys))
+    if person is None:
+        return []
+    found: list[BaseManager] = []
+    if options.keys is not None or options.record_keys is not None:
+        found.append(KeysManager(person.source, options.record_keys))
+    if _has_window(options, by_hand=person.drives_first):
+        agent = PurePath(options.agent.partition(".py")[0]).name
+        found.append(Hud(live, person, options, agent))
     return found
+
+
+def _has_window(options: RunOptions, *, by_hand: bool) -> bool:
+    """Whether there is one: a person at devices needs it."""
+    return options.hud is not None or (by_hand and options.keys is None)
 
 
 class KeysManager(BaseManager):
     """Checks that a session of keys is played where it was recorded, and writes down one that is driven."""
 
-    def __init__(self, person: Person, path: Path | None) -> None:
-        self._person, self._path = person, path
+    def __init__(self, source: InputSource, path: Path | None) -> None:
+        """Take what a person does; ``path`` is where it is written, None for nowhere."""
+        self._path = path
+        self._tape = source if isinstance(source, Tape) else None
+        played = source if self._tape is None else self._tape.source
+        self._played = played.session if isinstance(played, Played) else None
         self._here: Setting | None = None
 
     def setup(self, run: Run) -> None:
@@ -65,15 +86,13 @@ class KeysManager(BaseManager):
         self._here = here = Setting(
             town=run.route.town, route=run.route.id, vehicle=run.vehicle.type_id, step_s=run.step_s
         )
-        played = self._person.source
-        if isinstance(played, Session):
-            played.check(here)
+        if self._played is not None:
+            self._played.check(here)
 
     def tick(self, frame: Frame) -> None:
         """The tape turns by itself."""
 
     def close(self) -> None:
         """Write the session, where one was recorded."""
-        tape = self._person.source
-        if self._path is not None and self._here is not None and isinstance(tape, Tape):
-            write_session(self._path, Session(setting=self._here, inputs=tuple(tape.inputs)))
+        if self._path is not None and self._here is not None and self._tape is not None:
+            write_session(self._path, Session(setting=self._here, inputs=tuple(self._tape.inputs)))

@@ -78,16 +78,32 @@ class Session:
                 )
 
 
+class Played:
+    """A session that is played, maybe before a window whose own keys go on working."""
+
+    def __init__(self, session: Session, window: InputSource | None) -> None:
+        self.session = session
+        self._window = window
+
+    def read(self, tick: int) -> Input:
+        """The session's keys for the vehicle, the window's for itself."""
+        done = self.session.read(tick)
+        if self._window is None:
+            return done
+        struck = tuple(strike for strike in self._window.read(tick).strikes if strike not in DRIVING_STRIKES)
+        return done._replace(strikes=(*done.strikes, *struck))
+
+
 class Tape:
     """A source that notes what it passes on."""
 
     def __init__(self, source: InputSource) -> None:
-        self._source = source
+        self.source = source
         self.inputs: list[Input] = []
 
     def read(self, tick: int) -> Input:
         """Read and note; what concerns only the window is not noted."""
-        done = self._source.read(tick)
+        done = self.source.read(tick)
         driving = tuple(strike for strike in done.strikes if strike in DRIVING_STRIKES)
         self.inputs.append(done._replace(strikes=driving))
         return done
