@@ -1,0 +1,150 @@
+"""Claims about runs with traffic and with CARLA's log, in a live simulator."""
+
+import json
+import math
+from pathlib import Path
+
+import carla
+import numpy as np
+import pytest
+
+from basu.cli import main
+from basu.history.files import read_history
+from basu.managers.traffic_places import CLEAR_M
+from servers import RunningServer
+
+WATCHER = """
+class Watcher(AutonomousAgent):
+    def setup(self):
+        self.steps = 0
+        ego = self.vehicle.get_location()
+        moving = [each for each in self.world.get_actors() if each.type_id.startswith(("vehicle.", "walker."))]
+        others = [each for each in moving if each.id != self.vehicle.id]
+        self.seen = [(each.type_id.split(".")[0], each.get_location().distance(ego)) for each in others]
+
+    def run_step(self, sensor_data):
+        self.steps += 1
+        if self.steps > {steps}:
+            raise ValueError(f"{{len(self.seen)}} others; "
+                             f"{{sum(kind == 'vehicle' for kind, _ in self.seen)}} vehicles; "
+                             f"nearest {{min(away for _, away in self.seen):.1f}} m")
+        return carla.VehicleControl(brake=1.0)
+
+    def config(self):
+        return {{"vehicle": "vehicle.tesla.model3"}}
+"""
+
+
+@pytest.fixture
+def agent(tmp_path: Path) -> Path:
+    path = tmp_path / "watcher.py"
+    path.write_text(WATCHER.format(steps=5))
+    return path
+
+
+def address(simulator: RunningServer) -> list[str]:
+    return ["--host", "127.0.0.1", "--port", str(simulator.port)]
+
+
+def test_traffic_is_there_from_the_first_step_and_gone_after_the_last(
+    simulator: RunningServer, tmp_path: Path, agent: Path, route_file: Path
+) -> None:
+    options = ["--routes", str(route_file), "--output", str(tmp_path / "runs"), "--vehicles", "12", "--walkers", "8"]
+    assert main(["run", str(agent), *address(simulator), *options]) == 1
+    result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text())
+    assert "raised ValueError: 20 others; 12 vehicles; nearest " in result["message"]
+    nearest_m = float(result["message"].split("nearest ")[1].split(" m")[0])
+    assert nearest_m > CLEAR_M - 2.0  # they have moved for some ticks
+    assert result["meta"]["traffic"] == {"vehicles": 12, "walkers": 8, "density_per_km": None}
+    world = carla.Client("127.0.0.1", simulator.port).get_world()
+    world.wait_for_tick(10.0)
+    moving = ("vehicle.", "walker.", "controller.")
+    assert [actor.type_id for actor in world.get_actors() if actor.type_id.startswith(moving)] == []
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (["--vehicles", "5000"], "5000 vehicles were asked for, and "),
+        (["--vehicles", "-1"], "--vehicles is -1; it must be 0 or more"),
+        (["--traffic-density", "nan"], "--traffic-density is nan; it must be 0 or more"),
+    ],
+)
+def test_traffic_that_cannot_be_gets_a_sentence(
+    simulator: RunningServer,
+    tmp_path: Path,
+    agent: Path,
+    route_file: Path,
+    capsys: pytest.CaptureFixture[str],
+    options: list[str],
+    sentence: str,
+) -> None:
+    whole = [*address(simulator), "--routes", str(route_file), "--output", str(tmp_path / "runs"), *options]
+    assert main(["run", str(agent), *whole]) == 2
+    said = capsys.readouterr()
+    assert sentence in said.out + said.err
+    assert "Traceback" not in said.err
+
+
+@pytest.mark.slow
+def test_the_same_seed_has_the_same_traffic_and_another_seed_another(tmp_path: Path, agent: Path) -> None:
+    agent.write_text(WATCHER.format(steps=200))
+    records = {}
+    for name, seed in (("first", "3"), ("second", "3"), ("third", "4")):
+        output = ["--output", str(tmp_path / name), "--seed", seed]
+        traffic = ["--traffic-density", "4", "--walkers", "30"]
+        main(["run", str(agent), "--routes", "routes/linden_short.xml", *traffic, *output])
+        records[name] = tmp_path / name / "latest"
+    bytes_of = {name: (folder / "history.parquet").read_bytes() for name, folder in records.items()}
+    assert bytes_of["first"] == bytes_of["second"] != bytes_of["third"]
+    others = read_history(records["first"]).others
+    assert len(np.unique(others["id"])) >= 2
+    assert np.hypot(others["velocity_x_mps"], others["velocity_y_mps"]).max() > 1.0
+
+
+def test_the_log_of_our_own_simulator_lies_beside_the_history(tmp_path: Path, agent: Path, route_file: Path) -> None:
+    output = ["--output", str(tmp_path / "runs")]
+    main(["run", str(agent), "--routes", str(route_file), "--record", *output])
+    folder = tmp_path / "runs" / "latest"
+    config = json.loads((folder / "config.json").read_text())
+    assert config["recording"] == {"file": "recording.log", "where": "run folder"}
+    assert "--record" in config["command"]
+    assert b"CARLA_RECORDER" in (folder / "recording.log").read_bytes()[:64]
+
+
+def test_the_log_of_somebody_elses_simulator_lies_with_them(
+    tmp_path: Path, agent: Path, route_file: Path, simulator: RunningServer, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = ["--output", str(tmp_path / "runs")]
+    main(["run", str(agent), *address(simulator), "--routes", str(route_file), "--record", *output])
+    recording = json.loads((tmp_path / "runs" / "latest" / "config.json").read_text())["recording"]
+    assert recording["where"] == f"disk of the simulator at 127.0.0.1:{simulator.port}"
+    assert recording["file"].endswith(".log")
+    assert f"recording         {recording['file']} (disk of the simulator" in capsys.readouterr().out
+    Path(recording["file"]).unlink()
+
+
+def test_the_weather_of_a_route_holds_unless_another_is_asked_for(
+    simulator: RunningServer, tmp_path: Path, route_file: Path
+) -> None:
+    text = route_file.read_text()
+    weathers = (
+        '<weathers><weather route_percentage="0" fog_density="40"/><weather route_percentage="100" fog_density="60"/>'
+        "</weathers>"
+    )
+    route_file.write_text(text.replace('town="Linden">', f'town="Linden">{weathers}'))
+    agent = tmp_path / "looker.py"
+    agent.write_text(
+        WATCHER.format(steps=5)
+        .replace("{len(self.seen)} others", "fog {self.world.get_weather().fog_density:.1f}")
+        .replace("min(away for _, away in self.seen)", "0")
+    )
+    found = []
+    for options in ([], ["--weather", "ClearNoon"]):
+        main(["run", str(agent), *address(simulator), "--routes", str(route_file), "--output", str(tmp_path), *options])
+        result = json.loads((tmp_path / "latest" / "result.json").read_text())
+        found.append((float(result["message"].split("fog ")[1].split(";")[0]), result["meta"]["weather"]))
+    (fog, name), (clear, other) = found
+    assert 40.0 <= fog < 41.0
+    assert math.isclose(clear, carla.WeatherParameters.ClearNoon.fog_density, abs_tol=0.1)
+    assert (name, other) == ("of the route file", "ClearNoon")

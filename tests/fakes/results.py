@@ -1,0 +1,39 @@
+"""Results of drives that never took place, as they stand in result.json."""
+
+import json
+from typing import Any
+
+from basu.history import LaneInvasion
+from basu.metrics.score import Scoring
+from basu.outcome import Outcome, Status
+from basu.report.result import result
+from fakes.drives import at, driven, hit
+
+META = {
+    "simulated_s": 20.0,
+    "wall_s": 1.5,
+    "ticks": 400,
+    "step_s": 0.05,
+    "first_server_frame": 21,
+    "started": "2026-11-21T12:00:00+00:00",
+    "seed": 0,
+    "agent": {"name": "basic", "class": "BasicAgent", "file": "basic"},
+    "vehicle": "vehicle.easymile.ez10",
+    "weather": "ClearNoon",
+    "traffic": {"vehicles": 0, "walkers": 0, "density_per_km": None},
+    "route": "0",
+    "town": "Linden",
+    "versions": {"basu": "0.1.0"},
+}
+
+
+def a_result(status: Status = Status.COMPLETED) -> dict[str, Any]:
+    """As it is after a round trip through a file: a collision, and a while above the limit."""
+    history = driven(
+        at(10.0, 10.0) + at(13.0, 5.0),
+        collisions=[hit(50)],
+        lane_invasions=[LaneInvasion(tick=3, markings=("Solid/White",))],
+    )
+    document = result(Outcome(status, "so it ended"), history, Scoring(), META)
+    plain: dict[str, Any] = json.loads(json.dumps(document))
+    return plain
