@@ -23,6 +23,7 @@ def score_run(arguments: argparse.Namespace) -> int:
     """Compute scores and infractions of a run again, from its history and facts; no simulator is asked."""
     from basu.history.files import read_history  # noqa: PLC0415 - pyarrow, which `--help` does not need
     from basu.report.folder import CONFIG_FILE  # noqa: PLC0415 - likewise
+    from basu.report.passengers_table import felt  # noqa: PLC0415 - likewise
     from basu.report.result import judgement  # noqa: PLC0415 - likewise
 
     folder: Path = arguments.folder
@@ -38,4 +39,6 @@ def score_run(arguments: argparse.Namespace) -> int:
         print(f"{name:<16}{value:8.3f}")
     for row in document["infractions"]:
         print(f"  {row['t_s']:8.1f} s  {row['kind']:<21} {row['detail']}")
+    for line in felt(document):
+        print(line)
     return 0
