@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from basu.history.files import read_history
 from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.so_far import SoFar
 from basu.recording.sources import MAP_FILE, read_map
 from basu.viewer import moment, scenery
 from basu.viewer.frames import Pose
@@ -20,30 +23,59 @@ if TYPE_CHECKING:
     from basu.history import History
 
 XYZ = "xyz"
+SCORE_EVERY_S = 1.0  # of simulated time
 
 
-def show_run(folder: Path, rrd: Path, scoring: Scoring, *, screen: bool, on_tick: Callable[[int], object]) -> str:
-    """Show a run's folder, keep it in ``rrd``; says where it was shown.
+def show_run(
+    folder: Path,
+    map_file: Path | None,
+    rrd: Path,
+    scoring: Scoring,
+    *,
+    screen: bool,
+    on_tick: Callable[[int], object],
+) -> str:
+    """Show a run's folder, keep it in ``rrd``; ``map_file`` goes before the map in it. Says where it was shown.
 
     Raises:
         UserError: Rerun is missing, or the folder has no record.
     """
     history = read_history(folder)
+    kept = folder / MAP_FILE
+    chosen = map_file or (kept if kept.is_file() else None)
+    town = None if chosen is None else read_map(chosen, history.facts.route.town)
     stream = open_stream(rrd, folder.name, screen=screen)
     recording = stream.recording
-    if (folder / MAP_FILE).is_file():
-        scenery.log_map(recording, read_map(folder / MAP_FILE, history.facts.route.town))
+    if town is not None:
+        scenery.log_map(recording, town)
     scenery.log_route(recording, history.facts.route)
     scenery.log_vehicle(recording, history.facts.vehicle)
     shower = moment.Shower(recording)
     others = _others(history)
+    so_far, every = SoFar(scoring), max(1, round(SCORE_EVERY_S / history.facts.step_s))
     for tick, row in enumerate(history.frames):
         shower.tick(float(row["t_s"]), _pose(row), _driving(row), others.get(tick, ()))
+        if tick % every == 0:
+            so_far.advance(partial(_window, history, tick + 1))
+            shower.scores(so_far.scores)
+            shower.infractions(so_far.infractions)
         on_tick(1)
     shower.scores(score(history, scoring))
     shower.infractions(infractions(history, scoring))
     close_stream(stream)
     return stream.said
+
+
+def _window(history: History, end: int, first: int) -> History:
+    """The frames from ``first`` until before ``end`` and the contacts in them, whose ticks count from ``first``."""
+    contacts = (contact for contact in history.collisions if first <= contact.tick < end)
+    return replace(
+        history,
+        frames=history.frames[first:end],
+        others=history.others[:0],
+        collisions=tuple(replace(contact, tick=contact.tick - first) for contact in contacts),
+        lane_invasions=(),
+    )
 
 
 def _pose(row: np.void) -> Pose:

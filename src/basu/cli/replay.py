@@ -1,0 +1,121 @@
+"""``basu replay``: plays a run again, in Rerun's viewer or on a simulator."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from basu.cli.scoring import read_scoring
+from basu.errors import UserError
+
+if TYPE_CHECKING:
+    from basu.recording import Log
+
+RRD_FILE = "replay.rrd"
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """The command ``replay``."""
+    replay = commands.add_parser("replay", help="play a run again", description=replay_run.__doc__)
+    replay.add_argument(
+        "recording", type=Path, metavar="RUN", help="a run's folder, or a recorder file of CARLA's (.log)"
+    )
+    replay.add_argument(
+        "--viewer", action="store_true", help="in Rerun's viewer, from the record alone; a run needs no log for that"
+    )
+    replay.add_argument(
+        "--save",
+        type=Path,
+        metavar="FILE.rrd",
+        help=f"where --viewer keeps it (default: {RRD_FILE} in the run's folder)",
+    )
+    replay.add_argument("--map", type=Path, metavar="FILE.xodr", help="to draw with --viewer (default: the run's)")
+    replay.add_argument("--host", help="a simulator that runs already (default: start one, end it afterwards)")
+    replay.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
+    replay.add_argument(
+        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
+    )
+    replay.add_argument(
+        "--speed", type=float, default=1.0, metavar="X", help="times real time, 0 for unbraked (default: %(default)s)"
+    )
+    replay.set_defaults(command=replay_run)
+
+
+def replay_run(arguments: argparse.Namespace) -> int:
+    """Play a run again: on a simulator, where any client can watch it, or with --viewer in Rerun's, without one."""
+    if not arguments.speed >= 0.0:
+        raise UserError(f"--speed is {arguments.speed}; it is a factor, or 0")
+    recording: Path = arguments.recording
+    if not arguments.viewer:
+        return _on_simulator(arguments)
+    from basu.viewer.stream import require  # noqa: PLC0415 - with the rest of the viewer, which needs an extra
+
+    require()
+    return _run_in_viewer(arguments, recording) if recording.is_dir() else _log_in_viewer(arguments, recording)
+
+
+def _run_in_viewer(arguments: argparse.Namespace, folder: Path) -> int:
+    """A run's folder, from its history."""
+    from basu.report.folder import CONFIG_FILE  # noqa: PLC0415 - as above
+    from basu.viewer.from_record import show_run  # noqa: PLC0415 - as above
+    from basu.viewer.stream import has_screen  # noqa: PLC0415 - as above
+
+    rrd = arguments.save or folder / RRD_FILE
+    with _bar() as bar:
+        said = show_run(
+            folder, arguments.map, rrd, read_scoring(folder / CONFIG_FILE), screen=has_screen(), on_tick=bar.update
+        )
+    print(f"viewer            {rrd} ({said}); `rerun {rrd}` opens it")
+    return 0
+
+
+def _log_in_viewer(arguments: argparse.Namespace, file: Path) -> int:
+    """A recorder file by itself."""
+    from basu.recording.sources import read_map  # noqa: PLC0415 - as above
+    from basu.viewer.from_log import show_log  # noqa: PLC0415 - as above
+    from basu.viewer.stream import has_screen  # noqa: PLC0415 - as above
+
+    log, carla_map = _log(arguments)
+    rrd = arguments.save or Path(f"{file.stem}.rrd")
+    town = None if carla_map is None else read_map(carla_map, log.map_name)
+    with _bar() as bar:
+        said = show_log(log, town, rrd, screen=has_screen(), on_tick=bar.update)
+    print(f"viewer            {rrd} ({said}); `rerun {rrd}` opens it")
+    return 0
+
+
+def _on_simulator(arguments: argparse.Namespace) -> int:
+    """The log on a simulator."""
+    from basu.viewer.on_server import Progress, Where, play  # noqa: PLC0415 - brings in the client
+
+    if arguments.save is not None or arguments.map is not None:
+        raise UserError("--save and --map belong to --viewer; add it, or leave them out")
+    log, _ = _log(arguments)
+    where = Where(arguments.host, arguments.port, arguments.timeout)
+    with _bar(log.frames) as bar:
+
+        def ready(address: str) -> None:
+            bar.write(f"watch it at {address}, with any client of CARLA's", file=sys.stderr)
+
+        play(log, where, speed=arguments.speed, progress=Progress(ready, bar.update))
+    return 0
+
+
+def _log(arguments: argparse.Namespace) -> tuple[Log, Path | None]:
+    """The recorder file that is meant, and its map."""
+    from basu.recording import read_log  # noqa: PLC0415 - as above
+    from basu.recording.sources import source  # noqa: PLC0415 - as above
+
+    where = source(arguments.recording, arguments.map)
+    log = read_log(where.log)
+    if log.problem is not None:
+        print(f"basu: warning: {log.problem}", file=sys.stderr)
+    return log, where.map
+
+
+def _bar(total: int | None = None) -> Any:  # noqa: ANN401 - tqdm is generic to the type checker only
+    from tqdm import tqdm  # noqa: PLC0415 - as above
+
+    return tqdm(total=total, unit=" frames", desc="replaying", mininterval=0.1 if sys.stderr.isatty() else 10.0)
