@@ -13,7 +13,7 @@ from fakes.drives import at, driven, hit, ramp, stop_sign, straight_route, traff
 RED = 0
 
 
-def looked_at(history: History, every: int, compare: bool = False) -> SoFar:
+def looked_at(history: History, every: int, *, compare: bool = False) -> SoFar:
     """The drive recorded once more, looked at every so many ticks."""
     recorder, so_far = Recorder(), SoFar(Scoring())
     waiting = list(history.collisions)
