@@ -11,8 +11,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu.agents.driving.behavioral_driver import BehavioralDriver
 from basu.agents.driving.driver import Command, Driver
 from basu.agents.driving.longitudinal import DriveModel
+from basu.agents.driving.manner import NORMAL, Manner
+from basu.agents.driving.road import make_road
 from basu.agents.driving.task import make_task
 from basu.agents.rules.traffic_lights import Light
 from basu.agents.scene import Body, Ego, Kind, Other
@@ -131,6 +134,21 @@ def nobody(_time_s: float) -> list[Other]:
 def make_driver(route: Route, cap_mps: float = SHUTTLE_TOP_MPS) -> Driver:
     """The basic agent's driver in the shuttle."""
     return Driver(make_task(route, SHUTTLE_BODY, cap_mps), SHUTTLE_BODY, SHUTTLE_MODEL, DT_S)
+
+
+def make_behavioral(
+    route: Route,
+    manner: Manner = NORMAL,
+    *,
+    cap_mps: float = SHUTTLE_TOP_MPS,
+    left_width_m: float = 3.2,
+    right_lane_m: float = 0.0,
+) -> BehavioralDriver:
+    """A behavioral driver in the shuttle, on a street with a lane to its left and, if so wished, one to its right."""
+    task = make_task(route, SHUTTLE_BODY, cap_mps, manner)
+    count = len(route.s_m)
+    road = make_road(route, task.path, np.full(count, left_width_m), np.full(count, right_lane_m), 15.0)
+    return BehavioralDriver(task, road, SHUTTLE_BODY, SHUTTLE_MODEL, DT_S, manner)
 
 
 def drive(

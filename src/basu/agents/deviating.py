@@ -62,6 +62,8 @@ class DeviatingAgent(BehavioralAgent):
         ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
         self._advance(ego, self.driver)
         self._before_mps = ego.speed_mps
+        if self.phase is Phase.STAYING:
+            return carla.VehicleControl(brake=1.0, hand_brake=True)
         if self.phase is not Phase.DRIVING:
             control.throttle, control.brake = self._pedals(ego, self.driver)
         if self.phase is Phase.LEAVING and self.deviation is not None:
