@@ -34,6 +34,7 @@ STATUS_OF: dict[type[AgentError], Status] = {
     AgentTimedOutError: Status.AGENT_TIMED_OUT,
     AgentInvalidControlError: Status.AGENT_INVALID_CONTROL,
 }
+FAREWELL_S = 1.0  # wall time for each thing that is given back to a simulator that has failed
 STRAGGLERS_S = 0.05  # wall time for events of the last frame, which come on connections of their own
 
 
@@ -89,6 +90,8 @@ def drive(
         bug = error
         outcome = Outcome(Status.BENCHMARK_FAILED, "".join(traceback.format_exception_only(error)).strip())
     wall_s = time.perf_counter() - began_s
+    if outcome.status is Status.SIMULATOR_FAILED:
+        run.client.set_timeout(FAREWELL_S)
     history = None
     if metrics.ticks:
         _hear_stragglers(run)

@@ -2,6 +2,8 @@
 
 import json
 import math
+import subprocess
+import sys
 from pathlib import Path
 
 import carla
@@ -32,6 +34,25 @@ class Watcher(AutonomousAgent):
 
     def config(self):
         return {{"vehicle": "vehicle.tesla.model3"}}
+"""
+
+
+KILLER = """
+import os, psutil, signal
+
+class Killer(AutonomousAgent):
+    def setup(self):
+        self.steps = 0
+
+    def run_step(self, sensor_data):
+        self.steps += 1
+        if self.steps == 20:
+            for child in psutil.Process().children():
+                os.kill(child.pid, signal.SIGKILL)
+        return carla.VehicleControl(throttle=0.3)
+
+    def config(self):
+        return {}
 """
 
 
@@ -100,6 +121,22 @@ def test_the_same_seed_has_the_same_traffic_and_another_seed_another(tmp_path: P
     others = read_history(records["first"]).others
     assert len(np.unique(others["id"])) >= 2
     assert np.hypot(others["velocity_x_mps"], others["velocity_y_mps"]).max() > 1.0
+
+
+@pytest.mark.slow
+def test_a_simulator_that_dies_under_traffic_is_told_of_and_what_was_measured_is_kept(
+    tmp_path: Path, route_file: Path
+) -> None:
+    agent = tmp_path / "killer.py"
+    agent.write_text(KILLER)
+    options = ["--routes", str(route_file), "--vehicles", "10", "--walkers", "5", "--timeout", "2"]
+    arguments = ["run", str(agent), *options, "--output", str(tmp_path / "runs")]
+    program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"
+    # in a process of its own: the client of a dead simulator keeps its Traffic Manager for as long as it lives
+    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
+    assert ended.returncode == 3, ended.stderr
+    result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text())
+    assert (result["status"], result["meta"]["ticks"]) == ("SimulatorFailed", 20)
 
 
 def test_the_log_of_our_own_simulator_lies_beside_the_history(tmp_path: Path, agent: Path, route_file: Path) -> None:

@@ -69,13 +69,17 @@ class TrafficManager(BaseManager):
         """The client itself leads everybody in each step."""
 
     def close(self) -> None:
-        """Take everybody away, the leaders first."""
-        with contextlib.suppress(RuntimeError):  # the simulator is gone, and everybody with it
+        """Take everybody away, the leaders first, and end the Traffic Manager.
+
+        Where the simulator is gone, so is everybody; then the Traffic Manager is left as it is: its end asks the
+        simulator, and the official client ends the whole process where nobody answers there.
+        """
+        with contextlib.suppress(RuntimeError):
             self._destroy_all()
-        if self._manager is not None:
-            manager, self._manager = self._manager, None
-            with contextlib.suppress(RuntimeError):  # likewise
-                manager.shut_down()
+            if self._manager is not None:
+                self._run.client.get_server_version()
+                self._manager.shut_down()
+        self._manager = None
 
     def _destroy_all(self) -> None:
         """Leaders, walkers and vehicles; and a moment for the client to forget them."""
