@@ -8,14 +8,14 @@ import traceback
 from typing import TYPE_CHECKING
 
 import basu
-from basu.cli import compare, list_, metrics, replay, report, run, score
+from basu.cli import compare, experiment, list_, metrics, replay, report, run, score
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.outcome import EXIT_CODES, Fault
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-COMMANDS = (run, score, report, compare, metrics, replay, list_)
+COMMANDS = (run, score, report, compare, experiment, metrics, replay, list_)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -1,0 +1,75 @@
+"""Table 5.1 of the thesis, and what follows from its own formulas."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from basu.metrics.infraction import Infraction
+from basu.metrics.score import Scoring, driving_score, infraction_score
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+SCORING = Scoring(infraction_weight=0.8, path_following_weight=0.2)  # the weights below the table
+# "running a stop sign was not considered in the driving score for this tests" (section 5.5); no light is on the route
+NOT_COUNTED = frozenset({Infraction.STOP_SIGN, Infraction.RED_LIGHT})
+ROUNDING = 0.005  # the table has two digits, the driving score three
+
+
+class Printed(NamedTuple):
+    """A row as it is printed."""
+
+    collisions: int
+    speeding: int
+    infraction: float
+    path_following: float
+    driving: float
+
+    def infraction_by_formula(self) -> float:
+        """Equation 5.1 on the row's counts; whom it hit the table does not say, the text says "an object"."""
+        return infraction_score(
+            {Infraction.COLLISION_STATIC: self.collisions, Infraction.SPEEDING: self.speeding}, SCORING
+        )
+
+    def driving_by_formula(self) -> float:
+        """Equation 5.5 on the printed parts."""
+        return driving_score(self.infraction, self.path_following, SCORING)
+
+    def follows(self) -> bool:
+        """Whether the printed infraction score is that of the printed counts."""
+        return abs(self.infraction_by_formula() - self.infraction) < ROUNDING
+
+
+class Measured(NamedTuple):
+    """The same columns of a run of ours, without the infractions that the thesis did not count."""
+
+    collisions: int
+    speeding: int
+    infraction: float
+    path_following: float
+    driving: float
+    stop_signs: int  # run; in none of the scores above
+    driving_with_stop_signs: float
+
+
+PRINTED: Mapping[str, Printed] = {
+    "basic": Printed(0, 0, 1.0, 0.98, 0.996),
+    "behavioral": Printed(1, 1, 0.13, 0.56, 0.216),
+    "forward": Printed(1, 1, 0.52, 0.18, 0.452),
+    "human": Printed(0, 3, 0.51, 0.98, 0.604),
+}
+
+
+def measured(counts: Mapping[Infraction, int], path_following: float) -> Measured:
+    """Our row from a run's infractions and its path following score."""
+    counted = {kind: number for kind, number in counts.items() if kind not in NOT_COUNTED}
+    infraction = infraction_score(counted, SCORING)
+    return Measured(
+        collisions=sum(number for kind, number in counts.items() if kind.value.startswith("collision_")),
+        speeding=counts.get(Infraction.SPEEDING, 0),
+        infraction=infraction,
+        path_following=path_following,
+        driving=driving_score(infraction, path_following, SCORING),
+        stop_signs=counts.get(Infraction.STOP_SIGN, 0),
+        driving_with_stop_signs=driving_score(infraction_score(counts, SCORING), path_following, SCORING),
+    )
