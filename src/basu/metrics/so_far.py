@@ -1,9 +1,9 @@
 """Infractions and scores while a drive lasts, for those who look on: each look costs what is new since the last one.
 
-Every metric looks at the record from the last frame in which nothing was under way for it (no contact in the last two
-seconds, no sign or light at the vehicle, not above the limit): what it found before that frame is settled. A frame
-settles only a second later, for messages of contacts may come late. When the drive is over, the whole record is judged
-once more, and that is the result.
+Contacts, signs and lights are judged from the last frame in which nothing was under way for them (no contact in the
+last two seconds, no line at the vehicle): what was found before that frame is settled. A frame settles only a second
+later, for messages of contacts may come late. Speeding may last as long as a drive, so of an open episode the largest
+excess is kept. When the drive is over, the whole record is judged once more, and that is the result.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from basu.metrics.infraction import Evidence, counts
 from basu.metrics.path_following import compared
 from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
 from basu.metrics.score import Scores, Scoring, driving_score, in_order, infraction_score
-from basu.metrics.speeding import limits_mps, speeding
+from basu.metrics.speeding_so_far import SpeedingSoFar
 from basu.metrics.stop_signs import ZONE_BEFORE_M, stop_signs
 from basu.metrics.stretches import SPACING_M, chords, path_m, total_m
 from basu.routing import ControlKind
@@ -70,7 +70,7 @@ class SoFar:
             _Watched(collisions, _no_contact),
             _Watched(red_lights, _no_light),
             _Watched(stop_signs, _no_sign),
-            _Watched(lambda history: speeding(history, scoring.speeding_tolerance_mps), _within_the_limit),
+            SpeedingSoFar(scoring.speeding_tolerance_mps),
         )
         self._path_first, self._path_m = 0, 0.0
         self._farthest_m = 0.0
@@ -119,12 +119,6 @@ def _no_contact(history: History) -> NDArray[np.bool_]:
     for event in history.collisions:
         quiet[event.tick : event.tick + after] = False
     return quiet
-
-
-def _within_the_limit(history: History) -> NDArray[np.bool_]:
-    """No episode of speeding is open."""
-    within: NDArray[np.bool_] = history.speed_mps() <= limits_mps(history)
-    return within
 
 
 def _no_sign(history: History) -> NDArray[np.bool_]:

@@ -30,21 +30,28 @@ def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Ev
         if (end - first) * history.facts.step_s < LEAST_S:
             continue
         fastest = first + int(np.argmax(speed_mps[first:end] - limit_mps[first:end]))
-        top_mps, posted_mps = float(speed_mps[fastest]), float(limit_mps[fastest])
         found.append(
-            evidence(
+            episode(
                 history,
-                Infraction.SPEEDING,
                 first,
-                speed_mps=top_mps,
-                other=None,
-                detail=(
-                    f"up to {top_mps:.2f} m/s where {posted_mps:.2f} m/s are posted, "
-                    f"for {(end - first) * history.facts.step_s:.1f} s"
-                ),
+                top_mps=float(speed_mps[fastest]),
+                posted_mps=float(limit_mps[fastest]),
+                seconds=(end - first) * history.facts.step_s,
             )
         )
     return tuple(found)
+
+
+def episode(history: History, first: int, *, top_mps: float, posted_mps: float, seconds: float) -> Evidence:
+    """The evidence for an episode that begins in frame ``first``; the speed told is where the excess is largest."""
+    return evidence(
+        history,
+        Infraction.SPEEDING,
+        first,
+        speed_mps=top_mps,
+        other=None,
+        detail=f"up to {top_mps:.2f} m/s where {posted_mps:.2f} m/s are posted, for {seconds:.1f} s",
+    )
 
 
 def limits_mps(history: History) -> NDArray[np.float64]:
