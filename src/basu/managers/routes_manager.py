@@ -8,25 +8,18 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
+from basu.metrics.delays import BLOCKED_MPS, BLOCKED_S, time_limit_s
 from basu.outcome import Outcome, Status
 from basu.routing.progress import Progress, advance
 from basu.routing.route_weather import weather_at
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
-    from basu.routing import Route
 
 AT_END_M = 1.0  # nearer to the end of the route than this, the run is over
 PARKED_M, PARKED_MPS = 5.0, 0.1  # at rest this near to the end, too
 DEVIATION_M = 30.0  # from the route; the CARLA leaderboard's InRouteTest has the same
-BLOCKED_S, BLOCKED_MPS = 180.0, 0.1  # at rest for so long; the leaderboard's ActorBlockedTest has the same
 WEATHER_TICKS = 20  # a second of simulated time, between two changes of weather along the route
-ALLOWANCE_S, SLOWEST_MPS, STOP_S = 120.0, 1.5, 60.0  # time for a route: a start, a walking pace, its service stops
-
-
-def time_limit_s(route: Route) -> float:
-    """Simulated time that a route may take."""
-    return ALLOWANCE_S + route.length_m / SLOWEST_MPS + STOP_S * len(route.stops)
 
 
 class RoutesManager(BaseManager):
