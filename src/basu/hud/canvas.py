@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
 from typing import TYPE_CHECKING, Any
 
 from basu.manual.devices import import_pygame
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator
 
     import numpy as np
     from numpy.typing import NDArray
@@ -30,7 +31,19 @@ class Canvas:
         pygame.display.set_caption(title)
         self._surface: Any = pygame.display.set_mode(size)
         self._fonts: dict[int, Any] = {}
+        self._zoom = 1  # drawn pixels a pixel of the window
         self.size = size
+
+    @contextlib.contextmanager
+    def smoothly(self) -> Iterator[None]:
+        """What is drawn in here has smooth edges: it is drawn twice as large, and made smaller at the end."""
+        window, self._zoom = self._surface, 2
+        self._surface = self._pygame.Surface((2 * self.size[0], 2 * self.size[1]))
+        try:
+            yield
+            window.blit(self._pygame.transform.smoothscale(self._surface, self.size), (0, 0))
+        finally:
+            self._surface, self._zoom = window, 1
 
     def fill(self, colour: Colour) -> None:
         """Paint everything over."""
@@ -54,10 +67,11 @@ class Canvas:
         self, at: tuple[float, float], text: str, colour: Colour = WHITE, *, size: int = TEXT, align: float = 0.0
     ) -> None:
         """A line of text; ``align`` of its width lies left of ``at``."""
+        size *= self._zoom
         if size not in self._fonts:
             self._fonts[size] = self._pygame.font.Font(None, size)
         line = self._fonts[size].render(text, True, colour)
-        self._surface.blit(line, (at[0] - align * line.get_width(), at[1]))
+        self._surface.blit(line, (self._zoom * at[0] - align * line.get_width(), self._zoom * at[1]))
 
     def rectangle(self, box: Box, colour: Colour, *, border: int = 0, rounded: int = 0) -> None:
         """Filled, or a frame of ``border`` pixels."""
@@ -65,16 +79,18 @@ class Canvas:
 
     def polygon(self, points: NDArray[np.float64], colour: Colour) -> None:
         """Filled; (N, 2) in pixels."""
-        self._pygame.draw.polygon(self._surface, colour, points.tolist())
+        self._pygame.draw.polygon(self._surface, colour, (self._zoom * points).tolist())
 
-    def line(self, points: NDArray[np.float64] | Sequence[Sequence[float]], colour: Colour, width: int = 1) -> None:
+    def line(self, points: NDArray[np.float64], colour: Colour, width: float = 1.0) -> None:
         """Through (N, 2) points."""
         if len(points) > 1:
-            self._pygame.draw.lines(self._surface, colour, False, [tuple(point) for point in points], width)
+            thick = max(1, round(self._zoom * width))
+            self._pygame.draw.lines(self._surface, colour, False, (self._zoom * points).tolist(), thick)
 
     def circle(self, at: tuple[float, float], radius: float, colour: Colour) -> None:
         """Filled."""
-        self._pygame.draw.circle(self._surface, colour, at, radius)
+        centre = self._zoom * at[0], self._zoom * at[1]
+        self._pygame.draw.circle(self._surface, colour, centre, self._zoom * radius)
 
     def show(self) -> None:
         """Bring what was drawn before eyes."""

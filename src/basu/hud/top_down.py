@@ -22,21 +22,23 @@ if TYPE_CHECKING:
     from basu.metrics.infraction import Evidence
 
 SPACING_M = 2.0  # between the points of a lane's edges
+PIECE = 20  # points of a lane that are drawn or left out together
+STRAIGHT_RAD, SAME_WIDTH_M = 0.02, 0.05  # changes that nobody sees
 ACROSS_M = 110.0  # of street from the top to the bottom of the window
 EGO_AT = 0.66  # of the window's height: more is seen ahead than behind
 TRAIL_M = 1.0  # between the points of the way driven
+ROUTE_M = 1.2  # the width of the plan as it is drawn
 LAND, ASPHALT, EDGE, ROUTE, TRAIL = (48, 62, 50), (82, 84, 90), (128, 130, 136), (70, 110, 190), (240, 150, 60)
 LIGHTS: dict[str, Colour] = {"Red": RED, "Yellow": YELLOW, "Green": GREEN}
 SIGNS: dict[ControlKind, Colour] = {ControlKind.STOP_SIGN: RED, ControlKind.YIELD_SIGN: YELLOW}
 
 
-class Ribbon(NamedTuple):
-    """A stretch of lane."""
+class Lanes(NamedTuple):
+    """All lanes in pieces, each as a band: there on the left edge, back on the right one. R pieces."""
 
-    left_m: NDArray[np.float64]  # (K, 2), CARLA frame
-    right_m: NDArray[np.float64]  # (K, 2)
-    middle_m: NDArray[np.float64]  # (2,)
-    reach_m: float  # no point is farther than this from the middle
+    outlines_m: tuple[NDArray[np.float64], ...]  # each (2 K, 2), CARLA frame
+    middles_m: NDArray[np.float64]  # (R, 2)
+    reaches_m: NDArray[np.float64]  # (R,) no point is farther than this from the middle
 
 
 class Body(NamedTuple):
@@ -74,9 +76,9 @@ class TopDown:
 
     def __init__(self, run: Run) -> None:
         self._run = run
-        self._ribbons = ribbons(run.carla_map)
+        self._lanes = lanes_of(run.carla_map)
         half = 0.5 * float(np.median(run.route.lane_width_m))
-        self._route_m = run.route.points_m[:, :2]
+        self._route_m, self._route_yaw_rad = run.route.points_m[:, :2], run.route.yaw_rad
         self._lights = [
             (control, run.world.get_traffic_light_from_opendrive_id(control.landmark_id))
             for control in run.route.controls
@@ -98,27 +100,39 @@ class TopDown:
         width, height = canvas.size
         view = View(ego.x_m, ego.y_m, ego.yaw_rad, height / ACROSS_M, ((left + width) / 2, EGO_AT * height))
         sight_m = math.hypot(width, height) / view.scale
-        canvas.fill(LAND)
-        near = [r for r in self._ribbons if math.dist(r.middle_m, (ego.x_m, ego.y_m)) < sight_m + r.reach_m]
-        for ribbon in near:
-            canvas.polygon(view.pixels(np.vstack([ribbon.left_m, ribbon.right_m[::-1]])), ASPHALT)
-        for ribbon in near:
-            canvas.line(view.pixels(ribbon.left_m), EDGE)
-            canvas.line(view.pixels(ribbon.right_m), EDGE)
-        self._draw_route(canvas, view, sight_m)
-        for body in bodies:
-            _draw_body(canvas, view, body)
-        _draw_body(canvas, view, Body(ego.x_m, ego.y_m, ego.yaw_rad, *self._size_m, walks=False), WHITE)
-        for mark in marks:
-            _draw_cross(canvas, view, mark.x_m, mark.y_m)
+        outlines = self._in_sight(canvas, view)
+        with canvas.smoothly():
+            canvas.fill(LAND)
+            for outline in outlines:
+                canvas.polygon(outline, ASPHALT)
+            for outline in outlines:
+                left_edge, right_edge = np.split(outline, 2)
+                canvas.line(left_edge, EDGE)
+                canvas.line(right_edge, EDGE)
+            self._draw_route(canvas, view, sight_m)
+            for body in bodies:
+                _draw_body(canvas, view, body)
+            _draw_body(canvas, view, Body(ego.x_m, ego.y_m, ego.yaw_rad, *self._size_m, walks=False), WHITE)
+            for mark in marks:
+                _draw_cross(canvas, view, mark.x_m, mark.y_m)
+
+    def _in_sight(self, canvas: Canvas, view: View) -> list[NDArray[np.float64]]:
+        """The outlines of those pieces of lanes that may be in the window, in its pixels."""
+        middles, reaches = view.pixels(self._lanes.middles_m), self._lanes.reaches_m * view.scale
+        off = np.abs(middles - np.array(canvas.size) / 2) - np.array(canvas.size) / 2
+        chosen = [self._lanes.outlines_m[i] for i in np.flatnonzero(off.max(axis=1) < reaches)]
+        if not chosen:
+            return []
+        ends = np.cumsum([len(outline) for outline in chosen])[:-1]
+        return np.split(view.pixels(np.concatenate(chosen)), ends)
 
     def _draw_route(self, canvas: Canvas, view: View, sight_m: float) -> None:
         """The plan, the way driven, and what is to be heeded on the way."""
         away_m = np.hypot(self._route_m[:, 0] - view.x_m, self._route_m[:, 1] - view.y_m)
         for inside, group in groupby(range(len(away_m)), key=lambda i: bool(away_m[i] < sight_m)):
-            if inside:
-                indices = list(group)
-                canvas.line(view.pixels(self._route_m[indices[0] : indices[-1] + 1]), ROUTE, 5)
+            if inside and len(indices := list(group)) > 1:
+                stretch = slice(indices[0], indices[-1] + 1)
+                canvas.polygon(view.pixels(_band(self._route_m[stretch], self._route_yaw_rad[stretch], ROUTE_M)), ROUTE)
         if len(self._trail) > 1:
             canvas.line(view.pixels(np.array(self._trail[-int(sight_m / TRAIL_M) :])), TRAIL, 2)
         shows = [(control, LIGHTS.get(str(actor.get_state()), GREY)) for control, actor in self._lights if actor]
@@ -134,17 +148,23 @@ class TopDown:
             canvas.text((x + 11, y - 6), stop.name)
 
 
-def ribbons(carla_map: carla.Map) -> tuple[Ribbon, ...]:
-    """All driving lanes of a map as ribbons, junctions first, so that roads lie over them."""
+def lanes_of(carla_map: carla.Map) -> Lanes:
+    """All driving lanes of a map, junctions first, so that roads lie over them."""
     by_lane: dict[tuple[int, int, int], list[carla.Waypoint]] = {}
     for waypoint in carla_map.generate_waypoints(SPACING_M):
         by_lane.setdefault((waypoint.road_id, waypoint.section_id, waypoint.lane_id), []).append(waypoint)
     lanes = [sorted(lane, key=lambda waypoint: float(waypoint.s)) for lane in by_lane.values() if len(lane) > 1]
-    return tuple(_ribbon(lane) for lane in sorted(lanes, key=lambda lane: not lane[0].is_junction))
+    lanes.sort(key=lambda lane: not lane[0].is_junction)
+    outlines_m = tuple(outline for lane in lanes for outline in _outlines(lane))
+    middles_m = np.array([outline.mean(axis=0) for outline in outlines_m]).reshape(-1, 2)
+    reaches_m = np.array(
+        [np.hypot(*(outline - middle).T).max() for outline, middle in zip(outlines_m, middles_m, strict=True)]
+    )
+    return Lanes(outlines_m, middles_m, reaches_m)
 
 
-def _ribbon(lane: Sequence[carla.Waypoint]) -> Ribbon:
-    """One lane's edges; the far end, which samples do not reach, is filled up by their direction."""
+def _outlines(lane: Sequence[carla.Waypoint]) -> list[NDArray[np.float64]]:
+    """One lane in pieces; its far end, which samples do not reach, is filled up by their direction."""
     pose = np.array(
         [
             (place.location.x, place.location.y, math.radians(place.rotation.yaw), waypoint.lane_width)
@@ -156,10 +176,26 @@ def _ribbon(lane: Sequence[carla.Waypoint]) -> Ribbon:
     end = pose[-1].copy()
     end[:2] += ahead * SPACING_M * np.array([math.cos(end[2]), math.sin(end[2])])
     pose = np.vstack([pose, end])
-    right = np.column_stack([-np.sin(pose[:, 2]), np.cos(pose[:, 2])]) * pose[:, 3:] / 2
-    middle = pose[:, :2].mean(axis=0)
-    reach_m = float(np.hypot(*(pose[:, :2] - middle).T).max()) + float(pose[:, 3].max())
-    return Ribbon(pose[:, :2] - right, pose[:, :2] + right, middle, reach_m)
+    pieces = [pose[first : first + PIECE + 1] for first in range(0, len(pose) - 1, PIECE)]
+    return [_band(piece[:, :2], piece[:, 2], piece[:, 3]) for piece in map(_without_needless, pieces)]
+
+
+def _without_needless(pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Where a lane goes straight on and keeps its width, its ends are enough. (K, 4) to (L, 4)."""
+    kept = [0]
+    for i in range(1, len(pose) - 1):
+        turned_rad = abs(math.remainder(pose[i + 1, 2] - pose[kept[-1], 2], math.tau))
+        if turned_rad > STRAIGHT_RAD or abs(pose[i + 1, 3] - pose[kept[-1], 3]) > SAME_WIDTH_M:
+            kept.append(i)
+    return pose[[*kept, len(pose) - 1]]
+
+
+def _band(
+    middle_m: NDArray[np.float64], yaw_rad: NDArray[np.float64], width_m: float | NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The outline of a band around a line of N points with headings: (2 N, 2), there on the left, back on the right."""
+    across = np.column_stack([-np.sin(yaw_rad), np.cos(yaw_rad)]) * (np.asarray(width_m) / 2).reshape(-1, 1)
+    return np.vstack([middle_m - across, (middle_m + across)[::-1]])
 
 
 def _draw_body(canvas: Canvas, view: View, body: Body, colour: Colour | None = None) -> None:
@@ -181,4 +217,4 @@ def _draw_cross(canvas: Canvas, view: View, x_m: float, y_m: float) -> None:
     """Where something went wrong."""
     ((x, y),) = view.pixels(np.array([[x_m, y_m]])).tolist()
     for slope in (-1, 1):
-        canvas.line([(x - 6, y - 6 * slope), (x + 6, y + 6 * slope)], RED, 3)
+        canvas.line(np.array([[x - 6, y - 6 * slope], [x + 6, y + 6 * slope]]), RED, 3)
