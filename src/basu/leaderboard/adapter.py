@@ -11,6 +11,7 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.leaderboard.feeds import Feeds
 from basu.leaderboard.foreign import Dialect, ForeignAgent
 from basu.leaderboard.global_plan import global_plan
+from basu.leaderboard.gps import Gps
 from basu.leaderboard.measurements import as_array
 from basu.leaderboard.sensor_sets import SPEEDOMETER, translated
 
@@ -28,6 +29,7 @@ class LeaderboardAgent(AutonomousAgent):
     tells_sensors_late = True  # an agent may say what it wants to see only once it is set up, in its world
 
     _agent: Any = None
+    _gps: Gps
     _feeds: Feeds | None = None
     _pseudo: Mapping[str, str]
     _opendrive: str
@@ -39,7 +41,8 @@ class LeaderboardAgent(AutonomousAgent):
     def setup(self) -> None:
         """Make the agent, and give it its plan and its file, in the order that it is used to."""
         assert self.route is not None  # a run of BASU's has one
-        plan = global_plan(self.route, self.map)
+        self._gps = Gps(self.map)
+        plan = global_plan(self.route, self._gps)
         self._feeds = Feeds(self.client, self.world, self.vehicle, plan.world)
         agent_class, dialect = self.foreign
         if dialect is Dialect.LEADERBOARD_2:
@@ -62,7 +65,7 @@ class LeaderboardAgent(AutonomousAgent):
         assert self._feeds is not None  # setup came first
         snapshot = self.world.get_snapshot()
         timestamp_s = self._feeds.tick(snapshot.timestamp)
-        input_data = {name: (frame, as_array(measured)) for name, (frame, measured) in sensor_data.items()}
+        input_data = {name: (frame, self._measured(measured)) for name, (frame, measured) in sensor_data.items()}
         input_data |= {name: (snapshot.frame, self._answer(kind)) for name, kind in self._pseudo.items()}
         control = self._agent.run_step(input_data, timestamp_s)
         if isinstance(control, carla.VehicleControl):
@@ -78,6 +81,11 @@ class LeaderboardAgent(AutonomousAgent):
         finally:
             if self._feeds is not None:
                 self._feeds.close()
+
+    def _measured(self, measured: Any) -> Any:  # noqa: ANN401 - by its sensor
+        """A measurement as the leaderboard gives it, positions in its degrees."""
+        array = as_array(measured)
+        return self._gps.measured(array) if isinstance(measured, carla.GnssMeasurement) else array
 
     def _answer(self, kind: str) -> dict[str, Any]:
         """What a sensor of the leaderboard's own measures: the speed ahead in m/s, or the map's text."""

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import carla
     from numpy.typing import NDArray
 
+    from basu.leaderboard.gps import Gps
     from basu.routing import Route
 
 TURN_RAD = math.radians(35.0)  # less is straight on: so CARLA's global_route_planner.py
@@ -27,15 +28,15 @@ class GlobalPlan(NamedTuple):
     world: list[tuple[carla.Transform, Any]]
 
 
-def global_plan(route: Route, carla_map: carla.Map) -> GlobalPlan:
+def global_plan(route: Route, gps: Gps) -> GlobalPlan:
     """Tell a route in the leaderboard's terms; the options are CARLA's own where the agent has loaded those."""
     theirs: Any = getattr(sys.modules.get(THEIR_OPTIONS), "RoadOption", RoadOption)
     options = [theirs[RoadOption(number).name] for number in road_options(route.yaw_rad, route.is_junction)]
     plan = GlobalPlan([], [])
     for waypoint, option in zip(route.waypoints, options, strict=True):
         pose = waypoint.transform
-        place = carla_map.transform_to_geolocation(pose.location)
-        plan.gps.append(({"lat": place.latitude, "lon": place.longitude, "z": pose.location.z}, option))
+        place = gps.place(pose.location)
+        plan.gps.append(({"lat": place.latitude, "lon": place.longitude, "z": place.altitude_m}, option))
         plan.world.append((pose, option))
     return plan
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from basu.leaderboard.global_plan import global_plan, road_options
+from basu.leaderboard.gps import Place
 from basu.leaderboard.provided.road_option import RoadOption
 
 FOLLOW = RoadOption.LANEFOLLOW
@@ -54,9 +55,11 @@ def test_a_plan_may_end_in_a_junction() -> None:
     assert crossing(-90.0, after=0) == [FOLLOW] * 3 + [RoadOption.LEFT] * 4
 
 
-class Map:
-    def transform_to_geolocation(self, at: carla.Location) -> Any:
-        return SimpleNamespace(latitude=40.0 - at.y / 1e5, longitude=-74.0 + at.x / 1e5, altitude=at.z)
+class Degrees:
+    """Of a flat earth."""
+
+    def place(self, at: carla.Location) -> Place:
+        return Place(40.0 - at.y / 1e5, -74.0 + at.x / 1e5, at.z)
 
 
 def route(count: int = 3) -> Any:
@@ -67,7 +70,7 @@ def route(count: int = 3) -> Any:
 
 
 def test_both_forms_say_the_same_place() -> None:
-    plan = global_plan(route(), Map())
+    plan = global_plan(route(), Degrees())
     assert [pose.location.x for pose, _ in plan.world] == [0.0, 1.0, 2.0]
     assert plan.gps[2][0] == {"lat": pytest.approx(39.99998), "lon": pytest.approx(-73.99998), "z": 0.5}
     assert {option for _, option in (*plan.gps, *plan.world)} == {RoadOption.LANEFOLLOW}
@@ -76,4 +79,4 @@ def test_both_forms_say_the_same_place() -> None:
 def test_options_are_carlas_own_where_an_agent_has_loaded_them(monkeypatch: pytest.MonkeyPatch) -> None:
     theirs = enum.IntEnum("RoadOption", {option.name: option.value for option in RoadOption})
     monkeypatch.setitem(sys.modules, "agents.navigation.local_planner", SimpleNamespace(RoadOption=theirs))
-    assert isinstance(global_plan(route(), Map()).world[0][1], theirs)
+    assert isinstance(global_plan(route(), Degrees()).world[0][1], theirs)

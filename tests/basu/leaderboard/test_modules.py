@@ -1,4 +1,4 @@
-"""Claims about standing in for packages: under their names, after everything installed, with a sentence for the rest."""
+"""Claims about standing in for packages: by their names, behind all that is installed, with a sentence for the rest."""
 
 import importlib
 import sys

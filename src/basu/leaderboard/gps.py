@@ -1,0 +1,84 @@
+"""Places in degrees as the leaderboard has them, for the plan and for what GNSS sensors measured.
+
+The leaderboard reckons its plan with a plain Mercator projection, as CARLA's GNSS did until 0.9.15: latitude falls as
+y grows. CARLA 0.9.16 reckons otherwise and lets latitude grow with y, so that there plan, sensor and compass
+contradict each other. Agents were written for the agreement: they get both in the leaderboard's degrees.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+import carla
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+EARTH_RADIUS_M = 6378137.0  # the equator's, as in CARLA
+NOWHERE = (42.0, 2.0)  # the leaderboard's, where a map does not say where it lies
+REFERENCE = re.compile(r"\+(lat_0|lon_0)=(-?[0-9.]+(?:[eE][-+]?\d+)?)")
+STEPS = 3  # of Newton's method, for a function that is all but a straight line
+
+
+class Place(NamedTuple):
+    """Degrees, and m above the map's zero."""
+
+    latitude: float
+    longitude: float
+    altitude_m: float
+
+
+class Gps:
+    """The leaderboard's degrees on one map."""
+
+    def __init__(self, carla_map: carla.Map) -> None:
+        self._map = carla_map
+        self._latitude, self._longitude = reference(carla_map.to_opendrive())
+        self._scale = math.cos(math.radians(self._latitude))
+        self._north_m = _mercator_m(self._latitude, self._scale)
+        self._last = carla.Location()
+
+    def place(self, at: carla.Location) -> Place:
+        """Where a location lies; Mercator's projection, scaled at the map's reference."""
+        east_rad = at.x / (EARTH_RADIUS_M * self._scale)
+        north_rad = (self._north_m - at.y) / (EARTH_RADIUS_M * self._scale)
+        latitude = math.degrees(2.0 * math.atan(math.exp(north_rad)) - math.pi / 2.0)
+        return Place(latitude, self._longitude + math.degrees(east_rad), at.z)
+
+    def measured(self, fix: NDArray[np.float64]) -> NDArray[np.float64]:
+        """What a GNSS sensor measured, (3,) latitude and longitude in CARLA's degrees, altitude in m; in these degrees."""
+        place = self.place(self._location(float(fix[0]), float(fix[1])))
+        return np.array([place.latitude, place.longitude, fix[2]], np.float64)
+
+    def _location(self, latitude: float, longitude: float) -> carla.Location:
+        """Where CARLA's degrees are: its own function turned round by Newton's method from the last place asked for."""
+        at = self._last
+        for _ in range(STEPS):
+            here, east, south = (
+                self._degrees(carla.Location(at.x + x_m, at.y + y_m)) for x_m, y_m in ((0, 0), (1, 0), (0, 1))
+            )
+            slope = np.column_stack([east - here, south - here])
+            x_m, y_m = np.linalg.solve(slope, np.array([latitude, longitude]) - here)
+            at = carla.Location(at.x + x_m, at.y + y_m)
+        self._last = at
+        return at
+
+    def _degrees(self, at: carla.Location) -> NDArray[np.float64]:
+        """CARLA's latitude and longitude of a location."""
+        found = self._map.transform_to_geolocation(at)
+        return np.array([found.latitude, found.longitude])
+
+
+def reference(opendrive: str) -> tuple[float, float]:
+    """Latitude and longitude of a map's origin in degrees, from its geoReference."""
+    found = re.search(r"<geoReference>(.*?)</geoReference>", opendrive, re.DOTALL)
+    said = dict(REFERENCE.findall(found.group(1))) if found else {}
+    return float(said.get("lat_0", NOWHERE[0])), float(said.get("lon_0", NOWHERE[1]))
+
+
+def _mercator_m(latitude: float, scale: float) -> float:
+    """How far north of the equator a latitude lies on the map."""
+    return scale * EARTH_RADIUS_M * math.log(math.tan(math.pi / 4.0 + math.radians(latitude) / 2.0))
