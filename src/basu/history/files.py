@@ -78,8 +78,13 @@ def facts_to_json(facts: Facts) -> str:
 def facts_from_json(text: str) -> Facts:
     """Read what :func:`facts_to_json` wrote."""
     document = json.loads(text)
-    if document["schema_version"] != FACTS_SCHEMA_VERSION:
-        raise ValueError(f"{FACTS_FILE} has schema version {document['schema_version']}, not {FACTS_SCHEMA_VERSION}")
+    version = document["schema_version"]
+    if version != FACTS_SCHEMA_VERSION:
+        lacks = ", which lacks what the metrics ask for (lanes, lights, who drives)" if version == 1 else ""
+        raise ValueError(
+            f"{FACTS_FILE} has schema version {version}{lacks}, and this one reads {FACTS_SCHEMA_VERSION}; score it "
+            "with the version of basu that its config.json names, or drive it again by the command there"
+        )
     return Facts(
         step_s=document["step_s"],
         vehicle=Vehicle(**document["vehicle"]),

@@ -96,11 +96,18 @@ def test_a_record_cut_short_is_refused_in_a_sentence(tmp_path: Path) -> None:
         read_history(tmp_path)
 
 
-def test_facts_of_another_version_are_refused_in_a_sentence(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("version", "sentence"),
+    [
+        (1, "schema version 1, which lacks what the metrics ask for .*drive it again"),
+        (99, "schema version 99, and this"),
+    ],
+)
+def test_facts_of_another_version_are_refused_in_a_sentence(tmp_path: Path, version: int, sentence: str) -> None:
     write_history(tmp_path, eventful())
     text = (tmp_path / FACTS_FILE).read_text()
-    (tmp_path / FACTS_FILE).write_text(text.replace('"schema_version": 2', '"schema_version": 99'))
-    with pytest.raises(UserError, match="schema version 99"):
+    (tmp_path / FACTS_FILE).write_text(text.replace('"schema_version": 2', f'"schema_version": {version}'))
+    with pytest.raises(UserError, match=sentence):
         read_history(tmp_path)
 
 

@@ -5,7 +5,7 @@ import pytest
 from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.score import Scoring, driving_score, infraction_score, infractions, score
-from fakes.drives import at, driven, hit, stop_sign, straight_route
+from fakes.drives import at, driven, hit, stop_sign, straight_route, traffic_light
 
 Counts = dict[Infraction, int]
 
@@ -29,10 +29,51 @@ def test_the_human_of_table_5_1_scores_what_is_printed_when_rounded_as_there() -
     assert driving_score(rounded, 0.98, Scoring()) == pytest.approx(0.604)
 
 
-def test_the_behavioral_of_table_5_1_fits_no_one_collision_and_one_speeding() -> None:
-    # the table prints 0.13 where equation 5.1 gives 0.52 for one static collision and one speeding; its driving
-    # score of 0.216 follows from the 0.13, so equation 5.5 is checked with it and the 0.13 stays unexplained
+COLLISIONS = (Infraction.COLLISION_PEDESTRIAN, Infraction.COLLISION_VEHICLE, Infraction.COLLISION_STATIC)
+
+
+def test_the_behavioral_of_table_5_1_has_its_driving_score_from_the_printed_0_13() -> None:
     assert driving_score(0.13, 0.56, Scoring()) == pytest.approx(0.216)
+
+
+@pytest.mark.parametrize(("kind", "infraction"), [*zip(COLLISIONS, (0.40, 0.48, 0.52), strict=True)])
+def test_no_one_collision_and_one_speeding_give_the_behaviorals_0_13(kind: Infraction, infraction: float) -> None:
+    found = infraction_score({kind: 1, Infraction.SPEEDING: 1}, Scoring())
+    assert found == pytest.approx(infraction)
+    assert round(found, 2) != 0.13
+
+
+def test_two_slips_would_give_the_behaviorals_0_13() -> None:
+    # neither can be told from the table: the complement of the speeding factor taken for the factor itself, or two
+    # pedestrians that the table does not count
+    assert DEFAULT_PENALTIES[Infraction.COLLISION_STATIC] * (
+        1 - DEFAULT_PENALTIES[Infraction.SPEEDING]
+    ) == pytest.approx(0.13)
+    counts = {Infraction.COLLISION_PEDESTRIAN: 2, Infraction.COLLISION_STATIC: 1, Infraction.SPEEDING: 1}
+    assert infraction_score(counts, Scoring()) == pytest.approx(0.13)
+
+
+def test_as_the_equations_have_it_the_behavioral_of_table_5_1_scores_0_528() -> None:
+    infraction = infraction_score({Infraction.COLLISION_STATIC: 1, Infraction.SPEEDING: 1}, Scoring())
+    assert driving_score(infraction, 0.56, Scoring()) == pytest.approx(0.528)
+
+
+def test_a_red_light_that_was_run_costs_what_the_leaderboard_takes() -> None:
+    history = driven(at(10.0, 20.1), route=straight_route(controls=(traffic_light(50.0),)))
+    history.frames["route_light"] = 0
+    assert score(history, Scoring()).infraction == pytest.approx(0.7)
+
+
+def test_the_tolerance_for_speeding_is_adjustable() -> None:
+    history = driven(at(12.5, 16.0))
+    assert score(history, Scoring()).infraction == pytest.approx(0.8)
+    assert score(history, Scoring(speeding_tolerance_mps=2.0)).infraction == 1.0
+
+
+@pytest.mark.parametrize("name", ["speeding_tolerance_mps", "route_deviation_m"])
+def test_a_negative_tolerance_is_refused(name: str) -> None:
+    with pytest.raises(UserError, match=f"{name} is -1.0; it must be a number that is not negative"):
+        Scoring(**{name: -1.0})
 
 
 def test_weights_that_do_not_sum_to_one_are_refused() -> None:
