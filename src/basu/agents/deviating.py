@@ -62,13 +62,19 @@ class DeviatingAgent(BehavioralAgent):
         ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
         self._advance(ego, self.driver)
         self._before_mps = ego.speed_mps
+        return self._spoilt(control, ego, self.driver, self.facts)
+
+    def _spoilt(
+        self, control: carla.VehicleControl, ego: Ego, driver: BehavioralDriver, facts: VehicleFacts
+    ) -> carla.VehicleControl:
+        """What becomes of a good driver's control."""
         if self.phase is Phase.STAYING:
             return carla.VehicleControl(brake=1.0, hand_brake=True)
         if self.phase is not Phase.DRIVING:
-            control.throttle, control.brake = self._pedals(ego, self.driver)
+            control.throttle, control.brake = self._pedals(ego, driver)
         if self.phase is Phase.LEAVING and self.deviation is not None:
-            angle_rad = aim_rad(ego, self.deviation.thing, self.facts.body.wheelbase_m)
-            control.steer = self.facts.steering.command(angle_rad, ego.speed_mps)
+            angle_rad = aim_rad(ego, self.deviation.thing, facts.body.wheelbase_m)
+            control.steer = facts.steering.command(angle_rad, ego.speed_mps)
         return control
 
     def config(self) -> dict[str, str]:

@@ -16,17 +16,9 @@ from basu.history import History
 from basu.history.files import read_history
 from servers import RunningServer
 
-# Myrtle Avenue from end to end: 300 m straight, one lane of 2.9 m each way, no junction
-STREET = [(228.3, 115.0), (300.0, 118.9), (420.0, 125.5), (519.0, 131.0)]
-# through a roundabout and on: the beginning of the short route
-ROUNDABOUT = [
-    (524.816, -17.225),
-    (496.299, -18.752),
-    (470.526, -25.861),
-    (448.135, -39.865),
-    (448.541, -60.042),
-    (473.1, -82.0),
-]
+# 140 m of a straight street, one lane of 2.9 m each way, no junction
+STREET = [(303.2, 119.1), (363.1, 122.4), (443.0, 126.8)]
+PARKED_S_M = 60
 AGENT = """
 import carla
 from basu.agents.behavioral import BehavioralAgent

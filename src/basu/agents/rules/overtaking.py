@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from basu.agents.rules.standing import Block
     from basu.agents.scene import Body, Ego, Other
 
-ALONG_M = 0.5  # one is all the way aside so much before the bumpers are level, and until so much after
+STRAIGHT_S = 1.5  # one is all the way aside so long before the bumpers are level, that nobody sees a near miss in it …
+ALONG_M = 0.5  # … or, where that is not to be had, so much before; and until so much after
 EDGE_M = 0.2  # kept to the left edge of the road
 LEAST_BESIDE_M = 0.45  # what is enough beside a block where the road is narrow
 LINE_M = 0.1  # kept to the middle line where one need not cross it
@@ -62,6 +63,7 @@ class Overtaking:
         self._standing = Standing(body)
         self._need: Need | None = None
         self._planned: Detour | None = None  # the last way round that was thought of
+        self._latest_s_m = 0.0  # by where one has to be all the way aside
         self._not_before_s = 0.0
         self._free_since_s: float | None = None
 
@@ -95,7 +97,8 @@ class Overtaking:
         if block.to_s_m - block.from_s_m > LONGEST_BLOCK_M:
             return None
         begin_m = min(0.0, place.lateral_m)
-        aside_s_m = block.from_s_m - body.front_m - ALONG_M
+        latest_s_m = block.from_s_m - body.front_m - ALONG_M
+        aside_s_m = latest_s_m - STRAIGHT_S * passing.top_mps
         until_s_m = block.to_s_m + body.rear_m + ALONG_M
         if road.meets_junction(aside_s_m, until_s_m):
             return None
@@ -107,9 +110,10 @@ class Overtaking:
         usual_m = swing_m(offset_m, passing.top_mps, self._manner.lateral_accel_mps2)
         from_s_m = max(aside_s_m - usual_m, place.s_m)
         to_s_m = min(until_s_m + usual_m, road.next_line_s_m(until_s_m) - body.front_m - ALONG_M)
-        shortest_m = tightest_swing_m(offset_m)
-        if aside_s_m - from_s_m < tightest_swing_m(offset_m - begin_m) or to_s_m - until_s_m < shortest_m:
+        aside_s_m = max(aside_s_m, from_s_m + tightest_swing_m(offset_m - begin_m))
+        if aside_s_m > latest_s_m or to_s_m - until_s_m < tightest_swing_m(offset_m):
             return None
+        self._latest_s_m = latest_s_m
         extent = Extent(from_s_m, aside_s_m, until_s_m, to_s_m)
         if self._is_forbidden(extent):
             return None
@@ -171,7 +175,7 @@ class Overtaking:
         """Whether one could still stop and set out again from there later."""
         stop_m = slowing_distance_m(max(ego.speed_mps, 0.0), 0.0, 0.0, FIRM)
         left_m = detour.offset_m - min(0.0, place.lateral_m)
-        return place.s_m + stop_m + tightest_swing_m(left_m) <= detour.extent.aside_s_m
+        return place.s_m + stop_m + tightest_swing_m(left_m) <= self._latest_s_m
 
     def _drives_beside(self, place: Place, others: Sequence[Other], need: Need) -> bool:
         """Whether somebody who was to be passed has begun to drive, and is beside us: it is let go first."""

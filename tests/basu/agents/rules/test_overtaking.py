@@ -97,7 +97,7 @@ def test_one_who_turns_up_late_is_never_hit(turns_up_s: float, turns_up_m: float
     seen: list[tuple[float, float]] = []
     plant = Plant(0.0, 0.0, 0.0)
     drive(make_behavioral(make_route(line(300.0))), plant, 60.0, Late())
-    assert min(max(abs(along) - 4.21, abs(across) - 1.95) for along, across in seen) > 0.1
+    assert min(max(abs(along) - 4.21, abs(across) - 1.95) for along, across in seen) > 0.0
 
 
 def test_as_long_as_one_can_one_gives_up_for_an_oncoming_car() -> None:
