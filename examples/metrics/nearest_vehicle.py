@@ -16,11 +16,12 @@ class NearestVehicle(BasicMetric):
 
     def _create_metric(self, town_map, log, criteria):
         ego_id = log.get_ego_vehicle_id()
-        ego = log.get_actor_arrays(ego_id)
-        _, axes = plt.subplots(figsize=(8.0, 3.6), layout="constrained")
         others = [other for other in log.get_actor_ids_with_type_id("vehicle.*") if other != ego_id]
         if not others:
             print("there is no other vehicle in this recording")
+            return
+        ego = log.get_actor_arrays(ego_id)
+        _, axes = plt.subplots(figsize=(8.0, 3.6), layout="constrained")
         for other in others:
             theirs = log.get_actor_arrays(other)
             _, mine, its = np.intersect1d(ego.frame, theirs.frame, return_indices=True)
@@ -36,6 +37,5 @@ class NearestVehicle(BasicMetric):
             )
             axes.plot(ego.t_s[mine], distance_m, label=name)
         axes.set(xlabel="simulated time [s]", ylabel="distance to ego [m]", title="Other vehicles", ylim=(0, None))
-        if others:
-            axes.legend()
+        axes.legend()
         plt.show()

@@ -13,6 +13,7 @@ from basu.recording.layouts import Kind
 from basu.recording.places import locations_m
 from basu.viewer import moment, scenery
 from basu.viewer.frames import Pose
+from basu.viewer.layout import Parts
 from basu.viewer.stream import close_stream, open_stream
 
 if TYPE_CHECKING:
@@ -41,12 +42,13 @@ def show_log(
     hero = next(iter(log.ids_of(role_name="hero")), actors[0])
     places = locations_m(log)
     runs = {actor: actor_arrays(log, places, actor) for actor in dict.fromkeys([hero, *actors])}
-    stream = open_stream(rrd, log.path.stem, screen=screen)
+    run = runs[hero]
+    parts = Parts(_pose(run, 0), cameras=False, judged=False)
+    stream = open_stream(rrd, log.path.stem, parts, screen=screen)
     if carla_map is not None:
         scenery.log_map(stream.recording, carla_map)
     shower = moment.Shower(stream.recording)
     others = _others(log, {actor: run for actor, run in runs.items() if actor != hero})
-    run = runs[hero]
     for index, frame in enumerate(run.frame):
         shower.tick(float(run.t_s[index]), _pose(run, index), _driving(run, index), others.get(int(frame), ()))
         on_tick(1)

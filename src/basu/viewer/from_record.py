@@ -12,6 +12,7 @@ from basu.metrics.so_far import SoFar
 from basu.recording.sources import MAP_FILE, read_map
 from basu.viewer import moment, scenery
 from basu.viewer.frames import Pose
+from basu.viewer.layout import Parts
 from basu.viewer.stream import close_stream, open_stream
 
 if TYPE_CHECKING:
@@ -44,7 +45,8 @@ def show_run(
     kept = folder / MAP_FILE
     chosen = map_file or (kept if kept.is_file() else None)
     town = None if chosen is None else read_map(chosen, history.facts.route.town)
-    stream = open_stream(rrd, folder.name, screen=screen)
+    parts = Parts(_pose(history.frames[0]), cameras=False, judged=True)
+    stream = open_stream(rrd, folder.name, parts, screen=screen)
     recording = stream.recording
     if town is not None:
         scenery.log_map(recording, town)

@@ -9,7 +9,7 @@ import numpy as np
 import rerun as rr
 
 from basu.viewer.frames import Pose, about_the_vertical, shown, turned
-from basu.viewer.stream import TIMELINE
+from basu.viewer.timeline import TIMELINE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

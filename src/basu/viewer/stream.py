@@ -14,8 +14,9 @@ from basu.errors import UserError
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from basu.viewer.layout import Parts
+
 APPLICATION = "basu"
-TIMELINE = "simulated_time"  # s since the run's first tick
 FLUSH_LIMIT_S = 20.0  # for a viewer that does not take what is sent any more
 MISSING = "--viewer needs Rerun: install it with `pip install 'linden[viewer]'`, or run without --viewer"
 
@@ -39,10 +40,10 @@ def require() -> None:
         raise UserError(MISSING) from None
 
 
-def open_stream(file: Path, name: str, *, screen: bool) -> Stream:
+def open_stream(file: Path, name: str, parts: Parts, *, screen: bool) -> Stream:
     """Begin a recording called ``name`` in ``file``; ``screen`` says whether a viewer may be opened.
 
-    Only simulated time is a timeline, so that one seed gives one recording.
+    Simulated time is the only timeline.
 
     Raises:
         UserError: Rerun is missing, or the file cannot be begun.
@@ -50,7 +51,7 @@ def open_stream(file: Path, name: str, *, screen: bool) -> Stream:
     require()
     import rerun as rr  # noqa: PLC0415 - an extra
 
-    from basu.viewer.layout import layout  # noqa: PLC0415 - imports Rerun
+    from basu.viewer.layout import layout  # noqa: PLC0415 - likewise
 
     try:
         file.open("wb").close()
@@ -65,7 +66,7 @@ def open_stream(file: Path, name: str, *, screen: bool) -> Stream:
         said = "in a window of Rerun's, and kept"
     else:
         said = "kept, as there is no screen here to show it on"
-    recording.set_sinks(*sinks, default_blueprint=layout())
+    recording.set_sinks(*sinks, default_blueprint=layout(parts))
     return Stream(recording, said)
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.history import Vehicle
-from basu.managers.base_manager import BaseManager
+from basu.managers.base_manager import BaseManager, ego_in
 from basu.managers.neighbours import Neighbours
 from basu.viewer import moment, scenery, senses
 from basu.viewer.frames import Pose
+from basu.viewer.layout import Parts
 from basu.viewer.stream import Stream, close_stream, has_screen, open_stream
 
 if TYPE_CHECKING:
@@ -36,9 +37,11 @@ class ViewerManager(BaseManager):
             UserError: Rerun is missing, or its file cannot be written.
         """
         self._run = run
-        self._stream = open_stream(
-            run.folder / RRD_FILE, run.folder.name.strip(".").removesuffix(".part"), screen=has_screen()
-        )
+        start = Pose(*ego_in(run.world.get_snapshot().find(run.vehicle.id))[:6])
+        cameras = any(".camera." in type_id for type_id in self._live.sensors.types.values())
+        name = run.folder.name.strip(".").removesuffix(".part")
+        parts = Parts(start, cameras=cameras, judged=True)
+        self._stream = open_stream(run.folder / RRD_FILE, name, parts, screen=has_screen())
         recording = self._stream.recording
         self._shower = moment.Shower(recording)
         self._neighbours = Neighbours(run.world, run.vehicle.id)
