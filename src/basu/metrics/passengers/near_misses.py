@@ -95,9 +95,10 @@ def _times_to_collision_s(
     a, b, turn_radps = own[tick[rows]], others[rows].copy(), turning_radps[tick[rows]]
     mine, theirs = velocity_mps[rows], theirs_mps[rows]
     for leg in range(round(SEEN_S / LEG_S)):
-        touch_s = time_to_touch_s(a, b, theirs - mine)
-        fresh = (touch_s <= LEG_S) & np.isinf(found[rows])
-        found[rows[fresh]] = leg * LEG_S + touch_s[fresh]
+        close = np.flatnonzero(np.isinf(found[rows]) & _come_close(a, b, theirs - mine))
+        touch_s = time_to_touch_s(a[close], b[close], (theirs - mine)[close])
+        fresh = touch_s <= LEG_S
+        found[rows[close[fresh]]] = leg * LEG_S + touch_s[fresh]
         a, b = a.copy(), b.copy()
         a[:, :2] += mine * LEG_S
         b[:, :2] += theirs * LEG_S
@@ -107,22 +108,33 @@ def _times_to_collision_s(
     return found
 
 
+def _come_close(a: NDArray[np.float64], b: NDArray[np.float64], approach_mps: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(N,) whether the circles round each pair's boxes meet within a leg: who does not need no closer look."""
+    gap_m = b[:, :2] - a[:, :2]
+    speed2 = np.maximum(np.einsum("nd,nd->n", approach_mps, approach_mps), 1e-12)
+    nearest_s = np.clip(-np.einsum("nd,nd->n", gap_m, approach_mps) / speed2, 0.0, LEG_S)
+    least_m = np.hypot(*(gap_m + approach_mps * nearest_s[:, None]).T)
+    return np.asarray(least_m <= np.hypot(*a[:, 3:].T) + np.hypot(*b[:, 3:].T))
+
+
 def _post_encroachment_s(
     history: History, own: NDArray[np.float64], others: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """(M,) for each row of others the least time to the vehicle's being where they are, and the later tick."""
     tick, step_s = history.others["tick"].astype(np.int64), history.facts.step_s
     moving = np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > STILL_MPS
-    radius_m = np.hypot(*others[:, 3:].T) + (np.hypot(*own[0, 3:]) if len(own) else 0.0)
+    radius_m = np.hypot(*others[:, 3:].T) + np.hypot(*own[0, 3:])
+    reach_m = radius_m + SEEN_S * float(history.speed_mps().max())
+    left = np.flatnonzero(moving & (np.hypot(*(others[:, :2] - own[tick, :2]).T) <= reach_m))
     found, later = np.full(len(others), np.inf), np.full(len(others), -1, dtype=np.int64)
     for gap in range(1, round(SEEN_S / step_s) + 1):
         for lag in (gap, -gap):
-            mine = tick + lag
-            rows = np.flatnonzero(moving & (mine >= 0) & (mine < len(own)) & np.isinf(found))
-            at = own[mine[rows]]
+            rows = left[(tick[left] + lag >= 0) & (tick[left] + lag < len(own))]
+            at = own[tick[rows] + lag]
             near = np.hypot(*(others[rows, :2] - at[:, :2]).T) <= radius_m[rows]
             crossing = np.abs(np.sin(others[rows, 2] - at[:, 2])) >= math.sin(CROSSING_RAD)
             rows, at = rows[near & crossing], at[near & crossing]
             rows = rows[touching(at, others[rows])]
             found[rows], later[rows] = gap * step_s, np.maximum(tick[rows], tick[rows] + lag)
+            left = left[np.isinf(found[left])] if len(rows) else left
     return found, later
