@@ -88,13 +88,15 @@ def at_a_stop_sign(manner: Manner, stream: list[tuple[float, float]], seconds: f
     log = drive(make_behavioral(route, manner), Plant(0.0, 0.0, 0.0), seconds, cars)
     least_m = []
     for time_s, x_m, y_m in zip(log.time_s, log.x_m, log.y_m, strict=True):
-        for car in cars(time_s):
-            least_m.append(max(abs(car.x_m - x_m) - 0.95 - SHUTTLE_BODY.front_m, abs(car.y_m - y_m) - 2.2 - 1.0))
+        least_m += [
+            max(abs(car.x_m - x_m) - 0.95 - SHUTTLE_BODY.front_m, abs(car.y_m - y_m) - 2.2 - 1.0)
+            for car in cars(time_s)
+        ]
     return log, least_m
 
 
 @pytest.mark.parametrize("manner", MANNERS)
-@pytest.mark.parametrize("gap_s", [6.0, 8.0, 9.0, 10.0, 11.0, 12.5, 14.0])
+@pytest.mark.parametrize("gap_s", [6.0, 9.0, 11.0, 13.0])
 def test_driven_a_stop_sign_is_left_in_gaps_that_are_long_enough_and_in_no_others(manner: Manner, gap_s: float) -> None:
     log, least_m = at_a_stop_sign(manner, crossing_street(gap_s), 70.0)
     assert min(least_m) > 0.5  # the cars do not brake: they need not

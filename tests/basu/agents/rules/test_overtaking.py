@@ -1,5 +1,6 @@
 """Drives past what stands in the lane, in the small world: the street leads east, oncoming cars drive at y = -3.2."""
 
+import itertools
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -72,7 +73,7 @@ def test_a_stream_of_oncoming_cars_is_waited_out_where_one_can_still_swing_out()
     assert log.x_m[-1] > 200.0
 
 
-@pytest.mark.parametrize("turns_up_s", [18.5, 19.0, 20.0, 21.0, 22.0, 24.0, 26.0])
+@pytest.mark.parametrize("turns_up_s", [18.5, 20.0, 22.0, 24.0])
 @pytest.mark.parametrize("turns_up_m", [150.0, 200.0])
 def test_one_who_turns_up_late_is_never_hit(turns_up_s: float, turns_up_m: float) -> None:
     """It comes out of a drive while the shuttle is on its way round, and brakes at 3 m/s² for who comes towards it."""
@@ -110,12 +111,8 @@ def test_as_long_as_one_can_one_gives_up_for_an_oncoming_car() -> None:
         return [PARKED, *([oncoming(0.0, from_x_m=190.0)] if begun and plant.x_m < 90.0 else [])]
 
     drive(driver, plant, 60.0, scene)
-    changes = [b for a, b in zip(phases, phases[1:], strict=False) if a is not b]
-    assert changes[:4] == [Phase.WAITING, Phase.PASSING, Phase.WAITING, Phase.PASSING] or changes[:3] == [
-        Phase.WAITING,
-        Phase.PASSING,
-        Phase.WAITING,
-    ]
+    changes = [b for a, b in itertools.pairwise(phases) if a is not b]
+    assert changes[:3] == [Phase.WAITING, Phase.PASSING, Phase.WAITING]
 
 
 def test_a_queue_before_a_stop_sign_is_not_overtaken() -> None:
