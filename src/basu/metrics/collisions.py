@@ -14,16 +14,26 @@ if TYPE_CHECKING:
 # leans on it again has hit it once. The CARLA leaderboard, too, counts a second touch of one actor only after a while.
 SEPARATE_AFTER_S = 2.0
 
+Party = tuple[int, str]  # actor id and type: scenery has no id but 0
+
 
 def collisions(history: History) -> tuple[Evidence, ...]:
     """One infraction for each contact, at its first frame, with the speed of the frame before it."""
-    latest: dict[tuple[int, str], int] = {}
+    return contacts(history, {})
+
+
+def contacts(history: History, latest: dict[Party, int]) -> tuple[Evidence, ...]:
+    """The contacts that begin in this record, which may be the later part of one.
+
+    ``latest`` holds the tick of each party's latest message until then, and is brought up to date.
+    """
+    ticks = history.frames["tick"]
     found = []
     for event in history.collisions:
-        party = (event.other_id, event.other_type)
+        party, tick = (event.other_id, event.other_type), int(ticks[event.tick])
         before = latest.get(party)
-        latest[party] = event.tick
-        if before is None or (event.tick - before) * history.facts.step_s > SEPARATE_AFTER_S:
+        latest[party] = tick
+        if before is None or (tick - before) * history.facts.step_s > SEPARATE_AFTER_S:
             found.append(_contact(history, event))
     return tuple(found)
 

@@ -1,9 +1,8 @@
 """Infractions and scores while a drive lasts, for those who look on: each look costs what is new since the last one.
 
-Contacts, signs and lights are judged from the last frame in which nothing was under way for them (no contact in the
-last two seconds, no line at the vehicle): what was found before that frame is settled. A frame settles only a second
-later, for messages of contacts may come late. Speeding may last as long as a drive, so of an open episode the largest
-excess is kept. When the drive is over, the whole record is judged once more, and that is the result.
+Signs and lights are judged from the last frame in which none had its line at the vehicle: what was found before that
+frame is settled. Contacts and speeding may last as long as a drive, so of those the latest message of each party and
+the largest excess are kept. When the drive is over, the whole record is judged once more, and that is the result.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.history.model import NO_LIGHT
-from basu.metrics.collisions import SEPARATE_AFTER_S, collisions
+from basu.metrics.collisions_so_far import CollisionsSoFar
 from basu.metrics.infraction import Evidence, counts
 from basu.metrics.path_following import compared
 from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.history import History
-
-LATE_S = 1.0  # messages that come later than this after their frame are judged at the end only
 
 
 @dataclass(slots=True)
@@ -49,8 +46,7 @@ class _Watched:
         """Judge what is not settled, and settle what can be."""
         history = _with_controls_beyond(window(self.first), self.passed_m)
         found = [replace(event, tick=event.tick + self.first) for event in self.metric(history)]
-        settled = len(history.frames) - round(LATE_S / history.facts.step_s)
-        quiet = np.flatnonzero(self.quiet(history)[: max(0, settled)])
+        quiet = np.flatnonzero(self.quiet(history))
         if len(quiet):
             last = int(quiet[-1])
             self.settled += [event for event in found if event.tick < self.first + last]
@@ -67,7 +63,7 @@ class SoFar:
     def __init__(self, scoring: Scoring) -> None:
         self._scoring = scoring
         self._watched = (
-            _Watched(collisions, _no_contact),
+            CollisionsSoFar(),
             _Watched(red_lights, _no_light),
             _Watched(stop_signs, _no_sign),
             SpeedingSoFar(scoring.speeding_tolerance_mps),
@@ -110,15 +106,6 @@ def _with_controls_beyond(history: History, passed_m: float) -> History:
     route = history.facts.route
     beyond = tuple(control for control in route.controls if control.s_m >= passed_m)
     return replace(history, facts=replace(history.facts, route=replace(route, controls=beyond)))
-
-
-def _no_contact(history: History) -> NDArray[np.bool_]:
-    """No message of a contact for as long as one contact may be silent."""
-    quiet = np.ones(len(history.frames), dtype=np.bool_)
-    after = round(SEPARATE_AFTER_S / history.facts.step_s) + 1
-    for event in history.collisions:
-        quiet[event.tick : event.tick + after] = False
-    return quiet
 
 
 def _no_sign(history: History) -> NDArray[np.bool_]:
