@@ -7,12 +7,14 @@ import pytest
 
 from basu.errors import UserError
 from basu.metrics.infraction import Infraction
+from basu.metrics.passengers.comfort_score import ComfortWeights
 from basu.metrics.score import Scoring
 from basu.metrics.scoring_json import read_scoring_file, scoring_from_json, scoring_to_json
 
 
 def test_a_scoring_survives_a_round_trip() -> None:
-    scoring = Scoring(infraction_weight=0.7, path_following_weight=0.3, route_deviation_m=1.5)
+    weights = ComfortWeights(balance=1.0, service=0.0)
+    scoring = Scoring(infraction_weight=0.7, path_following_weight=0.3, route_deviation_m=1.5, comfort_weights=weights)
     assert scoring_from_json(json.loads(json.dumps(scoring_to_json(scoring))), "here") == scoring
 
 
@@ -34,6 +36,9 @@ def test_a_scoring_written_before_red_lights_cost_anything_takes_the_usual_facto
     [
         ({"penaltys": {}}, "has the key 'penaltys', which means nothing in a scoring; did you mean 'penalties'"),
         ({"penalties": {"stop_sing": 0.5}}, "has the key 'stop_sing'.*did you mean 'stop_sign'"),
+        ({"comfort_weights": [1]}, r"'comfort_weights' is \[1\]; it must be an object of parts and weights"),
+        ({"comfort_weights": {"tea": 1}}, "'tea' is no part of the comfort score; there are balance"),
+        ({"comfort_weights": {"service": "no"}}, "the comfort weight of service is 'no'; it must be a number"),
         ({"penalties": [1]}, r"'penalties' is \[1\]; it must be an object"),
         ({"penalties": {"speeding": "much"}}, "the penalty of speeding is 'much'; it must be a number"),
         ({"penalties": {"speeding": 1.2}}, "the penalty of speeding is 1.2; it is a factor"),

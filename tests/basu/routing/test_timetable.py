@@ -1,13 +1,17 @@
 """Claims about timetables: the one that comes with the LEAP route, when rounds begin, and what bad files are told."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from basu.errors import UserError
+from basu.history.route_json import route_from_json, route_to_json
+from basu.routing.route_file import read_routes
 from basu.routing.timetable import read_timetable, timetable_from_json, timetable_to_json
+from fakes.drives import straight_route
 
 LEAP = Path(__file__).parents[3] / "src" / "basu" / "routes" / "linden_leap.timetable.json"
 STOPS = ("S1", "S2N", "S3E", "S4", "S3W", "S2S")
@@ -72,6 +76,22 @@ def test_a_mistake_is_told_with_the_file_and_the_place(
         read_timetable(file, STOPS)
     assert str(told.value).startswith(f"the timetable {file}")
     assert sentence in str(told.value)
+
+
+def test_the_leap_route_brings_its_timetable_and_the_record_keeps_it() -> None:
+    (route,) = read_routes(LEAP.with_name("linden_leap.xml"))
+    assert route.timetable == read_timetable(LEAP, STOPS)
+    planned = replace(straight_route(), timetable=route.timetable)
+    assert route_from_json(json.loads(json.dumps(route_to_json(planned)))).timetable == route.timetable
+    assert route_from_json(route_to_json(straight_route())).timetable is None
+
+
+def test_a_route_whose_timetable_is_not_there_says_so(tmp_path: Path) -> None:
+    points = '<waypoint x="0" y="0"/><waypoint x="9" y="0"/>'
+    file = tmp_path / "mine.xml"
+    file.write_text(f'<routes><route id="0" town="T" timetable="none.json">{points}</route></routes>', encoding="utf-8")
+    with pytest.raises(UserError, match=r"the timetable .*none\.json cannot be read"):
+        read_routes(file)
 
 
 def test_a_file_that_is_not_there_or_no_json_is_told(tmp_path: Path) -> None:
