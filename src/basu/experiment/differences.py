@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
     from basu.experiment.table_5_1 import Measured, Printed
 
+SMALL = 0.0005  # of a score that is printed with three digits
 CLOSE = 0.02  # of path following: 15 m of the short route
 
 # why the paths' lengths are what they are, where they differ
@@ -48,8 +49,8 @@ def differences(printed: Mapping[str, Printed], ours: Mapping[str, Measured], ke
 def _score(theirs: Printed, row: Measured) -> str:
     """Both scores."""
     apart = row.driving - theirs.driving
-    if abs(apart) < ROUNDING:
-        return f"driving score {row.driving:.3f} as in the thesis ({theirs.driving:.3f})"
+    if abs(apart) < SMALL:
+        return f"driving score {row.driving:.3f} as in the thesis"
     return f"driving score {row.driving:.3f}, {apart:+.3f} to the thesis's {theirs.driving:.3f}"
 
 

@@ -81,7 +81,7 @@ class _Sleeve:
         east_m, south_m = point_m[0] - self._x_m, point_m[1] - self._y_m
         distance_m = math.hypot(east_m, south_m)
         if distance_m <= self._tolerance_m:
-            return self._reach_m <= 2.0 * self._tolerance_m
+            return self._reach_m == 0.0  # it has come back: what was farther away must not be lost
         heading_rad = math.atan2(south_m, east_m)
         if self._middle_rad is None:
             self._middle_rad = heading_rad

@@ -1,0 +1,56 @@
+"""Run records of drives that never took place, for claims about reports and comparisons."""
+
+from pathlib import Path
+from typing import Any
+
+from basu.history import History
+from basu.history.files import write_history
+from basu.metrics.score import Scoring
+from basu.outcome import Outcome, Status
+from basu.report.folder import CONFIG_FILE, RESULT_FILE, write_json
+from basu.report.reading import RunRecord
+from basu.report.result import result
+from basu.report.streets import Line, write_streets
+from fakes.drives import at, driven, hit, stop_sign, straight_route
+
+STREETS: list[Line] = [[(-60.0, 0.0), (260.0, 0.0)], [(100.0, -80.0), (100.0, 80.0)]]
+
+
+def crashing() -> History:
+    """Too fast from the beginning, over a stop sign at 60 m, into a pole at 100 m, where it stays."""
+    route = straight_route(controls=(stop_sign(60.0),))
+    return driven([*at(15.0, 6.65), *at(0.0, 20.0)], route=route, limit_mps=11.0, collisions=[hit(133)])
+
+
+def record(history: History | None, *, agent: str = "tester", message: str = "as told", route: str = "1") -> RunRecord:
+    """What a run with this history would leave."""
+    meta: dict[str, Any] = {
+        "agent": {"name": agent, "class": "Tester", "file": "tester.py"},
+        "vehicle": "vehicle.easymile.ez10",
+        "weather": "ClearNoon",
+        "route": route,
+        "town": "Nowhere",
+        "seed": 0,
+        "started": "2026-01-01T00:00:00+00:00",
+        "simulated_s": 0.0 if history is None else len(history.frames) * 0.05,
+        "wall_s": 1.0,
+    }
+    outcome = Outcome(Status.COMPLETED if history is not None else Status.SETUP_FAILED, message)
+    return RunRecord(
+        name="a-run",
+        config={"command": ["basu", "run", agent, "--seed", "0"], "seed": 0},
+        result=result(outcome, history, Scoring(), meta),
+        history=history,
+        streets=STREETS,
+    )
+
+
+def written(folder: Path, run: RunRecord) -> Path:
+    """The files of a record in a folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    write_json(folder / CONFIG_FILE, run.config)
+    write_json(folder / RESULT_FILE, run.result)
+    write_streets(folder, run.streets)
+    if run.history is not None:
+        write_history(folder, run.history)
+    return folder
