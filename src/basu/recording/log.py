@@ -96,7 +96,7 @@ def read_log(path: Path) -> Log:
         created=tuple(contents.created),
         physics=tuple(contents.physics),
         unread=dict(sorted(contents.unread.items())),
-        problem=None if damage is None else f"{path}: {damage}; the {whole} frames before it were read",
+        problem=None if damage is None else f"{path}: {damage}; it was read up to frame {whole}",
     )
 
 
