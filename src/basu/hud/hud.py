@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from basu.options import RunOptions
 
 DRAW_EVERY_S = 0.05  # wall time, where the run is faster than that
+RUN_TO_DRAW = 4.0  # there the run gets at least so many times what drawing takes
 WATCH_EVERY_S = 0.1  # simulated time between two pictures where nobody steers by them
 LATE_S = 0.25  # a person who fell behind real time by more starts anew from there, rather than to race after it
 PICTURE = Path("hud.png")
@@ -48,7 +49,8 @@ class Hud(BaseManager):
         self._helps = False
         self._has_panel = True
         self._was_manual = person.drives_first
-        self._drawn_s = self._began_s = 0.0
+        self._draw_next_s = self._began_s = 0.0
+        self._has_drawn = False
 
     def setup(self, run: Run) -> None:
         """Open the window and hang up the camera."""
@@ -72,9 +74,11 @@ class Hud(BaseManager):
         self._map.pass_by(frame)
         is_last = self._live.routes.outcome is not None
         self._judge.refresh(now_s, anyway=is_last)
-        if picture or is_last or self._paced or now_s - self._drawn_s >= DRAW_EVERY_S:
+        if picture or is_last or self._paced or now_s >= self._draw_next_s:
             self._draw(frame, now_s)
-            self._drawn_s = now_s
+            self._has_drawn = True
+            drawn_s = time.perf_counter()
+            self._draw_next_s = drawn_s + max(DRAW_EVERY_S, RUN_TO_DRAW * (drawn_s - now_s))
         if picture:
             self._save(self._options.hud_screenshot or PICTURE)
         if self._paced:
@@ -88,7 +92,7 @@ class Hud(BaseManager):
             self._camera.close()
             self._camera = None
         if self._canvas is not None:
-            if self._options.hud_screenshot is not None and self._drawn_s > 0.0:
+            if self._options.hud_screenshot is not None and self._has_drawn:
                 self._save(self._options.hud_screenshot)
             self._canvas.close()
             self._canvas = None

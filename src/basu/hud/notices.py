@@ -12,7 +12,6 @@ from basu.metrics.infraction import counts
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
     from basu.managers.metrics_manager import MetricsManager
     from basu.metrics.infraction import Evidence
     from basu.metrics.score import Scores
@@ -86,13 +85,11 @@ class Judge:
             if key not in self._told:
                 self._told.add(key)
                 self._notices.add(f"{evidence.kind.value.replace('_', ' ')}: {evidence.detail}", now_s, bad=True)
-        self.latest = Judgement(self._metrics.scores_so_far(), found, _contacts(self._metrics.history()))
+        self.latest = Judgement(self._metrics.scores_so_far(), found, _contacts(self._metrics))
         self._next_s = now_s + max(EVERY_S, (time.perf_counter() - now_s) / SHARE)
 
 
-def _contacts(history: History) -> tuple[tuple[int, float], ...]:
+def _contacts(metrics: MetricsManager) -> tuple[tuple[int, float], ...]:
     """The latest messages of the collision sensor."""
-    first = len(history.frames) - WINDOW_TICKS
-    return tuple(
-        (event.tick, float(np.linalg.norm(event.impulse_ns))) for event in history.collisions if event.tick >= first
-    )
+    latest = metrics.contacts_since(metrics.ticks - WINDOW_TICKS)
+    return tuple((event.tick, float(np.linalg.norm(event.impulse_ns))) for event in latest)
