@@ -77,13 +77,13 @@ class SensorsManager(BaseManager):
     def tick(self, frame: Frame) -> None:
         """Wait until every sensor that is due has answered for this frame."""
         if not self._period:
-            self.data = dict(self._latest)
+            self.data = self._in_order()
             return
         with self._news:
             if not self._news.wait_for(lambda: not self._missing(frame.server_frame), timeout=self._timeout_s):
                 silent = ", ".join(self._missing(frame.server_frame))
                 raise SimulatorError(f"sensor {silent} did not answer for frame {frame.server_frame} in time")
-            self.data = dict(self._latest)
+            self.data = self._in_order()
 
     def close(self) -> None:
         """Stop listening, let go of what was measured, and take the sensors away."""
@@ -124,6 +124,10 @@ class SensorsManager(BaseManager):
                 self._news.notify()
 
         return hear
+
+    def _in_order(self) -> dict[str, tuple[int, Any]]:
+        """The latest measurements in the order of the set, whoever answered first."""
+        return {spec.id: self._latest[spec.id] for spec in self._specs if spec.id in self._latest}
 
     def _missing(self, server_frame: int) -> list[str]:
         """The sensors that are due in this frame and have not answered."""

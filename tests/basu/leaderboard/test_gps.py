@@ -9,18 +9,12 @@ import numpy as np
 import pytest
 
 from basu.leaderboard.gps import Gps, reference
-
-TOWN = """<?xml version="1.0"?><OpenDRIVE><header revMajor="1" revMinor="4" name="T">
-<geoReference><![CDATA[+proj=tmerc +lat_0=39.99 +lon_0=-82.98 +k=1 +ellps=WGS84]]></geoReference></header>
-<road name="r" length="50.0" id="1" junction="-1"><planView><geometry s="0.0" x="0.0" y="0.0" hdg="0.0" length="50.0">
-<line/></geometry></planView><lanes><laneSection s="0.0"><center><lane id="0" type="none" level="false"/></center>
-<right><lane id="-1" type="driving" level="false"><width sOffset="0.0" a="3.5" b="0.0" c="0.0" d="0.0"/></lane></right>
-</laneSection></lanes></road></OpenDRIVE>"""
+from fakes.one_road import OPENDRIVE, one_road
 
 
 @pytest.fixture(scope="module")
 def town() -> carla.Map:
-    return carla.Map("T", TOWN)
+    return one_road()
 
 
 def theirs(at: carla.Location, latitude: float, longitude: float) -> tuple[float, float]:
@@ -63,7 +57,7 @@ def test_noise_of_a_metre_stays_a_metre(town: carla.Map) -> None:
 def test_a_simulator_that_agrees_already_is_left_as_it_is(town: carla.Map) -> None:
     gps = Gps(town)
     agreeing: Any = SimpleNamespace(
-        to_opendrive=lambda: TOWN,
+        to_opendrive=lambda: OPENDRIVE,
         transform_to_geolocation=lambda at: SimpleNamespace(
             latitude=gps.place(at).latitude, longitude=gps.place(at).longitude
         ),

@@ -55,6 +55,8 @@ def test_every_measurement_is_of_the_frame_in_which_the_agent_is_asked(
 ) -> None:
     numbers = [now for now, _ in steps]
     assert numbers == list(range(numbers[0], numbers[0] + 21))
+    order = ["LEFT", "RIGHT", "LIDAR", "RADAR", "GNSS", "IMU", "SELDOM"]
+    assert all(list(frames) == order for _, frames in steps)  # whichever answered first
     seldom = [frames.pop("SELDOM") for _, frames in steps]
     assert all(set(frames.values()) == {now} for now, frames in steps)
     assert {now - frame for now, frame in zip(numbers, seldom, strict=True)} == {0, 1}
