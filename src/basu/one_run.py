@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 import traceback
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -42,13 +42,22 @@ if TYPE_CHECKING:
     from basu.simulator import Simulator
 
 
-class Session(NamedTuple):
+@dataclass(frozen=True, slots=True)
+class Session:
     """What all runs of one command share."""
 
     options: RunOptions
     scoring: Scoring
     plan: Plan
     simulator: Simulator
+    lanes: dict[str, LaneGraph] = field(default_factory=dict)  # of the towns that were there, by their OpenDRIVE text
+
+    def lanes_of(self, carla_map: carla.Map) -> LaneGraph:
+        """The lanes of a map, made once."""
+        text = carla_map.to_opendrive()
+        if text not in self.lanes:
+            self.lanes[text] = lane_graph.build(carla_map)
+        return self.lanes[text]
 
 
 class Finished(NamedTuple):
@@ -79,7 +88,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         SimulatorError: the simulator failed before it began.
     """
     started = datetime.now(timezone.utc)
-    ground = _ground(session.simulator, agents, job, fresh=fresh)
+    ground = _ground(session, agents, job, fresh=fresh)
     draft = make_draft(output, name)
     traffic = TrafficManager(session.options.traffic)
     log = str((draft / LOG_FILE).resolve()) if session.simulator.own else f"{name}.log"
@@ -107,15 +116,15 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     return Finished(driven.outcome, draft, document, driven.bug)
 
 
-def _ground(simulator: Simulator, agents: AgentsManager, job: Job, *, fresh: bool) -> Ground:
+def _ground(session: Session, agents: AgentsManager, job: Job, *, fresh: bool) -> Ground:
     """The world with the route's town in it, and the route on its lanes."""
-    town = job.description.town
+    town, simulator = job.description.town, session.simulator
     with asking(f"loading {town}"):
         if fresh and simulator.own:
             simulator.client.reload_world(reset_settings=False)
         world = world_of(simulator.client, town)
     carla_map = world.get_map()
-    lanes = lane_graph.build(carla_map)
+    lanes = session.lanes_of(carla_map)
     points = agents.own_route()
     description = job.description
     if points is not None:

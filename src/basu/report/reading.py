@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
 from basu.history.files import HISTORY_FILE, read_history
-from basu.report.folder import CONFIG_FILE, RESULT_FILE
+from basu.report.folder import CONFIG_FILE
+from basu.report.schema import read_result
 from basu.report.streets import read_streets
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def read_run(folder: Path) -> RunRecord:
     return RunRecord(
         name=folder.resolve().name,
         config=_document(folder / CONFIG_FILE),
-        result=_document(folder / RESULT_FILE),
+        result=read_result(folder),
         history=read_history(folder) if (folder / HISTORY_FILE).exists() else None,
         streets=read_streets(folder),
     )
