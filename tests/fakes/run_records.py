@@ -12,6 +12,7 @@ from basu.report.reading import RunRecord
 from basu.report.result import result
 from basu.report.streets import Line, write_streets
 from fakes.drives import at, driven, hit, stop_sign, straight_route
+from fakes.results import META
 
 STREETS: list[Line] = [[(-60.0, 0.0), (260.0, 0.0)], [(100.0, -80.0), (100.0, 80.0)]]
 
@@ -25,15 +26,10 @@ def crashing() -> History:
 def record(history: History | None, *, agent: str = "tester", message: str = "as told", route: str = "1") -> RunRecord:
     """What a run with this history would leave."""
     meta: dict[str, Any] = {
+        **META,
         "agent": {"name": agent, "class": "Tester", "file": "tester.py"},
-        "vehicle": "vehicle.easymile.ez10",
-        "weather": "ClearNoon",
         "route": route,
         "town": "Nowhere",
-        "seed": 0,
-        "started": "2026-01-01T00:00:00+00:00",
-        "simulated_s": 0.0 if history is None else len(history.frames) * 0.05,
-        "wall_s": 1.0,
     }
     outcome = Outcome(Status.COMPLETED if history is not None else Status.SETUP_FAILED, message)
     return RunRecord(
