@@ -59,7 +59,7 @@ class Recorder:
             facts=facts,
             frames=self._all_frames().copy(),
             others=_packed(self._others, OTHER),
-            collisions=self._contacts(0),
+            collisions=self.contacts_since(0),
             lane_invasions=tuple(
                 sorted(
                     (event for event in self._lane_invasions if 0 <= event.tick < end),
@@ -74,7 +74,7 @@ class Recorder:
         Neither others nor lane invasions are in it, and it costs no more than what is new since the last call: for
         who asks again and again while the run lasts. Its frames must not be written to.
         """
-        contacts = (replace(event, tick=event.tick - first) for event in self._contacts(first))
+        contacts = (replace(event, tick=event.tick - first) for event in self.contacts_since(first))
         return History(
             facts=facts,
             frames=self._all_frames()[first:],
@@ -97,14 +97,14 @@ class Recorder:
             self._frames = array("d")
         return self._packed[: self._packed_ticks]
 
-    def _contacts(self, first: int) -> tuple[Collision, ...]:
-        """Contacts from a tick on, in order."""
+    def contacts_since(self, first: int) -> tuple[Collision, ...]:
+        """Messages of the collision sensor from a tick on, in order; those outside of recorded frames are left out."""
         end = self.ticks
         later = []
         for event in reversed(self._collisions):  # they come in nearly in order: those of one second may be mixed
             if event.tick < first - MIXED_TICKS:
                 break
-            if first <= event.tick < end:
+            if max(0, first) <= event.tick < end:
                 later.append(event)
         return tuple(sorted(later, key=lambda event: (event.tick, event.other_id, event.other_type, event.impulse_ns)))
 

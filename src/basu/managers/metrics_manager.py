@@ -117,6 +117,11 @@ class MetricsManager(BaseManager):
         self._take_events()
         return self._recorder.history(self._facts())
 
+    def contacts_since(self, tick: int) -> tuple[Collision, ...]:
+        """The messages of the collision sensor from a tick on; asked for the latest ones, it costs next to nothing."""
+        self._take_events()
+        return self._recorder.contacts_since(tick)
+
     def infractions_so_far(self) -> tuple[Evidence, ...]:
         """Every infraction until now; may be asked each second of the longest run."""
         self._look()
