@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING
 from basu.agents.driving.comfort import Limits
 from basu.agents.driving.driver import Driver
 from basu.agents.driving.manner import NORMAL
-from basu.agents.rules.overtaking import Overtaking
+from basu.agents.rules.overtaking import Overtaking, Phase
+from basu.agents.rules.pulling_over import PullingOver
 from basu.agents.rules.tailgating import Tailgating
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
+    from basu.agents.driving.detour import Detour
     from basu.agents.driving.driver import Command
     from basu.agents.driving.longitudinal import DriveModel
     from basu.agents.driving.manner import Manner
@@ -37,6 +39,8 @@ class BehavioralDriver(Driver):
         self.manner = manner
         self.overtaking = Overtaking(task.path, road, body, manner, manner.passing, SIGHT_M)
         self.tailgating = Tailgating(body, manner.tailgated_s)
+        self.pulling_over = PullingOver(task.path, road, body, manner)
+        self.detour: Detour | None = None  # what is driven instead of the lane
         self._road = road
         self._softer = Limits(SOFTER * manner.comfort.accel_mps2, SOFTER * manner.comfort.jerk_mps3)
 
@@ -47,34 +51,35 @@ class BehavioralDriver(Driver):
 
     def step(self, ego: Ego, others: Sequence[Other], shows: Callable[[str], Light]) -> Command:
         """Decide one step."""
-        place = self._locate(ego)
-        asked = self._go_round(ego, place, others)
-        assert self.place is not None
-        place = self.place
         near = [o for o in others if abs(o.x_m - ego.x_m) < NEAR_M and abs(o.y_m - ego.y_m) < NEAR_M]
+        place = self._locate(ego)
+        tailgated = self.tailgating.step(ego, self.path, place, near)
+        asked = self._choose_path(ego, place, others, tailgated=tailgated)
+        place = self._locate(ego)
         limit_mps = self._limit_mps(place)
-        if self.tailgating.step(ego, self.path, place, near):
+        if tailgated and self.detour is None:
             self.planner.comfort = self._softer
             limit_mps = self._hurried_mps(place, limit_mps)
         else:
             self.planner.comfort = self.manner.comfort
         return self._drive(ego, place, near, shows, limit_mps, asked)
 
-    def _go_round(self, ego: Ego, place: Place, others: Sequence[Other]) -> list[Restriction]:
-        """Let overtaking choose the path."""
+    def _choose_path(self, ego: Ego, place: Place, others: Sequence[Other], *, tailgated: bool) -> list[Restriction]:
+        """Keep to the lane, go round what stands in it, or make room for who is close behind."""
         lane = self.task.path
         own = place if self.path is lane else lane.follow(ego.x_m, ego.y_m, place.near)
-        asked = self.overtaking.step(ego, own, others)
-        detour = self.overtaking.detour
-        path = lane if detour is None else detour.path
-        if path is not self.path:
-            self.path = self._obstacles.path = path
-            self.place = path.follow(ego.x_m, ego.y_m, place.near)
+        asked: list[Restriction] = []
+        if self.pulling_over.detour is None:
+            asked = self.overtaking.step(ego, own, others)
+        if self.overtaking.phase is Phase.KEEPING:
+            asked.extend(self.pulling_over.step(ego, own, others, tailgated=tailgated))
+        self.detour = self.overtaking.detour or self.pulling_over.detour
+        self.path = self._obstacles.path = lane if self.detour is None else self.detour.path
         return asked
 
     def _limit_mps(self, place: Place) -> float:
         """The speed here, on a way round the speed of that."""
-        limit_mps, detour = self.profile.limit_mps[place.near], self.overtaking.detour
+        limit_mps, detour = self.profile.limit_mps[place.near], self.detour
         if detour is not None and detour.extent.from_s_m <= place.s_m <= detour.extent.to_s_m:
             return min(limit_mps, detour.speed_mps)
         return limit_mps

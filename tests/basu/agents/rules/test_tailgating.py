@@ -80,3 +80,39 @@ def test_the_aggressive_one_does_not_care() -> None:
 def test_the_vehicles_own_top_speed_is_not_exceeded() -> None:
     log = drive_before(CAUTIOUS, 3.0, cap_mps=6.0, limit_mps=11.2)
     assert log.speed_mps.max() < 6.2
+
+
+@pytest.mark.parametrize("passes_s", [6.0, 25.0])
+def test_where_a_lane_leads_the_same_way_one_moves_over_and_comes_back_when_the_other_is_past(passes_s: float) -> None:
+    plant = Plant(0.0, 0.0, 0.0)
+    at: list[float] = [-7.0, 0.0, 0.0]  # where it is, how fast, and since when we are out of its way
+
+    def behind(time_s: float) -> list[Other]:
+        gap_m = plant.x_m - SHUTTLE_BODY.rear_m - 2.2 - at[0]
+        at[2] = at[2] or (time_s if plant.y_m > 2.9 else 0.0)
+        hurries = at[2] and time_s > at[2] + passes_s - 5.0
+        at[1] = min(at[1] + 0.1, 9.0) if hurries else max(0.0, plant.speed_mps + 0.5 * (gap_m - 3.0))
+        at[0] += at[1] * 0.05
+        gaps.append(max(abs(at[0] - plant.x_m) - 4.21, abs(plant.y_m) - 1.95))
+        return [body_at(Kind.VEHICLE, at[0], 0.0, velocity_mps=(at[1], 0.0))]
+
+    gaps: list[float] = []
+    driver = make_behavioral(make_route(line(500.0)), right_lane_m=3.2)
+    log = drive(driver, plant, 75.0, behind)
+    assert log.y_m.max() == pytest.approx(3.2, abs=0.1)
+    assert abs(log.y_m[-1]) < 0.1
+    assert at[0] > plant.x_m  # it is past
+    assert min(gaps[20:]) > 0.5
+
+
+def test_a_lane_that_is_taken_is_left_alone() -> None:
+    plant = Plant(0.0, 0.0, 0.0)
+
+    def others(_time_s: float) -> list[Other]:
+        x_m = plant.x_m - SHUTTLE_BODY.rear_m - 2.2 - 3.0
+        velocity = (plant.speed_mps, 0.0)
+        beside = body_at(Kind.VEHICLE, plant.x_m, 3.2, velocity_mps=velocity, number=8)
+        return [body_at(Kind.VEHICLE, x_m, 0.0, velocity_mps=velocity), beside]
+
+    log = drive(make_behavioral(make_route(line(300.0)), right_lane_m=3.2), plant, 30.0, others)
+    assert np.abs(log.y_m).max() < 0.1
