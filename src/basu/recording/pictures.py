@@ -30,9 +30,21 @@ def drawn(plot: Path | None) -> list[str]:
     import matplotlib.pyplot as plt  # noqa: PLC0415 - after the backend is chosen
 
     numbers = plt.get_fignums()
-    if plot is None:
+    try:
+        if plot is not None:
+            return _kept(plot, numbers)
+        if not numbers or _screen():
+            return []
         several = f"{len(numbers)} figures" if len(numbers) > 1 else "a figure"
-        return [f"drew {several}; --plot FILE.png keeps it"] if numbers and not _screen() else []
+        return [f"drew {several}; --plot FILE.png keeps what is drawn"]
+    finally:
+        plt.close("all")
+
+
+def _kept(plot: Path, numbers: list[int]) -> list[str]:
+    """Write each figure to its file."""
+    import matplotlib.pyplot as plt  # noqa: PLC0415 - likewise
+
     if not numbers:
         raise UserError(f"the metric drew nothing, so there is no {plot}")
     lines = []
@@ -43,7 +55,6 @@ def drawn(plot: Path | None) -> list[str]:
         except (OSError, ValueError) as error:
             raise UserError(f"{path} could not be written: {error}") from error
         lines.append(f"plot              {path}")
-    plt.close("all")
     return lines
 
 

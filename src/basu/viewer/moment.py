@@ -14,6 +14,8 @@ from basu.viewer.timeline import TIMELINE
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from numpy.typing import NDArray
+
     from basu.metrics.infraction import Evidence
     from basu.metrics.score import Scores
 
@@ -24,6 +26,7 @@ DRIVEN_COLOUR, WALKER_COLOUR, OTHER_COLOUR, INFRACTION_COLOUR = (
     (230, 40, 40),
 )
 OTHER_HEIGHT_M = 1.6  # of the boxes that are drawn: records hold lengths and widths
+DRIVEN_ABOVE_M = 0.3  # the driven path, so that it lies over the planned one
 HALF_SIZE_M = (2.3, 0.95)  # of who has none in the record
 
 
@@ -55,7 +58,7 @@ class Shower:
 
     def __init__(self, recording: Any) -> None:  # noqa: ANN401 - rerun.RecordingStream
         self.recording = recording
-        self._last: Pose | None = None
+        self._last: NDArray[np.float64] | None = None
         self._told: set[tuple[str, int, str | None]] = set()
 
     def tick(self, t_s: float, ego: Pose, driving: Driving, others: Sequence[Other]) -> None:
@@ -87,14 +90,13 @@ class Shower:
             )
 
     def _pose(self, ego: Pose) -> None:
-        here = shown(ego[:3])
-        self.recording.log("world/ego", rr.Transform3D(translation=here, mat3x3=turned(ego)))
+        self.recording.log("world/ego", rr.Transform3D(translation=shown(ego[:3]), mat3x3=turned(ego)))
+        here = shown((ego.x_m, ego.y_m, ego.z_m + DRIVEN_ABOVE_M))
         if self._last is not None:
             self.recording.log(
-                "world/driven",
-                rr.LineStrips3D([[shown(self._last[:3]), here]], colors=[DRIVEN_COLOUR], radii=[0.12]),
+                "world/driven", rr.LineStrips3D([[self._last, here]], colors=[DRIVEN_COLOUR], radii=[0.12])
             )
-        self._last = ego
+        self._last = here
 
     def _signals(self, ego: Pose, driving: Driving) -> None:
         cos, sin = math.cos(ego.yaw_rad), math.sin(ego.yaw_rad)
