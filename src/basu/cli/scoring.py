@@ -10,6 +10,7 @@ from pathlib import Path
 from basu.errors import UserError
 from basu.metrics.infraction import Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights, weights_from
+from basu.metrics.passengers.felt import Place
 from basu.metrics.score import Scoring
 from basu.metrics.scoring_json import read_scoring_file, scoring_from_json
 
@@ -53,6 +54,14 @@ def add_scoring(command: argparse.ArgumentParser) -> None:
         metavar="NAME=W",
         help=f"how much a part of the comfort score counts; may be given several times; parts: {parts}",
     )
+    command.add_argument(
+        "--standing-place",
+        metavar="F,R,U",
+        help="where passengers stand, m forward, right and up from the vehicle's origin (default: 0.7,0.5,0.3)",
+    )
+    command.add_argument(
+        "--harsh-stop", type=float, metavar="M/S2", help="felt by them, it makes a braking a harsh stop (default: 1.5)"
+    )
 
 
 def adjusted(scoring: Scoring, arguments: argparse.Namespace) -> Scoring:
@@ -80,7 +89,10 @@ def adjusted(scoring: Scoring, arguments: argparse.Namespace) -> Scoring:
         changed["speeding_tolerance_mps"] = arguments.speeding_tolerance
     if arguments.route_deviation is not None:
         changed["route_deviation_m"] = arguments.route_deviation
-    return replace(scoring, penalties=penalties, comfort_weights=weights, **changed)
+    if arguments.harsh_stop is not None:
+        changed["harsh_stop_mps2"] = arguments.harsh_stop
+    place = scoring.standing_place if arguments.standing_place is None else _place(arguments.standing_place)
+    return replace(scoring, penalties=penalties, comfort_weights=weights, standing_place=place, **changed)
 
 
 def _comfort_weights(weights: ComfortWeights, given: list[str]) -> ComfortWeights:
@@ -93,6 +105,15 @@ def _comfort_weights(weights: ComfortWeights, given: list[str]) -> ComfortWeight
         except ValueError:
             raise UserError(f"--comfort-weight {text}: write NAME=W, the name one of {', '.join(named)}") from None
     return weights_from(named, "--comfort-weight")
+
+
+def _place(text: str) -> Place:
+    """Three numbers with commas."""
+    try:
+        forward_m, right_m, up_m = (float(number) for number in text.split(","))
+    except ValueError:
+        raise UserError(f"--standing-place {text}: write three numbers in m, such as 0.7,0.5,0.3") from None
+    return Place(forward_m, right_m, up_m)
 
 
 def read_scoring(path: Path) -> Scoring:

@@ -10,6 +10,8 @@ from basu.errors import UserError
 from basu.metrics.collisions import collisions
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, counts
 from basu.metrics.passengers.comfort_score import ComfortWeights
+from basu.metrics.passengers.felt import STANDING, Place
+from basu.metrics.passengers.harsh_stops import HARSH_MPS2
 from basu.metrics.path_following import path_following
 from basu.metrics.red_lights import red_lights
 from basu.metrics.route_deviation import THRESHOLD_M
@@ -32,6 +34,8 @@ class Scoring:
     speeding_tolerance_mps: float = TOLERANCE_MPS  # above the posted limit
     route_deviation_m: float = THRESHOLD_M  # from the planned line; farther out is outside the plan
     comfort_weights: ComfortWeights = field(default_factory=ComfortWeights)  # of the passengers' own score, not of this
+    standing_place: Place = STANDING  # where in the vehicle the passengers stand who judge the ride
+    harsh_stop_mps2: float = HARSH_MPS2  # felt by them, from which on a braking is a harsh stop
 
     def __post_init__(self) -> None:
         total = self.infraction_weight + self.path_following_weight
@@ -46,6 +50,7 @@ class Scoring:
         for name, value in (
             ("speeding_tolerance_mps", self.speeding_tolerance_mps),
             ("route_deviation_m", self.route_deviation_m),
+            ("harsh_stop_mps2", self.harsh_stop_mps2),
         ):
             if not 0.0 <= value < math.inf:
                 raise UserError(f"{name} is {value}; it must be a number that is not negative")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights, weights_from
+from basu.metrics.passengers.felt import STANDING, Place
 from basu.metrics.score import Scoring
 
 if TYPE_CHECKING:
@@ -20,7 +21,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 WEIGHTS = ("infraction_weight", "path_following_weight")
-NUMBERS = (*WEIGHTS, "speeding_tolerance_mps", "route_deviation_m")
+NUMBERS = (*WEIGHTS, "speeding_tolerance_mps", "route_deviation_m", "harsh_stop_mps2")
+OBJECTS = ("penalties", "comfort_weights", "standing_place")
 
 
 def scoring_to_json(scoring: Scoring) -> dict[str, Any]:
@@ -29,6 +31,7 @@ def scoring_to_json(scoring: Scoring) -> dict[str, Any]:
         "penalties": {kind.value: penalty for kind, penalty in scoring.penalties.items()},
         **{name: getattr(scoring, name) for name in NUMBERS},
         "comfort_weights": scoring.comfort_weights.named(),
+        "standing_place": scoring.standing_place._asdict(),
     }
 
 
@@ -42,15 +45,17 @@ def scoring_from_json(document: object, source: str) -> Scoring:
     if not isinstance(document, dict):
         raise UserError(f"{source}: a scoring is a JSON object, such as {{'penalties': {{'stop_sign': 0.7}}}}")
     for key in document:
-        _known(str(key), ("penalties", "comfort_weights", *NUMBERS), source)
+        _known(str(key), (*OBJECTS, *NUMBERS), source)
     numbers = {name: _number(document[name], f"{source}: {name}") for name in NUMBERS if name in document}
     given = [name for name in WEIGHTS if name in numbers]
     if len(given) == 1:
         other = WEIGHTS[1 - WEIGHTS.index(given[0])]
         numbers[other] = 1.0 - numbers[given[0]]
     weights = _comfort_weights(document.get("comfort_weights", {}), source)
+    place = _place(document.get("standing_place", {}), source)
+    penalties = _penalties(document.get("penalties", {}), source)
     try:
-        return Scoring(penalties=_penalties(document.get("penalties", {}), source), comfort_weights=weights, **numbers)
+        return Scoring(penalties=penalties, comfort_weights=weights, standing_place=place, **numbers)
     except UserError as error:
         raise UserError(f"{source}: {error}") from None
 
@@ -87,6 +92,15 @@ def _comfort_weights(given: object, source: str) -> ComfortWeights:
     return weights_from(
         {name: _number(w, f"{source}: the comfort weight of {name}") for name, w in given.items()}, source
     )
+
+
+def _place(given: object, source: str) -> Place:
+    """Where passengers stand, the default's coordinates where none is given."""
+    if not isinstance(given, dict):
+        raise UserError(f"{source}: 'standing_place' is {given!r}; it must be an object of {', '.join(Place._fields)}")
+    for name in given:
+        _known(str(name), Place._fields, source)
+    return STANDING._replace(**{n: _number(value, f"{source}: {n} of standing_place") for n, value in given.items()})
 
 
 def _known(key: str, names: Iterable[str], source: str) -> None:

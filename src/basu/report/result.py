@@ -68,7 +68,9 @@ def judgement(history: History | None, scoring: Scoring) -> dict[str, Any]:
         ],
         "stops": _service_stops(history),
         **measures(history, scoring),
-        "passengers": passengers_to_json(history, judge(history, scoring.comfort_weights)),
+        "passengers": passengers_to_json(
+            history, judge(history, scoring.comfort_weights, scoring.standing_place, scoring.harsh_stop_mps2)
+        ),
         "reported": _reported(history, path.driven_m, path.planned_m),
     }
 

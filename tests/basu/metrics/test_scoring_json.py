@@ -8,13 +8,20 @@ import pytest
 from basu.errors import UserError
 from basu.metrics.infraction import Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights
+from basu.metrics.passengers.felt import Place
 from basu.metrics.score import Scoring
 from basu.metrics.scoring_json import read_scoring_file, scoring_from_json, scoring_to_json
 
 
 def test_a_scoring_survives_a_round_trip() -> None:
-    weights = ComfortWeights(balance=1.0, service=0.0)
-    scoring = Scoring(infraction_weight=0.7, path_following_weight=0.3, route_deviation_m=1.5, comfort_weights=weights)
+    scoring = Scoring(
+        infraction_weight=0.7,
+        path_following_weight=0.3,
+        route_deviation_m=1.5,
+        comfort_weights=ComfortWeights(balance=1.0, service=0.0),
+        standing_place=Place(1.0, 0.0, 0.25),
+        harsh_stop_mps2=2.0,
+    )
     assert scoring_from_json(json.loads(json.dumps(scoring_to_json(scoring))), "here") == scoring
 
 
@@ -39,6 +46,8 @@ def test_a_scoring_written_before_red_lights_cost_anything_takes_the_usual_facto
         ({"comfort_weights": [1]}, r"'comfort_weights' is \[1\]; it must be an object of parts and weights"),
         ({"comfort_weights": {"tea": 1}}, "'tea' is no part of the comfort score; there are balance"),
         ({"comfort_weights": {"service": "no"}}, "the comfort weight of service is 'no'; it must be a number"),
+        ({"standing_place": {"forward": 1}}, "has the key 'forward'.*did you mean 'forward_m'"),
+        ({"harsh_stop_mps2": -1}, "harsh_stop_mps2 is -1.0; it must be a number that is not negative"),
         ({"penalties": [1]}, r"'penalties' is \[1\]; it must be an object"),
         ({"penalties": {"speeding": "much"}}, "the penalty of speeding is 'much'; it must be a number"),
         ({"penalties": {"speeding": 1.2}}, "the penalty of speeding is 1.2; it is a factor"),

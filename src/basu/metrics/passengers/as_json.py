@@ -6,7 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
-from basu.metrics.passengers.harsh_stops import HARSH_MPS2
 from basu.metrics.passengers.near_misses import NEAR_S
 
 if TYPE_CHECKING:
@@ -32,7 +31,7 @@ def passengers_to_json(history: History, judged: Judged | None) -> dict[str, Any
         "thresholds": {
             "step_mps2": STEP_MPS2,
             "grip_mps2": GRIP_MPS2,
-            "harsh_stop_mps2": HARSH_MPS2,
+            "harsh_stop_mps2": judged.harsh_mps2,
             "near_miss_s": NEAR_S,
         },
         "largest": {

@@ -14,7 +14,7 @@ from basu.metrics.passengers.balance import GRIP_MPS2, Balance, balance
 from basu.metrics.passengers.causes import Cause, Kind, cause
 from basu.metrics.passengers.comfort_score import ComfortWeights, comfort_score, parts
 from basu.metrics.passengers.felt import STANDING, Felt, Place, felt
-from basu.metrics.passengers.harsh_stops import HarshStop, harsh_stops
+from basu.metrics.passengers.harsh_stops import HARSH_MPS2, HarshStop, harsh_stops
 from basu.metrics.passengers.near_misses import Party, near_misses
 from basu.metrics.passengers.service import Visit, service
 from basu.metrics.passengers.vibration import Vibration, vibration
@@ -30,6 +30,7 @@ class Judged:
     """All that the passengers have to say."""
 
     place: Place
+    harsh_mps2: float  # from which on a braking is a harsh stop
     felt: Felt
     balance: Balance
     stops: tuple[tuple[HarshStop, Cause], ...]
@@ -47,18 +48,24 @@ class Judged:
         return not self.reasons
 
 
-def judge(history: History, weights: ComfortWeights | None = None, place: Place = STANDING) -> Judged | None:
+def judge(
+    history: History,
+    weights: ComfortWeights | None = None,
+    place: Place = STANDING,
+    harsh_mps2: float = HARSH_MPS2,
+) -> Judged | None:
     """Judge a ride as somebody standing at ``place``; None for a record too short to feel anything."""
     sensed = felt(history, place)
     if sensed is None:
         return None
     weights = weights or ComfortWeights()
     upright, shaken = balance(sensed), vibration(sensed)
-    stops = tuple((stop, cause(history, stop)) for stop in harsh_stops(sensed))
+    stops = tuple((stop, cause(history, stop)) for stop in harsh_stops(sensed, harsh_mps2))
     parties, visits = near_misses(history), service(history)
     measured = parts(upright, [why.kind is Kind.NOTHING for _, why in stops], shaken, parties, visits)
     return Judged(
         place=place,
+        harsh_mps2=harsh_mps2,
         felt=sensed,
         balance=upright,
         stops=stops,
