@@ -86,7 +86,11 @@ def main() -> None:
             listed = broken_off(command(agent, killed, options.runs, *resume), killed, at_run, dice.uniform(0, 2), name)
             print(f"{name.name} after run {at_run}: {listed} runs are listed", flush=True)
             resume = ["--resume"] if (killed / "s" / "series.json").exists() else []
-        subprocess.run(command(agent, killed, options.runs, *resume), capture_output=True, check=False)
+        last = subprocess.run(
+            command(agent, killed, options.runs, *resume), capture_output=True, check=False, text=True
+        )
+        if done(killed) < options.runs:
+            sys.exit(f"not whole: {done(killed)} of {options.runs} runs\n{last.stdout[-2000:]}\n{last.stderr[-2000:]}")
         killed_s = time.monotonic() - began_s
         print(f"whole after {killed_s:.0f} s: {done(killed)} of {options.runs} runs", flush=True)
         began_s = time.monotonic()

@@ -39,6 +39,10 @@ def test_an_option_of_a_later_version_is_refused_before_anything_starts(
         (["run", "basic", "--infraction-weight", "1.5"], "must be non-negative and sum to 1"),
         (["run", "basic", "--routes", "none.xml"], "route file 'none.xml' was not found"),
         (["run", "basic", "--routes", "routes/linden_short.xml", "--route-id", "9"], "has no route '9'"),
+        (["run", "basic", "--routes", "routes/linden_short.xml", "--routes-subset", "1,7"], "has no '7'; it has 1"),
+        (["run", "basic", "--weather", "Sunny"], "there is no weather called 'Sunny'; there are"),
+        (["run", "basic", "--resume"], "--resume goes on with a series; name it with --series"),
+        (["run", "basic", "--walkers", "-2"], "--walkers is -2; it must be 0 or more"),
         (["score", "nowhere"], "nowhere is no folder"),
     ],
 )
