@@ -65,7 +65,7 @@ def _address(report: Path, beside: Path) -> str:
 
 def _picture(run: RunRecord, row: Row, shared: Bounds | None) -> Element:
     """One run: its path and its speed."""
-    caption = e("figcaption", e("b", row.agent), f": driving score {figure(row.driving)}, {row.ended}")
+    caption = e("figcaption", e("b", row.agent), f": driving score {figure(row.driving)}", e("br"), row.ended)
     if run.history is None:
         return e("figure", caption, e("p", "Nothing was driven."))
     felt = signals(run.history)

@@ -68,7 +68,7 @@
   }
   openNamed();
 
-  const evidence = [...document.querySelectorAll(".evidence")];
+  const evidence = [...document.querySelectorAll("details")];
   let opened = [];
   addEventListener("beforeprint", () => {
     opened = evidence.filter((each) => !each.open);

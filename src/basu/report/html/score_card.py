@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 
+AT_ONCE = 4  # reasons of the passengers that are shown without asking
+
+
 def score_card(document: dict[str, Any]) -> Element:
     """The card of a result."""
     if document["scores"] is None:
@@ -97,7 +100,6 @@ def _leaderboard(editions: dict[str, dict[str, Any]]) -> Element:
         ("route completion, %", "route_completion"),
         ("infraction penalty", "infraction_penalty"),
         ("ended by", "ended_by"),
-        ("not measured", "not_measured"),
     )
     head = e("tr", e("th", "edition", scope="col"), *(e("th", name, scope="col") for name in editions))
     body = [
@@ -105,13 +107,12 @@ def _leaderboard(editions: dict[str, dict[str, Any]]) -> Element:
         for name, key in rows
     ]
     table = e("table", e("caption", "CARLA leaderboard"), e("thead", head), e("tbody", *body), class_="editions")
-    return e("div", table)
+    missing = sorted({words(what) for edition in editions.values() for what in edition["not_measured"]})
+    return e("div", table, e("p", f"Not measured: {', '.join(missing)}.", class_="note") if missing else None)
 
 
 def _plain(value: object) -> str:
     """A cell of the leaderboard's table."""
-    if isinstance(value, list):
-        return ", ".join(words(str(item)) for item in value) or "nothing"
     return figure(value) if isinstance(value, float | int) else words(str(value)) if value else DASH
 
 
@@ -126,10 +127,19 @@ def _passengers(verdict: dict[str, Any]) -> Element:
         "div",
         e("table", e("caption", "Standing passengers")),
         e("p", e("b", word, class_=f"status {style}"), f" comfort score {comfort}, from 0 (bad) to 1 (good)"),
-        e("ul", *(e("li", reason) for reason in verdict["reasons"])) if verdict["reasons"] else None,
+        *_reasons(verdict["reasons"]),
         e("details", e("summary", "figures"), figures.table(figures.rows(shown))),
         _service(verdict["service"]) if verdict.get("service") else None,
     )
+
+
+def _reasons(reasons: list[str]) -> list[Element]:
+    """What they say, the first of it at once."""
+    found = [e("ul", *(e("li", reason) for reason in reasons[:AT_ONCE]))] if reasons else []
+    if len(reasons) > AT_ONCE:
+        rest = e("ul", *(e("li", reason) for reason in reasons[AT_ONCE:]))
+        found.append(e("details", e("summary", f"{len(reasons) - AT_ONCE} more"), rest))
+    return found
 
 
 def _service(visits: list[dict[str, Any]]) -> Element:
