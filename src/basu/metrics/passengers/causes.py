@@ -27,7 +27,7 @@ THINK_S, SPARE_M = 1.0, 2.0
 BEYOND_M = 1.0  # a line this far behind the front bumper is still braked for
 CONTACT_S = 0.5  # a braking that begins this near to a contact is the contact's
 SLOWER_MPS = 0.5  # a limit or bend asks for a slowdown only where it is lower than the speed by this
-BEND_M = 6.0  # over which a bend's curvature is taken
+BEND_M = 3.0  # over which a bend's curvature is taken
 RED, YELLOW = 0, 1  # carla.TrafficLightState
 LOOK_BACK_S = 2.0  # what the vehicle did before a phantom stop
 
@@ -139,7 +139,6 @@ def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
         if bend_mps < stop.from_mps - SLOWER_MPS:
             name = f"a bend of {1.0 / curvature_1pm:.0f} m radius"
             yield _reason(Kind.BEND, stop, float(route.s_m[index]) - at_m, bend_mps, name)
-            return
 
 
 def _nothing(history: History, stop: HarshStop) -> Cause:
