@@ -22,13 +22,13 @@ def draw(runs, to, around_s=None):
     for (speed, push), folder in zip(axes, runs, strict=True):
         sensed = felt(read_history(folder))
         speed.plot(sensed.t_s, sensed.speed_mps, color="black")
-        speed.set(title=folder.resolve().name, xlabel="t in s", ylabel="speed in m/s")
+        speed.set(title=folder.absolute().name, xlabel="t in s", ylabel="speed in m/s")
         push.axhspan(-GRIP_MPS2, GRIP_MPS2, color="0.93", label="with a step")
         push.axhspan(-STEP_MPS2, STEP_MPS2, color="0.85", label="without a step")
         push.plot(sensed.t_s, sensed.filtered_along_mps2, color="black", label="along")
         push.plot(sensed.t_s, sensed.filtered_across_mps2, color="tab:orange", linestyle="--", label="across")
-        push.set(title="felt, filtered", xlabel="t in s", ylabel="m/s²", ylim=(-4.5, 3.0))
-        push.legend(loc="lower right", ncols=2, fontsize=8)
+        push.set(title="felt, filtered", xlabel="t in s", ylabel="m/s²", ylim=(-4.5, 4.5))
+        push.legend(loc="upper right", ncols=2, fontsize=8)
         if around_s is not None:
             for axis in (speed, push):
                 axis.set_xlim(around_s - 5.0, around_s + 5.0)
