@@ -112,7 +112,7 @@ def _speed(felt: Signals, finding: Finding) -> Element:
         Line("driven", felt.speed_mps[near], "first"),
         Line("limit", felt.limit_mps[near], "limit", steps=True),
     )
-    moment = Mark(finding.t_s, finding.label, finding.title, f"#{finding.anchor}")
+    moment = Mark(finding.t_s, finding.label, finding.title, f"#{finding.anchor}", finding.factor is not None)
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 

@@ -89,4 +89,4 @@ def _offset(history: History, felt: Signals, by_hand: Sequence[Shade]) -> Elemen
 
 def _flags(found: Iterable[Finding]) -> list[Mark]:
     """Flags that open the evidence."""
-    return [Mark(finding.t_s, finding.label, finding.title, f"#{finding.anchor}") for finding in found]
+    return [Mark(f.t_s, f.label, f.title, f"#{f.anchor}", scored=f.factor is not None) for f in found]

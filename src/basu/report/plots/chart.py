@@ -50,6 +50,7 @@ class Mark(NamedTuple):
     label: str
     title: str
     href: str
+    scored: bool = True
 
 
 def chart(
@@ -200,7 +201,8 @@ def _level_names(levels: Sequence[tuple[float, str]], low: float, high: float) -
 def _mark(mark: Mark, begin_s: float, end_s: float) -> Element:
     """A numbered flag at the top of a chart."""
     at = share(mark.t_s, begin_s, end_s)
-    return e("a", mark.label, href=mark.href, class_="flag", title=mark.title, style=f"left:{at}")
+    style = "flag" if mark.scored else "flag faint"
+    return e("a", mark.label, href=mark.href, class_=style, title=mark.title, style=f"left:{at}")
 
 
 def _legend(line: Line) -> Element:
