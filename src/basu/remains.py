@@ -150,7 +150,8 @@ def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, conf
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
     if history is not None:
         write_history(folder, history)
-        picture.draw(folder / PICTURE_FILE, history, lanes.streets(), f"{_heading(config)}: {document['status']}")
+        title = f"{_heading(config)}: {document['status']}"
+        picture.draw(folder / PICTURE_FILE, history, lanes.streets(), title, scoring)
     streets = [] if history is None else around(lanes.streets(), history)
     write_streets(folder, streets)
     write_report(folder, RunRecord(name=folder.name, config=config, result=document, history=history, streets=streets))

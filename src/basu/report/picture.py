@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.history import History
+    from basu.metrics.score import Scoring
 
 CROWDED_M = 60.0  # stops nearer to each other than this have their names one below the other
 MARGIN_M = 40.0  # of street map around the route
@@ -29,8 +30,17 @@ WIDTH_INCHES, DPI = 10.0, 130
 STREET, PLANNED, DRIVEN, MARK = "#d9d9d9", "#3182bd", "#e6550d", "#a50f15"
 
 
-def draw(path: Path, history: History, streets: Sequence[NDArray[np.float64]], title: str) -> None:
-    """Write the picture; ``streets`` are the lanes' centre lines, each (K, 2) in m, CARLA frame."""
+def draw(
+    path: Path,
+    history: History,
+    streets: Sequence[NDArray[np.float64]],
+    title: str,
+    scoring: Scoring | None = None,
+) -> None:
+    """Write the picture, with the infractions that ``scoring`` makes of the drive.
+
+    ``streets`` are the lanes' centre lines, each (K, 2) in m, CARLA frame.
+    """
     route, frames = history.facts.route, history.frames
     low = np.minimum(route.points_m[:, :2].min(axis=0), [frames["x_m"].min(), frames["y_m"].min()]) - MARGIN_M
     high = np.maximum(route.points_m[:, :2].max(axis=0), [frames["x_m"].max(), frames["y_m"].max()]) + MARGIN_M
@@ -40,7 +50,7 @@ def draw(path: Path, history: History, streets: Sequence[NDArray[np.float64]], t
     axes = figure.add_subplot()
     axes.add_collection(LineCollection(list(streets), colors=STREET, linewidths=2.0, zorder=1))
     _paths(axes, history)
-    _marks(axes, history)
+    _marks(axes, history, scoring)
     axes.set_xlim(low[0], high[0])
     axes.set_ylim(high[1], low[1])  # CARLA's y points south: north is up
     axes.set_aspect("equal")
@@ -64,7 +74,7 @@ def _paths(axes: Axes, history: History) -> None:
     axes.plot(frames["x_m"][-1], frames["y_m"][-1], "s", color=DRIVEN, markersize=7, label="end of the drive", zorder=5)
 
 
-def _marks(axes: Axes, history: History) -> None:
+def _marks(axes: Axes, history: History, scoring: Scoring | None) -> None:
     """Service stops by name, infractions by kind."""
     stops = history.facts.route.stops
     west_m, east_m = history.facts.route.points_m[:, 0].min(), history.facts.route.points_m[:, 0].max()
@@ -80,7 +90,7 @@ def _marks(axes: Axes, history: History) -> None:
             textcoords="offset points",
             fontsize=7,
         )
-    for number, found in enumerate(infractions(history)):
+    for number, found in enumerate(infractions(history, scoring)):
         axes.plot(
             found.x_m,
             found.y_m,
