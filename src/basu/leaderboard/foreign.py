@@ -82,7 +82,7 @@ def _entered(namespace: Mapping[str, object], entry_point: object, path: str) ->
         raise UserError(f"{path}: {ENTRY_POINT} is no function; it must return the name of the agent's class")
     try:
         name = entry_point()
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise UserError(f"{path}: {ENTRY_POINT}() raised {type(error).__name__}: {error}") from error
     if not isinstance(name, str):
         raise UserError(
@@ -104,21 +104,31 @@ def _check(agent_class: type[Any], path: str) -> None:
             )
         given = arguments if isinstance(inspect.getattr_static(agent_class, name), staticmethod) else (None, *arguments)
         try:
-            inspect.signature(method).bind(*given)
+            signature = inspect.signature(method)
+        except ValueError:
+            continue  # compiled, and says nothing about itself
+        try:
+            signature.bind(*given)
         except TypeError as error:
             raise UserError(
                 f"{name} of {agent_class.__name__} in {path} cannot be called as the leaderboard does: {error}"
             ) from error
-    if (version := _ros_version(agent_class)) in {1, 2}:
+    if (version := _ros_version(agent_class, path)) in (1, 2):
         raise UserError(
             f"{agent_class.__name__} in {path} is an agent for ROS {version}; BASU has no bridge to ROS yet"
         )
 
 
-def _ros_version(agent_class: type[Any]) -> object:
+def _ros_version(agent_class: type[Any], path: str) -> object:
     """What an agent of the leaderboard 2.x says of ROS."""
-    asked = inspect.getattr_static(agent_class, "get_ros_version", None)
-    return agent_class.get_ros_version() if isinstance(asked, staticmethod) else None
+    if not isinstance(inspect.getattr_static(agent_class, "get_ros_version", None), staticmethod):
+        return None
+    try:
+        return agent_class.get_ros_version()
+    except (Exception, SystemExit) as error:
+        raise UserError(
+            f"get_ros_version of {agent_class.__name__} in {path} raised {type(error).__name__}: {error}"
+        ) from error
 
 
 def _dialect(agent_class: type[Any]) -> Dialect:
@@ -129,6 +139,8 @@ def _dialect(agent_class: type[Any]) -> Dialect:
         inspect.signature(agent_class).bind("host", 0, 0)
     except TypeError:
         return Dialect.LEADERBOARD_1
+    except ValueError:  # compiled, and says nothing about itself
+        return Dialect.LEADERBOARD_2
     return Dialect.LEADERBOARD_2
 
 

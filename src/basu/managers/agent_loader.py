@@ -18,6 +18,7 @@ from basu.errors import UserError
 from basu.leaderboard.adapter import LeaderboardAgent, adapted
 from basu.leaderboard.foreign import ENTRY_POINT, foreign_agent
 from basu.leaderboard.modules import stand_in
+from basu.managers.time_limit import OverrunError, call_within
 
 BUILT_IN = {
     "basic": "basu.agents.basic",
@@ -29,6 +30,8 @@ BUILT_IN = {
     "human": "basu.agents.human",
     "incident": "basu.agents.incident",
 }
+
+LOAD_LIMIT_S = 120.0  # of wall time: what an agent imports may be large
 
 
 class LoadedAgent(NamedTuple):
@@ -90,7 +93,8 @@ def _run_file(path: Path) -> tuple[dict[str, object], str]:
     name = f"basu_agent_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None, "a path that ends in .py has a loader"
-    assert spec.loader is not None, "likewise"
+    loader = spec.loader
+    assert loader is not None, "likewise"
     module = importlib.util.module_from_spec(spec)
     module.__dict__.update(carla=carla, AutonomousAgent=AutonomousAgent)
     sys.modules[name] = module
@@ -98,10 +102,12 @@ def _run_file(path: Path) -> tuple[dict[str, object], str]:
     if beside not in sys.path:
         sys.path.append(beside)  # after everything else: an agent of several files finds its own, and shadows nothing
     try:
-        spec.loader.exec_module(module)
+        call_within(LOAD_LIMIT_S, lambda: loader.exec_module(module))
+    except OverrunError:
+        raise UserError(f"the agent's file {path} was not loaded within {LOAD_LIMIT_S:g} s") from None
     except SyntaxError as error:
         raise UserError(f"the agent's file {path} is no Python: line {error.lineno}: {error.msg}") from error
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         line = next(
             (f.lineno for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename == spec.origin), 0
         )

@@ -100,6 +100,7 @@ def replaced(line: str, by: str) -> str:
     [
         pytest.param("get_entry_point = 'Mine'\n", "get_entry_point is no function", id="no function"),
         pytest.param("def get_entry_point(): return 1/0\n", r"raised ZeroDivisionError", id="raises"),
+        pytest.param("def get_entry_point(): raise SystemExit(3)\n", r"raised SystemExit: 3", id="exits"),
         pytest.param("def get_entry_point(): pass\n", "returned NoneType; it must return the name", id="returns None"),
         pytest.param("def get_entry_point(): return 3\n", "returned int", id="returns a number"),
         pytest.param(ENTRY, "names 'Mine', and the file has no class of that name", id="no class"),
@@ -120,6 +121,11 @@ def replaced(line: str, by: str) -> str:
             replaced("    def destroy", "    @staticmethod\n    def get_ros_version(): return 2\n    def destroy"),
             "is an agent for ROS 2; BASU has no bridge",
             id="ros",
+        ),
+        pytest.param(
+            replaced("    def destroy", "    @staticmethod\n    def get_ros_version(): return {}[0]\n    def destroy"),
+            "get_ros_version of Mine in .* raised KeyError",
+            id="ros raises",
         ),
     ],
 )

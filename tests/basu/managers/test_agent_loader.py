@@ -1,11 +1,13 @@
 """Claims about finding an agent: by name, in a file without imports, and a sentence for every way that fails."""
 
+import random
 from pathlib import Path
 
 import pytest
 
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.errors import UserError
+from basu.managers import agent_loader
 from basu.managers.agent_loader import load_agent
 
 SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
@@ -63,7 +65,7 @@ def test_one_of_several_agents_is_named_behind_a_colon(tmp_path: Path) -> None:
     ("name", "sentence"),
     [
         ("basik", "no agent called 'basik'; did you mean 'basic'"),
-        ("zzz", "there are basic, behavioral, .*, forward, human, or name a Python file"),
+        ("zzz", "there are basic, behavioral, .*, forward, human, .*or name a Python file"),
         ("behavioral-careful", "did you mean 'behavioral-cautious'"),
         ("nowhere.py", "file nowhere.py does not exist"),
     ],
@@ -79,6 +81,7 @@ def test_a_name_that_is_none_gets_a_sentence(name: str, sentence: str) -> None:
         pytest.param("x = 1", "holds no subclass of AutonomousAgent", id="no agent"),
         pytest.param("def f(:", "is no Python: line 1", id="no Python"),
         pytest.param("import nothing_of_this_name", "line 1: ModuleNotFoundError", id="import fails"),
+        pytest.param("raise SystemExit(3)", "line 1: SystemExit: 3", id="ends the program"),
         pytest.param("x = 1\ny = x / 0", "line 2: ZeroDivisionError", id="raises"),
         pytest.param(
             "class A(AutonomousAgent):\n  def setup(self): pass", "A in .* lacks config, run_step", id="incomplete"
@@ -88,3 +91,16 @@ def test_a_name_that_is_none_gets_a_sentence(name: str, sentence: str) -> None:
 def test_a_file_that_is_no_agent_gets_a_sentence(tmp_path: Path, text: str, sentence: str) -> None:
     with pytest.raises(UserError, match=sentence):
         load_agent(written(tmp_path, text))
+
+
+def test_a_file_that_never_ends_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(agent_loader, "LOAD_LIMIT_S", 0.1)
+    with pytest.raises(UserError, match=r"an_agent.py was not loaded within 0.1 s"):
+        load_agent(written(tmp_path, "while True: pass"))
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_any_bytes_at_all_get_a_sentence(tmp_path: Path, seed: int) -> None:
+    (tmp_path / "an_agent.py").write_bytes(random.Random(seed).randbytes(seed * 5))
+    with pytest.raises(UserError, match=r"an_agent\.py"):
+        load_agent(str(tmp_path / "an_agent.py"))
