@@ -49,7 +49,7 @@ class Gps:
         return Place(latitude, self._longitude + math.degrees(east_rad), at.z)
 
     def measured(self, fix: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What a GNSS sensor measured in CARLA's degrees, (3,) latitude, longitude and altitude in m, in these degrees."""
+        """A measurement of CARLA's in these degrees; both (3,), latitude, longitude and altitude in m."""
         place = self.place(self._location(float(fix[0]), float(fix[1])))
         return np.array([place.latitude, place.longitude, fix[2]], np.float64)
 
