@@ -16,7 +16,19 @@ def test_the_supported_page_is_what_the_code_says() -> None:
     assert done.returncode == 0, done.stderr
 
 
-@pytest.mark.parametrize("command", ["linden serve", "linden map", "basu run", "basu score", "basu list"])
+@pytest.mark.parametrize(
+    "command",
+    [
+        "linden serve",
+        "linden map",
+        "basu run",
+        "basu score",
+        "basu list",
+        "basu report",
+        "basu compare",
+        "basu experiment",
+    ],
+)
 def test_every_command_has_a_place_in_the_pages(command: str) -> None:
     pages = [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")]
     assert any(command in page.read_text("utf-8") for page in pages)

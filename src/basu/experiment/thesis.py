@@ -14,6 +14,7 @@ from basu.experiment.table_5_1 import PRINTED, SCORING, measured
 from basu.experiment.tables import in_page, text
 from basu.manual.session import read_session
 from basu.metrics.infraction import Infraction
+from basu.outcome import Fault, Status
 from basu.report.compare.writing import compare
 from basu.report.folder import LATEST
 from basu.report.reading import read_run
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     from basu.experiment.table_5_1 import Measured
     from basu.options import RunOptions
 
+KEYS = "data/human_session.json"  # of the human; it knows who pressed them
 ROUTE, VEHICLE, WEATHER = "routes/linden_short.xml", "vehicle.tesla.model3", "ClearSunset"
-UNDRIVEN = frozenset({"SetupFailed", "SimulatorFailed", "Interrupted", "BenchmarkFailed"})
 
 
 class Case(NamedTuple):
@@ -42,7 +43,7 @@ CASES = (
     Case("basic", "basic"),
     Case("behavioral", "deviating"),  # behavioral up to the place where it leaves the path on purpose
     Case("forward", "forward"),
-    Case("human", "human", keys="data/human_session.json"),
+    Case("human", "human", keys=KEYS),
 )
 
 
@@ -65,8 +66,7 @@ def thesis(options: RunOptions) -> int:
         print(f"\n{number} of {len(CASES)}: {case.row} ({case.agent})")
         folders.append(_drive(case, replace(options, output=folder)))
         ours[case.row] = _row(folders[-1])
-    keys = next(case.keys for case in CASES if case.keys)
-    by = read_session(find(keys, "session of keys")).by
+    by = read_session(find(KEYS, "session of keys")).by
     explained = differences(PRINTED, ours, by)
     written = compare(folders, folder, in_page(PRINTED, ours, explained))
     print(f"\n{text(PRINTED, ours)}\n")
@@ -87,10 +87,16 @@ def _row(folder: Path) -> Measured:
     """Our row of the table.
 
     Raises:
-        SimulatorError: nothing was driven.
+        UserError, SimulatorError, KeyboardInterrupt: the drive is none that can be compared.
     """
     result = read_run(folder).result
-    if result["scores"] is None or result["status"] in UNDRIVEN:
-        raise SimulatorError(f"the experiment ends here: {result['status']}, {result['message']}")
+    status = Status(result["status"])
+    if status is Status.INTERRUPTED:
+        raise KeyboardInterrupt
+    if result["scores"] is None or status.fault in {Fault.SETUP, Fault.SIMULATOR}:
+        kind = UserError if status.fault is Fault.SETUP else SimulatorError
+        raise kind(
+            f"the experiment ends here, {folder.name} is not to be compared: {status.value}, {result['message']}"
+        )
     counts = Counter(Infraction(infraction["kind"]) for infraction in result["infractions"])
     return measured(counts, result["scores"]["path_following"])
