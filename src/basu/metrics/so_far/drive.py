@@ -1,4 +1,4 @@
-"""Infractions and scores while a drive lasts, for those who look on: each look costs what is new since the last one.
+"""Infractions and scores while a drive lasts: what each look settles, what is still pending.
 
 Signs and lights are judged from the last frame in which none had its line at the vehicle: what was found before that
 frame is settled. Contacts and speeding may last as long as a drive, so of those the latest message of each party and
@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.history.model import NO_LIGHT
-from basu.metrics.collisions_so_far import CollisionsSoFar
 from basu.metrics.infraction import Evidence, counts
 from basu.metrics.path_following import compared
 from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
 from basu.metrics.score import Scores, Scoring, driving_score, in_order, infraction_score
-from basu.metrics.speeding_so_far import SpeedingSoFar
+from basu.metrics.so_far.collisions import CollisionsSoFar
+from basu.metrics.so_far.speeding import SpeedingSoFar
 from basu.metrics.stop_signs import ZONE_BEFORE_M, stop_signs
 from basu.metrics.stretches import SPACING_M, chords, path_m, total_m
 from basu.routing import ControlKind
