@@ -46,7 +46,7 @@ def show_run(
     chosen = map_file or (kept if kept.is_file() else None)
     town = None if chosen is None else read_map(chosen, history.facts.route.town)
     parts = Parts(_pose(history.frames[0]), cameras=False, judged=True)
-    stream = open_stream(rrd, folder.name, parts, screen=screen)
+    stream = open_stream(rrd, folder.resolve().name, parts, screen=screen)
     recording = stream.recording
     if town is not None:
         scenery.log_map(recording, town)

@@ -49,10 +49,11 @@ def play(log: Log, where: Where, *, speed: float, progress: Progress) -> None:
     with _simulator(log.path, where) as (client, address):
         step_s = float(np.median(np.diff(log.elapsed_s))) if log.frames > 1 else 0.05
         hero = next(iter(log.ids_of(role_name="hero")), NOBODY)
-        world = _begun(client, log, hero)
-        progress.ready(address)
-        with ticked_by_us(world, step_s):
-            _go_on(world, log.frames, step_s, speed, where.timeout_s, progress.frame)
+        with ticked_by_us(client.get_world(), step_s):  # a replay goes on by itself where nobody holds the clock
+            world = _begun(client, log, hero)
+            progress.ready(address)
+            with ticked_by_us(world, step_s):  # again: another map comes with settings of its own
+                _go_on(world, log.frames, step_s, speed, where.timeout_s, progress.frame)
             with contextlib.suppress(RuntimeError):  # the simulator is gone, and the replay with it
                 client.stop_replayer(False)
 
