@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 STREETS_FILE = "streets.json"
 SCHEMA_VERSION = 1
 MARGIN_M = 40.0  # of street map around the route and the drive
+EDGE_M = 1e6  # no town is so large
 TOLERANCE_M = 0.25  # which a lane's line may be off
 
 Line = list[tuple[float, float]]  # x, y in m, CARLA frame
@@ -49,13 +50,15 @@ class Bounds(NamedTuple):
 def bounds_of(history: History, margin_m: float = MARGIN_M) -> Bounds:
     """What a map of this run has to show: the plan and the drive, with a margin."""
     plan, frames = history.facts.route.points_m, history.frames
-    x_m, y_m = np.concatenate([plan[:, 0], frames["x_m"]]), np.concatenate([plan[:, 1], frames["y_m"]])
-    return Bounds(
-        float(x_m.min()) - margin_m,
-        float(y_m.min()) - margin_m,
-        float(x_m.max()) + margin_m,
-        float(y_m.max()) + margin_m,
-    )
+    shown = np.concatenate([plan[:, :2], on_the_map(np.column_stack([frames["x_m"], frames["y_m"]]))])
+    west_m, north_m = shown.min(axis=0).tolist()
+    east_m, south_m = shown.max(axis=0).tolist()
+    return Bounds(west_m - margin_m, north_m - margin_m, east_m + margin_m, south_m + margin_m)
+
+
+def on_the_map(points_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Those of the points (N, 2) that are anywhere: a simulator may lose a vehicle into nan or beyond the world."""
+    return points_m[(np.abs(points_m) < EDGE_M).all(axis=1)]
 
 
 def union(found: Sequence[Bounds]) -> Bounds:

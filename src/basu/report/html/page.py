@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
+import math
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -152,7 +153,7 @@ def _samples(history: History, felt: Signals) -> str:
         "offset": (felt.offset_m if np.isfinite(felt.offset_m).any() else frames["lateral_m"], 2),
     }
     written = {
-        name: [None if value != value else round(value, digits) for value in values[chosen].tolist()]  # noqa: PLR0124 - nan
+        name: [round(value, digits) if math.isfinite(value) else None for value in values[chosen].tolist()]
         for name, (values, digits) in columns.items()
     }
     return json.dumps(written, separators=(",", ":"), allow_nan=False)

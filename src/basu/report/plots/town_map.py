@@ -14,7 +14,7 @@ from basu.report.markup import e, number, percent
 from basu.report.plots import marks
 from basu.report.plots.axis import ticks
 from basu.report.plots.decimate import path
-from basu.report.streets import bounds_of
+from basu.report.streets import bounds_of, on_the_map
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def plain_map(
 def paths(history: History) -> list[Element]:
     """The plan, wide and pale, and on it the drive."""
     frames = history.frames
-    driven_m = np.column_stack([frames["x_m"], frames["y_m"]])
+    driven_m = on_the_map(np.column_stack([frames["x_m"], frames["y_m"]]))
     return [
         e("path", d=lines([path(history.facts.route.points_m, TOLERANCE_M)]), class_="planned"),
         e("path", d=lines([path(driven_m, TOLERANCE_M)]), class_="driven"),

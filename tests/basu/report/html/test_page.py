@@ -49,6 +49,16 @@ def test_a_run_of_one_tick_has_a_report() -> None:
     assert b"Timeline" in report(record(driven([0.0])))
 
 
+@pytest.mark.parametrize("name", ["x_m", "y_m", "yaw_rad", "velocity_x_mps", "lane_offset_m", "speed_limit_mps"])
+@pytest.mark.parametrize("value", [np.nan, np.inf, 1e300])
+def test_a_simulator_that_lost_the_vehicle_does_not_cost_the_report(name: str, value: float) -> None:
+    history = crashing()
+    run = record(history)
+    history.frames[name][200:210] = value
+    with np.errstate(all="ignore"):
+        assert b"Timeline" in report(run)
+
+
 def test_a_round_of_the_shuttle_is_small_and_written_within_a_second() -> None:
     rng = np.random.default_rng(5)
     speeds = np.concatenate([ramp(0.0, 8.0, 5.0) + at(8.0, 20.0) + ramp(8.0, 0.0, 5.0) + at(0.0, 7.0)] * 30)
