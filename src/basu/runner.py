@@ -10,7 +10,7 @@ from basu.outcome import Status
 from basu.preparation import new_agents, prepare
 from basu.report.folder import plain, point_latest, publish, run_name
 from basu.series import conditions, open_series
-from basu.simulator import simulator_for
+from basu.simulator import asking, check_towns, simulator_for
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -58,6 +58,8 @@ def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Seri
     """Run one job after the other in one simulator."""
     worst = 0
     with simulator_for(options) as simulator:
+        with asking("naming its towns"):
+            check_towns(simulator.client, (job.description.town for job in jobs))
         session = Session(options, scoring, prepared, simulator)
         for nth, job in enumerate(jobs):
             is_prepared = nth == 0 and job.seed == options.seed

@@ -24,7 +24,7 @@ import carla
 from basu.errors import SimulatorError, UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from typing import IO
 
     from basu.options import RunOptions
@@ -202,18 +202,25 @@ def asking(what: str) -> Iterator[None]:
 
 
 def world_of(client: carla.Client, town: str) -> carla.World:
-    """The world with ``town`` in it, loaded where another one is.
+    """The world with ``town`` in it, loaded where another one is."""
+    world = client.get_world()
+    return world if _short(world.get_map().name) == town else client.load_world(town, reset_settings=False)
+
+
+def check_towns(client: carla.Client, towns: Iterable[str]) -> None:
+    """See whether the simulator has all of these towns, before any of them is driven in.
 
     Raises:
-        UserError: the simulator has no such town.
+        UserError: it lacks one.
     """
-    world = client.get_world()
-    if _short(world.get_map().name) == town:
-        return world
-    names = sorted({_short(name) for name in client.get_available_maps()})
-    if town not in names:
-        raise UserError(f"the route is in {town}, which this simulator does not have; it has {', '.join(names)}")
-    return client.load_world(town, reset_settings=False)
+    names = {_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())}
+    missing = sorted(set(towns) - names)
+    if missing:
+        where = f"the route is in {missing[0]}" if len(missing) == 1 else f"routes are in {', '.join(missing)}"
+        raise UserError(
+            f"{where}, which this simulator does not have; it has {', '.join(sorted(names))}: "
+            "name another file with --routes, or choose routes with --routes-subset"
+        )
 
 
 def _short(map_name: str) -> str:
