@@ -53,9 +53,9 @@ class Watched(BasicAgent):
 
 
 class Seen(HumanAgent):
-    """The session of the experiment, in its second haste."""
+    """The session of the experiment, after its second haste."""
 
-    keys: Mapping[int, tuple[str, ...]] = {1650: ("F12",), 1651: ("ESCAPE",)}
+    keys: Mapping[int, tuple[str, ...]] = {1752: ("F12",), 1753: ("ESCAPE",)}
     steps = 0
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
@@ -99,4 +99,4 @@ if __name__ == "__main__":
                     *options,
                 ]
             )
-            Image.open(shot).quantize(COLOURS).save(IMAGES / name, optimize=True)
+            Image.open(shot).quantize(COLOURS, Image.Quantize.MAXCOVERAGE, kmeans=4).save(IMAGES / name, optimize=True)

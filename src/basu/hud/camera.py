@@ -20,7 +20,7 @@ class ChaseCamera:
     """After ``look``, ``latest`` is the newest picture."""
 
     def __init__(self, run: Run, size: tuple[int, int], every_s: float) -> None:
-        """Attach it.
+        """Attach it and begin to take pictures.
 
         Args:
             run: with the vehicle.
@@ -36,15 +36,19 @@ class ChaseCamera:
             carla.Location(x=box.location.x - box.extent.x - BEHIND_M, z=box.location.z + box.extent.z + ABOVE_M),
             carla.Rotation(pitch=-DOWN_DEG),
         )
+        self._looks = False
+        self.latest: tuple[bytes, tuple[int, int]] | None = None  # BGRA, and its width and height
+        actor = None
         try:
             blueprint = run.world.get_blueprint_library().find("sensor.camera.rgb")
             for name, value in (("image_size_x", size[0]), ("image_size_y", size[1]), ("sensor_tick", every_s)):
                 blueprint.set_attribute(name, str(value))
-            self._actor = run.world.spawn_actor(blueprint, pose, attach_to=run.vehicle)
+            self._actor = actor = run.world.spawn_actor(blueprint, pose, attach_to=run.vehicle)
+            self.look(begin=True)
         except (RuntimeError, IndexError) as error:
+            if actor is not None:
+                actor.destroy()
             raise SimulatorError(f"no camera: {error}") from error
-        self._looks = False
-        self.latest: tuple[bytes, tuple[int, int]] | None = None  # BGRA, and its width and height
 
     def look(self, *, begin: bool) -> None:
         """Begin or stop to take pictures."""

@@ -25,10 +25,12 @@ KEYS = (
 WIDTH, ROW = 560, 26
 
 
-def draw_help(canvas: Canvas) -> None:
-    """Over everything else, in the middle."""
+def draw_help(canvas: Canvas, panel: float) -> None:
+    """In the middle of what the panel, so wide, leaves free; over it where that is too narrow."""
     height = 70 + ROW * len(KEYS)
-    left, top = (canvas.size[0] - WIDTH) / 2, max(4.0, (canvas.size[1] - height) / 2)
+    free = canvas.size[0] - panel
+    left = panel + (free - WIDTH) / 2 if free >= WIDTH else canvas.size[0] - WIDTH
+    top = max(4.0, (canvas.size[1] - height) / 2)
     canvas.shade((left, top, WIDTH, height), 0.85)
     canvas.text((left + 20, top + 14), "Keys", size=30)
     canvas.text((left + WIDTH - 20, top + 20), "BASU", GREY, align=1.0)

@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from basu.errors import SimulatorError
+from basu.errors import SimulatorError, UserError
 from basu.hud.camera import ChaseCamera
 from basu.hud.canvas import GREY, RED, WHITE, Canvas
 from basu.hud.help_page import draw_help
@@ -115,7 +115,7 @@ class Hud(BaseManager):
             elif strike is Strike.VIEW:
                 self._change_view()
             elif strike is Strike.SCREENSHOT:
-                self._notices.add(f"picture in {self._options.hud_screenshot or PICTURE}", now_s)
+                self._notices.add(f"picture in {(self._options.hud_screenshot or PICTURE).name}", now_s)
         return Strike.SCREENSHOT in strikes
 
     def _tell_driver(self, now_s: float) -> None:
@@ -138,7 +138,6 @@ class Hud(BaseManager):
         every_s = 0.0 if self._person.drives_first else WATCH_EVERY_S
         try:
             self._camera = ChaseCamera(self._run, self._options.hud_camera, every_s)
-            self._camera.look(begin=True)
         except SimulatorError as error:
             self._on_map = True
             self._notices.add(f"{error}; here is the map", time.perf_counter())
@@ -162,7 +161,7 @@ class Hud(BaseManager):
             self._panel.draw(read(self._run, self._live, frame, self._judge.latest, nearby, wall_s))
         self._draw_notices(canvas, now_s)
         if self._helps:
-            draw_help(canvas)
+            draw_help(canvas, WIDTH if self._has_panel else 0.0)
         canvas.show()
 
     def _body(self, row: tuple[float, ...]) -> Body:
@@ -182,9 +181,12 @@ class Hud(BaseManager):
             canvas.text((left, top - 1), notice.text, RED if notice.bad else WHITE if clear > 0.5 else GREY)
 
     def _save(self, path: Path) -> None:
-        """Write the window into a file."""
+        """Write the window into a file; where that fails, the run goes on."""
         assert self._canvas is not None, "setup opened it"
-        write_bytes(path, self._canvas.png())
+        try:
+            write_bytes(path, self._canvas.png())
+        except UserError as error:
+            self._notices.add(str(error), time.perf_counter(), bad=True)
 
 
 class Pace:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -30,6 +31,9 @@ def person_for(options: RunOptions, agent_class: type[AutonomousAgent]) -> Perso
         UserError: no window can be opened, or there is no such session.
     """
     by_hand = issubclass(agent_class, HumanAgent)
+    for path in (options.record_keys, options.hud_screenshot):
+        if path is not None and not path.resolve().parent.is_dir():
+            raise UserError(f"{path} cannot be written: there is no folder {path.parent}; make it, or name another")
     devices = None
     if _has_window(options, by_hand=by_hand):
         check_display()
@@ -95,4 +99,5 @@ class KeysManager(BaseManager):
     def close(self) -> None:
         """Write the session, where one was recorded."""
         if self._path is not None and self._here is not None and self._tape is not None:
-            write_session(self._path, Session(setting=self._here, inputs=tuple(self._tape.inputs)))
+            with contextlib.suppress(UserError):  # a disk that is full by now is told of by what is written next
+                write_session(self._path, Session(setting=self._here, inputs=tuple(self._tape.inputs)))

@@ -18,7 +18,13 @@ def metrics(history: Any) -> Any:
         asked.append(1)
         return infractions(history)
 
-    return SimpleNamespace(asked=asked, infractions_so_far=found, scores_so_far=lambda: None, history=lambda: history)
+    return SimpleNamespace(
+        asked=asked,
+        ticks=len(history.frames),
+        infractions_so_far=found,
+        scores_so_far=lambda: None,
+        contacts_since=lambda first: tuple(event for event in history.collisions if event.tick >= first),
+    )
 
 
 def test_notices_fade_and_the_oldest_make_room() -> None:
@@ -39,6 +45,7 @@ def test_each_infraction_is_told_once_with_its_figures() -> None:
     assert notice.bad
     assert notice.text.startswith("collision static: hit static.poles at 10.00 m/s")
     assert judge.latest.tally() == ["1 x collision static"]
+    assert judge.latest.impulses(99)[-50] == pytest.approx(100.0)
 
 
 def test_it_is_judged_now_and_then_and_at_the_end() -> None:
