@@ -26,6 +26,8 @@ def test_the_supported_page_is_what_the_code_says() -> None:
         "basu list",
         "basu report",
         "basu compare",
+        "basu metrics",
+        "basu replay",
         "basu experiment",
     ],
 )
