@@ -2,13 +2,14 @@
 
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from basu.errors import UserError
 from basu.manual.devices import Devices, check_display
-from basu.manual.inputs import Held, Input, Strike
+from basu.manual.inputs import Axes, Held, Input, Strike
 
 pygame: Any = pytest.importorskip("pygame")
 
@@ -58,6 +59,41 @@ def test_struck_keys_mean_something_once(devices: Devices, name: str, meant: Str
     key("KEYDOWN", name)
     assert devices.read(0) == Input(strikes=(meant,))
     assert devices.read(1) == Input()
+
+
+class Pad:
+    """A gamepad nobody has: the stick to the left, the right trigger half pressed, both triggers said to be at 0."""
+
+    def __init__(self, _number: int) -> None: ...
+
+    def get_name(self) -> str:
+        return "Some Pad"
+
+    def get_numaxes(self) -> int:
+        return 6
+
+    def get_axis(self, axis: int) -> float:
+        return (-1.0, 0.0, 0.0, 0.0, 0.0, 0.0)[axis]
+
+    def get_numbuttons(self) -> int:
+        return 11
+
+    def get_button(self, button: int) -> bool:
+        return button == 0
+
+
+def test_a_gamepad_steers_presses_and_strikes(
+    devices: Devices, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)  # where no wheel_config.ini lies
+    monkeypatch.setattr(pygame.joystick, "get_count", lambda: 1)
+    monkeypatch.setattr(pygame.joystick, "Joystick", Pad)
+    assert devices.read(0).axes == Axes(-1.0, 0.0, 0.0, True)
+    pygame.event.post(pygame.event.Event(pygame.JOYAXISMOTION, axis=5, value=0.0))
+    pygame.event.post(pygame.event.Event(pygame.JOYBUTTONDOWN, button=3))
+    done = devices.read(1)
+    assert done.axes == Axes(-1.0, 0.5, 0.0, True)
+    assert done.strikes == (Strike.AUTOPILOT,)
 
 
 def test_closing_the_window_quits(devices: Devices) -> None:
