@@ -34,11 +34,11 @@ def looked_at(history: History, every: int, *, compare: bool = False) -> SoFar:
 speeds = st.lists(
     st.tuples(st.sampled_from([0.0, 0.05, 2.0, 10.0, 11.5, 13.0, 15.0]), st.sampled_from([0.1, 0.4, 1.0, 2.5, 4.0])),
     min_size=1,
-    max_size=25,
+    max_size=12,
 )
 
 
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(speeds, st.lists(st.integers(0, 1200), max_size=8), st.integers(1, 45), st.integers(0, 200))
 def test_what_is_told_while_driving_is_what_the_record_tells(
     pieces: list[tuple[float, float]], contacts: list[int], every: int, red_until: int
