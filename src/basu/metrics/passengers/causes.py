@@ -57,7 +57,10 @@ class Cause(NamedTuple):
 
 
 def cause(history: History, stop: HarshStop) -> Cause:
-    """The reason that asked for most, or `Kind.NOTHING` with what can be said about it."""
+    """A contact, else the reason that asked for most, else `Kind.NOTHING` with what can be said about it."""
+    contact = _contact(history, stop)
+    if contact is not None:
+        return contact
     found = max(_reasons(history, stop), key=lambda reason: reason.needed_mps2, default=None)
     return _nothing(history, stop) if found is None else found
 
@@ -69,7 +72,6 @@ def reach_m(speed_mps: float) -> float:
 
 def _reasons(history: History, stop: HarshStop) -> Iterator[Cause]:
     """Everything within reach that asked for less speed."""
-    yield from _contacts(history, stop)
     yield from _lines(history, stop)
     yield from _halts(history, stop)
     yield from _slowdowns(history, stop)
@@ -84,13 +86,13 @@ def _reason(kind: Kind, stop: HarshStop, away_m: float, target_mps: float, name:
     return Cause(kind, away_m, needed_mps2, f"{name} {away_m:.1f} m ahead asked for {needed_mps2:.2f} m/s²")
 
 
-def _contacts(history: History, stop: HarshStop) -> Iterator[Cause]:
+def _contact(history: History, stop: HarshStop) -> Cause | None:
     """A collision explains any braking."""
     slack = round(CONTACT_S / history.facts.step_s)
     for event in history.collisions:
         if stop.onset_tick - slack <= event.tick <= stop.tick:
-            yield Cause(Kind.CONTACT, 0.0, stop.strongest_mps2, f"the vehicle hit {event.other_type}")
-            return
+            return Cause(Kind.CONTACT, 0.0, stop.strongest_mps2, f"the vehicle hit {event.other_type}")
+    return None
 
 
 def _lines(history: History, stop: HarshStop) -> Iterator[Cause]:
@@ -122,7 +124,9 @@ def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
     at_m = float(history.frames["route_s_m"][tick])
     here_mps = float(limits_mps(history)[tick])
     if here_mps < stop.from_mps - SLOWER_MPS:
-        yield _reason(Kind.LIMIT, stop, 0.0, here_mps, f"the limit of {here_mps:.1f} m/s, exceeded already,")
+        needed_mps2 = (stop.from_mps**2 - here_mps**2) / (2.0 * reach_m(stop.from_mps))
+        detail = f"the limit of {here_mps:.1f} m/s, exceeded already, asked for {needed_mps2:.2f} m/s²"
+        yield Cause(Kind.LIMIT, 0.0, needed_mps2, detail)
     ahead = np.flatnonzero((route.s_m > at_m) & (route.s_m <= at_m + reach_m(stop.from_mps)))
     for index in ahead.tolist():
         limit_mps = float(route.speed_limit_mps[index])

@@ -109,6 +109,12 @@ def test_a_lower_limit_ahead_is_a_reason() -> None:
     assert why(stopped(route=route)).kind is Kind.LIMIT
 
 
+def test_a_limit_that_is_exceeded_already_is_a_reason() -> None:
+    found = why(stopped(route=straight_route(limit_mps=2.0)))
+    assert found.kind is Kind.LIMIT
+    assert found.detail.startswith("the limit of 2.0 m/s, exceeded already, asked for 0.")
+
+
 def test_a_bend_too_tight_for_the_speed_is_a_reason() -> None:
     straight = straight_route()
     turning_rad = np.maximum(0.0, straight.s_m - BRAKED_AT_M - 3.0) / 5.0  # a radius of 5 m allows for 2.2 m/s
@@ -119,8 +125,8 @@ def test_a_bend_too_tight_for_the_speed_is_a_reason() -> None:
     assert "radius" in found.detail
 
 
-def test_a_contact_explains_the_braking_it_makes() -> None:
-    history = stopped()
+def test_a_contact_explains_the_braking_it_makes_whatever_else_is_there() -> None:
+    history = stopped(route=straight_route(limit_mps=2.0))
     tick = round(AT_S / 0.05)
     struck = History(
         facts=history.facts,
