@@ -130,7 +130,7 @@ def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
     ahead = np.flatnonzero((route.s_m > at_m) & (route.s_m <= at_m + reach_m(stop.from_mps)))
     for index in ahead.tolist():
         limit_mps = float(route.speed_limit_mps[index])
-        if limit_mps < stop.from_mps - SLOWER_MPS:
+        if limit_mps < min(stop.from_mps - SLOWER_MPS, here_mps):
             yield _reason(
                 Kind.LIMIT, stop, float(route.s_m[index]) - at_m, limit_mps, f"a limit of {limit_mps:.1f} m/s"
             )
