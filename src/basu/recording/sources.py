@@ -11,7 +11,7 @@ import carla
 from basu.errors import UserError
 
 LOG_FILE, MAP_FILE = "recording.log", "map.xodr"  # in a run's folder
-RESULT_FILE = "result.json"  # likewise
+RESULT_FILE, CONFIG_FILE = "result.json", "config.json"  # likewise
 
 
 class Source(NamedTuple):
@@ -33,10 +33,12 @@ def source(run_or_log: Path, map_file: Path | None = None) -> Source:
     if run_or_log.is_dir():
         log = run_or_log / LOG_FILE
         if not log.is_file():
-            raise UserError(f"{run_or_log} has no {LOG_FILE}: the run was not recorded; run it with --record")
+            raise UserError(f"{run_or_log} has no {LOG_FILE}: {_why_no_log(run_or_log / CONFIG_FILE)}")
         return Source(log, map_file or _there(run_or_log / MAP_FILE), _there(run_or_log / RESULT_FILE))
     if not run_or_log.exists():
         raise UserError(f"{run_or_log} is not there; name a run's folder, such as runs/latest, or a recorder file")
+    if run_or_log.name == LOG_FILE:  # its run lies around it
+        return source(run_or_log.parent, map_file)
     return Source(run_or_log, map_file, None)
 
 
@@ -107,6 +109,15 @@ def criteria_of(result: Path) -> dict[str, Any]:
         }
         for kind in judged
     }
+
+
+def _why_no_log(config: Path) -> str:
+    """What a run's config says about its log, and what to do."""
+    try:
+        recorded = json.loads(config.read_text(encoding="utf-8"))["recording"]
+        return f"it is {recorded['file']} ({recorded['where']}); copy it here under that name"
+    except (OSError, ValueError, KeyError, TypeError):
+        return "the run was not recorded; run it with --record"
 
 
 def _there(path: Path) -> Path | None:

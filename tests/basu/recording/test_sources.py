@@ -25,6 +25,7 @@ def test_a_runs_folder_has_its_log_map_and_result(tmp_path: Path) -> None:
     for name in (LOG_FILE, MAP_FILE, RESULT_FILE):
         (tmp_path / name).touch()
     assert source(tmp_path) == (tmp_path / LOG_FILE, tmp_path / MAP_FILE, tmp_path / RESULT_FILE)
+    assert source(tmp_path / LOG_FILE) == source(tmp_path)
     assert source(tmp_path, LINDEN).map == LINDEN
 
 
@@ -36,6 +37,10 @@ def test_a_recorder_file_stands_for_itself(tmp_path: Path) -> None:
 
 def test_what_is_missing_is_told_with_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"has no recording\.log: the run was not recorded; run it with --record"):
+        source(tmp_path)
+    elsewhere = {"file": "drive.log", "where": "disk of the simulator at far:2000"}
+    (tmp_path / "config.json").write_text(json.dumps({"recording": elsewhere}))
+    with pytest.raises(UserError, match=r"it is drive\.log \(disk of the simulator at far:2000\); copy it here under"):
         source(tmp_path)
     with pytest.raises(UserError, match="nowhere is not there; name a run's folder"):
         source(tmp_path / "nowhere")

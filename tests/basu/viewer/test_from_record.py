@@ -1,5 +1,6 @@
 """Claims about `basu replay --viewer`: what is in the record is in Rerun's recording, read back by its own reader."""
 
+import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -117,6 +118,18 @@ def test_a_recorder_file_is_shown_by_itself(tmp_path: Path, monkeypatch: pytest.
     np.testing.assert_allclose(places, [(number, -2.0, 0.0) for number in range(1, 11)], atol=1e-5)
     assert found["/world/others"][0].values["Boxes3D:labels"] == ["walker.pedestrian.0001 8"]
     assert "/signals/speed/limit" not in found
+
+
+def test_a_window_that_does_not_open_is_told_and_the_file_is_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    false = shutil.which("false")
+    assert false is not None
+    monkeypatch.setenv("DISPLAY", ":99")
+    monkeypatch.setattr("basu.viewer.stream.sys.executable", false)  # what Rerun's program is started with
+    found = read_rrd(shown_again(tmp_path))
+    assert len(found["/world/ego"]) == len(drive().frames)
+    assert "(kept; Rerun's window did not open, `rerun` by itself says why)" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("command", [["run", "basic", "--viewer"], ["replay", "nowhere", "--viewer"]])
