@@ -10,6 +10,7 @@ import pytest
 from basu.cli import main
 from basu.report.html.figures import rows
 from basu.report.html.page import report
+from basu.report.markup import e, html
 from fakes.drives import at, driven, ramp, straight_route
 from fakes.run_records import crashing, record, written
 
@@ -36,6 +37,20 @@ def test_the_score_card_shows_how_the_score_came_about() -> None:
     page = report(record(crashing())).decode()
     assert "0.416" in page  # 0.65 x 0.8 x 0.8, the infraction score
     assert "collision static" in page
+
+
+def test_the_leaderboard_and_the_passengers_judge_the_same_drive_beside_it() -> None:
+    run = record(crashing())
+    page = report(run).decode()
+    assert f"{run.result['leaderboard']['2.1']['driving']:.3f}" in page
+    assert '<b class="status agent">failed</b>' in page
+    assert html(e("li", run.result["passengers"]["reasons"][0])) in page
+
+
+def test_a_result_without_them_has_a_report_too() -> None:
+    run = record(crashing())
+    run.result.update(leaderboard=None, passengers=None)
+    assert b"Timeline" in report(run)
 
 
 def test_a_run_in_which_nothing_was_driven_has_a_report_that_says_so() -> None:
