@@ -7,8 +7,12 @@ import pytest
 
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.basic import BasicAgent
+from basu.agents.behavioral import BehavioralAgent
+from basu.agents.deviating import DeviatingAgent
+from basu.agents.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL, Manner
 from basu.agents.forward import THROTTLE, ForwardAgent
 from basu.errors import UserError
+from basu.managers.agent_loader import load_agent
 
 
 def bound(agent: AutonomousAgent) -> AutonomousAgent:
@@ -40,6 +44,30 @@ def test_an_agent_needs_its_three_methods() -> None:
         Idle()  # type: ignore[abstract]
 
 
-@pytest.mark.parametrize("agent", [BasicAgent(), ForwardAgent()])
+@pytest.mark.parametrize(
+    ("name", "manner"),
+    [
+        ("behavioral", NORMAL),
+        ("behavioral-cautious", CAUTIOUS),
+        ("behavioral-aggressive", AGGRESSIVE),
+        ("deviating", NORMAL),
+    ],
+)
+def test_each_name_of_the_behavioral_agents_has_its_manner(name: str, manner: Manner) -> None:
+    agent = load_agent(name).agent_class()
+    assert isinstance(agent, BehavioralAgent)
+    assert agent.manner is manner
+
+
+def test_the_deviating_agent_wants_the_thesiss_car_route_and_weather() -> None:
+    assert DeviatingAgent().config() == {
+        "routes": "routes/linden_short.xml",
+        "sensors": "config/sensors.json",
+        "vehicle": "vehicle.tesla.model3",
+        "weather": "ClearSunset",
+    }
+
+
+@pytest.mark.parametrize("agent", [BasicAgent(), BehavioralAgent(), DeviatingAgent(), ForwardAgent()])
 def test_what_an_agent_configures_is_known_to_basu(agent: AutonomousAgent) -> None:
     assert set(agent.config()) <= {"routes", "sensors", "vehicle", "weather", "sumo"}

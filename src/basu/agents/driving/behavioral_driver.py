@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from basu.agents.rules.traffic_lights import Light
     from basu.agents.scene import Body, Ego, Other, Restriction
 
-NEAR_M = 80.0  # rules look at those within this; only oncoming traffic matters from farther away
+NEAR_M = 150.0  # rules look at those within this, 25 mph for 13 s; only passing has to look farther
 SIGHT_M = 350.0  # from standstill the cautious one needs some 21 s, in which one at 25 mph gets 240 m
 SOFTER = 0.7  # share of the usual comfort that is left of braking and its jerk while somebody is close behind
 HURRY_MPS = 1.0  # one who drives below the limit may be this much faster then, up to the limit as basic has it

@@ -60,6 +60,7 @@ def crossing(zone: Zone, ego: Ego, others: Iterable[Other], within_s: float) -> 
         for other in others
         if other.kind is Kind.VEHICLE
         and other.speed_mps > MOVING_MPS
+        and _may_reach(zone, other, within_s)
         and not _follows(ego, other)
         and _touches(zone, predicted_m(other, within_s), other)
     )
@@ -76,6 +77,16 @@ def waiting(zone: Zone, ego: Ego, others: Iterable[Other]) -> frozenset[int]:
         and float(_away_m(zone, np.array([[other.x_m, other.y_m]])).min()) <= NEARBY_M + other.half_length_m
         and _touches(zone, _straight_on_m(other), other)
     )
+
+
+def _may_reach(zone: Zone, other: Other, within_s: float) -> bool:
+    """A cheap first look: whether it gets near the zone at all, whichever way it drives."""
+    middle_m = zone.points_m[len(zone.points_m) // 2].tolist()
+    reach_m = other.speed_mps * (within_s + STEP_S) + other.half_width_m + CLEARANCE_M
+    reach_m += (
+        zone.half_width_m + zone.length_m + 1.0
+    )  # no point of the zone is farther from its middle than it is long
+    return math.hypot(other.x_m - middle_m[0], other.y_m - middle_m[1]) < reach_m
 
 
 def _straight_on_m(other: Other) -> NDArray[np.float64]:

@@ -40,7 +40,14 @@ class Strip:
         self._first = path.index_at(place.s_m - BEHIND_M)
         end = path.index_at(place.s_m + AHEAD_M) + 1
         self._points_m = path.points_m[self._first : end]
+        self._headings_rad = path.heading_rad[self._first : end]
         self._path = path
+
+    def leads_against(self, yaw_rad: float, least_rad: float) -> bool:
+        """Whether a heading differs from the strip's by more than ``least_rad`` all along."""
+        low_rad, high_rad = min(self._headings_rad), max(self._headings_rad)
+        off_rad = abs(math.remainder(yaw_rad - 0.5 * (low_rad + high_rad), math.tau))
+        return off_rad - 0.5 * (high_rad - low_rad) > least_rad
 
     def away_m(self, others: Sequence[Other]) -> list[float]:
         """How far each body's centre is from the strip's middle line."""

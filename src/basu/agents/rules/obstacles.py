@@ -103,7 +103,7 @@ class Obstacles:
             following = follow_mps2(gap_m, max(sight.ego.speed_mps, 0.0), ahead_mps, self._following)
             self.follow_mps2 = min(self.follow_mps2, following)
             yield floor(gap_m, ahead_mps)
-        elif self._following is not None and ahead_mps < -MOVING_MPS:
+        elif self._following is not None and ahead_mps < -MOVING_MPS and _stays(sight, other, gap_m, ahead_mps):
             # it comes towards us: it needs a moment to see that, and its way to stop
             comes_m = -ahead_mps * REACTION_S + ahead_mps * ahead_mps / (2.0 * ONCOMING_BRAKING_MPS2)
             yield _stopping_for(gap_m - comes_m, 0.0, other)
@@ -121,6 +121,8 @@ class Obstacles:
         """The restriction for somebody who is not in the way yet and will be when we come by."""
         if other.speed_mps < SLOWEST_MPS:
             return None
+        if other.kind is Kind.VEHICLE and sight.strip.leads_against(other.yaw_rad, ONCOMING_RAD):
+            return None  # wherever it comes to be, it keeps to its own lane
         times_s = WALKER_TIMES_S if other.kind is Kind.WALKER else VEHICLE_TIMES_S
         seen = [(after_s, sight.strip.footprint(other, after_s)) for after_s in times_s]
         inside = [(t, f) for t, f in seen if f is not None and f.overlaps(sight.half_width_m)]
@@ -139,6 +141,16 @@ class Obstacles:
         return Restriction(
             left_m - STEP_IN_M, 0.0, Urgency.VITAL, f"{other.kind.value} stepping in", STEP_IN_M - CONTACT_M
         )
+
+
+def _stays(sight: Sight, other: Other, gap_m: float, ahead_mps: float) -> bool:
+    """Whether one who comes towards us will still reach into the strip when we meet, or in a moment if that is later.
+
+    Who turns into the other lane cuts its corner, and is out of our way by then.
+    """
+    meets_s = gap_m / (max(sight.ego.speed_mps, 0.0) - ahead_mps)
+    later = sight.strip.footprint(other, max(0.0, min(meets_s, VEHICLE_TIMES_S[-1])))
+    return later is not None and later.overlaps(sight.half_width_m)
 
 
 def _stopping_for(gap_m: float, ahead_mps: float, other: Other) -> Restriction:

@@ -47,14 +47,14 @@ def test_a_steady_leader_is_followed_at_the_manners_own_distance(manner: Manner,
     def leader(time_s: float) -> list[Other]:
         return [body_at(Kind.VEHICLE, 25.0 + leads_mps * time_s, 0.0, velocity_mps=(leads_mps, 0.0))]
 
-    log = drive(make_behavioral(make_route(line(420.0)), manner), Plant(0.0, 0.0, 0.0), 70.0, leader)
+    log = drive(make_behavioral(make_route(line(330.0)), manner), Plant(0.0, 0.0, 0.0), 55.0, leader)
     gap_m = leader(log.time_s[-1])[0].x_m - 2.2 - (log.x_m[-1] + SHUTTLE_BODY.front_m)
     following = following_of(manner)
     assert log.speed_mps[-1] == pytest.approx(leads_mps, abs=0.1)
     assert gap_m == pytest.approx(following.standoff_m + following.headway_s * leads_mps, rel=0.08)
 
 
-@settings(max_examples=200)
+@settings(max_examples=100)
 @given(
     own_mps=st.floats(0.0, 15.0), leads_mps=st.floats(0.0, 15.0), spare_m=st.floats(0.0, 15.0), after_s=st.floats(0, 3)
 )
@@ -67,7 +67,7 @@ def test_whenever_a_leader_brakes_with_all_it_has_it_is_never_touched(
     stops_m = slowing_distance_m(own_mps, 0.0, 0.0, RESERVE) + 2.0 * own_mps * DT_S
     gap_m = max(stops_m - leads_mps**2 / (2.0 * LEADER_LIMIT_MPS2), 0.0) + CLOSEST_M + spare_m
     least_m = gap_m
-    for step in range(600):
+    for step in range(260):
         if step * DT_S >= after_s:
             leads_mps = max(0.0, leads_mps - LEADER_LIMIT_MPS2 * DT_S)
         follow = follow_mps2(gap_m, planner.speed_mps, leads_mps, following_of(AGGRESSIVE))
@@ -78,7 +78,7 @@ def test_whenever_a_leader_brakes_with_all_it_has_it_is_never_touched(
 
 
 @pytest.mark.parametrize("manner", MANNERS)
-@pytest.mark.parametrize("brakes_mps2", [1.0, 4.0, 8.0])
+@pytest.mark.parametrize("brakes_mps2", [1.0, 8.0])
 def test_driven_a_leader_that_brakes_to_a_stop_is_stopped_behind(manner: Manner, brakes_mps2: float) -> None:
     def leader(time_s: float) -> list[Other]:
         braked_s = min(max(0.0, time_s - 25.0), 6.0 / brakes_mps2)
@@ -87,7 +87,7 @@ def test_driven_a_leader_that_brakes_to_a_stop_is_stopped_behind(manner: Manner,
         return [body_at(Kind.VEHICLE, x_m, 0.0, velocity_mps=(speed_mps, 0.0))]
 
     driver = make_behavioral(make_route(line(400.0)), manner, left_width_m=0.0)
-    log = drive(driver, Plant(0.0, 0.0, 0.0), 60.0, leader)
+    log = drive(driver, Plant(0.0, 0.0, 0.0), 48.0, leader)
     gaps_m = [leader(t)[0].x_m - 2.2 - (x + SHUTTLE_BODY.front_m) for t, x in zip(log.time_s, log.x_m, strict=True)]
     assert min(gaps_m) > 1.0
     assert log.speed_mps[-1] == 0.0

@@ -71,7 +71,7 @@ def test_no_gap_is_shorter_than_the_time_that_the_crossing_takes(
 
 def crossing_street(gap_s: float, speed_mps: float = 8.0, first_s: float = 0.0) -> list[tuple[float, float]]:
     """When each of a stream of cars from the north is at the level of our street, and how fast it drives."""
-    return [(first_s + gap_s * k, speed_mps) for k in range(40)]
+    return [(first_s + gap_s * k, speed_mps) for k in range(8)]
 
 
 def at_a_stop_sign(manner: Manner, stream: list[tuple[float, float]], seconds: float) -> tuple[Log, list[float]]:
@@ -96,18 +96,22 @@ def at_a_stop_sign(manner: Manner, stream: list[tuple[float, float]], seconds: f
 
 
 @pytest.mark.parametrize("manner", MANNERS)
-@pytest.mark.parametrize("gap_s", [6.0, 9.0, 11.0, 13.0])
+@pytest.mark.parametrize("gap_s", [9.0, 11.0, 13.0])
 def test_driven_a_stop_sign_is_left_in_gaps_that_are_long_enough_and_in_no_others(manner: Manner, gap_s: float) -> None:
-    log, least_m = at_a_stop_sign(manner, crossing_street(gap_s), 70.0)
+    log, least_m = at_a_stop_sign(manner, crossing_street(gap_s), 45.0)
     assert min(least_m) > 0.5  # the cars do not brake: they need not
-    if gap_s <= 6.0:
-        assert log.x_m[-1] + SHUTTLE_BODY.front_m < LINE_S_M  # a straight on takes 6.5 s by the book, and its own time
+    assert log.x_m[-1] > 45.0
+
+
+def test_driven_a_gap_below_the_critical_headway_is_not_taken() -> None:
+    log, _ = at_a_stop_sign(NORMAL, crossing_street(6.0), 40.0)  # straight on takes 6.5 s by the book
+    assert log.x_m[-1] + SHUTTLE_BODY.front_m < LINE_S_M
 
 
 def test_the_aggressive_takes_gaps_that_the_cautious_leaves() -> None:
     left_s = {}
     for manner in MANNERS:
-        log, _ = at_a_stop_sign(manner, [*crossing_street(9.0)[:5], *crossing_street(16.0, first_s=52.0)], 120.0)
+        log, _ = at_a_stop_sign(manner, [*crossing_street(9.0)[:3], *crossing_street(16.0, first_s=34.0)[:3]], 80.0)
         left_s[manner.name] = float(log.time_s[np.argmax(log.x_m > LINE_S_M + 5.0)])
     assert left_s["aggressive"] < left_s["normal"] <= left_s["cautious"]
 

@@ -6,7 +6,19 @@ import numpy as np
 import pytest
 
 from basu.agents.scene import Kind, Other
-from driving_plant import DT_S, SHUTTLE_BODY, Log, Plant, bends, body_at, drive, line, make_driver, make_route
+from driving_plant import (
+    DT_S,
+    SHUTTLE_BODY,
+    Log,
+    Plant,
+    bends,
+    body_at,
+    drive,
+    line,
+    make_behavioral,
+    make_driver,
+    make_route,
+)
 
 FRONT_M = SHUTTLE_BODY.front_m
 
@@ -118,3 +130,22 @@ def test_whoever_is_behind_is_not_looked_at() -> None:
         make_driver(make_route(line(300.0))), Plant(50.0, 0.0, 0.0), 20.0, lambda _: [body_at(Kind.VEHICLE, 44.0, 0.0)]
     )
     assert log.speed_mps[-1] > 6.5
+
+
+@pytest.mark.parametrize("brakes_at_s", [14.0, 15.0, 16.0])
+def test_who_comes_towards_a_behavioral_driver_in_its_lane_is_given_room_to_stop(brakes_at_s: float) -> None:
+    def wrong_way(time_s: float) -> list[Other]:
+        braked_s = min(max(0.0, time_s - brakes_at_s), 2.0)
+        x_m = 220.0 - 8.0 * min(time_s, brakes_at_s) - 8.0 * braked_s + 2.0 * braked_s**2
+        return [body_at(Kind.VEHICLE, x_m, -0.5, velocity_mps=(4.0 * braked_s - 8.0, 0.0), yaw_deg=180.0)]
+
+    driver = make_behavioral(make_route(line(300.0)), left_width_m=0.0)
+    log = drive(driver, Plant(0.0, 0.0, 0.0), 25.0, wrong_way)
+    assert log.speed_mps[-1] == 0.0
+    assert least_gap_m(log, wrong_way) > 1.0
+
+
+def test_who_cuts_the_corner_into_the_other_lane_is_not_braked_for() -> None:
+    cutting = lambda _: [body_at(Kind.VEHICLE, 110.0, -2.2, velocity_mps=(-10.4, -1.7), yaw_deg=189.0)]  # noqa: E731
+    log = drive(make_behavioral(make_route(line(300.0))), Plant(70.0, 0.0, 0.0, 6.7), 0.5, cutting)
+    assert log.speed_mps.min() > 6.4

@@ -62,18 +62,18 @@ def test_an_oncoming_car_is_let_past_first() -> None:
 
 
 def test_a_stream_of_oncoming_cars_is_waited_out_where_one_can_still_swing_out() -> None:
-    scene: Scene = lambda t: [PARKED, *(oncoming(t, from_x_m=200.0 + 60.0 * k, number=20 + k) for k in range(10))]  # noqa: E731
-    log = on_a_street(scene, 110.0)
+    scene: Scene = lambda t: [PARKED, *(oncoming(t, from_x_m=200.0 + 60.0 * k, number=20 + k) for k in range(5))]  # noqa: E731
+    log = on_a_street(scene, 85.0)
     waits = (log.speed_mps < 0.05) & (log.time_s > 5.0)
     assert waits.any()
     room_m = PARKED_AT_M - PARKED.half_length_m - (log.x_m[waits] + SHUTTLE_BODY.front_m)
     assert 8.0 < room_m.min() <= room_m.max() < 25.0
-    assert np.abs(log.y_m[log.time_s < (740.0 - 130.0) / 9.0]).max() < 0.2
+    assert np.abs(log.y_m[log.time_s < (440.0 - 130.0) / 9.0]).max() < 0.2
     assert least_distance_m(log, scene) > 0.4
     assert log.x_m[-1] > 200.0
 
 
-@pytest.mark.parametrize("turns_up_s", [18.5, 20.0, 22.0, 24.0])
+@pytest.mark.parametrize("turns_up_s", [18.5, 20.0, 23.0])
 @pytest.mark.parametrize("turns_up_m", [150.0, 200.0])
 def test_one_who_turns_up_late_is_never_hit(turns_up_s: float, turns_up_m: float) -> None:
     """It comes out of a drive while the shuttle is on its way round, and brakes at 3 m/s² for who comes towards it."""
@@ -128,14 +128,14 @@ def test_nobody_is_overtaken_who_stands_on_foot_in_a_jam_or_in_a_junction() -> N
     jam = [body_at(Kind.VEHICLE, 120.0 + 7.0 * k, 0.0, number=30 + k) for k in range(5)]
     junction = make_route(line(300.0), junctions_s_m=[(126.0, 140.0)])
     for scene, route in (([walker], None), (jam, None), ([PARKED], junction)):
-        log = on_a_street(lambda _, s=scene: s, 45.0, route=route)  # type: ignore[misc]
+        log = on_a_street(lambda _, s=scene: s, 32.0, route=route)  # type: ignore[misc]
         assert np.abs(log.y_m).max() < 0.1
         assert log.speed_mps[-1] == 0.0
 
 
 def test_without_a_lane_to_the_left_one_stays_behind() -> None:
     driver = make_behavioral(make_route(line(300.0)), left_width_m=0.0)
-    log = drive(driver, Plant(0.0, 0.0, 0.0), 45.0, lambda _: [PARKED])
+    log = drive(driver, Plant(0.0, 0.0, 0.0), 32.0, lambda _: [PARKED])
     assert np.abs(log.y_m).max() < 0.1
     assert log.speed_mps[-1] == 0.0
 
@@ -144,7 +144,7 @@ def test_what_only_reaches_into_the_lane_is_passed_within_it_whoever_comes() -> 
     wide = make_route(line(300.0))
     wide = type(wide)(**{**{f: getattr(wide, f) for f in wide.__slots__}, "lane_width_m": np.full(301, 4.4)})
     cone = body_at(Kind.PROP, PARKED_AT_M, 1.6)
-    scene: Scene = lambda t: [cone, *(oncoming(t, from_x_m=100.0 + 25.0 * k, number=20 + k) for k in range(30))]  # noqa: E731
+    scene: Scene = lambda t: [cone, *(oncoming(t, from_x_m=100.0 + 45.0 * k, number=20 + k) for k in range(10))]  # noqa: E731
     log = drive(make_behavioral(wide, AGGRESSIVE, left_width_m=4.4), Plant(0.0, 0.0, 0.0), 45.0, scene)
     assert log.speed_mps[(log.time_s > 8.0) & (log.x_m < 250.0)].min() > 3.0
     assert log.y_m.min() - SHUTTLE_BODY.half_width_m > -2.2
