@@ -1,4 +1,4 @@
-"""Stretches of a drive: where something holds, from which frame to which, and how far one gets meanwhile."""
+"""Stretches of a drive: where something holds, from which frame to which; and the driven path in straight pieces."""
 
 from __future__ import annotations
 
@@ -51,9 +51,3 @@ def path_m(frames: NDArray[np.void]) -> NDArray[np.float64]:
 def total_m(lengths_m: NDArray[np.float64]) -> float:
     """Their sum, added up in order: the same to the last bit on every machine."""
     return float(sum(lengths_m.tolist()))
-
-
-def ahead_m(route_s_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(T,) how much farther along the plan each frame got than any before it; the way to the first frame is its own."""
-    farthest = np.maximum.accumulate(np.maximum(route_s_m, 0.0))
-    return np.diff(farthest, prepend=0.0)

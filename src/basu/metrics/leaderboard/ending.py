@@ -14,7 +14,7 @@ import numpy as np
 
 from basu.metrics.delays import BLOCKED_MPS, BLOCKED_S
 from basu.metrics.leaderboard.rules import Kind, Version
-from basu.metrics.stretches import ahead_m, stretches
+from basu.metrics.stretches import stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,10 +36,20 @@ class Ending(NamedTuple):
 
 
 def completion_percent(history: History) -> NDArray[np.float64]:
-    """(T,) how much of the route has been passed in each frame: the points of the plan that lie behind."""
+    """(T,) how much of the route has been passed in each frame."""
+    return 100.0 * passed_m(history) / history.facts.route.length_m
+
+
+def passed_m(history: History) -> NDArray[np.float64]:
+    """(T,) the place along the route of the last of its points that lies behind: the leaderboard counts by points."""
     route = history.facts.route
     passed = np.searchsorted(route.s_m, np.maximum.accumulate(history.frames["route_s_m"]), side="right") - 1
-    return 100.0 * route.s_m[np.clip(passed, 0, None)] / route.length_m
+    return route.s_m[np.clip(passed, 0, None)]
+
+
+def made_m(history: History) -> NDArray[np.float64]:
+    """(T,) how much of the way along the plan was made in each frame, by its points."""
+    return np.diff(passed_m(history), prepend=0.0)
 
 
 def ending(history: History, version: Version) -> Ending:
@@ -77,7 +87,7 @@ def _arrived(history: History) -> NDArray[np.bool_]:
 def _off_route(history: History) -> NDArray[np.bool_]:
     """(T,) too far from the route, or far from it for too much of its length."""
     away_m = np.abs(history.frames["lateral_m"])
-    far_m = np.cumsum(np.where(away_m >= FAR_M, ahead_m(history.frames["route_s_m"]), 0.0))
+    far_m = np.cumsum(np.where(away_m >= FAR_M, made_m(history), 0.0))
     off: NDArray[np.bool_] = (away_m >= OFF_ROUTE_M) | (100.0 * far_m / history.facts.route.length_m > FAR_PERCENT)
     return off
 
@@ -97,5 +107,5 @@ def _out_of_time(history: History, version: Version) -> NDArray[np.bool_]:
         return given
     limit_mps = frames["speed_limit_mps"]
     pace_mps = np.where(limit_mps > 0.0, SLOWEST_SHARE * limit_mps, np.inf)
-    spent: NDArray[np.bool_] = frames["t_s"] > LEAST_S + np.cumsum(ahead_m(frames["route_s_m"]) / pace_mps)
+    spent: NDArray[np.bool_] = frames["t_s"] > LEAST_S + np.cumsum(made_m(history) / pace_mps)
     return spent

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.lanes import DRIVING
+from basu.metrics.leaderboard.ending import made_m
 from basu.metrics.leaderboard.rules import Event, Kind, Version
-from basu.metrics.stretches import ahead_m, total_m
+from basu.metrics.stretches import total_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,11 +32,11 @@ def outside_lanes(history: History, version: Version) -> tuple[Event, ...]:
     """One event with the percentage, or none."""
     frames = history.frames
     outside = (frames["off_lane_m"] > ALLOWED_M[version]) | in_wrong_lane(history, version)
-    made_m = ahead_m(frames["route_s_m"])
-    wrong = np.flatnonzero(outside & (made_m > 0.0))
+    along_m = made_m(history)
+    wrong = np.flatnonzero(outside & (along_m > 0.0))
     if len(wrong) == 0:
         return ()
-    percentage = 100.0 * total_m(made_m[wrong]) / total_m(made_m)
+    percentage = 100.0 * total_m(along_m[wrong]) / total_m(along_m)
     return (Event(kind=Kind.OUTSIDE_LANES, tick=int(wrong[-1]), percentage=percentage),)
 
 

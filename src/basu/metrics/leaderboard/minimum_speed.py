@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from basu.metrics.leaderboard.ending import passed_m
 from basu.metrics.leaderboard.rules import Event, Kind
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ MOVED_MPS = 0.1
 def too_slow(history: History) -> tuple[Event, ...]:
     """One event for each quarter of the route on which the vehicle was slower than the traffic."""
     route, frames = history.facts.route, history.frames
-    farthest_m = np.maximum.accumulate(np.maximum(frames["route_s_m"], 0.0))
+    farthest_m = passed_m(history)
     quarter_m = route.length_m / CHECKPOINTS
     traffic_mps = _traffic_mps(history)
     speed_mps = history.speed_mps()
