@@ -84,6 +84,7 @@ def striker(folder: Path, keys: dict[int, list[tuple[str, str]]], *, end: int, h
     return path
 
 
+@pytest.mark.slow
 def test_a_run_is_the_same_with_and_without_the_window(run: Runner, tmp_path: Path) -> None:
     path = tmp_path / "meeter.py"
     path.write_text(MEETER)
