@@ -36,22 +36,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument(
         "--agent-config", metavar="FILE", help="handed to the setup of an agent of the leaderboard or ScenarioRunner"
     )
-    run.add_argument("--host", help="a simulator that runs already (default: start one, end it afterwards)")
-    run.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
-    run.add_argument(
-        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
-    )
-    run.add_argument("--routes", metavar="FILE", help="route XML (default: as the agent's config says)")
-    which = run.add_mutually_exclusive_group()
-    which.add_argument("--route-id", metavar="ID", help="only this route of the file (default: all)")
-    which.add_argument("--routes-subset", metavar="LIST", help="only these routes of the file, such as 0-3,7")
-    run.add_argument("--repetitions", type=int, default=1, metavar="N", help="(default: %(default)s)")
-    run.add_argument(
-        "--seed",
-        type=int,
-        default=0,
-        help="of all that is random; each further repetition has the next (default: %(default)s)",
-    )
+    _add_simulator(run)
+    _add_routes(run)
     run.add_argument("--weather", metavar="NAME", help="a preset of CARLA's (default: the route file's or the agent's)")
     run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: the agent's)")
     _add_traffic(run)
@@ -61,13 +47,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         action="store_true",
         help="stream the run to Rerun's viewer, and keep it as run.rrd beside the result",
     )
-    run.add_argument(
-        "--output", type=Path, default=Path("runs"), metavar="DIR", help="for run folders (default: %(default)s)"
-    )
-    run.add_argument(
-        "--series", metavar="NAME", help="keep all runs in a folder of this name, with their totals in series.json"
-    )
-    run.add_argument("--resume", action="store_true", help="go on with a --series that was broken off")
+    _add_folders(run)
     run.add_argument(
         "--step-limit",
         type=float,
@@ -81,6 +61,41 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     add_hud(run)
     add_scoring(run)
     run.set_defaults(command=run_agent)
+
+
+def _add_simulator(run: argparse.ArgumentParser) -> None:
+    """Where to drive."""
+    run.add_argument("--host", help="a simulator that runs already (default: start one, end it afterwards)")
+    run.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
+    run.add_argument(
+        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
+    )
+
+
+def _add_routes(run: argparse.ArgumentParser) -> None:
+    """Which routes, how often."""
+    run.add_argument("--routes", metavar="FILE", help="route XML (default: as the agent's config says)")
+    which = run.add_mutually_exclusive_group()
+    which.add_argument("--route-id", metavar="ID", help="only this route of the file (default: all)")
+    which.add_argument("--routes-subset", metavar="LIST", help="only these routes of the file, such as 0-3,7")
+    run.add_argument("--repetitions", type=int, default=1, metavar="N", help="(default: %(default)s)")
+    run.add_argument(
+        "--seed",
+        type=int,
+        default=0,
+        help="of all that is random; each further repetition has the next (default: %(default)s)",
+    )
+
+
+def _add_folders(run: argparse.ArgumentParser) -> None:
+    """Where everything is left."""
+    run.add_argument(
+        "--output", type=Path, default=Path("runs"), metavar="DIR", help="for run folders (default: %(default)s)"
+    )
+    run.add_argument(
+        "--series", metavar="NAME", help="keep all runs in a folder of this name, with their totals in series.json"
+    )
+    run.add_argument("--resume", action="store_true", help="go on with a --series that was broken off")
 
 
 def _add_traffic(run: argparse.ArgumentParser) -> None:
@@ -108,11 +123,12 @@ def _traffic(arguments: argparse.Namespace) -> Traffic:
     return Traffic(arguments.vehicles, arguments.walkers, arguments.traffic_density)
 
 
-def run_agent(arguments: argparse.Namespace) -> int:
-    """Drive an agent along its route, faster than real time, and leave a scored run folder."""
-    for name, why in LATER.items():
-        if getattr(arguments, name):
-            raise UserError(f"--{name} is not there yet: {why}; run without it")
+def _options(arguments: argparse.Namespace) -> RunOptions:
+    """What was asked for.
+
+    Raises:
+        UserError: it makes no sense.
+    """
     if arguments.agent is not None and arguments.agent_option is not None:
         raise UserError(f"two agents are named, {arguments.agent} and {arguments.agent_option}; name one")
     if arguments.repetitions < 1:
@@ -122,7 +138,7 @@ def run_agent(arguments: argparse.Namespace) -> int:
     for option in ("timeout", "step_limit"):
         if not getattr(arguments, option) > 0.0:
             raise UserError(f"--{option.replace('_', '-')} is {getattr(arguments, option)} s; it must be positive")
-    options = RunOptions(
+    return RunOptions(
         agent=arguments.agent or arguments.agent_option or "basic",
         agent_config=arguments.agent_config,
         host=arguments.host,
@@ -145,6 +161,14 @@ def run_agent(arguments: argparse.Namespace) -> int:
         debug=arguments.debug,
         **hud_options(arguments)._asdict(),
     )
+
+
+def run_agent(arguments: argparse.Namespace) -> int:
+    """Drive an agent along its route, faster than real time, and leave a scored run folder."""
+    for name, why in LATER.items():
+        if getattr(arguments, name):
+            raise UserError(f"--{name} is not there yet: {why}; run without it")
+    options = _options(arguments)
     if options.viewer:
         require()
     scoring = adjusted(Scoring(), arguments)
