@@ -5,10 +5,11 @@ from __future__ import annotations
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
+from basu.errors import UserError
 from basu.one_run import Session, run_one
 from basu.outcome import Status
 from basu.preparation import new_agents, prepare
-from basu.report.folder import plain, point_latest, publish, run_name
+from basu.report.folder import LATEST, plain, point_latest, publish, run_name
 from basu.series import conditions, open_series
 from basu.simulator import asking, check_towns, simulator_for
 
@@ -46,10 +47,17 @@ def run(options: RunOptions, scoring: Scoring) -> int:
 
 
 def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | None:
-    """The series that all runs belong to, where one was asked for."""
+    """The series that all runs belong to, where one was asked for.
+
+    Raises:
+        UserError: it can be neither begun nor gone on with.
+    """
     if options.series is None:
         return None
-    folder = options.output / plain(options.series)
+    name = plain(options.series)
+    if name == LATEST:
+        raise UserError(f"--series {options.series}: that name is kept for the newest run; choose another")
+    folder = options.output / name
     given = conditions(options, scoring, prepared)
     return open_series(folder, given, prepared.jobs, prepared.loaded.name, resume=options.resume)
 

@@ -42,6 +42,7 @@ def test_an_option_of_a_later_version_is_refused_before_anything_starts(
         (["run", "basic", "--routes", "routes/linden_short.xml", "--routes-subset", "1,7"], "has no '7'; it has 1"),
         (["run", "basic", "--weather", "Sunny"], "there is no weather called 'Sunny'; there are"),
         (["run", "basic", "--resume"], "--resume goes on with a series; name it with --series"),
+        (["run", "basic", "--series", "latest"], "that name is kept for the newest run"),
         (["run", "basic", "--walkers", "-2"], "--walkers is -2; it must be 0 or more"),
         (["score", "nowhere"], "nowhere is no folder"),
     ],
