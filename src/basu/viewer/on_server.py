@@ -74,14 +74,15 @@ def _simulator(log: Path, where: Where) -> Iterator[tuple[carla.Client, str]]:
 def _begun(client: carla.Client, log: Log, hero: int) -> carla.World:
     """The world in which the replay has begun."""
     try:
-        said = client.replay_file(str(log.path.resolve()), 0.0, 0.0, hero)
+        client.replay_file(str(log.path.resolve()), 0.0, 0.0, hero)
         world = client.get_world()
         lies_in, is_in = (name.rsplit("/", maxsplit=1)[-1] for name in (log.map_name, world.get_map().name))
     except RuntimeError as error:
         raise UserError(f"the simulator cannot replay {log.path}: {error}") from error
-    if lies_in != is_in:  # CARLA says so in a text, and goes on without
+    if lies_in != is_in:  # CARLA says so in a text, and goes on in the map that is there
         raise UserError(
-            f"the simulator did not load {log.map_name} for {log.path}: {said.strip() or 'no reason given'}"
+            f"the simulator has no map {lies_in}, in which {log.path} lies; with --host name one that has it, such as "
+            "a `linden serve --maps DIR --recordings DIR` of your own"
         )
     return world
 
