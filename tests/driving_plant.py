@@ -15,8 +15,8 @@ from basu.agents.driving.behavioral_driver import BehavioralDriver
 from basu.agents.driving.driver import Command, Driver
 from basu.agents.driving.longitudinal import DriveModel
 from basu.agents.driving.manner import NORMAL, Manner
-from basu.agents.driving.road import make_road
 from basu.agents.driving.task import make_task
+from basu.agents.passing.road import make_road
 from basu.agents.rules.traffic_lights import Light
 from basu.agents.scene import Body, Ego, Kind, Other
 from basu.routing import Control, ControlKind, Route, Stop

@@ -14,8 +14,8 @@ import numpy as np
 from basu.agents.basic import BasicAgent
 from basu.agents.driving.behavioral_driver import SIGHT_M, BehavioralDriver
 from basu.agents.driving.manner import NORMAL
-from basu.agents.driving.road import make_road
 from basu.agents.driving.task import make_task
+from basu.agents.passing.road import make_road
 from basu.agents.vehicle_facts import OTHERS_TOP_MPS, read_facts
 
 if TYPE_CHECKING:

@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 from basu.agents.driving.comfort import Limits
 from basu.agents.driving.driver import Driver
 from basu.agents.driving.manner import NORMAL
-from basu.agents.rules.overtaking import Overtaking, Phase
-from basu.agents.rules.pulling_over import PullingOver
-from basu.agents.rules.tailgating import Tailgating
+from basu.agents.passing.overtaking import Overtaking, Phase
+from basu.agents.passing.pulling_over import PullingOver
+from basu.agents.passing.tailgating import Tailgating
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from basu.agents.driving.detour import Detour
     from basu.agents.driving.driver import Command
     from basu.agents.driving.longitudinal import DriveModel
     from basu.agents.driving.manner import Manner
     from basu.agents.driving.path import Place
-    from basu.agents.driving.road import Road
     from basu.agents.driving.task import Task
+    from basu.agents.passing.detour import Detour
+    from basu.agents.passing.road import Road
     from basu.agents.rules.traffic_lights import Light
     from basu.agents.scene import Body, Ego, Other, Restriction
 

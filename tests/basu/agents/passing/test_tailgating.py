@@ -5,7 +5,7 @@ import pytest
 
 from basu.agents.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL, Manner
 from basu.agents.driving.path import make_path
-from basu.agents.rules.tailgating import FORGOTTEN_S, NOTICED_S, Tailgating
+from basu.agents.passing.tailgating import FORGOTTEN_S, NOTICED_S, Tailgating
 from basu.agents.scene import Ego, Kind, Other
 from driving_plant import SHUTTLE_BODY, Log, Plant, body_at, drive, line, make_behavioral, make_route
 

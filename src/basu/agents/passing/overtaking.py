@@ -17,21 +17,21 @@ import enum
 from typing import TYPE_CHECKING
 
 from basu.agents.driving.comfort import slowing_distance_m
-from basu.agents.driving.detour import Extent, make_detour, swing_m, tightest_swing_m
 from basu.agents.driving.planner import ARRIVED_M, FIRM
+from basu.agents.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
+from basu.agents.passing.opposite_lane import Need, is_free
+from basu.agents.passing.standing import LONGEST_BLOCK_M, STANDING_MPS, Standing
 from basu.agents.rules.gaps import USED_SHARE
-from basu.agents.rules.opposite_lane import Need, is_free
-from basu.agents.rules.standing import LONGEST_BLOCK_M, STANDING_MPS, Standing
 from basu.agents.scene import Restriction, Urgency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.driving.detour import Detour
     from basu.agents.driving.manner import Manner, Passing
     from basu.agents.driving.path import Path, Place
-    from basu.agents.driving.road import Road
-    from basu.agents.rules.standing import Block
+    from basu.agents.passing.detour import Detour
+    from basu.agents.passing.road import Road
+    from basu.agents.passing.standing import Block
     from basu.agents.scene import Body, Ego, Other
 
 STRAIGHT_S = 1.5  # one is all the way aside so long before the bumpers are level, that nobody sees a near miss in it …

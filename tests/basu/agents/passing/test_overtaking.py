@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from basu.agents.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL, Manner
-from basu.agents.rules.overtaking import Phase
+from basu.agents.passing.overtaking import Phase
 from basu.agents.scene import Kind, Other
 from basu.routing import ControlKind, Route
 from driving_plant import SHUTTLE_BODY, Log, Plant, bends, body_at, drive, line, make_behavioral, make_route

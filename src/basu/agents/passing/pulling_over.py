@@ -8,16 +8,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.agents.driving.detour import Extent, make_detour, swing_m, tightest_swing_m
+from basu.agents.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
 from basu.agents.scene import Restriction, Urgency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.driving.detour import Detour
     from basu.agents.driving.manner import Manner
     from basu.agents.driving.path import Path, Place
-    from basu.agents.driving.road import Road
+    from basu.agents.passing.detour import Detour
+    from basu.agents.passing.road import Road
     from basu.agents.scene import Body, Ego, Other
 
 ALONG_M = 40.0  # driven in the other lane at least

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu.agents.driving.detour import TIGHTEST_1PM, Extent, make_detour, swing_m, tightest_swing_m
 from basu.agents.driving.manner import NORMAL
 from basu.agents.driving.path import SPACING_M, Path, make_path
+from basu.agents.passing.detour import TIGHTEST_1PM, Extent, make_detour, swing_m, tightest_swing_m
 from driving_plant import SHUTTLE_BODY, bends, line
 
 EXTENT = Extent(40.0, 56.0, 70.0, 86.0)

@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu.agents.passing.standing import STANDING_MPS
 from basu.agents.rules.corridor import Strip
 from basu.agents.rules.gaps import START_S, time_to_cover_s
 from basu.agents.rules.obstacles import SIDE_MARGIN_M
-from basu.agents.rules.standing import STANDING_MPS
 from basu.agents.scene import Kind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.driving.detour import Detour
     from basu.agents.driving.path import Path, Place
-    from basu.agents.driving.road import Road
+    from basu.agents.passing.detour import Detour
+    from basu.agents.passing.road import Road
     from basu.agents.scene import Body, Ego, Other
 
 ONCOMING_RAD, SAME_WAY_RAD = math.radians(120.0), math.radians(60.0)

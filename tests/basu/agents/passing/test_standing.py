@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from basu.agents.rules.standing import DROVE_FACTOR, QUEUE_PATIENCE_S, Block, Standing
+from basu.agents.passing.standing import DROVE_FACTOR, QUEUE_PATIENCE_S, Block, Standing
 from basu.agents.scene import Ego, Kind, Other
 from basu.routing import ControlKind
 from driving_plant import SHUTTLE_BODY, body_at, line, make_behavioral, make_route

@@ -2,9 +2,9 @@
 
 import pytest
 
-from basu.agents.driving.detour import Extent, make_detour
 from basu.agents.driving.manner import NORMAL
-from basu.agents.rules.opposite_lane import Need, is_free, time_needed_s
+from basu.agents.passing.detour import Extent, make_detour
+from basu.agents.passing.opposite_lane import Need, is_free, time_needed_s
 from basu.agents.scene import Ego, Kind, Other
 from driving_plant import SHUTTLE_BODY, body_at, line, make_behavioral, make_route
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.agents.driving.path import Path, Place
-    from basu.agents.driving.road import Road
+    from basu.agents.passing.road import Road
     from basu.agents.rules.corridor import Footprint
     from basu.agents.scene import Body, Ego, Other
 
