@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import difflib
-import json
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 from basu.errors import UserError
+from basu.utils.json_file import read_json
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -28,12 +28,7 @@ def read_config(name: str) -> GuestConfig:
     if not name:
         return GuestConfig()
     path = Path(name)
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"agent config {path} cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise UserError(f"agent config {path} is no JSON: {error}") from error
+    document = read_json(path, "agent config")
     if not isinstance(document, dict):
         raise UserError(f'agent config {path} must hold an object, such as {{"agent": "basic"}}')
     known = [field.name for field in fields(GuestConfig)]

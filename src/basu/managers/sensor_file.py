@@ -8,12 +8,12 @@ sensor's blueprint, or one of the leaderboard's names for some: :data:`LEADERBOA
 from __future__ import annotations
 
 import difflib
-import json
 import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
+from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -51,12 +51,7 @@ def read_sensors(path: Path) -> tuple[SensorSpec, ...]:
     Raises:
         UserError: the file cannot be read, is no JSON, or an entry is incomplete, double or no sensor.
     """
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"sensor file {path} cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise UserError(f"sensor file {path} is no JSON: {error}") from error
+    document = read_json(path, "sensor file")
     entries = document.get("sensors") if isinstance(document, dict) else document
     if not isinstance(entries, list):
         raise UserError(f"sensor file {path} holds no list of sensors")

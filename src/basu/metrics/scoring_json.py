@@ -7,7 +7,6 @@ scoring's numbers. One weight alone gives the other.
 from __future__ import annotations
 
 import difflib
-import json
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
@@ -15,6 +14,7 @@ from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights, weights_from
 from basu.metrics.passengers.felt import STANDING, Place
 from basu.metrics.score import Scoring
+from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -66,13 +66,7 @@ def read_scoring_file(path: Path) -> Scoring:
     Raises:
         UserError: it cannot be read, is no JSON, or no scoring.
     """
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"the scoring file {path} cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise UserError(f"the scoring file {path} is no JSON: {error}") from error
-    return scoring_from_json(document, f"the scoring file {path}")
+    return scoring_from_json(read_json(path, "the scoring file"), f"the scoring file {path}")
 
 
 def _penalties(given: object, source: str) -> dict[Infraction, float]:

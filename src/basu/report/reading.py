@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +10,7 @@ from basu.history.files import HISTORY_FILE, read_history
 from basu.report.folder import CONFIG_FILE
 from basu.report.schema import read_result
 from basu.report.streets import read_streets
+from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -54,14 +54,7 @@ def read_run(folder: Path) -> RunRecord:
 
 def _document(path: Path) -> dict[str, Any]:
     """A JSON object in a file."""
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(
-            f"{path.parent} is no run's folder: {path.name} cannot be read ({error.strerror}); name one of `basu run`"
-        ) from error
-    except ValueError as error:
-        raise UserError(f"{path} is not JSON: {error}; the run has to be driven again") from error
+    document = read_json(path, "the run's", "name a folder that `basu run` has left, or drive the run again")
     if not isinstance(document, dict):
         raise UserError(f"{path} holds no JSON object; the run has to be driven again")
     return document

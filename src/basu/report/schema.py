@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
 from basu.report.folder import RESULT_FILE
+from basu.utils.json_file import read_json
 from basu.utils.packaged import PACKAGE_FOLDER
 
 if TYPE_CHECKING:
@@ -47,12 +48,7 @@ def read_document(path: Path, schema_name: str) -> dict[str, Any]:
     Raises:
         UserError: it cannot be read, or is not as its schema says: which place, and what it should be.
     """
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"{path} cannot be read: {error.strerror}; name a folder that `basu run` has left") from error
-    except ValueError as error:
-        raise UserError(f"{path} is not JSON: {error}; the run has to be driven again") from error
+    document = read_json(path, "the document", "name a folder that `basu run` has left, or drive the run again")
     schema = read_schema(schema_name)
     version, expected = _version(document), schema["properties"]["schema_version"]["const"]
     if version != expected:

@@ -11,11 +11,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
+from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable
@@ -70,12 +70,7 @@ def read_timetable(path: Path, stop_ids: Collection[str]) -> Timetable:
     Raises:
         UserError: the file is missing or no timetable of this route; the sentence says where and what.
     """
-    try:
-        document = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UserError(f"the timetable {path} cannot be read: {error.strerror}") from error
-    except ValueError as error:
-        raise UserError(f"the timetable {path} is no JSON: {error}") from error
+    document = read_json(path, "the timetable")
     try:
         timetable = timetable_from_json(document)
     except KeyError as error:

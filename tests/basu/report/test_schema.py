@@ -102,7 +102,7 @@ def test_a_changed_result_gets_a_sentence_that_names_the_place(
 
 
 @pytest.mark.parametrize(
-    ("text", "sentence"), [(None, "cannot be read"), ("{", "is not JSON"), ("[]", "has the schema version None")]
+    ("text", "sentence"), [(None, "cannot be read"), ("{", "is no JSON"), ("[]", "has the schema version None")]
 )
 def test_what_is_no_result_gets_a_sentence(tmp_path: Path, text: str | None, sentence: str) -> None:
     if text is not None:

@@ -98,7 +98,7 @@ def test_the_command_writes_it_again_from_the_folder_alone(tmp_path: Path, capsy
     ("spoil", "sentence"),
     [
         (lambda folder: (folder / "result.json").unlink(), "result.json cannot be read"),
-        (lambda folder: (folder / "config.json").write_text("{"), "is not JSON"),
+        (lambda folder: (folder / "config.json").write_text("{"), "is no JSON"),
         (lambda folder: (folder / "config.json").write_text("[]"), "holds no JSON object"),
     ],
 )
