@@ -5,6 +5,7 @@ Wall time decides when is drawn and how long is waited, and nothing else: the re
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 from pathlib import Path
@@ -50,7 +51,7 @@ class Hud(BaseManager):
         self._has_panel = True
         self._was_manual = person.drives_first
         self._draw_next_s = self._began_s = 0.0
-        self._has_drawn = False
+        self._latest: Frame | None = None
 
     def setup(self, run: Run) -> None:
         """Open the window and hang up the camera."""
@@ -69,6 +70,7 @@ class Hud(BaseManager):
     def tick(self, frame: Frame) -> None:
         """Heed what was struck, judge, draw and wait, each where it is due."""
         now_s = time.perf_counter()
+        self._latest = frame
         picture = self._heed(now_s)
         self._tell_driver(now_s)
         self._map.pass_by(frame)
@@ -76,7 +78,6 @@ class Hud(BaseManager):
         self._judge.refresh(now_s, anyway=is_last)
         if picture or is_last or self._paced or now_s >= self._draw_next_s:
             self._draw(frame, now_s)
-            self._has_drawn = True
             drawn_s = time.perf_counter()
             self._draw_next_s = drawn_s + max(DRAW_EVERY_S, RUN_TO_DRAW * (drawn_s - now_s))
         if picture:
@@ -87,13 +88,15 @@ class Hud(BaseManager):
             self._pace = Pace()
 
     def close(self) -> None:
-        """Keep a picture where one was wished, and close the window."""
+        """Keep a picture of the end where one was wished, and close the window."""
+        if self._options.hud_screenshot is not None and self._latest is not None and self._canvas is not None:
+            with contextlib.suppress(RuntimeError):  # the simulator is gone: what the window shows has to do
+                self._draw(self._latest, time.perf_counter())
+            self._save(self._options.hud_screenshot)
         if self._camera is not None:
             self._camera.close()
             self._camera = None
         if self._canvas is not None:
-            if self._options.hud_screenshot is not None and self._has_drawn:
-                self._save(self._options.hud_screenshot)
             self._canvas.close()
             self._canvas = None
 

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pygame
 import pytest
 
 from basu.cli import main
@@ -13,8 +14,6 @@ from basu.errors import UserError
 from basu.history import History
 from basu.history.files import read_history
 from servers import RunningServer
-
-pygame: Any = pytest.importorskip("pygame")
 
 MEETER = """
 class Meeter(AutonomousAgent):

@@ -4,6 +4,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import pygame
 import pytest
 
 from basu.agents.basic import BasicAgent
@@ -23,7 +24,7 @@ SESSION = "data/human_session.json"
 def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
         monkeypatch.delenv(name, raising=False)
-    pytest.importorskip("pygame").display.quit()
+    pygame.display.quit()
 
 
 def test_nobody_sits_before_an_agent_that_is_not_watched() -> None:

@@ -3,15 +3,13 @@
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
+import pygame
 import pytest
 
 from basu.errors import UserError
 from basu.manual.devices import Devices, check_display
 from basu.manual.inputs import Axes, Held, Input, Strike
-
-pygame: Any = pytest.importorskip("pygame")
 
 
 @pytest.fixture
