@@ -28,6 +28,22 @@ FOR_VEHICLES = (carla.LaneType.Driving, carla.LaneType.Bidirectional, carla.Lane
 NO_LANE = LaneUnder(0, 0, 0, math.nan, math.nan, math.nan, in_junction=False, off_lane_m=math.nan)
 
 
+class LaneFinder:
+    """Finds the lane under a vehicle; one that stands still is not looked for again."""
+
+    def __init__(self, carla_map: carla.Map) -> None:
+        self._map = carla_map
+        self._pose: tuple[float, ...] = ()
+        self._found = NO_LANE
+
+    def under(self, ego: Ego) -> LaneUnder:
+        """The lane, of whatever type, that the vehicle's origin lies on."""
+        pose = (ego.x_m, ego.y_m, ego.z_m, ego.yaw_rad)
+        if pose != self._pose:
+            self._pose, self._found = pose, lane_under(self._map, ego)
+        return self._found
+
+
 def lane_under(carla_map: carla.Map, ego: Ego) -> LaneUnder:
     """The lane, of whatever type, that the vehicle's origin lies on."""
     place = carla.Location(ego.x_m, ego.y_m, ego.z_m)

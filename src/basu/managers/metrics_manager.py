@@ -11,7 +11,7 @@ from basu.errors import SimulatorError
 from basu.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
 from basu.history.model import NO_LIGHT
 from basu.managers.base_manager import BaseManager
-from basu.managers.lane_under import lane_under
+from basu.managers.lane_under import LaneFinder
 from basu.managers.neighbours import Neighbours
 from basu.managers.route_lights import RouteLights
 from basu.metrics.so_far import SoFar
@@ -62,6 +62,7 @@ class MetricsManager(BaseManager):
             rear_m=box.extent.x - box.location.x,
             width_m=2.0 * box.extent.y,
         )
+        self._lanes = LaneFinder(run.carla_map)
         self._lights = RouteLights(run.world, run.route, self._vehicle.rear_m)
         library = run.world.get_blueprint_library()
         for name, hear in (
@@ -97,7 +98,7 @@ class MetricsManager(BaseManager):
                 progress.lateral_m,
                 self._lights.next_state(progress.s_m),
                 self._agents.manual,
-                *lane_under(self._run.carla_map, frame.ego),
+                *self._lanes.under(frame.ego),
             )
         )
         self._recorder.others(self._neighbours.near(frame))

@@ -76,12 +76,16 @@ class Place(NamedTuple):
 
 
 class Route(NamedTuple):
-    """A way along streets, through points of theirs; ``stops`` are the ids of the stops called at, in their order."""
+    """A way along streets, through points of theirs; ``stops`` are the ids of the stops called at, in their order.
+
+    ``timetable`` names a file that is to lie beside the route's; empty where there is none.
+    """
 
     id: str
     points: tuple[Point, ...]
     closed: bool
     stops: tuple[str, ...]
+    timetable: str = ""
 
 
 class Ground(NamedTuple):
@@ -284,4 +288,5 @@ def _route(feature: _Feature, points: tuple[Point, ...]) -> Route:
         points=points,
         closed=bool(feature.properties.get("closed", False)),
         stops=tuple(map(str, feature.properties.get("stops", []))),
+        timetable=str(feature.properties.get("timetable", "")),
     )

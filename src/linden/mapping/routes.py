@@ -89,6 +89,8 @@ def xml(built: Built, route: Route, number: int) -> bytes:
     driven = drive(built, route)
     root = etree.Element("routes")
     element = etree.SubElement(root, "route", id=str(number), town=built.facts.name, name=route.id)
+    if route.timetable:
+        element.set("timetable", route.timetable)
     waypoints = etree.SubElement(element, "waypoints")
     for sample in positions(driven):
         at = _in_carla(sample).location

@@ -1,12 +1,13 @@
 """Claims about the lane under a vehicle: which it is, how one stands in it, and how far beyond all lanes one is."""
 
 import math
+from typing import Any
 
 import carla
 import pytest
 
 from basu.managers.base_manager import Ego
-from basu.managers.lane_under import LaneUnder, lane_under
+from basu.managers.lane_under import LaneFinder, LaneUnder, lane_under
 from fakes.crossing_map import LANE_M, crossing
 
 DRIVING = int(carla.LaneType.Driving)
@@ -47,3 +48,19 @@ def test_beside_the_road_there_is_no_lane_but_a_distance_to_its_edge(town: carla
     assert (lane.road_id, lane.lane_id, lane.lane_type) == (0, 0, 0)
     assert math.isnan(lane.lane_offset_m)
     assert lane.off_lane_m == pytest.approx(beyond_m, abs=1e-3)
+
+
+def test_who_stands_still_is_not_looked_for_again(town: carla.Map) -> None:
+    asked = []
+
+    class Map:
+        def get_waypoint(self, place: Any, **options: Any) -> Any:
+            asked.append(place)
+            return town.get_waypoint(place, **options)
+
+    finder, there = LaneFinder(Map()), Ego(5.0, 1.0, 0.0, 0.0, 0.0, 0.0, *[0.0] * 9)
+    first = finder.under(there)
+    count = len(asked)
+    assert finder.under(there) is first
+    assert len(asked) == count
+    assert finder.under(there._replace(y_m=1.5)).lane_offset_m != first.lane_offset_m
