@@ -1,4 +1,4 @@
-"""What the base classes of the agents for the leaderboard and for ScenarioRunner share: their plan, and doing nothing."""
+"""What the base classes of agents for the leaderboard and for ScenarioRunner share: their plan, and doing nothing."""
 
 from __future__ import annotations
 
