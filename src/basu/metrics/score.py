@@ -42,7 +42,7 @@ class Scoring:
         if not math.isclose(total, 1.0, abs_tol=1e-9) or min(self.infraction_weight, self.path_following_weight) < 0.0:
             raise UserError(
                 f"the weights {self.infraction_weight} (infractions) and {self.path_following_weight} (path following) "
-                f"sum to {total}; they must be non-negative and sum to 1"
+                f"sum to {total:g}; they must be non-negative and sum to 1"
             )
         for kind, penalty in self.penalties.items():
             if not 0.0 <= penalty <= 1.0:
