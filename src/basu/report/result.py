@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.metrics.comfort import comfort
 from basu.metrics.infraction import counts
 from basu.metrics.lane_invasion import lane_invasions
 from basu.metrics.passengers.as_json import passengers_to_json
@@ -97,7 +96,7 @@ def _service_stops(history: History) -> list[dict[str, Any]]:
 
 def _reported(history: History, driven_m: float, planned_m: float) -> dict[str, Any]:
     """Figures that do not enter the score."""
-    invasions, felt = lane_invasions(history), comfort(history)
+    invasions = lane_invasions(history)
     frames = history.frames
     return {
         "driven_m": driven_m,
@@ -106,5 +105,4 @@ def _reported(history: History, driven_m: float, planned_m: float) -> dict[str, 
         "lane_invasions": {"total": invasions.total, "by_marking": dict(invasions.by_marking)},
         "largest_lateral_m": float(np.abs(frames["lateral_m"]).max()),
         "top_speed_mps": float(history.speed_mps().max()),
-        "comfort": None if felt is None else felt._asdict(),
     }
