@@ -57,12 +57,13 @@ def drive(
     scoring: Scoring,
     *,
     why_gone: Callable[[], str | None],
+    ended: Callable[[], bool],
     observers: Callable[[Live], Sequence[BaseManager]],
 ) -> Driven:
     """Drive one run to its end, whatever that is.
 
-    ``why_gone`` tells whether the simulator is still there; ``observers`` makes those who look on and change
-    nothing; they are ticked after all others.
+    ``why_gone`` tells whether the simulator is still there, ``ended`` whether it is seen without asking that it is not;
+    ``observers`` makes those who look on and change nothing; they are ticked after all others.
     """
     routes = RoutesManager()
     metrics = MetricsManager(agents, routes, scoring)
@@ -76,7 +77,7 @@ def drive(
         for manager in managers:
             manager.setup(run)
         began_s = time.perf_counter()
-        outcome = _until_over(run, live, onlookers)
+        outcome = _until_over(run, live, onlookers, ended)
     except KeyboardInterrupt:
         outcome = Outcome(Status.INTERRUPTED, "interrupted by the user")
     except AgentError as error:
@@ -100,8 +101,12 @@ def drive(
     return Driven(outcome, history, wall_s, metrics.first_frame, bug, agent_error)
 
 
-def _until_over(run: Run, live: Live, onlookers: tuple[BaseManager, ...]) -> Outcome:
-    """Tick, sense, ask the agent, apply, record; until the route manager says that it is over."""
+def _until_over(run: Run, live: Live, onlookers: tuple[BaseManager, ...], ended: Callable[[], bool]) -> Outcome:
+    """Tick, sense, ask the agent, apply, record; until the route manager says that it is over.
+
+    A simulator that has ended is not asked for a step: while one waited for its answer, the Traffic Manager's thread in
+    the official client would run into its own time-out, and that ends the whole process.
+    """
     agents, sensors, routes, metrics = live
     frame = _next_frame(run, None)
     while True:
@@ -116,6 +121,8 @@ def _until_over(run: Run, live: Live, onlookers: tuple[BaseManager, ...]) -> Out
             onlooker.tick(frame)
         if routes.outcome is not None:
             return routes.outcome
+        if ended():
+            raise SimulatorError("the simulator ended")
         run.vehicle.apply_control(agents.control)
         frame = _next_frame(run, frame)
 

@@ -170,5 +170,12 @@ def _driven(
         )
         sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors)
         return drive(
-            this_run, agents, sensors, traffic, session.scoring, why_gone=simulator.why_gone, observers=observers
+            this_run,
+            agents,
+            sensors,
+            traffic,
+            session.scoring,
+            why_gone=simulator.why_gone,
+            ended=simulator.ended,
+            observers=observers,
         )

@@ -45,6 +45,7 @@ class Simulator:
     address: tuple[str, int]
     own: bool
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
+    ended: Callable[[], bool]  # whether its process is seen to have ended; asks it nothing
 
 
 @contextlib.contextmanager
@@ -57,12 +58,13 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
     """
     if options.host is not None:
         client = connect(options.host, options.port, options.timeout_s)
-        yield Simulator(client, (options.host, options.port), own=False, why_gone=lambda: _silence(client, options))
+        address = (options.host, options.port)
+        yield Simulator(client, address, own=False, why_gone=lambda: _silence(client, options), ended=lambda: False)
         return
     server = OwnServer(options.output if options.record else None)
     try:
         client = connect("127.0.0.1", server.port, options.timeout_s)
-        yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone)
+        yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone, ended=server.ended)
     finally:
         server.end()
 
@@ -111,6 +113,10 @@ class OwnServer:
         except BaseException:
             self.end()
             raise
+
+    def ended(self) -> bool:
+        """Whether it runs no more; costs a microsecond."""
+        return self._process.poll() is not None
 
     def gone(self) -> str | None:
         """Why it is gone, in words; None while it runs."""

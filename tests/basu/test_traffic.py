@@ -136,10 +136,11 @@ def test_a_simulator_that_dies_under_traffic_is_told_of_and_what_was_measured_is
 ) -> None:
     agent = tmp_path / "killer.py"
     agent.write_text(KILLER)
-    options = ["--routes", str(route_file), "--vehicles", "10", "--walkers", "5", "--timeout", "2"]
+    options = ["--routes", str(route_file), "--vehicles", "10", "--walkers", "5"]
     arguments = ["run", str(agent), *options, "--output", str(tmp_path / "runs")]
     program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"
-    # in a process of its own: the client of a dead simulator keeps its Traffic Manager for as long as it lives
+    # in a process of its own: the client of a dead simulator keeps its Traffic Manager for as long as it lives, which
+    # is until that has waited in vain for --timeout
     ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False)
     assert ended.returncode == 3, ended.stderr
     result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text())

@@ -11,6 +11,7 @@ import basu
 from basu.cli import compare, experiment, list_, metrics, replay, report, run, score
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.outcome import EXIT_CODES, Fault
+from basu.utils import client_threads
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,7 +21,14 @@ COMMANDS = (run, score, report, compare, experiment, metrics, replay, list_)
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; what a person can mend is one sentence and an exit code."""
-    arguments = parser().parse_args(argv)
+    code = _run(parser().parse_args(argv))
+    if client_threads.is_held():
+        client_threads.leave(code)
+    return code
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    """The command's exit code, whatever becomes of it."""
     try:
         code: int = arguments.command(arguments)
     except UserError as error:

@@ -13,6 +13,7 @@ import numpy as np
 from basu.errors import SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
 from basu.managers.traffic_places import CLEAR_M, REACH_M, suitable, vehicles_for
+from basu.utils import client_threads
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -155,6 +156,7 @@ class TrafficManager(BaseManager):
         """Hand the vehicles over to a Traffic Manager of their own."""
         if not vehicles:
             return
+        client_threads.hold()
         self._manager = self._run.client.get_trafficmanager(_free_port())
         self._manager.set_synchronous_mode(True)
         self._manager.set_random_device_seed(self._run.seed)
