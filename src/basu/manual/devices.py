@@ -67,6 +67,7 @@ def check_display() -> None:
             "draw without showing"
         ) from error
     if driver == "offscreen" and os.environ.get("SDL_VIDEODRIVER") != "offscreen":
+        pygame.display.quit()  # whoever asks next may have another driver
         raise UserError(
             "no window can be opened here: there is no display; run where there is one, or with SDL_VIDEODRIVER=dummy "
             "to draw without showing"

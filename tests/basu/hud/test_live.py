@@ -63,6 +63,7 @@ DOWN, UP = "KEYDOWN", "KEYUP"
 @pytest.fixture
 def run(simulator: RunningServer, tmp_path: Path, route_file: Path, monkeypatch: pytest.MonkeyPatch) -> Runner:
     """``basu run`` in this process, at the shared simulator: exit code, result and record."""
+    pygame.display.quit()
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
 
     def at(agent: object, *options: str) -> tuple[int, dict[str, Any], History]:

@@ -114,3 +114,14 @@ def test_without_a_display_a_sentence_says_so(monkeypatch: pytest.MonkeyPatch) -
             check_display()
     finally:
         pygame.display.quit()
+
+
+def test_who_was_refused_a_window_may_have_one_with_another_driver(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
+        monkeypatch.delenv(name, raising=False)
+    pygame.display.quit()
+    with pytest.raises(UserError):
+        check_display()
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    check_display()
+    pygame.display.quit()
