@@ -73,6 +73,7 @@ class Ground(NamedTuple):
     """The town with the route on it."""
 
     world: carla.World
+    carla_map: carla.Map
     lanes: LaneGraph
     description: RouteDescription
     route: Route
@@ -129,7 +130,7 @@ def _ground(session: Session, agents: AgentsManager, job: Job, *, fresh: bool) -
     description = job.description
     if points is not None:
         description = replace(description, id=f"{description.id}{OWN_ROUTE}", points=points, stops=())
-    return Ground(world, lanes, description, plan(carla_map, description, lanes))
+    return Ground(world, carla_map, lanes, description, plan(carla_map, description, lanes))
 
 
 def _driven(
@@ -157,7 +158,7 @@ def _driven(
         this_run = Run(
             client=simulator.client,
             world=world,
-            carla_map=world.get_map(),
+            carla_map=ground.carla_map,
             vehicle=vehicle,
             route=ground.route,
             config=agents.config,

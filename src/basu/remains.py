@@ -143,7 +143,7 @@ def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, conf
         "versions": config["versions"],
     }
     document = result(driven.outcome, history, scoring, meta)
-    text = table(document)
+    text, lanes_m = table(document), lanes.streets()
     print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
@@ -151,8 +151,8 @@ def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, conf
     if history is not None:
         write_history(folder, history)
         title = f"{_heading(config)}: {document['status']}"
-        picture.draw(folder / PICTURE_FILE, history, lanes.streets(), title, scoring)
-    streets = [] if history is None else around(lanes.streets(), history)
+        picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
+    streets = [] if history is None else around(lanes_m, history)
     write_streets(folder, streets)
     write_report(folder, RunRecord(name=folder.name, config=config, result=document, history=history, streets=streets))
     if config["recording"] is not None:

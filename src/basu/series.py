@@ -189,11 +189,11 @@ def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) ->
     Raises:
         UserError: names what is different.
     """
-    plain = json.loads(json.dumps(now))
+    told = json.loads(json.dumps(now))  # as the file has it
     changed = [
-        f"{name} was {before.get(name)!r} and is {plain.get(name)!r}"
-        for name in sorted({*before, *plain})
-        if before.get(name) != plain.get(name)
+        f"{name} was {before.get(name)!r} and is {told.get(name)!r}"
+        for name in sorted({*before, *told})
+        if before.get(name) != told.get(name)
     ]
     if changed:
         raise UserError(

@@ -6,6 +6,7 @@ sensors and no clock: the same ticks give the same drive.
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import carla
@@ -30,6 +31,7 @@ class BasicAgent(AutonomousAgent):
     """A careful driver; from ``setup`` on, ``driver`` holds its plan and may be looked at."""
 
     sight_m = RADIUS_M  # how far others are looked at
+    cruise_mps = math.inf  # never faster than this, whatever vehicle and limits allow
     driver: Driver | None = None
     facts: VehicleFacts | None = None
 
@@ -67,7 +69,7 @@ class BasicAgent(AutonomousAgent):
         """Read the vehicle and lay out the route for it."""
         assert self.route is not None  # setup refuses
         facts = read_facts(self.vehicle, pose)
-        task = make_task(self.route, facts.body, facts.top_mps)
+        task = make_task(self.route, facts.body, min(self.cruise_mps, facts.top_mps))
         return Driver(task, facts.body, facts.model, self.time_step_s), facts
 
 

@@ -14,15 +14,11 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.agents.basic import BasicAgent
-from basu.agents.driving.driver import Driver
 from basu.agents.driving.longitudinal import HOLD_BRAKE
-from basu.agents.driving.task import make_task
-from basu.agents.vehicle_facts import SHUTTLE, read_facts
+from basu.agents.vehicle_facts import SHUTTLE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-
-    from basu.agents.vehicle_facts import VehicleFacts
 
 CRUISE_MPS = 7.1 * 0.44704
 DEVIATION_SHARE = 0.78  # of the route, where the wheels deviate: on the short one 90 m before a line, 85 m after a bend
@@ -35,6 +31,8 @@ AT_REST_MPS = 0.05
 
 class IncidentAgent(BasicAgent):
     """The basic agent, no faster than the shuttle was that day, with a nervous watchdog over its wheels."""
+
+    cruise_mps = CRUISE_MPS
 
     def setup(self) -> None:
         """Nothing has happened yet."""
@@ -59,13 +57,6 @@ class IncidentAgent(BasicAgent):
             "vehicle": SHUTTLE,
             "weather": "CloudyNoon",
         }
-
-    def _get_in(self, pose: carla.Transform) -> tuple[Driver, VehicleFacts]:
-        """As the basic agent, at that day's speed."""
-        assert self.route is not None  # setup refuses
-        facts = read_facts(self.vehicle, pose)
-        task = make_task(self.route, facts.body, min(CRUISE_MPS, facts.top_mps))
-        return Driver(task, facts.body, facts.model, self.time_step_s), facts
 
     def _deviation(self) -> float:
         """How far the wheels are off, once."""
