@@ -4,6 +4,7 @@
 
     BasuError
     ├── UserError       the set-up's: something that was typed or given cannot be used
+    │   └── ScenarioError   a scenario's own: its class, its file or its place cannot be used
     ├── AgentError      the agent's: it raised, hung, or returned what is not a control
     └── SimulatorError  the simulator's: it went away, or did not answer in time
 
@@ -17,6 +18,10 @@ class BasuError(Exception):
 
 class UserError(BasuError):
     """What was typed or given cannot be used: says which, why, and what to do next."""
+
+
+class ScenarioError(UserError):
+    """A scenario cannot be played: its class raised, or it asks for what is not there."""
 
 
 class AgentError(BasuError):

@@ -1,0 +1,1 @@
+"""Cases as files: ScenarioRunner's XML and what of it a case is made of."""

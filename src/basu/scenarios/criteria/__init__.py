@@ -1,0 +1,1 @@
+"""By what a drive through a scenario is judged: functions of its record, one idea a file."""

@@ -1,0 +1,108 @@
+"""The base of all scenarios. One shape for all: setup, trigger, conflict, resolution, end.
+
+A scenario of your own is one class and one case::
+
+    class ParkedCar(Scenario):
+        \"\"\"A car stands in the lane.\"\"\"
+
+        group = Group.REAR_END
+        parameters = (Number("ahead", 40.0, 20.0, 80.0, "m", "of the trigger point"),)
+
+        def actors(self):
+            return [ActorSpec("parked", "vehicle.audi.a2", self.place.at(self.number("ahead")))]
+
+        def trigger(self):
+            return EgoNear("parked", 30.0)
+
+        def conflict(self):
+            return Wait(1.0)
+
+        def criteria(self):
+            return [NoCollision(), Arrives()]
+
+See `docs/scenarios.md`.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, ClassVar
+
+from basu.scenarios.triggers import EgoArrives
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from py_trees.behaviour import Behaviour
+
+    from basu.scenarios.criteria.criterion import Criterion
+    from basu.scenarios.nhtsa import Group
+    from basu.scenarios.parameters import Parameter, Value
+    from basu.scenarios.place import Place
+    from basu.scenarios.stage import ActorSpec
+
+
+class Scenario(ABC):
+    """Actors, behaviour and criteria at a place. The first line of the class's docstring is its title.
+
+    Attributes:
+        place: the ego's route and where the scenario lies on it.
+        values: of all parameters, by name.
+    """
+
+    group: ClassVar[Group]
+    parameters: ClassVar[Sequence[Parameter]] = ()
+    weather: ClassVar[Mapping[str, float]] = {}  # fields of carla.WeatherParameters, where the case gives none
+    timeout_s: ClassVar[float] = 60.0  # of simulated time from the first frame to the end
+    needs_m: ClassVar[float] = 60.0  # of the ego's route behind the trigger point
+    aliases: ClassVar[Sequence[str]] = ()  # types of ScenarioRunner and the leaderboard that mean this one
+    reference: ClassVar[str] = "behavioral"  # an agent that comes with BASU and passes every case
+
+    def __init__(self, place: Place, values: Mapping[str, Value]) -> None:
+        """Take the place and the values; nothing is in the world yet."""
+        self.place, self.values = place, values
+
+    @classmethod
+    def title(cls) -> str:
+        """What it is, in a line."""
+        return (cls.__doc__ or cls.__name__).strip().splitlines()[0]
+
+    def number(self, name: str) -> float:
+        """The value of a parameter that is a number."""
+        value = self.values[name]
+        assert isinstance(value, float), f"{name} is a choice"
+        return value
+
+    def choice(self, name: str) -> str:
+        """The value of a parameter that is a choice."""
+        value = self.values[name]
+        assert isinstance(value, str), f"{name} is a number"
+        return value
+
+    def actors(self) -> Sequence[ActorSpec]:
+        """Who is there besides the ego; put into the world before the first frame."""
+        return ()
+
+    def setup(self) -> Behaviour | None:
+        """What is made ready in the first frame: friction, lights, weather that the case cannot give."""
+        return None
+
+    @abstractmethod
+    def trigger(self) -> Behaviour:
+        """What has to come true for the conflict to begin."""
+
+    @abstractmethod
+    def conflict(self) -> Behaviour:
+        """What others do to the ego, and ends when the ego has had to answer."""
+
+    def resolution(self) -> Behaviour:
+        """What has to come true for the conflict to be over; here, the ego arrives at the end of its route."""
+        return EgoArrives()
+
+    def end(self) -> Behaviour | None:
+        """What is left to be done once it is over, such as a light given back to its cycle."""
+        return None
+
+    @abstractmethod
+    def criteria(self) -> Sequence[Criterion]:
+        """By what the ego is judged."""
