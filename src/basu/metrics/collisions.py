@@ -23,7 +23,12 @@ def collisions(history: History) -> tuple[Evidence, ...]:
 
 
 def contacts(history: History, latest: dict[Party, int]) -> tuple[Evidence, ...]:
-    """The contacts that begin in this record, which may be the later part of one.
+    """The contacts that begin in this record, which may be the later part of one; ``latest`` as in `beginnings`."""
+    return tuple(_contact(history, event) for event in beginnings(history, latest))
+
+
+def beginnings(history: History, latest: dict[Party, int]) -> tuple[Collision, ...]:
+    """The first message of each contact.
 
     ``latest`` holds the tick of each party's latest message until then, and is brought up to date.
     """
@@ -34,7 +39,7 @@ def contacts(history: History, latest: dict[Party, int]) -> tuple[Evidence, ...]
         before = latest.get(party)
         latest[party] = tick
         if before is None or (tick - before) * history.facts.step_s > SEPARATE_AFTER_S:
-            found.append(_contact(history, event))
+            found.append(event)
     return tuple(found)
 
 
