@@ -5,6 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -30,30 +32,50 @@ class Played(NamedTuple):
     outcome: Outcome  # of the run
     roles: Mapping[int, str]  # of actor ids in the record, for those the scenario brought
     things: tuple[Thing, ...]
-    phases_s: Mapping[
-        str, float
-    ]  # when each phase began, on the clock of the record: trigger, conflict, resolution, end
+    phases_s: Mapping[str, float]  # when each phase began, on the record's clock: trigger, conflict, resolution, end
     timeout_s: float
+
+    def first_tick(self, phase: str | None) -> int | None:
+        """The first frame of a phase, the first of all for None; None where the phase never began."""
+        if phase is None:
+            return 0
+        if phase not in self.phases_s:
+            return None
+        begun = self.history.frames["t_s"] >= self.phases_s[phase] - self.history.facts.step_s / 2.0
+        return int(np.argmax(begun)) if begun.any() else None
 
 
 class Judgement(NamedTuple):
     """What a criterion says, with its evidence."""
 
     criterion: str  # its name, such as "least distance"
-    passed: bool | None  # None: there was nothing to judge by
+    passed: bool | None  # None: there was nothing to judge by, or no limit to hold it against
     deciding: bool  # whether the verdict depends on it
     measured: float | None  # in `unit`; None where there is no figure
     unit: str
-    limit: str  # what it was held against, such as "at least 0.5 m"
+    limit: str  # what it was held against, such as "at least 0.5 m"; "" for what is only told
     sentence: str  # when, where, with whom, how fast
     t_s: float | None = None  # of the moment that decided
     x_m: float | None = None  # of the ego then
     y_m: float | None = None
+    speed_mps: float | None = None
     other: str | None = None  # the other party: its role, or blueprint id
 
 
 class Criterion(ABC):
-    """One thing to be judged. ``deciding=False`` makes it tell without weighing."""
+    """One thing to be judged. ``deciding=False`` makes it tell without weighing.
+
+    One of your own::
+
+        class NeverBacks(Criterion):
+            name = "never backs"
+
+            def judge(self, played):
+                backing = np.flatnonzero(played.history.frames["reverse"])
+                if len(backing) == 0:
+                    return self.says(played, True, "it never backed")
+                return self.says(played, False, "it put the gear in reverse", tick=int(backing[0]))
+    """
 
     name: str
 
@@ -63,3 +85,32 @@ class Criterion(ABC):
     @abstractmethod
     def judge(self, played: Played) -> Judgement:
         """Look through the record."""
+
+    def says(
+        self,
+        played: Played,
+        passed: bool | None,  # noqa: FBT001 - it reads as what it is: the answer
+        sentence: str,
+        *,
+        tick: int | None = None,
+        measured: float | None = None,
+        unit: str = "",
+        limit: str = "",
+        other: str | None = None,
+    ) -> Judgement:
+        """A judgement by this criterion; ``tick`` is the frame that decided, and gives time, place and speed."""
+        moment = None if tick is None else played.history.frames[tick]
+        return Judgement(
+            criterion=self.name,
+            passed=passed,
+            deciding=self.deciding,
+            measured=measured,
+            unit=unit,
+            limit=limit,
+            sentence=sentence,
+            t_s=None if moment is None else float(moment["t_s"]),
+            x_m=None if moment is None else float(moment["x_m"]),
+            y_m=None if moment is None else float(moment["y_m"]),
+            speed_mps=None if tick is None else float(played.history.speed_mps()[tick]),
+            other=other,
+        )

@@ -1,0 +1,135 @@
+"""How far the ego got and when: a place reached, the end of its route, the time for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from basu.outcome import Status
+from basu.scenarios.criteria.criterion import Criterion
+
+if TYPE_CHECKING:
+    from basu.history import History
+    from basu.scenarios.criteria.criterion import Judgement, Played
+
+AT_END_M = 2.0  # before the end of its route the ego has arrived, as for the trigger ``EgoArrives``
+PARKED_M, PARKED_MPS = 5.0, 0.1  # at rest this near to the end, too, as for ``managers.routes_manager``
+
+
+def arrival_tick(history: History) -> int | None:
+    """The first frame in which the ego is at the end of its route; None where it never was."""
+    left_m = history.facts.route.length_m - history.frames["route_s_m"]
+    there = (left_m <= AT_END_M) | ((left_m <= PARKED_M) & (history.speed_mps() < PARKED_MPS))
+    return int(np.argmax(there)) if there.any() else None
+
+
+class Arrives(Criterion):
+    """The ego comes to the end of its route: within 2 m of it, or to rest within 5 m."""
+
+    name = "arrives"
+
+    def judge(self, played: Played) -> Judgement:
+        """The figure is how far it got along its route."""
+        history = played.history
+        length_m, tick = history.facts.route.length_m, arrival_tick(history)
+        limit = f"{length_m:.0f} m"
+        if tick is not None:
+            took_s = float(history.frames["t_s"][tick] - history.frames["t_s"][0])
+            sentence = f"it arrived after {took_s:.2f} s"
+            return self.says(played, True, sentence, tick=tick, measured=length_m, unit="m", limit=limit)
+        farthest = int(np.argmax(history.frames["route_s_m"]))
+        got_m = float(history.frames["route_s_m"][farthest])
+        sentence = f"it got to {got_m:.1f} m of {length_m:.1f} m: {played.outcome.message}"
+        return self.says(played, False, sentence, tick=farthest, measured=got_m, unit="m", limit=limit)
+
+
+class Reaches(Criterion):
+    """The ego's origin passes a place along its route, ``s_m`` from the route's beginning."""
+
+    def __init__(self, s_m: float, what: str = "", *, deciding: bool = True) -> None:
+        super().__init__(deciding=deciding)
+        self.s_m, self.what = s_m, what or f"{s_m:.0f} m of the route"
+        self.name = f"reaches {self.what}"
+
+    def judge(self, played: Played) -> Judgement:
+        """The figure is how far it got along its route."""
+        frames = played.history.frames
+        beyond = frames["route_s_m"] >= self.s_m
+        tick = int(np.argmax(beyond)) if beyond.any() else int(np.argmax(frames["route_s_m"]))
+        got_m, t_s = float(frames["route_s_m"][tick]), float(frames["t_s"][tick])
+        reached = bool(beyond.any())
+        sentence = (
+            f"it was at {self.what} at {t_s:.2f} s"
+            if reached
+            else f"it got to {got_m:.1f} m of its route, {self.s_m - got_m:.1f} m short of {self.what}"
+        )
+        return self.says(
+            played, reached, sentence, tick=tick, measured=got_m, unit="m", limit=f"at least {self.s_m:.1f} m"
+        )
+
+
+class ReachesPoint(Criterion):
+    """The ego's origin comes within ``radius_m`` of a point on the map (CARLA's frame)."""
+
+    def __init__(
+        self, x_m: float, y_m: float, radius_m: float, what: str = "the place", *, deciding: bool = True
+    ) -> None:
+        super().__init__(deciding=deciding)
+        self.x_m, self.y_m, self.radius_m, self.what = x_m, y_m, radius_m, what
+        self.name = f"reaches {what}"
+
+    def judge(self, played: Played) -> Judgement:
+        """The figure is the least distance from the point."""
+        frames = played.history.frames
+        away_m = np.hypot(frames["x_m"] - self.x_m, frames["y_m"] - self.y_m)
+        within = away_m <= self.radius_m
+        tick = int(np.argmax(within)) if within.any() else int(np.argmin(away_m))
+        least_m, t_s = float(away_m.min()), float(frames["t_s"][tick])
+        sentence = (
+            f"it was at {self.what} at {t_s:.2f} s"
+            if within.any()
+            else f"it came no nearer to {self.what} than {least_m:.1f} m, at {t_s:.2f} s"
+        )
+        limit = f"within {self.radius_m:g} m"
+        return self.says(played, bool(within.any()), sentence, tick=tick, measured=least_m, unit="m", limit=limit)
+
+
+class InTime(Criterion):
+    """The scenario is over within ``limit_s`` of simulated time from the first frame; None: the scenario's own time.
+
+    Over is when the phase "end" begins or the ego arrives. A drive that ended before its time for another reason, such
+    as a collision, is neither in time nor late.
+    """
+
+    name = "in time"
+
+    def __init__(self, limit_s: float | None = None, *, deciding: bool = True) -> None:
+        super().__init__(deciding=deciding)
+        self.limit_s = limit_s
+
+    def judge(self, played: Played) -> Judgement:
+        """The figure is the time that it took."""
+        t_s = played.history.frames["t_s"]
+        limit_s = played.timeout_s if self.limit_s is None else self.limit_s
+        ended = [tick for tick in (played.first_tick("end"), arrival_tick(played.history)) if tick is not None]
+        last = min(ended, default=len(t_s) - 1)
+        took_s = float(t_s[last] - t_s[0])
+        late = took_s > limit_s or (not ended and _used_up(played, took_s, limit_s))
+        limit = f"at most {limit_s:g} s"
+        if late:
+            sentence = (
+                f"after {took_s:.2f} s it was {'over' if ended else 'not over yet'}, and {limit_s:g} s are allowed"
+            )
+            return self.says(played, False, sentence, tick=last, measured=took_s, unit="s", limit=limit)
+        if not ended:
+            sentence = f"it ended after {took_s:.2f} s of {limit_s:g} s before it was over: {played.outcome.message}"
+            return self.says(played, None, sentence, measured=took_s, unit="s", limit=limit)
+        sentence = f"it was over after {took_s:.2f} s of {limit_s:g} s"
+        return self.says(played, True, sentence, tick=last, measured=took_s, unit="s", limit=limit)
+
+
+def _used_up(played: Played, took_s: float, limit_s: float) -> bool:
+    """Whether a drive that was never over was ended by its time, rather than by something else."""
+    by_time = played.outcome.status in (Status.ROUTE_TIMEOUT, Status.ROUTE_BLOCKED)
+    return by_time or took_s >= limit_s - 1.5 * played.history.facts.step_s
