@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from basu.history import History
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
+    from basu.managers.scenario_manager import ScenarioManager
     from basu.managers.sensors_manager import SensorsManager
     from basu.managers.traffic_manager import TrafficManager
     from basu.metrics.score import Scoring
@@ -59,25 +60,27 @@ def drive(
     why_gone: Callable[[], str | None],
     ended: Callable[[], bool],
     observers: Callable[[Live], Sequence[BaseManager]],
+    scenarios: ScenarioManager,
 ) -> Driven:
     """Drive one run to its end, whatever that is.
 
     ``why_gone`` tells whether the simulator is still there, ``ended`` whether it is seen without asking that it is not;
-    ``observers`` makes those who look on and change nothing; they are ticked after all others.
+    ``observers`` makes those who look on and change nothing; they are ticked after all others but the ``scenarios``.
     """
     routes = RoutesManager()
     metrics = MetricsManager(agents, routes, scoring)
+    scenarios.join(routes, metrics)
     live = Live(agents, sensors, routes, metrics)
     onlookers = tuple(observers(live))
     # the agent before its sensors: one of another program's says only once it is set up what it wants to see
-    managers: tuple[BaseManager, ...] = (traffic, agents, sensors, routes, metrics, *onlookers)
+    managers: tuple[BaseManager, ...] = (traffic, agents, sensors, routes, metrics, scenarios, *onlookers)
     began_s = time.perf_counter()
     bug = agent_error = None
     try:
         for manager in managers:
             manager.setup(run)
         began_s = time.perf_counter()
-        outcome = _until_over(run, live, onlookers, ended)
+        outcome = _until_over(run, live, scenarios, onlookers, ended)
     except KeyboardInterrupt:
         outcome = Outcome(Status.INTERRUPTED, "interrupted by the user")
     except AgentError as error:
@@ -101,8 +104,10 @@ def drive(
     return Driven(outcome, history, wall_s, metrics.first_frame, bug, agent_error)
 
 
-def _until_over(run: Run, live: Live, onlookers: tuple[BaseManager, ...], ended: Callable[[], bool]) -> Outcome:
-    """Tick, sense, ask the agent, apply, record; until the route manager says that it is over.
+def _until_over(
+    run: Run, live: Live, scenarios: ScenarioManager, onlookers: tuple[BaseManager, ...], ended: Callable[[], bool]
+) -> Outcome:
+    """Tick, sense, ask the agent, apply, record; until the route manager or a scenario says that it is over.
 
     A simulator that has ended is not asked for a step: while one waited for its answer, the Traffic Manager's thread in
     the official client would run into its own time-out, and that ends the whole process.
@@ -119,11 +124,13 @@ def _until_over(run: Run, live: Live, onlookers: tuple[BaseManager, ...], ended:
             metrics.tick(frame)
         for onlooker in onlookers:
             onlooker.tick(frame)
-        if routes.outcome is not None:
-            return routes.outcome
+        scenarios.tick(frame)
+        over = routes.outcome or scenarios.outcome
+        if over is not None:
+            return over
         if ended():
             raise SimulatorError("the simulator ended")
-        run.vehicle.apply_control(agents.control)
+        run.vehicle.apply_control(scenarios.through(agents.control))
         frame = _next_frame(run, frame)
 
 

@@ -12,6 +12,7 @@ from basu.drive import drive
 from basu.hud.seat import onlookers_for
 from basu.managers.base_manager import BaseManager, Live, Run
 from basu.managers.recording_manager import RecordingManager
+from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.traffic_manager import TrafficManager
 from basu.options import STEP_S
@@ -179,4 +180,5 @@ def _driven(
             why_gone=simulator.why_gone,
             ended=simulator.ended,
             observers=observers,
+            scenarios=ScenarioManager((), own=False),
         )

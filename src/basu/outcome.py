@@ -31,6 +31,8 @@ class Status(enum.Enum):
     ROUTE_TIMEOUT = "RouteTimeout"  # the simulated time for the route was used up
     ROUTE_BLOCKED = "RouteBlocked"  # the vehicle stood still for too long
     ROUTE_DEVIATION = "RouteDeviation"  # the vehicle went too far from the route
+    SCENARIO_ENDED = "ScenarioEnded"  # a scenario's own run came to the scenario's end, or ended soon after a collision
+    SCENARIO_TIMEOUT = "ScenarioTimeout"  # the simulated time for the scenario was used up
     SETUP_FAILED = "SetupFailed"
     SIMULATOR_FAILED = "SimulatorFailed"
     BENCHMARK_FAILED = "BenchmarkFailed"
@@ -50,6 +52,8 @@ FAULT_OF = {
     Status.ROUTE_TIMEOUT: Fault.AGENT,
     Status.ROUTE_BLOCKED: Fault.AGENT,
     Status.ROUTE_DEVIATION: Fault.AGENT,
+    Status.SCENARIO_ENDED: Fault.NOBODY,
+    Status.SCENARIO_TIMEOUT: Fault.AGENT,
     Status.SETUP_FAILED: Fault.SETUP,
     Status.SIMULATOR_FAILED: Fault.SIMULATOR,
     Status.BENCHMARK_FAILED: Fault.BENCHMARK,

@@ -1,0 +1,231 @@
+"""The ``Stage`` of a scenario in a live simulator."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import random
+from typing import TYPE_CHECKING, Any
+
+import carla
+
+from basu.errors import ScenarioError
+from basu.managers.stage.cast import bring, member_of, take_away
+from basu.managers.stage.puppets import Puppets
+from basu.managers.stage.surroundings import Surroundings
+from basu.scenarios.stage import EGO, Body
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from basu.managers.base_manager import Frame, Run
+    from basu.managers.metrics_manager import MetricsManager
+    from basu.managers.routes_manager import RoutesManager
+    from basu.managers.stage.cast import Member
+    from basu.scenarios.criteria.criterion import Thing
+    from basu.scenarios.stage import ActorSpec, Controls, Door, Pose
+
+
+class LiveStage:
+    """See ``basu.scenarios.stage.Stage``. ``look`` begins a frame, ``carry_out`` ends it, ``clear`` ends all."""
+
+    def __init__(self, run: Run, routes: RoutesManager, metrics: MetricsManager, who: str) -> None:
+        """Set it in a run; ``who`` is the case, for sentences."""
+        self.step_s, self.route, self.carla_map = run.step_s, run.route, run.carla_map
+        self.rng = random.Random(f"{run.seed} {who}")  # noqa: S311 - chance that can be had again
+        self._run, self._routes, self._metrics, self._who = run, routes, metrics, who
+        self._cast: dict[str, Member] = {EGO: member_of(run.vehicle, EGO)}
+        self._roles: dict[int, str] = {}  # of everybody who was ever in the cast
+        self._types: dict[int, str] = {}
+        self._puppets = Puppets(run.client)
+        self._surroundings = Surroundings(run.world)
+        self._changes: dict[str, Callable[[Controls], Controls]] = {}
+        self._bodies: dict[str, Body] = {}
+        self._frame: Frame | None = None
+        self._began_tick = 0
+        self._touched: frozenset[str] = frozenset()
+
+    @property
+    def roles(self) -> Mapping[int, str]:
+        """The role of everybody who was ever in the cast, by actor id."""
+        return self._roles
+
+    @property
+    def types(self) -> Mapping[int, str]:
+        """Their blueprints' ids, likewise."""
+        return self._types
+
+    def enter(self, specs: Sequence[ActorSpec]) -> None:
+        """Bring the cast into the world.
+
+        Raises:
+            ScenarioError: somebody cannot be brought.
+        """
+        for member, spec in zip(bring(self._run.world, specs, self._who), specs, strict=True):
+            self._cast[spec.name] = member
+            self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
+            if spec.speed_mps:
+                yaw_rad, speed_mps = spec.pose.yaw_rad, spec.speed_mps
+                self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
+        self._puppets.carry_out()
+
+    def begin(self, tick: int) -> None:
+        """Let the scenario's clock begin."""
+        self._began_tick = tick
+
+    def look(self, frame: Frame) -> None:
+        """Take in a frame."""
+        self._frame = frame
+        self._bodies.clear()
+        contacts = self._metrics.contacts_since(max(self._began_tick, frame.tick - 2))
+        new = {self._roles.get(contact.other_id, contact.other_type) for contact in contacts}
+        if new:
+            self._touched |= new
+
+    def carry_out(self) -> None:
+        """Send this frame's commands."""
+        self._puppets.carry_out()
+
+    def clear(self) -> None:
+        """Leave the world as it was before."""
+        self._changes.clear()
+        self._surroundings.give_back()
+        take_away(member for name, member in self._cast.items() if name != EGO)
+        self._cast = {EGO: self._cast[EGO]}
+        self._puppets.forget()
+
+    def through(self, controls: Controls) -> Controls:
+        """The ego's controls after every disturbance, in the order in which they began."""
+        for change in self._changes.values():
+            controls = change(controls)
+        return controls
+
+    def things(self) -> tuple[Thing, ...]:
+        """Those of the cast that are neither vehicle nor walker."""
+        from basu.scenarios.criteria.criterion import Thing  # noqa: PLC0415
+
+        bodies = [(name, self.body(name)) for name, member in self._cast.items() if member.kind == "static"]
+        return tuple(
+            Thing(name, body.x_m, body.y_m, body.yaw_rad, body.half_length_m, body.half_width_m)
+            for name, body in bodies
+        )
+
+    # what a tree may ask ------------------------------------------------------------------------------------------
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time since the scenario began."""
+        return (self._now.tick - self._began_tick) * self.step_s
+
+    @property
+    def ego(self) -> Body:
+        """The vehicle under test."""
+        return self.body(EGO)
+
+    @property
+    def ego_s_m(self) -> float:
+        """How far along its route the ego's origin is."""
+        return self._routes.progress.s_m
+
+    @property
+    def ego_contacts(self) -> frozenset[str]:
+        """Whom the ego has touched since the scenario began."""
+        return self._touched
+
+    def body(self, name: str) -> Body:
+        """An actor of the cast in this frame."""
+        if name not in self._bodies:
+            self._bodies[name] = self._seen(self._member(name))
+        return self._bodies[name]
+
+    # what a tree may do -------------------------------------------------------------------------------------------
+
+    def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
+        """Let a vehicle have this velocity and turning until told otherwise."""
+        self._puppets.move(self._kind(name, "vehicle"), velocity_x_mps, velocity_y_mps, yaw_rate_radps)
+
+    def walk(self, name: str, velocity_x_mps: float, velocity_y_mps: float) -> None:
+        """Let a walker go."""
+        self._puppets.walk(self._kind(name, "walker"), velocity_x_mps, velocity_y_mps)
+
+    def put(self, name: str, pose: Pose) -> None:
+        """Put an actor elsewhere, at rest."""
+        member = self._member(name)
+        rotation = carla.Rotation(yaw=math.degrees(pose.yaw_rad))
+        member.actor.set_transform(carla.Transform(carla.Location(pose.x_m, pose.y_m, pose.z_m), rotation))
+
+    def let_go(self, name: str) -> None:
+        """Lead it no more."""
+        self._puppets.let_go(self._member(name))
+
+    def remove(self, name: str) -> None:
+        """Take an actor out of the world."""
+        member = self._member(name)
+        self._puppets.let_go(member)
+        take_away([self._cast.pop(name)])
+        self._bodies.pop(name, None)
+
+    def open_door(self, name: str, door: Door) -> None:
+        """Open a vehicle's door."""
+        self._kind(name, "vehicle").actor.open_door(carla.VehicleDoor.values[int(door)])
+
+    def close_door(self, name: str, door: Door) -> None:
+        """Close it."""
+        self._kind(name, "vehicle").actor.close_door(carla.VehicleDoor.values[int(door)])
+
+    def set_weather(self, values: Mapping[str, float]) -> None:
+        """Change fields of the weather."""
+        self._surroundings.set_weather(values)
+
+    def set_friction(self, pose: Pose, radius_m: float, friction: float) -> None:
+        """Make the road slippery around a place."""
+        self._surroundings.set_friction(pose, radius_m, friction)
+
+    def set_light(self, landmark_id: str, state: str) -> None:
+        """Let a traffic light show a state and stay so."""
+        self._surroundings.set_light(landmark_id, state)
+
+    def disturb(self, key: str, change: Callable[[Controls], Controls] | None) -> None:
+        """Change the ego's controls on their way to the vehicle until ``None`` ends it."""
+        self._changes.pop(key, None)
+        if change is not None:
+            self._changes[key] = change
+
+    @property
+    def _now(self) -> Frame:
+        assert self._frame is not None, "look comes first"
+        return self._frame
+
+    def _member(self, name: str) -> Member:
+        try:
+            return self._cast[name]
+        except KeyError:
+            there = ", ".join(self._cast)
+            raise ScenarioError(
+                f"{self._who} speaks of '{name}', and nobody there is called so; there are {there}"
+            ) from None
+
+    def _kind(self, name: str, kind: str) -> Member:
+        member = self._member(name)
+        if member.kind != kind:
+            raise ScenarioError(f"{self._who} leads '{name}' as a {kind}; it is a {member.actor.type_id}")
+        return member
+
+    def _seen(self, member: Member) -> Body:
+        """A member in this frame; before the first, where it was put."""
+        seen: Any = self._now.snapshot.find(member.actor.id)
+        source = member.actor if seen is None else seen
+        with contextlib.suppress(RuntimeError):
+            pose, velocity = source.get_transform(), source.get_velocity()
+            yaw_rad = math.radians(pose.rotation.yaw)
+            return Body(
+                pose.location.x + member.box_x_m * math.cos(yaw_rad),
+                pose.location.y + member.box_x_m * math.sin(yaw_rad),
+                pose.location.z,
+                yaw_rad,
+                velocity.x,
+                velocity.y,
+                member.half_length_m,
+                member.half_width_m,
+            )
+        raise ScenarioError(f"{self._who}: '{member.name}' is gone from the world")

@@ -1,0 +1,86 @@
+"""Those whom a scenario leads: one batch of commands a frame for all of them.
+
+A vehicle's velocity and turning are set in every frame, as ScenarioRunner's ``SimpleVehicleControl`` does it, so that
+a scenario's timing is exact; it still stands on its wheels, and whoever hits it is hit. Upwards it moves by itself.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import carla
+
+if TYPE_CHECKING:
+    from basu.managers.stage.cast import Member
+
+ROLLING = carla.VehicleControl()
+HELD = carla.VehicleControl(brake=1.0, hand_brake=True)
+
+
+class Motion(NamedTuple):
+    """What a vehicle is told, in m/s and rad/s, or a walker (whose turning is 0)."""
+
+    velocity_x_mps: float
+    velocity_y_mps: float
+    yaw_rate_radps: float
+
+
+STILL = Motion(0.0, 0.0, 0.0)
+
+
+class Puppets:
+    """The vehicles and walkers that are led."""
+
+    def __init__(self, client: carla.Client) -> None:
+        self._client = client
+        self._vehicles: dict[int, tuple[carla.Actor, Motion]] = {}
+        self._new: list[object] = []  # commands that are sent once
+        self._held: set[int] = set()
+
+    def move(self, member: Member, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
+        """Lead a vehicle."""
+        motion, actor = Motion(velocity_x_mps, velocity_y_mps, yaw_rate_radps), member.actor
+        before = self._vehicles.get(actor.id)
+        if motion == STILL and actor.id not in self._held:
+            self._held.add(actor.id)
+            self._new.append(carla.command.ApplyVehicleControl(actor.id, HELD))
+        elif motion != STILL and (before is None or actor.id in self._held):
+            self._held.discard(actor.id)
+            self._new.append(carla.command.ApplyVehicleControl(actor.id, ROLLING))
+        self._vehicles[actor.id] = (actor, motion)
+
+    def walk(self, member: Member, velocity_x_mps: float, velocity_y_mps: float) -> None:
+        """Lead a walker."""
+        speed_mps = math.hypot(velocity_x_mps, velocity_y_mps)
+        control = carla.WalkerControl()
+        control.speed = speed_mps
+        if speed_mps > 0.0:
+            control.direction = carla.Vector3D(velocity_x_mps / speed_mps, velocity_y_mps / speed_mps, 0.0)
+        self._new.append(carla.command.ApplyWalkerControl(member.actor.id, control))
+
+    def let_go(self, member: Member) -> None:
+        """Lead it no more."""
+        if self._vehicles.pop(member.actor.id, None) is not None and member.actor.id in self._held:
+            self._held.discard(member.actor.id)
+            self._new.append(carla.command.ApplyVehicleControl(member.actor.id, ROLLING))
+
+    def forget(self) -> None:
+        """Lead nobody any more."""
+        self._vehicles.clear()
+        self._held.clear()
+        self._new.clear()
+
+    def carry_out(self) -> None:
+        """Send what all of them are told."""
+        commands, self._new = self._new, []
+        for actor_id, (actor, motion) in self._vehicles.items():
+            if actor_id in self._held and motion == STILL and not commands:
+                continue
+            rise_mps = actor.get_velocity().z
+            velocity = carla.Vector3D(motion.velocity_x_mps, motion.velocity_y_mps, rise_mps)
+            turning = carla.Vector3D(0.0, 0.0, math.degrees(motion.yaw_rate_radps))
+            commands.append(carla.command.ApplyTargetVelocity(actor_id, velocity))
+            commands.append(carla.command.ApplyTargetAngularVelocity(actor_id, turning))
+        if commands:
+            self._client.apply_batch(commands)
