@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from basu.errors import ScenarioError
 from basu.scenarios.stage import Pose
 
 if TYPE_CHECKING:
@@ -53,6 +54,17 @@ class Place:
         """The width of the route's lane there."""
         index = int(np.searchsorted(self.route.s_m, self.trigger_s_m + ahead_m))
         return float(self.route.lane_width_m[min(index, len(self.route.s_m) - 1)])
+
+    def waypoint(self, ahead_m: float) -> carla.Waypoint:
+        """The map's way point of the route there.
+
+        Raises:
+            ScenarioError: the route was not laid on a map.
+        """
+        if not self.route.waypoints:
+            raise ScenarioError(f"the route '{self.route.id}' was not laid on a map, so nothing is known beside it")
+        index = int(np.searchsorted(self.route.s_m, self.trigger_s_m + ahead_m - 1e-6))
+        return self.route.waypoints[min(index, len(self.route.waypoints) - 1)]
 
     @property
     def left_m(self) -> float:

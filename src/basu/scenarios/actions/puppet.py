@@ -1,0 +1,180 @@
+"""A vehicle led along a path: velocity and turning commanded each frame, with feedback on place and heading."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from basu.scenarios.actions.action import Action
+from basu.scenarios.paths import Path
+from basu.scenarios.stage import EGO, Pose
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from basu.scenarios.paths import OnPath
+    from basu.scenarios.stage import Body, Stage
+
+AtEnd = Literal["hold", "go on", "vanish"]
+STRAIGHT_M = 400.0  # of a path for who is given none
+PULL_PER_S = 2.0  # of the way off its path that a puppet makes good in a second
+SIDEWAYS = 0.35  # of its speed that it may do so with
+TURN_RADPS = 2.0  # no command turns faster
+MARGIN_M = 0.4  # beside its own width, that a puppet minds
+JAM_M, HEADWAY_S = 2.0, 1.0  # of the follower: the gap at rest, and what it keeps besides at speed
+LOOK_M = 60.0  # ahead
+
+
+class Limits(NamedTuple):
+    """How hard a puppet accelerates and brakes, m/s²."""
+
+    accelerate_mps2: float = 2.5
+    brake_mps2: float = 4.0
+    emergency_mps2: float = 8.0  # for those it minds
+
+
+class Puppet(Action):
+    """The base of all that lead a vehicle. Subclasses say how fast (``wanted_mps``) and how long (``over``).
+
+    The path is followed from the place nearest to the vehicle, and its speed changed from what it is, so that one
+    action takes over from another. A vehicle that the ego touches is let go.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        actor: str,
+        path: Path | None,
+        *,
+        limits: Limits = Limits(),  # noqa: B008 - a tuple cannot be changed
+        at_end: AtEnd = "go on",
+        minds: Sequence[str] = (),
+    ) -> None:
+        """``path`` None: straight on from where it is. ``minds``: whom it brakes for ahead on its path."""
+        super().__init__(name)
+        self.actor, self.given, self.limits, self.at_end, self.minds = actor, path, limits, at_end, tuple(minds)
+        self.s_m = self.speed_mps = 0.0
+
+    def begin(self) -> None:
+        """Find the place on the path and take over the speed."""
+        body = self.stage.body(self.actor)
+        self.path = self.given or Path.straight(Pose(body.x_m, body.y_m, body.z_m, body.yaw_rad), STRAIGHT_M)
+        self.near = self.path.nearest(body.x_m, body.y_m)
+        self.s_m, self.speed_mps = self.near.s_m, max(0.0, body.forward_mps)
+        self.touched = False
+
+    def act(self) -> str | None:
+        """One frame: go on, or say why not."""
+        if self.actor in self.stage.ego_contacts:
+            self.touched = True
+            return f"touched by the ego at {self.speed_mps:.1f} m/s"
+        body = self.stage.body(self.actor)
+        self.near = self.path.nearest(body.x_m, body.y_m, self.s_m)
+        self.s_m = self.near.s_m
+        words = self.over()
+        if words is None:
+            self._drive(body)
+        return words
+
+    def leave(self, *, broken_off: bool) -> None:
+        """Hold, go on straight or vanish; who was touched rolls."""
+        if self.touched:
+            self.stage.let_go(self.actor)
+        elif self.at_end == "vanish" and not broken_off:
+            self.stage.remove(self.actor)
+        elif self.at_end == "hold" or self.speed_mps < 0.05:
+            self.stage.move(self.actor, 0.0, 0.0, 0.0)
+        else:
+            yaw_rad = self.stage.body(self.actor).yaw_rad
+            self.stage.move(self.actor, self.speed_mps * math.cos(yaw_rad), self.speed_mps * math.sin(yaw_rad), 0.0)
+
+    def wanted_mps(self) -> float:
+        """The speed it makes for in this frame."""
+        raise NotImplementedError
+
+    def over(self) -> str | None:
+        """What is done, once it is; here, the end of the path."""
+        if self.s_m < self.path.length_m - self.speed_mps * self.stage.step_s / 2.0 - 0.05:
+            return None
+        return f"{self.path.length_m:.0f} m driven, at {self.speed_mps:.1f} m/s"
+
+    def _drive(self, body: Body) -> None:
+        """Change the speed within the limits and command this frame's motion."""
+        step_s, wanted_mps = self.stage.step_s, self.wanted_mps()
+        rise_mps, fall_mps = self.limits.accelerate_mps2 * step_s, self.limits.brake_mps2 * step_s
+        speed_mps = min(max(wanted_mps, self.speed_mps - fall_mps), self.speed_mps + rise_mps)
+        if self.minds:
+            speed_mps = max(0.0, min(speed_mps, self._followed_mps(body)))
+        self.speed_mps = speed_mps
+        lead(self.stage, self.actor, self.path, self.near, speed_mps)
+
+    def _followed_mps(self, body: Body) -> float:
+        """The speed by the intelligent driver model towards the nearest of those minded; inf with nobody ahead.
+
+        Treiber, Hennecke and Helbing 2000, "Congested traffic states", eq. 2-3.
+        """
+        slowest_mps = math.inf
+        for name in self.minds:
+            ahead = gap_ahead(self.path, self.s_m, body, self.stage.body(name))
+            if ahead is None:
+                continue
+            comfortable = 2.0 * math.sqrt(self.limits.accelerate_mps2 * self.limits.brake_mps2)
+            closing = self.speed_mps * (self.speed_mps - ahead.speed_mps) / comfortable
+            gap_m = JAM_M + max(0.0, self.speed_mps * HEADWAY_S + closing)
+            rate = self.limits.accelerate_mps2 * (1.0 - (gap_m / max(ahead.gap_m, 0.1)) ** 2)
+            rate = max(rate, -self.limits.emergency_mps2)
+            slowest_mps = min(slowest_mps, self.speed_mps + rate * self.stage.step_s)
+        return slowest_mps
+
+
+class Ahead(NamedTuple):
+    """Somebody on the path."""
+
+    gap_m: float  # from the front of one to the nearest point of the other
+    speed_mps: float  # of the other, along the path
+
+
+def gap_ahead(path: Path, s_m: float, body: Body, other: Body) -> Ahead | None:
+    """How far another is ahead on a path that ``body`` follows at ``s_m``; None where it is not on it."""
+    if math.hypot(other.x_m - body.x_m, other.y_m - body.y_m) > LOOK_M:
+        return None
+    cos, sin = math.cos(other.yaw_rad), math.sin(other.yaw_rad)
+    on_path: list[OnPath] = []
+    for along, across in ((1, 1), (1, -1), (-1, 1), (-1, -1), (0, 0)):
+        forward_m, right_m = along * other.half_length_m, across * other.half_width_m
+        x_m, y_m = other.x_m + forward_m * cos - right_m * sin, other.y_m + forward_m * sin + right_m * cos
+        on_path.append(path.nearest(x_m, y_m))
+    reach_m = body.half_width_m + MARGIN_M
+    if min(p.right_m for p in on_path) > reach_m or max(p.right_m for p in on_path) < -reach_m:
+        return None
+    gap_m = min(p.s_m for p in on_path) - s_m - body.half_length_m
+    if max(p.s_m for p in on_path) < s_m or gap_m > LOOK_M:
+        return None
+    yaw_rad = path.heading_rad(on_path[-1].s_m)
+    speed_mps = other.velocity_x_mps * math.cos(yaw_rad) + other.velocity_y_mps * math.sin(yaw_rad)
+    return Ahead(gap_m, max(0.0, speed_mps))
+
+
+def lead(stage: Stage, actor: str, path: Path, near: OnPath, speed_mps: float) -> None:
+    """Command a frame's motion along a path at a speed: tangent, pull towards the path, and turning."""
+    if speed_mps < 0.01:
+        stage.move(actor, 0.0, 0.0, 0.0)
+        return
+    body = stage.body(actor)
+    ahead_m = near.s_m + speed_mps * stage.step_s
+    yaw_rad = path.heading_rad((near.s_m + ahead_m) / 2.0)
+    sideways_mps = min(max(-PULL_PER_S * near.right_m, -SIDEWAYS * speed_mps), SIDEWAYS * speed_mps)
+    forward_mps = math.sqrt(speed_mps**2 - sideways_mps**2)
+    aim_rad = path.heading_rad(ahead_m) + math.atan2(sideways_mps, forward_mps)
+    turn_radps = math.remainder(aim_rad - body.yaw_rad, math.tau) / stage.step_s
+    stage.move(
+        actor,
+        forward_mps * math.cos(yaw_rad) - sideways_mps * math.sin(yaw_rad),
+        forward_mps * math.sin(yaw_rad) + sideways_mps * math.cos(yaw_rad),
+        min(max(turn_radps, -TURN_RADPS), TURN_RADPS),
+    )
+
+
+def minded(*, considerate: bool, minds: Sequence[str]) -> tuple[str, ...]:
+    """Whom a puppet brakes for: those named, and the ego where it is considerate."""
+    return (EGO, *minds) if considerate else tuple(minds)

@@ -1,0 +1,39 @@
+"""What scenarios wait for: places, progress along the route, motion, time and touch."""
+
+from basu.scenarios.triggers.along_route import (
+    ActorTimeToArrival,
+    EgoArrives,
+    EgoBeyond,
+    EgoEntersJunction,
+    EgoLeavesJunction,
+    EgoPasses,
+    TimeToArrival,
+)
+from basu.scenarios.triggers.motion import ClosesIn, EgoTouches, Elapsed, Faster, Slower, StandsStill
+from basu.scenarios.triggers.places import Circle, CrossesLine, EgoNear, InRegion, Near, NearPlace, Polygon, Stretch
+from basu.scenarios.triggers.trigger import Trigger
+
+__all__ = [
+    "ActorTimeToArrival",
+    "Circle",
+    "ClosesIn",
+    "CrossesLine",
+    "EgoArrives",
+    "EgoBeyond",
+    "EgoEntersJunction",
+    "EgoLeavesJunction",
+    "EgoNear",
+    "EgoPasses",
+    "EgoTouches",
+    "Elapsed",
+    "Faster",
+    "InRegion",
+    "Near",
+    "NearPlace",
+    "Polygon",
+    "Slower",
+    "StandsStill",
+    "Stretch",
+    "TimeToArrival",
+    "Trigger",
+]
