@@ -1,0 +1,82 @@
+"""A matrix counted: for each group, scenario and agent how many cases were passed, and how narrowly."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.report.scenarios.verdicts import LOOKS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+CONTACT_M = 0.005  # less than that between two boxes is written as a contact
+
+
+class Tally(NamedTuple):
+    """Some results of one agent, counted. Margins are the least of those that were judged, None where nobody was near."""
+
+    passed: int
+    judged: int  # with failures and the agent's own faults
+    agent_faults: int
+    unjudged: int  # for faults of others: simulator, set-up, benchmark, or a person who ended it
+    distance_m: float | None
+    ttc_s: float | None
+    pet_s: float | None
+
+    @property
+    def narrowest(self) -> str:
+        """The least distance in words; nothing where nobody was near."""
+        if self.distance_m is None:
+            return ""
+        return "contact" if self.distance_m < CONTACT_M else f"{self.distance_m:.2f} m"
+
+
+class Row(NamedTuple):
+    """A scenario with its cases."""
+
+    scenario: str
+    title: str
+    cases: list[dict[str, Any]]
+
+
+class Block(NamedTuple):
+    """A group with its scenarios."""
+
+    group: str
+    rows: list[Row]
+
+    @property
+    def cases(self) -> list[dict[str, Any]]:
+        """All cases of the group."""
+        return [case for row in self.rows for case in row.cases]
+
+
+def blocks(matrix: dict[str, Any]) -> list[Block]:
+    """The cases of a matrix by group and scenario, in the order in which they come."""
+    found: dict[str, dict[str, Row]] = {}
+    for case in matrix["cases"]:
+        rows = found.setdefault(case["group"], {})
+        row = rows.setdefault(case["scenario"], Row(case["scenario"], case["title"], []))
+        row.cases.append(case)
+    return [Block(group, list(rows.values())) for group, rows in found.items()]
+
+
+def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
+    """What one agent made of cases; those it has no result of are left out."""
+    results = [case["results"][agent] for case in cases if agent in case["results"]]
+    judged = [result for result in results if LOOKS[result["verdict"]].is_judged]
+    return Tally(
+        passed=sum(result["verdict"] == "SUCCESS" for result in judged),
+        judged=len(judged),
+        agent_faults=sum(result["verdict"] == "AGENT_FAULT" for result in judged),
+        unjudged=len(results) - len(judged),
+        distance_m=_least(judged, "distance_m"),
+        ttc_s=_least(judged, "ttc_s"),
+        pet_s=_least(judged, "pet_s"),
+    )
+
+
+def _least(results: Sequence[dict[str, Any]], margin: str) -> float | None:
+    """The least of a margin, over those that have one."""
+    found = [result["margins"].get(margin) for result in results]
+    return min((value for value in found if value is not None), default=None)
