@@ -26,7 +26,7 @@ def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Ev
     """
     speed_mps, limit_mps = history.speed_mps(), limits_mps(history)
     found = []
-    for first, end in _episodes(speed_mps, limit_mps, tolerance_mps):
+    for first, end in episodes(speed_mps, limit_mps, tolerance_mps):
         if (end - first) * history.facts.step_s < LEAST_S:
             continue
         fastest = first + int(np.argmax(speed_mps[first:end] - limit_mps[first:end]))
@@ -69,7 +69,7 @@ def limits_mps(history: History) -> NDArray[np.float64]:
     return np.where(off_route | np.isnan(planned), elsewhere, planned)
 
 
-def _episodes(
+def episodes(
     speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64], tolerance_mps: float
 ) -> list[tuple[int, int]]:
     """(first, end) of each stretch that exceeds the tolerance somewhere and the limit throughout."""

@@ -46,8 +46,8 @@ def near_misses(history: History) -> tuple[Party, ...]:
     if len(history.others) == 0:
         return ()
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
-    ttc_s = _times_to_collision_s(history, own, others)
-    pet_s, pet_tick = _post_encroachment_s(history, own, others)
+    ttc_s = times_to_collision_s(history, own, others)
+    pet_s, pet_tick = post_encroachment_s(history, own, others)
     hit = {event.other_id for event in history.collisions}
     found = []
     for key in sorted({int(key) for key in np.unique(history.others["id"])} - hit):
@@ -80,21 +80,21 @@ def _party(history: History, key: int, ttc_s: float, soonest: int, pet_s: float,
     )
 
 
-def _times_to_collision_s(
-    history: History, own: NDArray[np.float64], others: NDArray[np.float64]
+def times_to_collision_s(
+    history: History, own: NDArray[np.float64], others: NDArray[np.float64], horizon_s: float = SEEN_S
 ) -> NDArray[np.float64]:
-    """(M,) for each row of others, inf beyond `SEEN_S`."""
+    """(M,) for each row of others, inf beyond ``horizon_s``; ``own`` (T, 5) and ``others`` (M, 5) are their boxes."""
     frames, tick = history.frames, history.others["tick"]
     turning_radps = np.gradient(np.unwrap(frames["yaw_rad"]), history.facts.step_s) if len(frames) > 1 else np.zeros(1)
     velocity_mps = np.column_stack([frames["velocity_x_mps"], frames["velocity_y_mps"]])[tick]
     theirs_mps = np.column_stack([history.others["velocity_x_mps"], history.others["velocity_y_mps"]])
     speeds_mps = np.hypot(*velocity_mps.T) + np.hypot(*theirs_mps.T)
     away_m = np.hypot(*(others[:, :2] - own[tick, :2]).T) - np.hypot(*others[:, 3:].T) - np.hypot(*own[tick, 3:].T)
-    rows = np.flatnonzero((speeds_mps > STILL_MPS) & (away_m <= speeds_mps * SEEN_S))
+    rows = np.flatnonzero((speeds_mps > STILL_MPS) & (away_m <= speeds_mps * horizon_s))
     found = np.full(len(others), np.inf)
     a, b, turn_radps = own[tick[rows]], others[rows].copy(), turning_radps[tick[rows]]
     mine, theirs = velocity_mps[rows], theirs_mps[rows]
-    for leg in range(round(SEEN_S / LEG_S)):
+    for leg in range(round(horizon_s / LEG_S)):
         close = np.flatnonzero(np.isinf(found[rows]) & _come_close(a, b, theirs - mine))
         touch_s = time_to_touch_s(a[close], b[close], (theirs - mine)[close])
         fresh = touch_s <= LEG_S
@@ -117,17 +117,20 @@ def _come_close(a: NDArray[np.float64], b: NDArray[np.float64], approach_mps: ND
     return np.asarray(least_m <= np.hypot(*a[:, 3:].T) + np.hypot(*b[:, 3:].T))
 
 
-def _post_encroachment_s(
-    history: History, own: NDArray[np.float64], others: NDArray[np.float64]
+def post_encroachment_s(
+    history: History, own: NDArray[np.float64], others: NDArray[np.float64], horizon_s: float = SEEN_S
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """(M,) for each row of others the least time to the vehicle's being where they are, and the later tick."""
+    """(M,) for each row of others the least time to the vehicle's being where they are, and the later tick.
+
+    Times are inf, and ticks -1, beyond ``horizon_s``; boxes as for `times_to_collision_s`.
+    """
     tick, step_s = history.others["tick"].astype(np.int64), history.facts.step_s
     moving = np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > STILL_MPS
     radius_m = np.hypot(*others[:, 3:].T) + np.hypot(*own[0, 3:])
-    reach_m = radius_m + SEEN_S * float(history.speed_mps().max())
+    reach_m = radius_m + horizon_s * float(history.speed_mps().max())
     left = np.flatnonzero(moving & (np.hypot(*(others[:, :2] - own[tick, :2]).T) <= reach_m))
     found, later = np.full(len(others), np.inf), np.full(len(others), -1, dtype=np.int64)
-    for gap in range(1, round(SEEN_S / step_s) + 1):
+    for gap in range(1, round(horizon_s / step_s) + 1):
         for lag in (gap, -gap):
             rows = left[(tick[left] + lag >= 0) & (tick[left] + lag < len(own))]
             at = own[tick[rows] + lag]
