@@ -24,6 +24,11 @@ class Number(NamedTuple):
     unit: str  # m, m/s, s, %; "" for a share
     about: str  # what it is, in half a line
 
+    @property
+    def unsaid(self) -> float:
+        """The value where a case gives none; a default may be written as a whole number."""
+        return float(self.default)
+
     def read(self, text: str) -> float:
         """The value of a text.
 
@@ -55,6 +60,11 @@ class Choice(NamedTuple):
         """The first."""
         return self.options[0]
 
+    @property
+    def unsaid(self) -> str:
+        """The value where a case gives none."""
+        return self.default
+
     def read(self, text: str) -> str:
         """The value of a text.
 
@@ -81,4 +91,4 @@ def read_values(parameters: Sequence[Parameter], given: Mapping[str, str]) -> di
             close = difflib.get_close_matches(name, names, 1)
             hint = f"did you mean '{close[0]}'?" if close else f"it has {', '.join(names) or 'none'}"
             raise ScenarioError(f"it has no parameter '{name}'; {hint}")
-    return {p.name: p.read(given[p.name]) if p.name in given else p.default for p in parameters}
+    return {p.name: p.read(given[p.name]) if p.name in given else p.unsaid for p in parameters}

@@ -1,0 +1,83 @@
+"""Scenario classes out of Python files: those that come with BASU, and a user's own with what goes wrong in it."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import inspect
+import pkgutil
+import sys
+import traceback
+from pathlib import Path
+from types import ModuleType
+
+from basu.errors import ScenarioError
+from basu.scenarios import catalogue
+from basu.scenarios.declaration import check_class
+from basu.scenarios.scenario import Scenario
+
+
+def own_scenarios() -> list[type[Scenario]]:
+    """Every scenario of ``basu.scenarios.catalogue``, by its name in alphabetical order.
+
+    Raises:
+        ScenarioError: one declares itself badly.
+    """
+    found: list[type[Scenario]] = []
+    for module in pkgutil.walk_packages(catalogue.__path__, catalogue.__name__ + "."):
+        found += _scenarios_in(importlib.import_module(module.name))
+    for scenario in found:
+        check_class(scenario, scenario.__module__)
+    return sorted(found, key=lambda scenario: scenario.__name__)
+
+
+def users_scenarios(path: Path) -> list[type[Scenario]]:
+    """Every scenario that a user's file defines, in its order.
+
+    Raises:
+        ScenarioError: the file is missing, does not load, or defines none that can be played.
+    """
+    if path.suffix != ".py":
+        raise ScenarioError(f"{path} is no Python file; scenario classes are in FILE.py")
+    if not path.is_file():
+        raise ScenarioError(f"the scenario file {path} does not exist; check the name and the folder you are in")
+    found = _scenarios_in(_executed(path))
+    if not found:
+        raise ScenarioError(f"{path} holds no subclass of Scenario; see docs/scenarios.md for how one looks")
+    for scenario in found:
+        check_class(scenario, str(path))
+    return found
+
+
+def _scenarios_in(module: ModuleType) -> list[type[Scenario]]:
+    """Those that a module defines itself. What is abstract and has subclasses is their base and no scenario."""
+    return [
+        value
+        for value in vars(module).values()
+        if isinstance(value, type)
+        and issubclass(value, Scenario)
+        and value.__module__ == module.__name__
+        and not (inspect.isabstract(value) and value.__subclasses__())
+    ]
+
+
+def _executed(path: Path) -> ModuleType:
+    """The file as a module."""
+    name = f"basu_scenario_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path.resolve())
+    assert spec is not None, "a path that ends in .py has a loader"
+    assert spec.loader is not None, "likewise"
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    beside = str(path.resolve().parent)
+    if beside not in sys.path:
+        sys.path.append(beside)  # after everything else: a scenario of several files finds its own, and shadows nothing
+    try:
+        spec.loader.exec_module(module)
+    except SyntaxError as error:
+        raise ScenarioError(f"the scenario file {path} is no Python: line {error.lineno}: {error.msg}") from error
+    except (Exception, SystemExit) as error:
+        lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == spec.origin]
+        line = f"line {lines[-1]}: " if lines else ""
+        raise ScenarioError(f"the scenario file {path} does not load: {line}{type(error).__name__}: {error}") from error
+    return module
