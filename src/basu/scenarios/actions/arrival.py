@@ -1,0 +1,76 @@
+"""Be at a point when the ego is at its own: the meeting that most conflicts are made of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from basu.scenarios.actions.puppet import AtEnd, Limits, Puppet
+
+if TYPE_CHECKING:
+    from basu.scenarios.paths import Path
+
+LEAST_MPS = 0.5  # an ego slower than this is not taken to arrive ever later
+
+
+class ReachAtEgosArrival(Puppet):
+    """Lead a vehicle so that it is ``meet_s_m`` along its path ``offset_s`` after the ego is ``ego_s_m`` along its route.
+
+    A negative offset is before the ego. Each frame the ego is taken to go on at the speed it has, and the vehicle makes
+    for the speed that meets it, between ``low_mps`` and ``high_mps``; in the last ``settled_s`` seconds before the
+    point it keeps its speed, as a driver who does not see the ego would. Done at the point; the vehicle goes on
+    straight, so let a ``DriveAlong`` on the same path follow. ScenarioRunner has the idea as ``SyncArrival``.
+    """
+
+    def __init__(
+        self,
+        actor: str,
+        path: Path,
+        meet_s_m: float,
+        ego_s_m: float,
+        offset_s: float = 0.0,
+        *,
+        low_mps: float = 1.0,
+        high_mps: float = 12.0,
+        settled_s: float = 1.5,
+        accelerate_mps2: float = 3.0,
+        brake_mps2: float = 4.0,
+        at_end: AtEnd = "go on",
+    ) -> None:
+        when = f"{abs(offset_s):g} s {'after' if offset_s > 0 else 'before'} the ego" if offset_s else "with the ego"
+        super().__init__(
+            f"{actor} gets to the meeting point {when}",
+            actor,
+            path,
+            limits=Limits(accelerate_mps2, brake_mps2),
+            at_end=at_end,
+        )
+        self.meet_s_m, self.ego_s_m, self.offset_s = meet_s_m, ego_s_m, offset_s
+        self.low_mps, self.high_mps, self.settled_s = low_mps, high_mps, settled_s
+
+    def begin(self) -> None:
+        """Nobody is there yet."""
+        super().begin()
+        self.settled_mps: float | None = None
+
+    def wanted_mps(self) -> float:
+        """The speed at which it meets the ego."""
+        if self.settled_mps is not None:
+            return self.settled_mps
+        due_s = self._ego_needs_s() + self.offset_s
+        left_m = self.meet_s_m - self.s_m
+        wanted_mps = left_m / due_s if due_s > 0.0 else self.high_mps
+        wanted_mps = min(max(wanted_mps, self.low_mps), self.high_mps)
+        if left_m <= self.settled_s * self.speed_mps and self.speed_mps >= self.low_mps:
+            self.settled_mps = self.speed_mps
+        return wanted_mps
+
+    def over(self) -> str | None:
+        """How far the ego was, once it is at the point."""
+        if self.s_m < self.meet_s_m:
+            return None
+        left_m = self.ego_s_m - self.stage.ego_s_m
+        where = f"{left_m:.1f} m before its own" if left_m >= 0.0 else f"{-left_m:.1f} m past its own"
+        return f"there at {self.speed_mps:.1f} m/s, the ego {where} at {self.stage.ego.speed_mps:.1f} m/s"
+
+    def _ego_needs_s(self) -> float:
+        return (self.ego_s_m - self.stage.ego_s_m) / max(self.stage.ego.forward_mps, LEAST_MPS)
