@@ -8,25 +8,46 @@ A scenario names them in ``criteria``::
         return [NoCollision(), LeastDistance(0.5, to="child"), Arrives(), InTime()]
 
 Each takes ``deciding=False`` to tell without weighing. One of your own is a class with a ``name`` and a method
-``judge`` (see `Criterion`).
+``judge`` (see `Criterion`). Least distance, time to collision and post-encroachment time are told of every case,
+whether its scenario names them or not.
 """
 
+from basu.scenarios.criteria.comfort import Gentle
 from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Criterion, Judgement, Played, Thing
 from basu.scenarios.criteria.going import Arrives, InTime, Reaches, ReachesPoint
-from basu.scenarios.criteria.lane import KeepsLane
+from basu.scenarios.criteria.lane import KeepsLane, Regains
+from basu.scenarios.criteria.margins.headway import KeepsHeadway
 from basu.scenarios.criteria.margins.least_distance import LeastDistance
+from basu.scenarios.criteria.margins.least_ttc import LeastTtc
+from basu.scenarios.criteria.margins.pet import Pet
+from basu.scenarios.criteria.signals import HeedsRedLights, HeedsStopSigns
+from basu.scenarios.criteria.speed import KeepsSpeed, MinimumSpeed
+from basu.scenarios.criteria.stopping import StoppedFor
+from basu.scenarios.criteria.told import margins_of, told_always
 
 __all__ = [
     "Arrives",
     "Criterion",
+    "Gentle",
+    "HeedsRedLights",
+    "HeedsStopSigns",
     "InTime",
     "Judgement",
+    "KeepsHeadway",
     "KeepsLane",
+    "KeepsSpeed",
     "LeastDistance",
+    "LeastTtc",
+    "MinimumSpeed",
     "NoCollision",
+    "Pet",
     "Played",
     "Reaches",
     "ReachesPoint",
+    "Regains",
+    "StoppedFor",
     "Thing",
+    "margins_of",
+    "told_always",
 ]

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from basu.history import History
     from basu.scenarios.criteria.criterion import Judgement, Played
 
+HOLD_S = 1.0  # who is back for so long has regained its lane, and not swung through it
 LEAST_S = 0.2  # shorter stretches outside are forgiven: the lookup of lanes may skip where they meet
 
 
@@ -82,6 +83,61 @@ class KeepsLane(Criterion):
         speed_mps = float(history.speed_mps()[worst])
         how = f"for {seconds:.2f} s it was off {edge}, up to {beyond_m:.2f} m beyond the edge"
         return f"{how}: {at} at {speed_mps:.2f} m/s"
+
+
+class Regains(Criterion):
+    """Back on its way within ``within_s`` of a disturbance's end, which is the beginning of the phase ``after``.
+
+    Back is within ``lateral_m`` of the route's middle and within ``yaw_deg`` of its direction, for a second on end.
+    """
+
+    name = "regains its lane"
+
+    def __init__(
+        self,
+        within_s: float = 5.0,
+        lateral_m: float = 0.75,
+        yaw_deg: float = 10.0,
+        *,
+        after: str = "resolution",
+        deciding: bool = True,
+    ) -> None:
+        super().__init__(deciding=deciding)
+        self.within_s, self.lateral_m, self.yaw_deg, self.after = within_s, lateral_m, yaw_deg, after
+
+    def judge(self, played: Played) -> Judgement:
+        """The figure is the time that it took."""
+        limit = f"within {self.within_s:g} s of {self.after}, by {self.lateral_m:g} m and {self.yaw_deg:g}°"
+        first = played.first_tick(self.after)
+        if first is None:
+            return self.says(played, None, f"'{self.after}' never began", unit="s", limit=limit)
+        frames, step_s = played.history.frames, played.history.facts.step_s
+        off_rad = _off_direction_rad(played.history)
+        back = (np.abs(frames["lateral_m"]) <= self.lateral_m) & (np.abs(off_rad) <= np.radians(self.yaw_deg))
+        back[:first] = False
+        held = [s for s, e in stretches(back) if e == len(back) or (e - s) * step_s >= HOLD_S]
+        tick = held[0] if held else len(back) - 1
+        took_s = float(frames["t_s"][tick] - frames["t_s"][first])
+        where = f"{abs(float(frames['lateral_m'][tick])):.2f} m and {abs(float(np.degrees(off_rad[tick]))):.1f}° off"
+        said = f"it was back {took_s:.2f} s after" if held else f"it was not back {took_s:.2f} s after"
+        farthest_m = float(np.abs(frames["lateral_m"][first : tick + 1]).max())
+        return self.says(
+            played,
+            bool(held) and took_s <= self.within_s,
+            f"{said} the disturbance, {where} its way; until then it was up to {farthest_m:.2f} m off",
+            tick=tick,
+            measured=took_s,
+            unit="s",
+            limit=limit,
+        )
+
+
+def _off_direction_rad(history: History) -> NDArray[np.float64]:
+    """(T,) the ego's heading less that of its route, within a half turn."""
+    route, frames = history.facts.route, history.frames
+    planned_rad = np.interp(frames["route_s_m"], route.s_m, np.unwrap(route.yaw_rad))
+    off_rad: NDArray[np.float64] = np.angle(np.exp(1j * (frames["yaw_rad"] - planned_rad)))
+    return off_rad
 
 
 def _beyond_m(history: History) -> NDArray[np.float64]:

@@ -4,8 +4,8 @@ import pytest
 
 from basu.managers import routes_manager
 from basu.outcome import Outcome, Status
-from basu.scenarios import triggers
 from basu.scenarios.criteria import Arrives, InTime, Reaches, ReachesPoint, going
+from basu.scenarios.triggers import along_route
 from fakes.drives import at, driven, ramp, straight_route
 from fakes.played import played
 
@@ -14,7 +14,8 @@ TIMEOUT = Outcome(Status.ROUTE_TIMEOUT, "the time was used up")
 
 
 def test_the_rule_of_arrival_is_that_of_the_trigger_and_of_the_routes_manager() -> None:
-    assert triggers.ARRIVED_M == going.AT_END_M
+    assert along_route.ARRIVED_M == going.AT_END_M
+    assert (along_route.PARKED_M, along_route.PARKED_MPS) == (going.PARKED_M, going.PARKED_MPS)
     assert (routes_manager.PARKED_M, routes_manager.PARKED_MPS) == (going.PARKED_M, going.PARKED_MPS)
     assert routes_manager.AT_END_M <= going.AT_END_M
 

@@ -67,5 +67,5 @@ def test_a_contact_is_no_distance_whatever_the_boxes_say() -> None:
 def test_alone_there_is_nothing_to_judge() -> None:
     assert LeastDistance(0.5).judge(played(driven(at(10.0, 4.0)))).passed is None
     said = LeastDistance(0.5, to="child").judge(played(driven(at(10.0, 4.0))))
-    assert (said.passed, said.sentence) == (None, "'child' never was within 60 m of the ego")
+    assert (said.passed, said.sentence) == (None, "child never was within 60 m of the ego")
     assert LeastDistance(0.5, since="end").judge(played(driven(at(10.0, 4.0)))).sentence == "'end' never began"
