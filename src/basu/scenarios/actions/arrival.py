@@ -13,7 +13,7 @@ LEAST_MPS = 0.5  # an ego slower than this is not taken to arrive ever later
 
 
 class ReachAtEgosArrival(Puppet):
-    """Lead a vehicle so that it is ``meet_s_m`` along its path ``offset_s`` after the ego is ``ego_s_m`` along its route.
+    """Lead a vehicle to be ``meet_s_m`` along its path ``offset_s`` after the ego is ``ego_s_m`` along its route.
 
     A negative offset is before the ego. Each frame the ego is taken to go on at the speed it has, and the vehicle makes
     for the speed that meets it, between ``low_mps`` and ``high_mps``; in the last ``settled_s`` seconds before the

@@ -6,7 +6,7 @@ import math
 from collections import deque
 from typing import TYPE_CHECKING
 
-from basu.scenarios.actions.puppet import Limits, Puppet
+from basu.scenarios.actions.puppet import LOOK_M, Limits, Puppet
 from basu.scenarios.stage import EGO
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class FollowEgo(Puppet):
     def wanted_mps(self) -> float:
         """The ego's speed as it was seen, and more or less as the gap is too wide or too narrow."""
         ego, body = self.stage.body(EGO), self.stage.body(self.actor)
-        place_m = self.path.nearest(ego.x_m, ego.y_m, self.s_m).s_m
+        place_m = self.path.nearest(ego.x_m, ego.y_m, self.s_m, LOOK_M).s_m
         self.seen.append((place_m - self.s_m - ego.half_length_m - body.half_length_m, ego.forward_mps))
         gap_m, ego_mps = self.seen[0]
         return min(max(0.0, ego_mps + CLOSE_PER_S * (gap_m - self.gap_m)), self.top_mps)

@@ -143,7 +143,7 @@ def gap_ahead(path: Path, s_m: float, body: Body, other: Body) -> Ahead | None:
     for along, across in ((1, 1), (1, -1), (-1, 1), (-1, -1), (0, 0)):
         forward_m, right_m = along * other.half_length_m, across * other.half_width_m
         x_m, y_m = other.x_m + forward_m * cos - right_m * sin, other.y_m + forward_m * sin + right_m * cos
-        on_path.append(path.nearest(x_m, y_m))
+        on_path.append(path.nearest(x_m, y_m, s_m, LOOK_M + 10.0))
     reach_m = body.half_width_m + MARGIN_M
     if min(p.right_m for p in on_path) > reach_m or max(p.right_m for p in on_path) < -reach_m:
         return None

@@ -94,15 +94,15 @@ class Path:
             math.remainder(yaw_rad, math.tau),
         )
 
-    def nearest(self, x_m: float, y_m: float, around_m: float | None = None) -> OnPath:
-        """The nearest place to a point; with ``around_m``, among those some metres back and ahead of that one.
+    def nearest(self, x_m: float, y_m: float, around_m: float | None = None, ahead_m: float = AHEAD_M) -> OnPath:
+        """The nearest place to a point; with ``around_m``, among those from 5 m back of that one to ``ahead_m``.
 
         Beyond its ends the path goes straight on, so that ``s_m`` may be negative or more than the length.
         """
         first, last = 0, len(self.s_m) - 1
         if around_m is not None:
             first = max(0, min(int(np.searchsorted(self.s_m, around_m - BACK_M)) - 1, last - 1))
-            last = min(last, max(first + 1, int(np.searchsorted(self.s_m, around_m + AHEAD_M))))
+            last = min(last, max(first + 1, int(np.searchsorted(self.s_m, around_m + ahead_m))))
         tails, legs = self.points_m[first:last, :2], np.diff(self.points_m[first : last + 1, :2], axis=0)
         legs_m = np.diff(self.s_m[first : last + 1])
         along_m = ((x_m - tails[:, 0]) * legs[:, 0] + (y_m - tails[:, 1]) * legs[:, 1]) / legs_m
