@@ -29,6 +29,11 @@ if TYPE_CHECKING:
 INSTANCES = Path(__file__).parent / "instances"  # the cases that come with BASU: <type in snake case>.xml
 ALL = "all"
 GROUP = "group:"  # before a group's name where a type is called the same
+THEIRS = re.compile(
+    "behind_vehicle_distance|bicycle_drive_distance|bicycle_speed|blocker_model|crossing_angle|direction|distance"
+    "|flow_distance|flow_speed|front_vehicle_distance|offset|speed|(frequency|source_dist_interval)(_from|_to)?"
+    "|(start_actor_flow|end_actor_flow|other_actor_location)_[xyz]"
+)  # what ScenarioRunner's classes read: in a file of its own, no mistake
 
 
 class Playable(NamedTuple):
@@ -37,7 +42,7 @@ class Playable(NamedTuple):
     case: Case
     scenario: type[Scenario]
     values: Mapping[str, Value]
-    unread: tuple[str, ...] = ()  # values that ScenarioRunner's type of that name has and ours does not
+    unread: tuple[str, ...] = ()  # values that ScenarioRunner's class reads and ours does not
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,7 +67,7 @@ class Library:
         hint = f"did you mean '{close[0]}'? " if close else ""
         raise ScenarioError(
             f"{case.source}: '{case.name}' is of type '{case.type}', which there is not; {hint}`basu scenario list` "
-            "shows the types; a class of your own goes into the .py of the same stem beside the file, or --scenarios FILE"
+            "shows them; a class of your own goes into FILE.py beside FILE.xml, or into --scenarios FILE.py"
         )
 
     def playable(self, case: Case) -> Playable:
@@ -77,12 +82,22 @@ class Library:
         except ScenarioError as error:
             raise ScenarioError(f"{case.source}: '{case.name}' of type {case.type}: {error}") from None
 
-    def choose(self, wanted: str) -> tuple[Playable, ...]:
-        """The cases that are meant by `all`, a file, a case's id, a type or a group.
+    def choose(self, words: Sequence[str]) -> tuple[Playable, ...]:
+        """The cases that are meant by each of the words, every one once.
 
         Raises:
-            ScenarioError: nothing is.
+            ScenarioError: nothing is meant by a word, or two cases have one id.
         """
+        chosen: dict[str, Playable] = {}
+        for word in words:
+            for playable in self._meant(word):
+                other = chosen.setdefault(playable.case.name, playable)
+                if other.case.source != playable.case.source:
+                    raise _two_of_one_name(other.case, playable.case)
+        return tuple(chosen.values())
+
+    def _meant(self, wanted: str) -> tuple[Playable, ...]:
+        """The cases that are meant by `all`, a file, a case's id, a type or a group."""
         if wanted == ALL:
             return tuple(self.playable(case) for case in self.cases)
         path, class_name = file_in(wanted)
@@ -167,14 +182,7 @@ def cases_of(wanted: str | Sequence[str], files: Sequence[str | Path] = ()) -> t
         ScenarioError: a file cannot be used, nothing is meant by a word, or two cases have one id.
     """
     words = (wanted,) if isinstance(wanted, str) else tuple(wanted)
-    library = open_library([*files, *(word for word in words if file_in(word)[0] is not None)])
-    chosen: dict[str, Playable] = {}
-    for word in words:
-        for playable in library.choose(word):
-            other = chosen.setdefault(playable.case.name, playable)
-            if other.case.source != playable.case.source:
-                raise _two_of_one_name(other.case, playable.case)
-    return tuple(chosen.values())
+    return open_library([*files, *files_among(words)]).choose(words)
 
 
 def by_id(identity: str, files: Sequence[str | Path] = ()) -> Playable:
@@ -202,6 +210,11 @@ def varied(chosen: Iterable[Playable], variation: Variation) -> tuple[Playable, 
     )
 
 
+def files_among(words: Iterable[str]) -> list[str]:
+    """Those of the words that name files."""
+    return [word for word in words if file_in(word)[0] is not None]
+
+
 def file_in(word: str) -> tuple[Path | None, str]:
     """The file that a word names, FILE.xml, FILE.py or FILE.py:Class, and the class; None where it names no file."""
     text, _, class_name = word.partition(":") if ".py:" in word else (word, "", "")
@@ -225,9 +238,9 @@ def files_named(files: Iterable[str | Path]) -> tuple[Path, ...]:
 
 
 def _read(case: Case, scenario: type[Scenario]) -> Playable:
-    """A case with the values that its class reads; under an alias, ScenarioRunner's others are left alone."""
+    """A case with the values that its class reads; those that only ScenarioRunner's class reads are left alone."""
     known = {parameter.name for parameter in scenario.parameters}
-    unread = tuple(name for name in case.values if name not in known and case.type != scenario.__name__)
+    unread = tuple(name for name in case.values if name not in known and THEIRS.fullmatch(name))
     given = {name: text for name, text in case.values.items() if name not in unread}
     return Playable(case, scenario, read_values(scenario.parameters, given), unread)
 
