@@ -64,7 +64,7 @@ def prepare(options: RunOptions) -> Plan:
     agents = new_agents(loaded, options, options.seed)
     config = agents.config
     weather_called(config.weather)
-    sensors = _sensor_set(agents, loaded)
+    sensors = sensor_set(agents, loaded)
     if config.sumo is not None:
         print(
             f"basu: warning: {loaded.name} asks for the SUMO network {config.sumo}; co-simulation follows in a later "
@@ -110,7 +110,7 @@ def _chosen(
     return chosen
 
 
-def _sensor_set(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
+def sensor_set(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
     """The sensors that the agent wants, by its own method or by a file."""
     own = agents.own_sensors()
     if own is not None:

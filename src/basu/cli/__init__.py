@@ -8,7 +8,7 @@ import traceback
 from typing import TYPE_CHECKING
 
 import basu
-from basu.cli import compare, experiment, list_, metrics, replay, report, run, score
+from basu.cli import compare, experiment, list_, metrics, replay, report, run, scenario, score
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.outcome import EXIT_CODES, Fault
 from basu.utils import client_threads
@@ -16,7 +16,7 @@ from basu.utils import client_threads
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-COMMANDS = (run, score, report, compare, experiment, metrics, replay, list_)
+COMMANDS = (run, scenario, score, report, compare, experiment, metrics, replay, list_)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import traceback
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import carla
 from py_trees.common import Status as NodeStatus
@@ -19,7 +19,6 @@ from basu.managers.stage.live_stage import LiveStage
 from basu.outcome import Outcome, Status
 from basu.routing.progress import Progress, advance
 from basu.scenarios.criteria.criterion import Played
-from basu.scenarios.parameters import read_values
 from basu.scenarios.place import Place
 from basu.scenarios.stage import Controls
 from basu.scenarios.tree import compose, set_on
@@ -35,6 +34,7 @@ if TYPE_CHECKING:
     from basu.routing import Route
     from basu.scenarios.config.model import Case
     from basu.scenarios.criteria.criterion import Thing
+    from basu.scenarios.library import Playable
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.tree import Composed
 
@@ -44,18 +44,11 @@ ARM_M = 100.0  # before its trigger point along the route, a scenario's actors c
 AFTERMATH_S = 1.0  # a scenario's own run goes on for so long after the ego has touched somebody
 
 
-class Planned(NamedTuple):
-    """A scenario that is to be played in a run."""
-
-    case: Case
-    scenario: type[Scenario]
-
-
 @dataclass(slots=True)
 class Playing:
     """One scenario in its run; what is not there yet is None."""
 
-    planned: Planned
+    planned: Playable
     scenario: Scenario
     composed: Composed
     stage: LiveStage
@@ -87,7 +80,7 @@ class Playing:
 class ScenarioManager(BaseManager):
     """Plays the scenarios of a run. After ``tick``, ``outcome`` says whether one of them has ended it."""
 
-    def __init__(self, planned: Sequence[Planned], *, own: bool) -> None:
+    def __init__(self, planned: Sequence[Playable], *, own: bool) -> None:
         """``own``: the run is the (one) scenario's, begins armed and ends with it."""
         self._planned, self._own = tuple(planned), own
         self.playing: list[Playing] = []
@@ -107,8 +100,7 @@ class ScenarioManager(BaseManager):
         for planned in self._planned:
             place = place_of(planned.case, run.route, run.carla_map)
             who = planned.case.name
-            values = read_values(planned.scenario.parameters, planned.case.values)
-            scenario = asked(who, partial(planned.scenario, place, values))
+            scenario = asked(who, partial(planned.scenario, place, planned.values))
             composed = asked(who, partial(compose, scenario))
             stage = LiveStage(run, self._routes, self._metrics, who)
             self.playing.append(Playing(planned, scenario, composed, stage))

@@ -1,0 +1,134 @@
+"""``basu scenario``: lists, plays and draws traffic scenarios."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from basu.errors import UserError
+from basu.outcome import EXIT_CODES
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from basu.scenario_runs.options import ScenarioOptions
+
+
+def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """The command ``scenario``."""
+    scenario = commands.add_parser("scenario", help="list, play and draw traffic scenarios")
+    actions = scenario.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    _add_run(actions)
+
+
+def _add_run(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """``basu scenario run``."""
+    run = actions.add_parser("run", help="play cases with agents", description=run_command.__doc__, epilog=EXIT_CODES)
+    run.add_argument(
+        "what", nargs="+", metavar="WHAT", help="all, a group, a scenario, a case's id, or a FILE.xml with cases"
+    )
+    run.add_argument(
+        "--agent",
+        dest="agents",
+        action="append",
+        metavar="AGENT",
+        help="a name (`basu list`), FILE.py, or FILE.py:Class; may be given several times (default: basic)",
+    )
+    add_files(run)
+    design = run.add_mutually_exclusive_group()
+    design.add_argument("--sweep", type=int, metavar="N", help="play N samples of each case (Latin hypercube)")
+    design.add_argument("--grid", type=int, metavar="K", help="play each case with K values of every number")
+    run.add_argument("--vary", metavar="NAME[,NAME]", help="the parameters to sample (default: all)")
+    run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="give a parameter a value")
+    run.add_argument("--seed", type=int, default=0, help="of the samples and of all that is random (default: 0)")
+    run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: as the case says)")
+    run.add_argument("--host", help="a simulator that runs already (default: start one for each worker)")
+    run.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
+    run.add_argument(
+        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
+    )
+    run.add_argument("--workers", type=int, metavar="N", help="simulators beside each other (default: one a processor)")
+    run.add_argument("--step-limit", type=float, default=10.0, metavar="S", help="wall time for one step of the agent")
+    run.add_argument("--output", type=Path, default=Path("scenario-runs"), metavar="DIR", help="(default: %(default)s)")
+    run.add_argument("--junit", type=Path, metavar="FILE", help="write the JUnit XML there as well")
+    run.add_argument("--debug", action="store_true", help="show the traceback of an agent that fails")
+    run.set_defaults(command=run_command)
+
+
+def add_files(parser: argparse.ArgumentParser) -> None:
+    """Scenarios of one's own."""
+    parser.add_argument(
+        "--scenarios",
+        action="append",
+        default=[],
+        type=Path,
+        metavar="FILE",
+        help="classes (FILE.py) or cases (FILE.xml) of your own; each brings the other of its name",
+    )
+
+
+def _options(arguments: argparse.Namespace) -> ScenarioOptions:
+    """What was asked for.
+
+    Raises:
+        UserError: it makes no sense.
+    """
+    from basu.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - brings in the client
+    from basu.scenarios.sampling import Grid, Sweep  # noqa: PLC0415 - likewise
+
+    for option in ("timeout", "step_limit"):
+        if not getattr(arguments, option) > 0.0:
+            raise UserError(f"--{option.replace('_', '-')} is {getattr(arguments, option)} s; it must be positive")
+    workers = arguments.workers if arguments.workers is not None else len(os.sched_getaffinity(0))
+    if workers < 1:
+        raise UserError(f"--workers is {workers}; it must be at least 1")
+    design = None
+    if arguments.sweep is not None:
+        design = Sweep(arguments.sweep, arguments.seed)
+    elif arguments.grid is not None:
+        design = Grid(arguments.grid)
+    return ScenarioOptions(
+        what=tuple(arguments.what),
+        files=tuple(arguments.scenarios),
+        agents=tuple(arguments.agents or ["basic"]),
+        design=design,
+        vary=tuple(name for name in (arguments.vary or "").split(",") if name),
+        fixed=tuple(_fixed(text) for text in arguments.set),
+        host=arguments.host,
+        port=arguments.port,
+        timeout_s=arguments.timeout,
+        vehicle=arguments.vehicle,
+        seed=arguments.seed,
+        workers=workers,
+        step_limit_s=arguments.step_limit,
+        output=arguments.output,
+        junit=arguments.junit,
+        debug=arguments.debug,
+    )
+
+
+def _fixed(text: str) -> tuple[str, str]:
+    """NAME=VALUE."""
+    name, sign, value = text.partition("=")
+    if not (name and sign and value):
+        raise UserError(f"--set {text}: it must be NAME=VALUE, such as --set speed=1.5")
+    return name, value
+
+
+def run_command(arguments: argparse.Namespace) -> int:
+    """Play cases with agents: a verdict, a picture and a folder for each, and the matrix of all."""
+    options = _options(arguments)
+    from basu.scenario_runs.command import run_scenarios  # noqa: PLC0415 - brings in the client and the plots
+
+    before = signal.signal(signal.SIGTERM, _terminated)  # as Ctrl-C: what was played is written
+    try:
+        return run_scenarios(options)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _terminated(_number: int, _frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt

@@ -1,0 +1,150 @@
+"""``basu scenario run``: cases with agents, a folder each, and the matrix of all."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+import time
+from datetime import datetime, timezone
+from typing import TYPE_CHECKING, Any
+
+from tqdm import tqdm
+
+from basu.errors import UserError
+from basu.managers.agent_loader import load_agent
+from basu.outcome import Fault
+from basu.report.folder import DRAFTS, make_draft, plain, point_latest, publish, write_json
+from basu.report.scenarios.console import matrix_text
+from basu.report.scenarios.junit import junit_xml
+from basu.scenario_runs.crew import Crew, Lost
+from basu.scenario_runs.document import lost
+from basu.scenario_runs.matrix import matrix_of
+from basu.scenario_runs.worker import Job, play
+from basu.scenarios.library import cases_of, varied
+from basu.scenarios.variation import Variation
+from basu.utils.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from pathlib import Path
+
+    from basu.scenario_runs.options import ScenarioOptions
+    from basu.scenario_runs.worker import Done
+    from basu.scenarios.library import Playable
+
+MATRIX_FILE, MATRIX_TEXT, JUNIT_FILE = "matrix.json", "matrix.txt", "junit.xml"
+TIMES = "%Y-%m-%dT%H-%M-%S"
+
+
+def run_scenarios(options: ScenarioOptions) -> int:
+    """Play everything that was asked for; the exit code is that of the worst verdict.
+
+    Raises:
+        UserError: nothing can be played like this.
+        SimulatorError: there is no simulator to play in.
+    """
+    began, began_s = datetime.now(timezone.utc), time.perf_counter()
+    playables = chosen(options)
+    names = _names(options.agents)
+    folder = _folder(options, began)
+    jobs = [
+        Job(number, agent, playable.case.name)
+        for number, (playable, agent) in enumerate((each, agent) for each in playables for agent in options.agents)
+    ]
+    documents: dict[int, tuple[dict[str, Any], str]] = {}
+    interrupted = False
+    try:
+        for answer in _played(options, folder, jobs):
+            if isinstance(answer, Lost):
+                playable = playables[answer.number // len(names)]
+                documents[answer.number] = (
+                    lost(playable, names[answer.number % len(names)], answer.sentence, options),
+                    "",
+                )
+            else:
+                documents[answer.number] = (answer.document, answer.folder)
+    except KeyboardInterrupt:
+        interrupted = True
+    finally:
+        for draft in folder.glob(f"*/{DRAFTS}"):
+            shutil.rmtree(draft, ignore_errors=True)
+        if documents:
+            wall_s = time.perf_counter() - began_s
+            _write(options, folder, matrix_of(options, names, playables, documents, began, wall_s))
+    return Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
+
+
+def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
+    """The cases that were asked for, sampled where that was.
+
+    Raises:
+        UserError: there is none of that name, or it cannot be sampled like this.
+    """
+    variation = Variation(fixed=options.fixed, design=options.design, vary=options.vary)
+    return varied(cases_of(options.what, options.files), variation)
+
+
+def worst(documents: Iterator[dict[str, Any]]) -> int:
+    """The exit code of what went worst: a simulator that failed before a set-up, before an agent."""
+    codes = {
+        Fault.AGENT.value if document["verdict"] == "FAILURE" else Fault[document["fault"].upper()].value
+        for document in documents
+    }
+    return max(codes, default=Fault.SETUP.value)
+
+
+def _names(agents: Sequence[str]) -> list[str]:
+    """What the agents are called in tables and folders; each is loaded once, so that a wrong one is told at once.
+
+    Raises:
+        UserError: one cannot be had, or two have one name.
+    """
+    names = [load_agent(agent).name for agent in agents]
+    for name in names:
+        if names.count(name) > 1:
+            raise UserError(f"two agents are called '{name}'; name each once, or rename a file")
+    return names
+
+
+def _folder(options: ScenarioOptions, began: datetime) -> Path:
+    """A new folder for all of it."""
+    what = plain("-".join(options.what))[:40]
+    name = f"{began.astimezone():{TIMES}}-{what}"
+    folder = publish(make_draft(options.output, name), name)
+    point_latest(folder, options.output)
+    return folder
+
+
+def _played(options: ScenarioOptions, folder: Path, jobs: Sequence[Job]) -> Iterator[Done | Lost]:
+    """What came of each job, as they end."""
+    with tqdm(total=len(jobs), unit="case", disable=None, file=sys.stderr) as bar:
+        if options.workers > 1 and options.host is None and len(jobs) > 1:
+            crew = Crew(options, folder, jobs)
+            try:
+                for answer in crew.play():
+                    bar.update()
+                    yield answer
+            finally:
+                crew.end()
+            return
+        waiting: list[Job] = list(jobs)
+        done: list[Done] = []
+        while waiting:
+            play(options, folder, waiting, done.append)
+            bar.update(len(done))
+            yield from done
+            waiting = waiting[len(done) :]
+            done.clear()
+
+
+def _write(options: ScenarioOptions, folder: Path, matrix: dict[str, Any]) -> None:
+    """The matrix in all its forms."""
+    text = matrix_text(matrix)
+    write_json(folder / MATRIX_FILE, matrix)
+    write_bytes(folder / MATRIX_TEXT, f"{text}\n".encode())
+    junit = junit_xml(matrix)
+    write_bytes(folder / JUNIT_FILE, junit)
+    if options.junit is not None:
+        write_bytes(options.junit, junit)
+    print(matrix_text(matrix, colour=sys.stdout.isatty()))
+    print(f"\nfolder  {folder}")

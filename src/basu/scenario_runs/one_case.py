@@ -1,0 +1,222 @@
+"""One case with one agent: a fresh world, the ego at its place, the scenario played, its verdict and its folder."""
+
+from __future__ import annotations
+
+import shutil
+import time
+import traceback
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import carla
+
+from basu.drive import drive
+from basu.errors import AgentError, SimulatorError, UserError
+from basu.history.files import write_history
+from basu.managers.base_manager import Run
+from basu.managers.scenario_manager import ScenarioManager, asked
+from basu.managers.sensors_manager import SensorsManager
+from basu.managers.stage.surroundings import changed
+from basu.managers.traffic_manager import TrafficManager
+from basu.metrics.score import Scoring
+from basu.options import NOBODY, STEP_S
+from basu.outcome import Outcome, Status
+from basu.preparation import new_agents, sensor_set
+from basu.report.folder import RESULT_FILE, make_draft, plain, publish, write_json
+from basu.report.scenarios.pictures import PICTURE_FILE, case_picture
+from basu.report.streets import around, write_streets
+from basu.routing import lane_graph, plan
+from basu.routing.route_file import RouteDescription, RoutePoint
+from basu.scenario_runs.document import document_of
+from basu.scenarios.paths.lanes import followed, waypoint_at
+from basu.scenarios.verdict import judge
+from basu.simulator import asking, ticked_by_us, world_of
+from basu.utils.atomic import write_bytes
+from basu.vehicle import vehicle_at_start
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from basu.drive import Driven
+    from basu.managers.agent_loader import LoadedAgent
+    from basu.managers.agents_manager import AgentsManager
+    from basu.managers.scenario_manager import Playing
+    from basu.preparation import SensorSet
+    from basu.routing import Route
+    from basu.routing.lane_graph import LaneGraph
+    from basu.scenario_runs.options import ScenarioOptions
+    from basu.scenarios.library import Playable
+    from basu.scenarios.verdict import Judged
+    from basu.simulator import Simulator
+
+POINT_M = 20.0  # between the points of a way that goes straight on
+
+
+@dataclass(frozen=True, slots=True)
+class Theatre:
+    """What all cases of one worker share."""
+
+    options: ScenarioOptions
+    simulator: Simulator
+    lanes: dict[str, LaneGraph] = field(default_factory=dict)  # by the town's OpenDRIVE text
+
+    def lanes_of(self, carla_map: carla.Map) -> LaneGraph:
+        """The lanes of a map, made once."""
+        text = carla_map.to_opendrive()
+        if text not in self.lanes:
+            self.lanes[text] = lane_graph.build(carla_map)
+        return self.lanes[text]
+
+
+class Performed(NamedTuple):
+    """A case that is over and written."""
+
+    document: dict[str, Any]
+    folder: Path
+    outcome: Outcome
+
+
+class _Attempt(NamedTuple):
+    """What came of a case, whatever that is."""
+
+    driven: Driven | None
+    playing: Playing | None
+    outcome: Outcome
+    lanes: LaneGraph | None
+
+
+def perform(theatre: Theatre, loaded: LoadedAgent, planned: Playable, output: Path) -> Performed:
+    """Play a case and write its folder below ``output``; whatever goes wrong becomes its verdict."""
+    began_s = time.perf_counter()
+    case, options = planned.case, theatre.options
+    draft = make_draft(output, plain(case.name))
+    try:
+        attempt = _attempt(theatre, loaded, planned, draft)
+        judged = _judged(planned, attempt)
+        history = None if attempt.driven is None else attempt.driven.history
+        document = document_of(
+            planned, loaded, attempt.playing, judged, options, history=history, wall_s=time.perf_counter() - began_s
+        )
+        write_json(draft / RESULT_FILE, document)
+        if history is not None:
+            write_history(draft, history)
+            streets = [] if attempt.lanes is None else around(attempt.lanes.streets(), history)
+            write_streets(draft, streets)
+            write_bytes(draft / PICTURE_FILE, case_picture(document, history, streets).encode())
+    except BaseException:
+        shutil.rmtree(draft, ignore_errors=True)
+        raise
+    return Performed(document, publish(draft, plain(case.name)), attempt.outcome)
+
+
+def _judged(planned: Playable, attempt: _Attempt) -> Judged:
+    """The verdict; criteria that raise are the scenario's own fault."""
+    playing, driven, outcome = attempt.playing, attempt.driven, attempt.outcome
+    if playing is None or driven is None or driven.history is None:
+        return judge((), None, outcome, triggered=False)
+    played = playing.played(driven.history, outcome)
+    who = planned.case.name
+    try:
+        criteria = asked(who, playing.scenario.criteria)
+        return asked(who, lambda: judge(criteria, played, outcome, triggered=playing.triggered))
+    except UserError as error:
+        return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=playing.triggered)
+
+
+def _attempt(theatre: Theatre, loaded: LoadedAgent, planned: Playable, draft: Path) -> _Attempt:
+    """Drive it, or know why not."""
+    lanes = None
+    try:
+        agents = new_agents(loaded, theatre.options.run_options(loaded.name), theatre.options.seed)
+        with asking(f"loading {planned.case.town}"):
+            theatre.simulator.client.reload_world(reset_settings=False)
+            world = world_of(theatre.simulator.client, planned.case.town)
+        carla_map = world.get_map()
+        lanes = theatre.lanes_of(carla_map)
+        route = plan(carla_map, description_of(planned, carla_map), lanes)
+        scenes = ScenarioManager([planned], own=True)
+        driven = _driven(theatre, agents, sensor_set(agents, loaded), planned, world, route, scenes, draft)
+    except UserError as error:
+        return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), lanes)
+    except AgentError as error:
+        return _Attempt(None, None, Outcome(Status.AGENT_CRASHED, str(error)), lanes)
+    except SimulatorError as error:
+        return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), lanes)
+    for error in (driven.bug, driven.agent_error if theatre.options.debug else None):
+        if error is not None:
+            traceback.print_exception(error)
+    return _Attempt(driven, next(iter(scenes.playing), None), driven.outcome, lanes)
+
+
+def _driven(
+    theatre: Theatre,
+    agents: AgentsManager,
+    sensors: SensorSet,
+    planned: Playable,
+    world: carla.World,
+    route: Route,
+    scenes: ScenarioManager,
+    folder: Path,
+) -> Driven:
+    """The drive, with everything that the simulator was asked for given back afterwards."""
+    options, simulator, case = theatre.options, theatre.simulator, planned.case
+    blueprint = options.vehicle or case.ego.model
+    agents.config = replace(agents.config, vehicle=blueprint)
+    with (
+        asking("getting the vehicle ready"),
+        ticked_by_us(world, STEP_S),
+        vehicle_at_start(world, route, blueprint) as vehicle,
+    ):
+        world.set_weather(_weather(planned))
+        run = Run(
+            client=simulator.client,
+            world=world,
+            carla_map=world.get_map(),
+            vehicle=vehicle,
+            route=route,
+            config=agents.config,
+            step_s=STEP_S,
+            seed=options.seed,
+            timeout_s=options.timeout_s,
+            folder=folder,
+            server_address=simulator.address,
+        )
+        return drive(
+            run,
+            agents,
+            SensorsManager(*sensors, late=agents.late_sensors),
+            TrafficManager(NOBODY),
+            Scoring(),
+            why_gone=simulator.why_gone,
+            ended=simulator.ended,
+            observers=lambda _live: (),
+            scenarios=scenes,
+        )
+
+
+def _weather(planned: Playable) -> carla.WeatherParameters:
+    """As the case says, else as the scenario does, from CARLA's clear noon on."""
+    given = planned.scenario.weather if planned.case.weather is None else planned.case.weather
+    noon = carla.WeatherParameters.ClearNoon
+    fresh = carla.WeatherParameters(
+        **{name: getattr(noon, name) for name in ("sun_azimuth_angle", "sun_altitude_angle")}
+    )
+    return changed(fresh, given)
+
+
+def description_of(planned: Playable, carla_map: carla.Map) -> RouteDescription:
+    """The ego's route: through the points that the case gives, or straight on along the lanes.
+
+    Raises:
+        UserError: no road lies where it begins.
+    """
+    case = planned.case
+    start = case.ego.pose
+    points = [RoutePoint(start.x_m, start.y_m, start.z_m, start.yaw_rad)]
+    if case.way:
+        points += [RoutePoint(pose.x_m, pose.y_m, pose.z_m) for pose in case.way]
+    else:
+        way = followed(waypoint_at(carla_map, start), planned.scenario.needs_m)
+        places = [waypoint.transform.location for waypoint in [*way[int(POINT_M) :: int(POINT_M)], way[-1]]]
+        points += [RoutePoint(at.x, at.y, at.z) for at in places]
+    return RouteDescription(id=case.name, town=case.town, points=tuple(points), stops=(), source=case.source)

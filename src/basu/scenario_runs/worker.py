@@ -1,0 +1,87 @@
+"""A process that plays cases one after the other in a simulator of its own."""
+
+from __future__ import annotations
+
+import signal
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.errors import BasuError
+from basu.managers.agent_loader import load_agent
+from basu.outcome import Status
+from basu.report.folder import plain
+from basu.scenario_runs.one_case import Theatre, perform
+from basu.scenarios.library import open_library
+from basu.simulator import simulator_for
+from basu.utils import client_threads
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+    from multiprocessing.connection import Connection
+    from pathlib import Path
+
+    from basu.scenario_runs.options import ScenarioOptions
+
+LEAVING = frozenset({Status.SIMULATOR_FAILED, Status.AGENT_TIMED_OUT, Status.BENCHMARK_FAILED})
+"""After these a process is not to be trusted: its simulator is gone, or an agent still runs in it."""
+
+
+class Job(NamedTuple):
+    """A case for an agent."""
+
+    number: int  # from 0, in the order of the matrix
+    agent: str  # as it was typed
+    case: str  # its id
+
+
+class Done(NamedTuple):
+    """A job that is over: its folder holds the rest."""
+
+    number: int
+    document: dict[str, Any]
+    folder: str  # below the run's
+    leaves: bool  # whether the worker ends now
+
+
+class Refused(NamedTuple):
+    """A worker that cannot work, and why."""
+
+    sentence: str
+
+
+def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job], tell: Callable[[Done], None]) -> None:
+    """Play jobs in a simulator until there are no more, or it is better to begin with a fresh one.
+
+    Raises:
+        UserError: an agent or a case cannot be had.
+        SimulatorError: there is no simulator to play in.
+    """
+    library = open_library(options.all_files)
+    agents = {agent: load_agent(agent) for agent in options.agents}
+    with simulator_for(options.run_options(options.agents[0])) as simulator:
+        theatre = Theatre(options, simulator)
+        for job in jobs:
+            (playable,) = library.of_id(job.case)
+            loaded = agents[job.agent]
+            performed = perform(theatre, loaded, playable, output / plain(loaded.name))
+            leaves = performed.outcome.status in LEAVING
+            tell(Done(job.number, performed.document, str(performed.folder.relative_to(output)), leaves))
+            if leaves:
+                return
+
+
+def work(connection: Connection, options: ScenarioOptions, output: Path) -> None:
+    """The main function of a worker's process: takes jobs from a pipe and answers through it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for whoever started us, who ends us
+
+    def jobs() -> Iterable[Job]:
+        while (job := connection.recv()) is not None:
+            yield job
+
+    try:
+        play(options, output, jobs(), connection.send)
+    except BasuError as error:
+        connection.send(Refused(str(error)))
+    except EOFError:
+        pass  # whoever started us is gone
+    if client_threads.is_held():
+        client_threads.leave(0)
