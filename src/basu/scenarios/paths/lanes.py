@@ -132,17 +132,16 @@ def oncoming(place: Place, from_ahead_m: float, to_ahead_m: float, right_m: floa
 
 def lanes_apart_m(place: Place, ahead_m: float) -> float:
     """From the middle of the route's lane to that of the nearest lane against it; a lane's width where none is."""
-    here = place.at(ahead_m)
     width_m = place.width_m(ahead_m)
     if not place.route.waypoints:
         return width_m
     lane = place.waypoint(ahead_m)
-    direction, away_m = lane.lane_id > 0, 0.0
+    here, direction, away_m = point_of(lane), lane.lane_id > 0, 0.0
     while lane is not None and away_m < 4.0 * width_m:
         lane = lane.get_left_lane()
         if lane is None:
             break
-        away_m = math.dist(point_of(lane)[:2], (here.x_m, here.y_m))
+        away_m = math.dist(point_of(lane)[:2], here[:2])
         if lane.lane_type == carla.LaneType.Driving and (lane.lane_id > 0) != direction:
             return away_m
         if (lane.lane_id > 0) != direction:
