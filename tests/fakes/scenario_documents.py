@@ -111,6 +111,7 @@ def case_result(**changes: Any) -> dict[str, Any]:
                 sentence="1.20 m to the walker at 8.1 s, the ego at 0.0 m/s.",
                 deciding=False,
                 t_s=8.1,
+                other="walker",
             ),
             judgement("arrives", True, sentence="The end of the route was reached after 11.5 s."),
         ],
@@ -151,7 +152,7 @@ def failed(**changes: Any) -> dict[str, Any]:
     )
 
 
-def judgement(criterion: str, passed: bool | None, **changes: Any) -> dict[str, Any]:
+def judgement(criterion: str, passed: bool | None, **changes: Any) -> dict[str, Any]:  # noqa: FBT001 - so a criterion says it
     """What one criterion said."""
     empty: dict[str, Any] = dict.fromkeys(("measured", "t_s", "x_m", "y_m", "other"))
     return {

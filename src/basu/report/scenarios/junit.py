@@ -29,7 +29,7 @@ def junit_xml(matrix: dict[str, Any]) -> bytes:
     for number, agent in enumerate(matrix["agents"]):
         root.append(_suite(matrix, agent, number))
     indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="utf-8", xml_declaration=False) + b"\n"
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{tostring(root, encoding="unicode")}\n'.encode()
 
 
 def _suite(matrix: dict[str, Any], agent: str, number: int) -> Element:
@@ -69,10 +69,13 @@ def _test(case: dict[str, Any], result: dict[str, Any], agent: str) -> Element:
     verdict = result["verdict"]
     if verdict == "SUCCESS":
         return test
-    tag = "failure" if verdict == "FAILURE" else "error" if verdict == "AGENT_FAULT" else "skipped"
-    message = _plain(result["message"])[:MESSAGE_CHARACTERS]
-    outcome = SubElement(test, tag, type=verdict, message=message)
-    outcome.text = _plain("\n".join(_evidence(case, result)))[:MOST_CHARACTERS]
+    if LOOKS[verdict].is_judged:
+        message = _plain(result["message"])[:MESSAGE_CHARACTERS]
+        outcome = SubElement(test, "failure" if verdict == "FAILURE" else "error", type=verdict, message=message)
+        outcome.text = _plain("\n".join(_evidence(case, result)))[:MOST_CHARACTERS]
+    else:
+        message = _plain(f"{LOOKS[verdict].word}: {result['message']}")[:MESSAGE_CHARACTERS]
+        SubElement(test, "skipped", message=message)
     return test
 
 

@@ -13,13 +13,13 @@ CONTACT_M = 0.005  # less than that between two boxes is written as a contact
 
 
 class Tally(NamedTuple):
-    """Some results of one agent, counted. Margins are the least of those that were judged, None where nobody was near."""
+    """Some results of one agent, counted; margins are the least of those that were judged."""
 
     passed: int
     judged: int  # with failures and the agent's own faults
     agent_faults: int
     unjudged: int  # for faults of others: simulator, set-up, benchmark, or a person who ended it
-    distance_m: float | None
+    distance_m: float | None  # None where nobody was near, so the others
     ttc_s: float | None
     pet_s: float | None
 

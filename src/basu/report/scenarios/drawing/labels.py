@@ -1,0 +1,99 @@
+"""Words in a picture, each where nothing else stands; those that find no room are left out, unless they matter."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from basu.report.markup import e, number
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+    from numpy.typing import NDArray
+
+    from basu.report.scenarios.drawing.canvas import Canvas
+    from basu.report.scenarios.drawing.encounter import Point
+
+CHARACTER = 0.58  # width of one on average, in heights of the script
+EDGE_PX = 3.0
+ALONG_PX, LINE_PX = 14.0, 3.5  # how far apart, and how wide, a line is kept free of words
+AROUND = (  # where a word may stand beside what it names: share of its width, of its height, both in front of a gap
+    (0.0, -1.0, 0.55),
+    (0.0, 0.0, 0.55),
+    (-0.5, -1.0, 0.0),
+    (-0.5, 0.0, 0.0),
+    (0.0, -0.5, 1.0),
+    (-1.0, -0.5, -1.0),
+    (-1.0, -1.0, -0.55),
+    (-1.0, 0.0, -0.55),
+)
+
+
+class Taken(NamedTuple):
+    """A rectangle in pixels."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    def meets(self, other: Taken) -> bool:
+        """Whether the two overlap."""
+        return (
+            self.left < other.right and other.left < self.right and self.top < other.bottom and other.top < self.bottom
+        )
+
+
+class Labels:
+    """The words of one picture, in the order of their weight: who comes first has the choice."""
+
+    def __init__(self, canvas: Canvas) -> None:
+        self._canvas = canvas
+        self._taken: list[Taken] = []
+        self.drawn: list[Element] = []
+
+    def keep_free(self, points_px: list[Point], margin_px: float = 1.0) -> None:
+        """No word is to stand on this."""
+        across, down = zip(*points_px, strict=True)
+        self._taken.append(
+            Taken(min(across) - margin_px, min(down) - margin_px, max(across) + margin_px, max(down) + margin_px)
+        )
+
+    def keep_line_free(self, points_px: NDArray[np.float64]) -> None:
+        """Nor along this line (N, 2), where there is another place."""
+        steps_px = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_px, axis=0).T))])
+        stations_px = np.arange(0.0, steps_px[-1], ALONG_PX)
+        across, down = (np.interp(stations_px, steps_px, points_px[:, axis]) for axis in (0, 1))
+        for x, y in zip(across.tolist(), down.tolist(), strict=True):
+            if self._canvas.shows(x, y, -ALONG_PX):
+                self._taken.append(Taken(x - LINE_PX, y - LINE_PX, x + LINE_PX, y + LINE_PX))
+
+    def put(self, text: str, at_px: Point, style: str, *, size_px: float, gap_px: float, needed: bool = False) -> None:
+        """Write it beside a place, where there is room."""
+        width, height = len(text) * size_px * CHARACTER, size_px * 1.1
+        places = [self._place(at_px, width, height, gap_px * reach, way) for reach in (1.0, 2.2, 3.6) for way in AROUND]
+        inside = [place for place in places if self._inside(place)]
+        free = [place for place in inside if not any(place.meets(taken) for taken in self._taken)]
+        chosen = free[0] if free else (inside or places)[0] if needed else None
+        if chosen is None:
+            return
+        self._taken.append(chosen)
+        baseline = chosen.bottom - 0.27 * height
+        self.drawn.append(e("text", text, x=number(chosen.left, 1), y=number(baseline, 1), class_=style))
+
+    def _place(
+        self, at_px: Point, width: float, height: float, gap_px: float, way: tuple[float, float, float]
+    ) -> Taken:
+        """One of the places beside a point."""
+        share_x, share_y, gap_x = way
+        left = at_px[0] + share_x * width + gap_x * gap_px
+        gap_y = 0.0 if share_y == -0.5 else gap_px * (1.0 if gap_x == 0.0 else 0.55) * (1.0 if share_y == 0.0 else -1.0)
+        top = at_px[1] + share_y * height + gap_y
+        return Taken(left, top, left + width, top + height)
+
+    def _inside(self, place: Taken) -> bool:
+        return self._canvas.shows(place.left, place.top, EDGE_PX) and self._canvas.shows(
+            place.right, place.bottom, EDGE_PX
+        )
