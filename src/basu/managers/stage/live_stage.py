@@ -13,6 +13,7 @@ from basu.errors import ScenarioError
 from basu.managers.stage.cast import bring, member_of, take_away
 from basu.managers.stage.puppets import Puppets
 from basu.managers.stage.surroundings import Surroundings
+from basu.scenarios.criteria.criterion import Thing
 from basu.scenarios.stage import EGO, Body
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
     from basu.managers.stage.cast import Member
-    from basu.scenarios.criteria.criterion import Thing
     from basu.scenarios.stage import ActorSpec, Controls, Door, Pose
 
 
@@ -64,9 +64,11 @@ class LiveStage:
         for member, spec in zip(bring(self._run.world, specs, self._who), specs, strict=True):
             self._cast[spec.name] = member
             self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
-            if spec.speed_mps:
-                yaw_rad, speed_mps = spec.pose.yaw_rad, spec.speed_mps
+            yaw_rad, speed_mps = spec.pose.yaw_rad, spec.speed_mps
+            if member.kind == "vehicle":  # one that stands is held by its brakes
                 self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
+            elif member.kind == "walker" and speed_mps:
+                self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
         self._puppets.carry_out()
 
     def begin(self, tick: int) -> None:
@@ -102,8 +104,6 @@ class LiveStage:
 
     def things(self) -> tuple[Thing, ...]:
         """Those of the cast that are neither vehicle nor walker."""
-        from basu.scenarios.criteria.criterion import Thing  # noqa: PLC0415
-
         bodies = [(name, self.body(name)) for name, member in self._cast.items() if member.kind == "static"]
         return tuple(
             Thing(name, body.x_m, body.y_m, body.yaw_rad, body.half_length_m, body.half_width_m)

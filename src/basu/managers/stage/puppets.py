@@ -37,6 +37,7 @@ class Puppets:
         self._vehicles: dict[int, tuple[carla.Actor, Motion]] = {}
         self._new: list[object] = []  # commands that are sent once
         self._held: set[int] = set()
+        self._walkers: dict[int, tuple[float, float]] = {}  # what each was told last, in m/s
 
     def move(self, member: Member, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Lead a vehicle."""
@@ -45,6 +46,7 @@ class Puppets:
         if motion == STILL and actor.id not in self._held:
             self._held.add(actor.id)
             self._new.append(carla.command.ApplyVehicleControl(actor.id, HELD))
+            self._new.append(carla.command.ApplyTargetVelocity(actor.id, carla.Vector3D()))
         elif motion != STILL and (before is None or actor.id in self._held):
             self._held.discard(actor.id)
             self._new.append(carla.command.ApplyVehicleControl(actor.id, ROLLING))
@@ -52,6 +54,10 @@ class Puppets:
 
     def walk(self, member: Member, velocity_x_mps: float, velocity_y_mps: float) -> None:
         """Lead a walker."""
+        gait = (velocity_x_mps, velocity_y_mps)
+        if self._walkers.get(member.actor.id) == gait:
+            return
+        self._walkers[member.actor.id] = gait
         speed_mps = math.hypot(velocity_x_mps, velocity_y_mps)
         control = carla.WalkerControl()
         control.speed = speed_mps
@@ -69,14 +75,15 @@ class Puppets:
         """Lead nobody any more."""
         self._vehicles.clear()
         self._held.clear()
+        self._walkers.clear()
         self._new.clear()
 
     def carry_out(self) -> None:
         """Send what all of them are told."""
         commands, self._new = self._new, []
         for actor_id, (actor, motion) in self._vehicles.items():
-            if actor_id in self._held and motion == STILL and not commands:
-                continue
+            if motion == STILL:
+                continue  # its brakes hold it
             rise_mps = actor.get_velocity().z
             velocity = carla.Vector3D(motion.velocity_x_mps, motion.velocity_y_mps, rise_mps)
             turning = carla.Vector3D(0.0, 0.0, math.degrees(motion.yaw_rate_radps))
