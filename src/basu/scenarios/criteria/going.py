@@ -8,19 +8,17 @@ import numpy as np
 
 from basu.outcome import Status
 from basu.scenarios.criteria.criterion import Criterion
+from basu.scenarios.triggers.along_route import ARRIVED_M, PARKED_M, PARKED_MPS
 
 if TYPE_CHECKING:
     from basu.history import History
     from basu.scenarios.criteria.criterion import Judgement, Played
 
-AT_END_M = 2.0  # before the end of its route the ego has arrived, as for the trigger ``EgoArrives``
-PARKED_M, PARKED_MPS = 5.0, 0.1  # at rest this near to the end, too, as for ``managers.routes_manager``
-
 
 def arrival_tick(history: History) -> int | None:
-    """The first frame in which the ego is at the end of its route; None where it never was."""
+    """The first frame in which the ego is at the end of its route, as `EgoArrives` has it; None where it never was."""
     left_m = history.facts.route.length_m - history.frames["route_s_m"]
-    there = (left_m <= AT_END_M) | ((left_m <= PARKED_M) & (history.speed_mps() < PARKED_MPS))
+    there = (left_m <= ARRIVED_M) | ((left_m <= PARKED_M) & (history.speed_mps() <= PARKED_MPS))
     return int(np.argmax(there)) if there.any() else None
 
 
