@@ -23,9 +23,9 @@ def own_scenarios() -> list[type[Scenario]]:
     Raises:
         ScenarioError: one declares itself badly.
     """
-    found: list[type[Scenario]] = []
-    for module in pkgutil.walk_packages(catalogue.__path__, catalogue.__name__ + "."):
-        found += _scenarios_in(importlib.import_module(module.name))
+    names = [module.name for module in pkgutil.walk_packages(catalogue.__path__, catalogue.__name__ + ".")]
+    modules = [importlib.import_module(name) for name in names]  # all first: a base is known by its subclasses
+    found = [scenario for module in modules for scenario in _scenarios_in(module)]
     for scenario in found:
         check_class(scenario, scenario.__module__)
     return sorted(found, key=lambda scenario: scenario.__name__)
@@ -50,15 +50,20 @@ def users_scenarios(path: Path) -> list[type[Scenario]]:
 
 
 def _scenarios_in(module: ModuleType) -> list[type[Scenario]]:
-    """Those that a module defines itself. What is abstract and has subclasses is their base and no scenario."""
+    """Those that a module defines itself, without what is there to be derived from only."""
     return [
         value
         for value in vars(module).values()
         if isinstance(value, type)
         and issubclass(value, Scenario)
         and value.__module__ == module.__name__
-        and not (inspect.isabstract(value) and value.__subclasses__())
+        and not _is_base(value)
     ]
+
+
+def _is_base(scenario: type[Scenario]) -> bool:
+    """Whether a class is the base of others and none itself: it has subclasses, and is abstract or without parameters."""
+    return bool(scenario.__subclasses__()) and (inspect.isabstract(scenario) or not scenario.parameters)
 
 
 def _executed(path: Path) -> ModuleType:
