@@ -62,7 +62,7 @@ def _scenarios_in(module: ModuleType) -> list[type[Scenario]]:
 
 
 def _is_base(scenario: type[Scenario]) -> bool:
-    """Whether a class is the base of others and none itself: it has subclasses, and is abstract or without parameters."""
+    """Whether a class is there to be derived from: it has subclasses, and is abstract or has no parameters."""
     return bool(scenario.__subclasses__()) and (inspect.isabstract(scenario) or not scenario.parameters)
 
 
