@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import basu
 from basu.scenario_runs.document import about
 from basu.scenarios.sampling import Grid, Sweep
-from basu.scenarios.shares import shares_of
+from basu.scenarios.shares import results_from, standing, standing_to_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -31,13 +31,15 @@ def matrix_of(
     wall_s: float,
 ) -> dict[str, Any]:
     """The document; ``documents`` are results and folders by number of the job, cases before agents."""
-    rows = []
+    rows: list[dict[str, Any]] = []
+    by_agent: dict[str, list[dict[str, Any]]] = {agent: [] for agent in agents}
     for nth, playable in enumerate(playables):
         results = {}
         for column, agent in enumerate(agents):
             done = documents.get(nth * len(agents) + column)
             if done is not None:
                 document, folder = done
+                by_agent[agent].append(document)
                 results[agent] = {**{key: document[key] for key in TOLD}, "folder": folder}
         rows.append({**about(playable), "results": results})
     return {
@@ -51,7 +53,7 @@ def matrix_of(
         "wall_s": round(wall_s, 1),
         "workers": options.workers,
         "cases": rows,
-        "shares": {agent: shares_of(rows, agent) for agent in agents},
+        "shares": {agent: standing_to_json(standing(results_from(by_agent[agent]))) for agent in agents},
         "versions": {"basu": basu.__version__, "carla": version("carla"), "python": platform.python_version()},
     }
 

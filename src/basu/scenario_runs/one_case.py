@@ -142,9 +142,9 @@ def _attempt(theatre: Theatre, loaded: LoadedAgent, planned: Playable, draft: Pa
         return _Attempt(None, None, Outcome(Status.AGENT_CRASHED, str(error)), lanes)
     except SimulatorError as error:
         return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), lanes)
-    for error in (driven.bug, driven.agent_error if theatre.options.debug else None):
-        if error is not None:
-            traceback.print_exception(error)
+    for failure in (driven.bug, driven.agent_error if theatre.options.debug else None):
+        if failure is not None:
+            traceback.print_exception(failure)
     return _Attempt(driven, next(iter(scenes.playing), None), driven.outcome, lanes)
 
 
