@@ -1,0 +1,1 @@
+"""Pedestrians: groups 11 and 12 of NHTSA's 37 pre-crash scenarios."""
