@@ -6,13 +6,15 @@ import itertools
 import textwrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.report.scenarios.sweep.boundary import boundary
 from basu.report.scenarios.tally import blocks, tally
 from basu.report.scenarios.verdicts import LOOKS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from basu.report.scenarios.tally import Tally
+    from basu.report.scenarios.sweep.boundary import boundary
+from basu.report.scenarios.tally import Tally
 
 WIDTH = 110
 NAME_WIDTH, AGENT_WIDTH = 30, 24  # of a scenario and an agent; a longer name is cut
@@ -36,6 +38,7 @@ def matrix_text(matrix: dict[str, Any], *, colour: bool = False) -> str:
     parts = [_headline(matrix)]
     parts += [_table(matrix, agents, colour=colour) for agents in _side_by_side(matrix)]
     parts.append(_key(matrix))
+    parts.append("\n".join(textwrap.fill(told, WIDTH, subsequent_indent="  ") for told in boundary(matrix)))
     parts.append(_endings(matrix, colour=colour))
     return "\n\n".join(part for part in parts if part)
 

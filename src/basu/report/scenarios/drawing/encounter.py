@@ -1,4 +1,4 @@
-"""The moment of a case at which the ego came nearest to somebody, and the two points between which that was measured."""
+"""The moment of a case at which the ego came nearest to somebody, and the two points that the distance lies between."""
 
 from __future__ import annotations
 
