@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from basu.history import History
-from basu.scenarios.criteria import KeepsLane
+from basu.scenarios.criteria import KeepsLane, Regains
 from fakes.drives import at, driven
 from fakes.played import played
 
@@ -62,3 +62,37 @@ def test_without_the_phase_there_is_nothing_to_judge() -> None:
     said = KeepsLane(since="resolution").judge(played(swerved(3.0), phases_s={}))
     assert said.passed is None
     assert np.isnan(said.t_s or np.nan)
+
+
+def disturbed(*, back_after_s: float, yaw_deg: float = 0.0, seconds: float = 10.0) -> History:
+    """Off its way by 2 m from 1 s on, and back so long after 2 s, where the disturbance ends."""
+    history = driven(at(10.0, seconds))
+    t_s = history.frames["t_s"]
+    history.frames["lateral_m"][(t_s >= 1.0) & (t_s < 2.0 + back_after_s - 1e-6)] = -2.0
+    history.frames["yaw_rad"] = np.radians(yaw_deg)
+    return history
+
+
+def test_regaining_is_timed_from_the_end_of_the_disturbance() -> None:
+    said = Regains(2.0).judge(played(disturbed(back_after_s=1.5)))
+    assert (said.passed, said.measured) == (True, pytest.approx(1.5))
+    assert said.sentence == (
+        "it was back 1.50 s after the disturbance, 0.00 m and 0.0° off its way; until then it was up to 2.00 m off"
+    )
+    assert Regains(1.0).judge(played(disturbed(back_after_s=1.5))).passed is False
+
+
+def test_swinging_through_the_middle_is_not_being_back() -> None:
+    history = disturbed(back_after_s=4.0)
+    history.frames["lateral_m"][50:65] = 0.0  # for 0.75 s
+    assert Regains().judge(played(history)).measured == pytest.approx(4.0)
+
+
+def test_across_its_way_it_is_not_back_though_in_the_middle() -> None:
+    said = Regains().judge(played(disturbed(back_after_s=1.0, yaw_deg=25.0)))
+    assert said.passed is False
+    assert "it was not back 7.95 s after the disturbance, 0.00 m and 25.0° off its way" in said.sentence
+
+
+def test_without_an_end_of_the_disturbance_there_is_nothing_to_regain() -> None:
+    assert Regains().judge(played(disturbed(back_after_s=1.0), phases_s={})).passed is None
