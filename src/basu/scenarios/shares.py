@@ -142,14 +142,16 @@ def sentence(found: Standing) -> str:
     """The score in a sentence."""
     if found.cost is None:
         return "no group of the typology was measured, so nothing can be said about the crash toll"
+    number = len(TOLLS) - len(found.unmeasured)
+    groups = "the one group measured, which is" if number == 1 else f"the {number} groups measured, which are"
     text = (
-        f"it survives situations that stand for {100.0 * found.cost:.0f} % of the crash cost of the "
-        f"{len(TOLLS) - len(found.unmeasured)} groups measured, which are {100.0 * found.measured_of_cost:.0f} % of all"
+        f"it survives situations that stand for {100.0 * found.cost:.0f} % of the crash cost of {groups} "
+        f"{100.0 * found.measured_of_cost:.0f} % of all"
     )
     if found.unmeasured:
         text += f"; not measured: {', '.join(group.value for group in found.unmeasured)}"
     if found.left_out:
-        text += f"; {len(found.left_out)} cases left out"
+        text += f"; {len(found.left_out)} case{'s' if len(found.left_out) > 1 else ''} left out"
     return text
 
 
