@@ -225,6 +225,9 @@ class PaperStage:
         return Body(*at, speed_mps * math.cos(at.yaw_rad), speed_mps * math.sin(at.yaw_rad), *self._ego_half_m)
 
     def _touches(self, other: Body) -> bool:
+        reach_m = sum(body.half_length_m + body.half_width_m for body in (self.ego, other))
+        if math.dist(self.ego[:2], other[:2]) > reach_m:
+            return False
         ours, theirs = (
             boxes(
                 np.array([body.x_m]),
