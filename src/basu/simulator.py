@@ -219,7 +219,7 @@ def check_towns(client: carla.Client, towns: Iterable[str]) -> None:
     Raises:
         UserError: it lacks one.
     """
-    names = {_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())}
+    names = towns_of(client)
     missing = sorted(set(towns) - names)
     if missing:
         where = f"the route is in {missing[0]}" if len(missing) == 1 else f"routes are in {', '.join(missing)}"
@@ -227,6 +227,11 @@ def check_towns(client: carla.Client, towns: Iterable[str]) -> None:
             f"{where}, which this simulator does not have; it has {', '.join(sorted(names))}: "
             "name another file with --routes, or choose routes with --routes-subset"
         )
+
+
+def towns_of(client: carla.Client) -> frozenset[str]:
+    """The towns that a simulator has, the loaded one among them."""
+    return frozenset({_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())})
 
 
 def _short(map_name: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import traceback
 from typing import TYPE_CHECKING
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 COMMANDS = (run, scenario, score, report, compare, experiment, metrics, replay, list_)
+
+UNREAD = 141  # 128 + SIGPIPE, as shells have it
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -39,6 +42,9 @@ def _run(arguments: argparse.Namespace) -> int:
         return _say(error, Fault.SIMULATOR)
     except KeyboardInterrupt:
         return _say("interrupted", Fault.USER)
+    except BrokenPipeError:  # who reads our output has seen enough, such as `head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return UNREAD
     except Exception:  # noqa: BLE001 - a bug of ours: told in full, with an exit status that is nobody else's
         traceback.print_exc()
         return Fault.BENCHMARK.value

@@ -8,6 +8,7 @@ import signal
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from basu.cli.scenario_list import add_list_options, list_scenarios
 from basu.errors import UserError
 from basu.outcome import EXIT_CODES
 
@@ -15,12 +16,18 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from basu.scenario_runs.options import ScenarioOptions
+    from basu.scenarios.sampling import Design
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """The command ``scenario``."""
     scenario = commands.add_parser("scenario", help="list, play and draw traffic scenarios")
     actions = scenario.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    listing = actions.add_parser(
+        "list", help="show scenarios, parameters and cases", description=list_scenarios.__doc__
+    )
+    add_list_options(listing)
+    listing.set_defaults(command=list_scenarios)
     _add_run(actions)
 
 
@@ -85,10 +92,8 @@ def _options(arguments: argparse.Namespace) -> ScenarioOptions:
     workers = arguments.workers if arguments.workers is not None else len(os.sched_getaffinity(0))
     if workers < 1:
         raise UserError(f"--workers is {workers}; it must be at least 1")
-    design = None
-    if arguments.sweep is not None:
-        design = Sweep(arguments.sweep, arguments.seed)
-    elif arguments.grid is not None:
+    design: Design | None = None if arguments.sweep is None else Sweep(arguments.sweep, arguments.seed)
+    if arguments.grid is not None:
         design = Grid(arguments.grid)
     return ScenarioOptions(
         what=tuple(arguments.what),

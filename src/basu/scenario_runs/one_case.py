@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import carla
 
 from basu.drive import drive
-from basu.errors import AgentError, SimulatorError, UserError
+from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.history.files import write_history
 from basu.managers.base_manager import Run
 from basu.managers.scenario_manager import ScenarioManager, asked
@@ -58,6 +58,7 @@ class Theatre:
 
     options: ScenarioOptions
     simulator: Simulator
+    towns: frozenset[str]  # that the simulator has
     lanes: dict[str, LaneGraph] = field(default_factory=dict)  # by the town's OpenDRIVE text
 
     def lanes_of(self, carla_map: carla.Map) -> LaneGraph:
@@ -85,17 +86,17 @@ class _Attempt(NamedTuple):
     lanes: LaneGraph | None
 
 
-def perform(theatre: Theatre, loaded: LoadedAgent, planned: Playable, output: Path) -> Performed:
+def perform(theatre: Theatre, loaded: LoadedAgent, playable: Playable, output: Path) -> Performed:
     """Play a case and write its folder below ``output``; whatever goes wrong becomes its verdict."""
     began_s = time.perf_counter()
-    case, options = planned.case, theatre.options
+    case, options = playable.case, theatre.options
     draft = make_draft(output, plain(case.name))
     try:
-        attempt = _attempt(theatre, loaded, planned, draft)
-        judged = _judged(planned, attempt)
+        attempt = _attempt(theatre, loaded, playable, draft)
+        judged = _judged(playable, attempt)
         history = None if attempt.driven is None else attempt.driven.history
         document = document_of(
-            planned, loaded, attempt.playing, judged, options, history=history, wall_s=time.perf_counter() - began_s
+            playable, loaded, attempt.playing, judged, options, history=history, wall_s=time.perf_counter() - began_s
         )
         write_json(draft / RESULT_FILE, document)
         if history is not None:
@@ -109,13 +110,13 @@ def perform(theatre: Theatre, loaded: LoadedAgent, planned: Playable, output: Pa
     return Performed(document, publish(draft, plain(case.name)), attempt.outcome)
 
 
-def _judged(planned: Playable, attempt: _Attempt) -> Judged:
+def _judged(playable: Playable, attempt: _Attempt) -> Judged:
     """The verdict; criteria that raise are the scenario's own fault."""
     playing, driven, outcome = attempt.playing, attempt.driven, attempt.outcome
     if playing is None or driven is None or driven.history is None:
         return judge((), None, outcome, triggered=False)
     played = playing.played(driven.history, outcome)
-    who = planned.case.name
+    who = playable.case.name
     try:
         criteria = asked(who, playing.scenario.criteria)
         return asked(who, lambda: judge(criteria, played, outcome, triggered=playing.triggered))
@@ -123,19 +124,26 @@ def _judged(planned: Playable, attempt: _Attempt) -> Judged:
         return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=playing.triggered)
 
 
-def _attempt(theatre: Theatre, loaded: LoadedAgent, planned: Playable, draft: Path) -> _Attempt:
+def _attempt(theatre: Theatre, loaded: LoadedAgent, playable: Playable, draft: Path) -> _Attempt:
     """Drive it, or know why not."""
     lanes = None
     try:
         agents = new_agents(loaded, theatre.options.run_options(loaded.name), theatre.options.seed)
-        with asking(f"loading {planned.case.town}"):
+        town = playable.case.town
+        if town not in theatre.towns:
+            there = ", ".join(sorted(theatre.towns))
+            raise ScenarioError(
+                f"{playable.case.name} is in {town}, which this simulator does not have (it has {there}): play it on "
+                f"one that has, with --host, or give the case a place in {there} ({playable.case.source})"
+            )
+        with asking(f"loading {town}"):
             theatre.simulator.client.reload_world(reset_settings=False)
-            world = world_of(theatre.simulator.client, planned.case.town)
+            world = world_of(theatre.simulator.client, town)
         carla_map = world.get_map()
         lanes = theatre.lanes_of(carla_map)
-        route = plan(carla_map, description_of(planned, carla_map), lanes)
-        scenes = ScenarioManager([planned], own=True)
-        driven = _driven(theatre, agents, sensor_set(agents, loaded), planned, world, route, scenes, draft)
+        route = plan(carla_map, description_of(playable, carla_map), lanes)
+        scenes = ScenarioManager([playable], own=True)
+        driven = _driven(theatre, agents, sensor_set(agents, loaded), playable, world, route, scenes, draft)
     except UserError as error:
         return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), lanes)
     except AgentError as error:
@@ -152,14 +160,14 @@ def _driven(
     theatre: Theatre,
     agents: AgentsManager,
     sensors: SensorSet,
-    planned: Playable,
+    playable: Playable,
     world: carla.World,
     route: Route,
     scenes: ScenarioManager,
     folder: Path,
 ) -> Driven:
     """The drive, with everything that the simulator was asked for given back afterwards."""
-    options, simulator, case = theatre.options, theatre.simulator, planned.case
+    options, simulator, case = theatre.options, theatre.simulator, playable.case
     blueprint = options.vehicle or case.ego.model
     agents.config = replace(agents.config, vehicle=blueprint)
     with (
@@ -167,7 +175,7 @@ def _driven(
         ticked_by_us(world, STEP_S),
         vehicle_at_start(world, route, blueprint) as vehicle,
     ):
-        world.set_weather(_weather(planned))
+        world.set_weather(_weather(playable))
         run = Run(
             client=simulator.client,
             world=world,
@@ -194,9 +202,9 @@ def _driven(
         )
 
 
-def _weather(planned: Playable) -> carla.WeatherParameters:
+def _weather(playable: Playable) -> carla.WeatherParameters:
     """As the case says, else as the scenario does, from CARLA's clear noon on."""
-    given = planned.scenario.weather if planned.case.weather is None else planned.case.weather
+    given = playable.scenario.weather if playable.case.weather is None else playable.case.weather
     noon = carla.WeatherParameters.ClearNoon
     fresh = carla.WeatherParameters(
         **{name: getattr(noon, name) for name in ("sun_azimuth_angle", "sun_altitude_angle")}
@@ -204,19 +212,19 @@ def _weather(planned: Playable) -> carla.WeatherParameters:
     return changed(fresh, given)
 
 
-def description_of(planned: Playable, carla_map: carla.Map) -> RouteDescription:
+def description_of(playable: Playable, carla_map: carla.Map) -> RouteDescription:
     """The ego's route: through the points that the case gives, or straight on along the lanes.
 
     Raises:
         UserError: no road lies where it begins.
     """
-    case = planned.case
+    case = playable.case
     start = case.ego.pose
     points = [RoutePoint(start.x_m, start.y_m, start.z_m, start.yaw_rad)]
     if case.way:
         points += [RoutePoint(pose.x_m, pose.y_m, pose.z_m) for pose in case.way]
     else:
-        way = followed(waypoint_at(carla_map, start), planned.scenario.needs_m)
+        way = followed(waypoint_at(carla_map, start), playable.scenario.needs_m)
         places = [waypoint.transform.location for waypoint in [*way[int(POINT_M) :: int(POINT_M)], way[-1]]]
         points += [RoutePoint(at.x, at.y, at.z) for at in places]
     return RouteDescription(id=case.name, town=case.town, points=tuple(points), stops=(), source=case.source)

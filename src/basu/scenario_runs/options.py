@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from basu.options import RunOptions
-from basu.scenarios.library import file_in
+from basu.scenarios.library import files_among
 
 if TYPE_CHECKING:
     from basu.scenarios.sampling import Design
@@ -37,8 +37,7 @@ class ScenarioOptions:
     @property
     def all_files(self) -> tuple[Path, ...]:
         """The user's files: those named with --scenarios and those among what is to be played."""
-        named = [word for word in self.what if file_in(word)[0] is not None]
-        return (*self.files, *(Path(word) for word in named))
+        return (*self.files, *(Path(word) for word in files_among(self.what)))
 
     def run_options(self, agent: str) -> RunOptions:
         """What a run with one of the agents needs of it."""

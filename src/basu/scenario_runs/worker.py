@@ -11,7 +11,7 @@ from basu.outcome import Status
 from basu.report.folder import plain
 from basu.scenario_runs.one_case import Theatre, perform
 from basu.scenarios.library import open_library
-from basu.simulator import simulator_for
+from basu.simulator import asking, simulator_for, towns_of
 from basu.utils import client_threads
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job], tell: Call
     library = open_library(options.all_files)
     agents = {agent: load_agent(agent) for agent in options.agents}
     with simulator_for(options.run_options(options.agents[0])) as simulator:
-        theatre = Theatre(options, simulator)
+        with asking("naming its towns"):
+            theatre = Theatre(options, simulator, towns_of(simulator.client))
         for job in jobs:
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]

@@ -1,0 +1,163 @@
+"""``basu scenario run``, whole: what goes well, what goes wrong and whose fault it is, what is left of it."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import carla
+import pytest
+
+from basu.cli import main
+from servers import RunningServer
+
+AGENTS = """
+import os, signal, time
+import carla
+from basu.agents.autonomous_agent import AutonomousAgent
+
+class Bad(AutonomousAgent):
+    def setup(self):
+        self.steps = 0
+
+    def config(self):
+        return {}
+
+    def run_step(self, sensor_data):
+        self.steps += 1
+        if self.steps == 5:
+            self.fail()
+        return carla.VehicleControl(throttle=0.2)
+
+class Raises(Bad):
+    def fail(self):
+        raise ValueError("no idea")
+
+class Hangs(Bad):
+    def fail(self):
+        time.sleep(60.0)
+
+class Dies(Bad):
+    def fail(self):
+        os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def played(output: Path) -> dict[str, dict[str, Any]]:
+    """The results of the newest run by case, of one agent."""
+    found = [json.loads(path.read_text(encoding="utf-8")) for path in (output / "latest").glob("*/*/result.json")]
+    return {result["id"]: result for result in found}
+
+
+def matrix(output: Path) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads((output / "latest" / "matrix.json").read_text(encoding="utf-8"))
+    return document
+
+
+def run(simulator: RunningServer, output: Path, *words: object) -> int:
+    host = ("--host", "127.0.0.1", "--port", simulator.port)
+    return main(["scenario", "run", *map(str, (*words, *host, "--output", output))])
+
+
+def test_a_case_that_goes_well_leaves_its_verdict_and_a_clean_world(
+    simulator: RunningServer, files: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    client = carla.Client("127.0.0.1", simulator.port)
+    client.set_timeout(20.0)
+    assert run(simulator, tmp_path, "goes_well", "--scenarios", files) == 0
+    result = played(tmp_path)["goes_well"]
+    assert (result["verdict"], result["fault"], result["status"]) == ("SUCCESS", "nobody", "ScenarioEnded")
+    assert list(result["phases_s"]) == ["setup", "trigger", "conflict", "resolution", "end"]
+    assert result["actors"] == [{"id": result["actors"][0]["id"], "role": "walker", "type": "walker.pedestrian.0001"}]
+    assert 0.3 < result["margins"]["distance_m"] < 22.0
+    left = sorted(path.name for path in (tmp_path / "latest" / "basic" / "goes_well").iterdir())
+    assert left == ["history.parquet", "picture.svg", "result.json", "route.json", "streets.json"]
+    assert matrix(tmp_path)["cases"][0]["results"]["basic"]["folder"] == "basic/goes_well"
+    assert "Crosser" in capsys.readouterr().out
+    moving = [
+        a.type_id for a in client.get_world().get_actors() if a.type_id.startswith(("vehicle", "walker", "sensor"))
+    ]
+    assert moving == []
+
+
+@pytest.mark.parametrize(
+    ("case", "verdict", "code", "sentence"),
+    [
+        ("stumbles", "SETUP_FAULT", 2, "the scenario stumbles raised ZeroDivisionError: stumbled (line "),
+        ("dozes", "SETUP_FAULT", 2, "never triggered"),
+        ("leads", "SETUP_FAULT", 2, "leads speaks of 'nobody', and nobody there is called so; there are hero, walker"),
+        ("elsewhere", "SETUP_FAULT", 2, "elsewhere is in Town05, which this simulator does not have (it has Linden)"),
+        ("indoors", "SETUP_FAULT", 2, "indoors puts 'walker' at (295.7, 136.3), which is inside a house; move it"),
+    ],
+)
+def test_what_is_wrong_with_a_case_is_said_and_nobodys_failure(
+    simulator: RunningServer, files: Path, tmp_path: Path, case: str, verdict: str, code: int, sentence: str
+) -> None:
+    assert run(simulator, tmp_path, case, "--scenarios", files) == code
+    result = played(tmp_path)[case]
+    assert result["verdict"] == verdict
+    assert sentence in result["message"]
+    assert matrix(tmp_path)["shares"]["basic"]["share_of_cost"] is None
+
+
+def test_a_driver_who_looks_at_nothing_fails_with_evidence(
+    simulator: RunningServer, files: Path, tmp_path: Path
+) -> None:
+    assert run(simulator, tmp_path, "goes_well", "--scenarios", files, "--agent", "forward") == 1
+    result = played(tmp_path)["goes_well"]
+    assert (result["verdict"], result["margins"]["distance_m"]) == ("FAILURE", 0.0)
+    assert "hit walker (walker.pedestrian.0001)" in result["message"]
+
+
+def test_the_same_case_again_is_the_same_byte_by_byte(simulator: RunningServer, files: Path, tmp_path: Path) -> None:
+    left = []
+    for name in ("one", "two"):
+        assert run(simulator, tmp_path / name, "goes_well", "--scenarios", files) == 0
+        folder = tmp_path / name / "latest" / "basic" / "goes_well"
+        result = json.loads((folder / "result.json").read_text(encoding="utf-8")) | {"wall_s": 0.0}
+        left.append((result, *((folder / file).read_bytes() for file in ("history.parquet", "picture.svg"))))
+    assert left[0] == left[1]
+
+
+@pytest.mark.parametrize(("agent", "status"), [("Raises", "AgentCrashed"), ("Hangs", "AgentTimedOut")])
+def test_an_agent_that_breaks_down_is_its_own_fault_and_the_next_case_is_played(
+    simulator: RunningServer, files: Path, tmp_path: Path, agent: str, status: str
+) -> None:
+    bad = tmp_path / "bad.py"
+    bad.write_text(AGENTS, encoding="utf-8")
+    words = ("goes_well", "goes_well:ahead=30", "--scenarios", files, "--agent", f"{bad}:{agent}", "--step-limit", 1)
+    assert run(simulator, tmp_path, *words) == 1
+    results = played(tmp_path)
+    assert [(r["verdict"], r["fault"], r["status"]) for r in results.values()] == [("AGENT_FAULT", "agent", status)] * 2
+
+
+@pytest.mark.slow
+def test_a_process_that_dies_costs_its_own_case_only(files: Path, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.py"
+    bad.write_text(AGENTS, encoding="utf-8")
+    words = ["goes_well", "--scenarios", files, "--agent", f"{bad}:Dies", "--agent", "basic", "--workers", 2]
+    code = main(["scenario", "run", *map(str, (*words, "--output", tmp_path))])
+    assert code == 70
+    results = matrix(tmp_path)["cases"][0]["results"]
+    assert results["basic"]["verdict"] == "SUCCESS"
+    assert results["bad"]["verdict"] == "BENCHMARK_FAULT"
+    assert "died 2 times" in results["bad"]["message"]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["rondabout"], "there is no scenario 'rondabout'"),
+        (["goes_well", "--agent", "basics"], "there is no agent called 'basics'; did you mean 'basic'?"),
+        (["goes_well", "--agent", "basic", "--agent", "basic"], "two agents are called 'basic'"),
+        (["goes_well", "--set", "ahead"], "--set ahead: it must be NAME=VALUE"),
+        (["goes_well", "--set", "ahed=3"], "did you mean 'ahead'?"),
+        (["goes_well", "--workers", "0"], "--workers is 0"),
+        (["goes_well", "--sweep", "0"], "a sweep of 0 is none"),
+    ],
+)
+def test_what_was_typed_wrongly_is_told_before_anything_starts(
+    files: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
+) -> None:
+    assert main(["scenario", "run", *words, "--scenarios", str(files), "--output", str(tmp_path / "out")]) == 2
+    assert sentence in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
