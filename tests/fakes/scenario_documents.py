@@ -1,5 +1,6 @@
 """Documents of scenario runs that never took place: a case with its record, a matrix, a sweep with a known boundary."""
 
+import json
 import math
 import random
 from collections.abc import Mapping, Sequence
@@ -10,6 +11,7 @@ import numpy as np
 from basu.history import FRAME, Collision, Facts, History, Recorder
 from basu.history.model import NO_LIGHT
 from basu.report.streets import Line
+from basu.scenarios.shares import results_from, standing, standing_to_json
 from fakes.drives import STEP_S, VEHICLE, straight_route
 
 WALKER = 47
@@ -20,6 +22,7 @@ STREETS: list[Line] = [
     [(65.5, -80.0), (65.5, 80.0)],
 ]
 GROUPS = {
+    "control loss": ("ControlLoss",),
     "pedestrian": ("PedestrianCrossing", "OccludedChild"),
     "rear-end": ("FollowLeadingVehicle",),
     "shuttle": ("UnexpectedStop",),
@@ -209,14 +212,23 @@ def matrix_of(cases: Sequence[dict[str, Any]], agents: Sequence[str], **changes:
         "started": "2026-11-22T03:00:00+00:00",
         "what": "all",
         "agents": list(agents),
+        "vehicle": None,
+        "seed": 0,
         "sweep": None,
         "wall_s": 412.0,
         "workers": 2,
         "cases": list(cases),
-        "shares": {},
+        "shares": {agent: shares(cases, agent) for agent in agents},
         "versions": {"basu": "0.1.0"},
         **changes,
     }
+
+
+def shares(cases: Sequence[dict[str, Any]], agent: str) -> dict[str, Any]:
+    """What the results of one agent stand for, as `basu.scenarios.shares` writes it."""
+    documents = [{**case, **case["results"][agent]} for case in cases if agent in case["results"]]
+    plain: dict[str, Any] = json.loads(json.dumps(standing_to_json(standing(results_from(documents)))))
+    return plain
 
 
 def case(
@@ -246,8 +258,10 @@ def told(verdict: str, id_: str, agent: str, distance_m: float) -> dict[str, Any
     return {
         "verdict": verdict,
         "fault": VERDICT_FAULTS[verdict],
+        "status": "Completed",
         "message": "Hit the walker at 8.0 s at 6.0 m/s." if is_hit else f"As {verdict} has it.",
         "margins": {"distance_m": 0.0 if is_hit else distance_m, "ttc_s": 0.0 if is_hit else 1.9, "pet_s": None},
+        "simulated_s": 12.0,
         "wall_s": 0.9,
         "folder": f"{agent}/{id_.replace(':', '_')}",
     }
@@ -291,7 +305,7 @@ def grid(side: int = 5) -> dict[str, Any]:
             id_ = f"follow_leading_vehicle_1:grid-{side}-{row * side + column}"
             verdict = "FAILURE" if gap_m <= 2.0 and speed_mps > 4.0 else "SUCCESS"
             cases.append(case(id_, "FollowLeadingVehicle", "rear-end", {"basic": verdict}, parameters))
-    told_sweep = {"grid": side, "vary": ["gap", "speed"], "case": "follow_leading_vehicle_1"}
+    told_sweep = {"grid": side, "vary": ["gap", "speed"]}
     return matrix_of(cases, ["basic"], what="follow_leading_vehicle_1", sweep=told_sweep)
 
 

@@ -6,6 +6,7 @@ import itertools
 import textwrap
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.report.scenarios.shares import shares_text
 from basu.report.scenarios.sweep.boundary import boundary
 from basu.report.scenarios.tally import blocks, tally
 from basu.report.scenarios.verdicts import LOOKS
@@ -13,8 +14,7 @@ from basu.report.scenarios.verdicts import LOOKS
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from basu.report.scenarios.sweep.boundary import boundary
-from basu.report.scenarios.tally import Tally
+    from basu.report.scenarios.tally import Tally
 
 WIDTH = 110
 NAME_WIDTH, AGENT_WIDTH = 30, 24  # of a scenario and an agent; a longer name is cut
@@ -37,9 +37,9 @@ def matrix_text(matrix: dict[str, Any], *, colour: bool = False) -> str:
     """The matrix as lines of text; ``colour`` for a terminal that shows it, and nothing is said by colour alone."""
     parts = [_headline(matrix)]
     parts += [_table(matrix, agents, colour=colour) for agents in _side_by_side(matrix)]
-    parts.append(_key(matrix))
+    parts += [_key(matrix), _endings(matrix, colour=colour)]
     parts.append("\n".join(textwrap.fill(told, WIDTH, subsequent_indent="  ") for told in boundary(matrix)))
-    parts.append(_endings(matrix, colour=colour))
+    parts.append(shares_text(matrix))
     return "\n\n".join(part for part in parts if part)
 
 
@@ -82,7 +82,7 @@ def _cell(found: Tally) -> Cell:
     return Cell(
         share=f"{found.passed}/{found.judged}" if found.judged else "-",
         distance=found.narrowest,
-        time="" if found.ttc_s is None or found.narrowest == "contact" else f"{found.ttc_s:.1f} s",
+        time="" if found.ttc_s is None else f"{found.ttc_s:.1f} s",
         marks=" ".join(marks),
         colour=YELLOW if not found.judged else GREEN if all_passed else RED,
     )
@@ -140,7 +140,7 @@ def _painted(text: str, colour_code: str, *, colour: bool) -> str:
 def _key(matrix: dict[str, Any]) -> str:
     """What the parts of a cell are, as far as they occur."""
     verdicts = {result["verdict"] for case in matrix["cases"] for result in case["results"].values()}
-    told = ["passed of judged, the least distance to anybody, the least time to a collision on unchanged courses."]
+    told = ["passed of judged; of those passed, the least distance to anybody, and the least time to a collision."]
     if "AGENT_FAULT" in verdicts:
         told.append("! the agent itself broke down: judged, and not passed.")
     if any(not LOOKS[verdict].is_judged for verdict in verdicts):

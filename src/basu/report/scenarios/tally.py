@@ -13,13 +13,13 @@ CONTACT_M = 0.005  # less than that between two boxes is written as a contact
 
 
 class Tally(NamedTuple):
-    """Some results of one agent, counted; margins are the least of those that were judged."""
+    """Some results of one agent, counted; margins are the least of those that were passed."""
 
     passed: int
     judged: int  # with failures and the agent's own faults
     agent_faults: int
     unjudged: int  # for faults of others: simulator, set-up, benchmark, or a person who ended it
-    distance_m: float | None  # None where nobody was near, so the others
+    distance_m: float | None  # None where nothing was passed or nobody was near, so the others
     ttc_s: float | None
     pet_s: float | None
 
@@ -65,14 +65,15 @@ def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
     """What one agent made of cases; those it has no result of are left out."""
     results = [case["results"][agent] for case in cases if agent in case["results"]]
     judged = [result for result in results if LOOKS[result["verdict"]].is_judged]
+    passed = [result for result in judged if result["verdict"] == "SUCCESS"]
     return Tally(
-        passed=sum(result["verdict"] == "SUCCESS" for result in judged),
+        passed=len(passed),
         judged=len(judged),
         agent_faults=sum(result["verdict"] == "AGENT_FAULT" for result in judged),
         unjudged=len(results) - len(judged),
-        distance_m=_least(judged, "distance_m"),
-        ttc_s=_least(judged, "ttc_s"),
-        pet_s=_least(judged, "pet_s"),
+        distance_m=_least(passed, "distance_m"),
+        ttc_s=_least(passed, "ttc_s"),
+        pet_s=_least(passed, "pet_s"),
     )
 
 
