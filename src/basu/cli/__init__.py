@@ -24,7 +24,12 @@ UNREAD = 141  # 128 + SIGPIPE, as shells have it
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; what a person can mend is one sentence and an exit code."""
-    code = _run(parser().parse_args(argv))
+    try:
+        code = _run(parser().parse_args(argv))
+        sys.stdout.flush()
+    except BrokenPipeError:  # who reads our output has seen enough, such as `head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = UNREAD
     if client_threads.is_held():
         client_threads.leave(code)
     return code
@@ -42,9 +47,8 @@ def _run(arguments: argparse.Namespace) -> int:
         return _say(error, Fault.SIMULATOR)
     except KeyboardInterrupt:
         return _say("interrupted", Fault.USER)
-    except BrokenPipeError:  # who reads our output has seen enough, such as `head`
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return UNREAD
+    except BrokenPipeError:
+        raise  # nobody reads what we say
     except Exception:  # noqa: BLE001 - a bug of ours: told in full, with an exit status that is nobody else's
         traceback.print_exc()
         return Fault.BENCHMARK.value
