@@ -1,0 +1,89 @@
+"""The ego turns left through oncoming traffic: NHTSA's "left turn across path", the ego being the one who turns."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+import numpy as np
+
+from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
+from basu.scenarios.catalogue.crossing_paths.from_the_side import NARROWLY, SETS_OFF_MPS2, SETTLED_S
+from basu.scenarios.catalogue.crossing_paths.stream import LEAVES_M, Lane, Stream
+from basu.scenarios.parameters import Number
+from basu.scenarios.paths import Path, along_lane, crossing, next_junction
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from py_trees.behaviour import Behaviour
+
+    from basu.scenarios.parameters import Parameter
+
+TURNS_MPS = 5.0
+SLOWS_M = 12.0  # before the junction the first has the speed of its turn
+LOOK_M = 30.0
+
+
+class Meeting(NamedTuple):
+    """Where the first of them crosses the lane that the ego leaves."""
+
+    path: Path
+    meet_s_m: float
+    ego_s_m: float
+
+
+class EgoTurnsLeft(Stream):
+    """The ego turns left while others come towards it: the first turns left as well, the rest go straight on.
+
+    NHTSA pre-crash scenarios 27 and 29, left turn across path from opposite directions, with the ego as the one who
+    turns. It has to let all of them go first, or to take a gap that is long enough; who drives straight on instead
+    meets the first in its turn.
+    """
+
+    parameters: ClassVar[Sequence[Parameter]] = (
+        Number("cars", 4.0, 2.0, 6.0, "", "how many come, rounded, the one that turns among them"),
+        Number("speed", 8.0, 5.0, 12.0, "m/s", "of those who go straight on"),
+        Number("headway", 2.5, 1.8, 6.0, "s", "from one to the next"),
+    )
+    weather: ClassVar[Mapping[str, float]] = {"cloudiness": 0.0, "sun_altitude_angle": 12.0}
+    aliases: ClassVar[Sequence[str]] = ("SignalizedJunctionLeftTurn", "NonSignalizedJunctionLeftTurn")
+
+    def ways(self) -> Sequence[Lane]:
+        """Straight on towards the ego."""
+        return [Lane(crossing(self.place, "opposite", "straight", approach_m=self.back_m, leave_m=LEAVES_M), 0.0)]
+
+    @cached_property
+    def meeting(self) -> Meeting:
+        """The way of the first, and where it crosses the ego's lane, drawn on straight through the junction."""
+        way = self.lanes[0].way
+        entered = next_junction(self.place)
+        before_m = way.path.length_m - LEAVES_M - LOOK_M
+        stops = along_lane(self.place.carla_map, way.path.at(before_m), 2.0 * LOOK_M + 20.0, ("left",))
+        path = way.path.part(0.0, before_m - 1.0).then(stops)
+        ahead = Path.straight(self.place.at(entered.from_m), LOOK_M)
+        s_m = np.arange(before_m, path.length_m, 0.25)
+        near = [ahead.nearest(path.at(float(s)).x_m, path.at(float(s)).y_m) for s in s_m]
+        best = int(np.argmin([place.distance_m for place in near]))
+        return Meeting(path, float(s_m[best]), self.place.trigger_s_m + entered.from_m + near[best].s_m)
+
+    def _drives(self, lane: Lane, names: Sequence[str], index: int) -> Behaviour:
+        """The first turns left in front of whoever goes straight on."""
+        if index > 0:
+            return super()._drives(lane, names, index)
+        meeting, speed_mps = self.meeting, self.number("speed")
+        low, high = NARROWLY
+        return InTurn(
+            ReachAtEgosArrival(
+                names[0],
+                meeting.path,
+                meeting.meet_s_m,
+                meeting.ego_s_m,
+                low_mps=low * TURNS_MPS,
+                high_mps=high * speed_mps,
+                settled_s=SETTLED_S,
+                accelerate_mps2=SETS_OFF_MPS2,
+            ),
+            DriveAlong(names[0], meeting.path, TURNS_MPS, at_end="vanish"),
+            name=f"{names[0]} turns left",
+        )

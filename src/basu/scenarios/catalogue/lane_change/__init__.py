@@ -1,0 +1,1 @@
+"""Others who change into the ego's lane, or drift into it."""

@@ -1,0 +1,1 @@
+"""Others who come towards the ego in its own lane."""
