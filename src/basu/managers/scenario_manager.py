@@ -1,11 +1,11 @@
 """The scenarios of a run: armed when the ego comes near, ticked once a frame, judged afterwards, gone without trace.
 
-A run may be a scenario's own (it ends with it), or meet several on its route.
+A run may be a scenario's own (it begins and ends with it), or meet several on its route: then the cast of each comes
+into the world when the ego is near, and the scenario begins when the ego reaches its trigger point.
 """
 
 from __future__ import annotations
 
-import traceback
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
@@ -13,34 +13,36 @@ from typing import TYPE_CHECKING
 import carla
 from py_trees.common import Status as NodeStatus
 
-from basu.errors import BasuError, ScenarioError, SimulatorError
+from basu.errors import ScenarioError
+from basu.managers.asked import asked
 from basu.managers.base_manager import BaseManager
+from basu.managers.laid_out import is_behind, lay_out
+from basu.managers.stage.cast import bring, take_away
 from basu.managers.stage.live_stage import LiveStage
+from basu.managers.stage.shared_world import SharedWorld
 from basu.outcome import Outcome, Status
-from basu.routing.progress import Progress, advance
 from basu.scenarios.criteria.criterion import Played
-from basu.scenarios.place import Place
 from basu.scenarios.stage import Controls
-from basu.scenarios.tree import compose, set_on
+from basu.scenarios.tree import set_on
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
-    from typing import TypeVar
+    from collections.abc import Sequence
 
     from basu.history import History
     from basu.managers.base_manager import Frame, Run
+    from basu.managers.laid_out import LaidOut
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
     from basu.routing import Route
-    from basu.scenarios.config.model import Case
     from basu.scenarios.criteria.criterion import Thing
     from basu.scenarios.library import Playable
     from basu.scenarios.scenario import Scenario
+    from basu.scenarios.stage import ActorSpec
     from basu.scenarios.tree import Composed
 
-    T = TypeVar("T")
-
-ARM_M = 100.0  # before its trigger point along the route, a scenario's actors come into the world
+NEAR_M = 100.0  # before its trigger point along the route, a scenario's actors come into the world
+LAST_CALL_M = 30.0  # until then, who finds no room, as others are on the road, is brought a moment later
+AGAIN_TICKS = 10  # from one attempt to the next
 AFTERMATH_S = 1.0  # a scenario's own run goes on for so long after the ego has touched somebody
 
 
@@ -52,10 +54,13 @@ class Playing:
     scenario: Scenario
     composed: Composed
     stage: LiveStage
-    armed_tick: int | None = None
+    cast: Sequence[ActorSpec] | None = None  # None: nobody is in the world yet
+    armed_tick: int | None = None  # when it began
     touched_tick: int | None = None
     phase_ticks: dict[str, int] = field(default_factory=dict)  # when each phase began
     over: bool = False
+    over_tick: int | None = None  # when it came to an end before its run did
+    outcome: Outcome | None = None  # of that end
     error: ScenarioError | None = None  # why it could not be played to its end
     things: tuple[Thing, ...] = ()
 
@@ -83,6 +88,7 @@ class ScenarioManager(BaseManager):
     def __init__(self, planned: Sequence[Playable], *, own: bool) -> None:
         """``own``: the run is the (one) scenario's, begins armed and ends with it."""
         self._planned, self._own = tuple(planned), own
+        self._laid: list[LaidOut] = []
         self.playing: list[Playing] = []
         self.outcome: Outcome | None = None
 
@@ -97,33 +103,66 @@ class ScenarioManager(BaseManager):
             ScenarioError: one cannot be laid out.
         """
         self._step_s = run.step_s
-        for planned in self._planned:
-            place = place_of(planned.case, run.route, run.carla_map)
-            who = planned.case.name
-            scenario = asked(who, partial(planned.scenario, place, planned.values))
-            composed = asked(who, partial(compose, scenario))
-            stage = LiveStage(run, self._routes, self._metrics, who)
-            self.playing.append(Playing(planned, scenario, composed, stage))
+        self._shared = SharedWorld(run.world)
+        self.lay(run.route, run.carla_map)
+        for laid in self._laid:
+            stage = LiveStage(run, self._routes, self._metrics, laid.planned.case.name, self._shared, laid.way)
+            self.playing.append(Playing(laid.planned, laid.scenario, laid.composed, stage))
         if self._own:
             for playing in self.playing:
-                self._arm(playing, 0)
+                self._bring(playing)
+                self._begin(playing, 0)
+
+    def lay(self, route: Route, carla_map: carla.Map) -> None:
+        """Lay every scenario on the route, once; nothing in the world is needed for that.
+
+        Raises:
+            ScenarioError: one has no place there.
+        """
+        if len(self._laid) < len(self._planned):
+            self._laid = [lay_out(planned, route, carla_map, own=self._own) for planned in self._planned]
+
+    def try_out(self, world: carla.World) -> None:
+        """Bring every cast, and take it away at once: what has no place in this world is known before the run begins.
+
+        Raises:
+            ScenarioError: somebody cannot be brought.
+        """
+        for laid in self._laid:
+            who = laid.planned.case.name
+            take_away(bring(world, asked(who, laid.scenario.actors), who))
 
     def tick(self, frame: Frame) -> None:
-        """Play a frame of every scenario that is armed."""
+        """Play a frame of every scenario that has begun."""
+        self._shared.keep_up()
         for playing in self.playing:
             if playing.over:
                 continue
             try:
-                if playing.armed_tick is None:
-                    if self._routes.progress.s_m < playing.scenario.place.trigger_s_m - ARM_M:
-                        continue
-                    self._arm(playing, frame.tick)
-                self._play(playing, frame)
+                if playing.armed_tick is not None or self._begins(playing, frame.tick):
+                    self._play(playing, frame)
             except ScenarioError as error:
                 playing.error = error
-                self._end(playing)
+                self._end(playing, frame.tick)
                 if self._own:
                     raise
+
+    def _begins(self, playing: Playing, tick: int) -> bool:
+        """Bring the cast of a scenario that the ego comes near; whether it is at the trigger point."""
+        place = playing.scenario.place
+        ahead_m = place.trigger_s_m - self._routes.progress.s_m
+        if ahead_m > NEAR_M:
+            return False
+        if playing.cast is None and (ahead_m <= LAST_CALL_M or tick % AGAIN_TICKS == 0):
+            try:
+                self._bring(playing)
+            except ScenarioError:
+                if ahead_m <= LAST_CALL_M:
+                    raise
+        if ahead_m > 0.0:
+            return False
+        self._begin(playing, tick)
+        return True
 
     def through(self, control: carla.VehicleControl) -> carla.VehicleControl:
         """What the ego is told after every disturbance; a control of its own where there is one."""
@@ -147,16 +186,26 @@ class ScenarioManager(BaseManager):
         """Clear every stage."""
         for playing in self.playing:
             if not playing.over:
-                self._end(playing)
+                self._end(playing, None)
 
-    def _arm(self, playing: Playing, tick: int) -> None:
-        """Bring the cast, and set the tree on its stage."""
+    def _bring(self, playing: Playing) -> None:
+        """Bring the cast; on a route, those whom the ego would come upon from behind come when it has passed."""
+        cast = asked(playing.planned.case.name, playing.scenario.actors)
+        playing.stage.enter(
+            cast if self._own else [spec for spec in cast if not is_behind(playing.scenario.place, spec)]
+        )
+        playing.cast = cast
+
+    def _begin(self, playing: Playing, tick: int) -> None:
+        """Set the tree on its stage, and let the rest of the cast come."""
+        cast, stage, who = playing.cast or (), playing.stage, playing.planned.case.name
         playing.armed_tick = tick
-        playing.stage.begin(tick)
-        who = playing.planned.case.name
-        playing.stage.enter(asked(who, playing.scenario.actors))
-        playing.things = playing.stage.things()
-        asked(who, partial(set_on, playing.composed, playing.stage))
+        stage.begin(tick)
+        if not self._own:
+            stage.enter([spec for spec in cast if is_behind(playing.scenario.place, spec)])
+        stage.set_off(cast)
+        playing.things = stage.things()
+        asked(who, partial(set_on, playing.composed, stage))
 
     def _play(self, playing: Playing, frame: Frame) -> None:
         """One frame of one scenario."""
@@ -171,7 +220,8 @@ class ScenarioManager(BaseManager):
             playing.touched_tick = frame.tick
         end = self._judged(playing, frame.tick)
         if end is not None:
-            self._end(playing)
+            playing.outcome = end
+            self._end(playing, frame.tick)
             if self._own:
                 self.outcome = end
 
@@ -189,6 +239,8 @@ class ScenarioManager(BaseManager):
         if playing.touched_tick is not None and (tick - playing.touched_tick) * self._step_s >= AFTERMATH_S:
             touched = ", ".join(sorted(playing.stage.ego_contacts))
             return Outcome(Status.SCENARIO_ENDED, f"ended {AFTERMATH_S:g} s after the ego touched {touched}")
+        if not (self._own or playing.triggered) and stage_left_m(playing.stage) <= 0.0:
+            return Outcome(Status.SCENARIO_ENDED, "the ego went by")
         if self._since_s(playing, tick) >= playing.scenario.timeout_s:
             return Outcome(Status.SCENARIO_TIMEOUT, f"not over after {playing.scenario.timeout_s:g} s")
         return None
@@ -197,48 +249,12 @@ class ScenarioManager(BaseManager):
         """Since it was armed."""
         return (tick - (playing.armed_tick or 0)) * self._step_s
 
-    def _end(self, playing: Playing) -> None:
+    def _end(self, playing: Playing, tick: int | None) -> None:
         """Leave the world clean."""
-        playing.over = True
+        playing.over, playing.over_tick = True, tick
         playing.stage.clear()
 
 
-def place_of(case: Case, route: Route, carla_map: carla.Map) -> Place:
-    """A case laid on the ego's route: its trigger point is the nearest place of it."""
-    s_m = 0.0
-    if case.trigger is not None:
-        s_m = nearest_s_m(route, case.trigger.x_m, case.trigger.y_m)
-    return Place(route=route, trigger_s_m=s_m, carla_map=carla_map, others=case.others)
-
-
-def nearest_s_m(route: Route, x_m: float, y_m: float) -> float:
-    """How far along a route its point nearest to a place is."""
-    away2 = (route.points_m[:, 0] - x_m) ** 2 + (route.points_m[:, 1] - y_m) ** 2
-    return float(advance(route, Progress(float(route.s_m[int(away2.argmin())]), 0.0, 0.0), x_m, y_m).s_m)
-
-
-def asked(who: str, call: Callable[[], T]) -> T:
-    """One call of a scenario's code; what goes wrong in it is the scenario's.
-
-    Raises:
-        ScenarioError: it raised.
-        SimulatorError: the simulator did not answer it.
-    """
-    try:
-        return call()
-    except BasuError:
-        raise
-    except RuntimeError as error:
-        if "time-out" in str(error):
-            raise SimulatorError(f"the simulator failed in the scenario {who}: {error}") from error
-        raise _scenarios(who, error) from error
-    except Exception as error:
-        raise _scenarios(who, error) from error
-
-
-def _scenarios(who: str, error: Exception) -> ScenarioError:
-    """What went wrong in a scenario's code, with its place."""
-    where = traceback.extract_tb(error.__traceback__)[-1]
-    return ScenarioError(
-        f"the scenario {who} raised {type(error).__name__}: {error} (line {where.lineno} of {where.filename})"
-    )
+def stage_left_m(stage: LiveStage) -> float:
+    """How far the ego has to go to the end of a scenario's stretch of the route."""
+    return stage.route.length_m - stage.ego_s_m

@@ -13,10 +13,11 @@ import carla
 from basu.drive import drive
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.history.files import write_history
+from basu.managers.asked import asked
 from basu.managers.base_manager import Run
-from basu.managers.scenario_manager import ScenarioManager, asked
+from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
-from basu.managers.stage.surroundings import changed
+from basu.managers.stage.weather import changed
 from basu.managers.traffic_manager import TrafficManager
 from basu.metrics.score import Scoring
 from basu.options import NOBODY, STEP_S

@@ -23,22 +23,26 @@ if TYPE_CHECKING:
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
     from basu.managers.stage.cast import Member
+    from basu.managers.stage.shared_world import SharedWorld
+    from basu.routing import Route
     from basu.scenarios.stage import ActorSpec, Controls, Door, Pose
 
 
 class LiveStage:
     """See ``basu.scenarios.stage.Stage``. ``look`` begins a frame, ``carry_out`` ends it, ``clear`` ends all."""
 
-    def __init__(self, run: Run, routes: RoutesManager, metrics: MetricsManager, who: str) -> None:
-        """Set it in a run; ``who`` is the case, for sentences."""
-        self.step_s, self.route, self.carla_map = run.step_s, run.route, run.carla_map
+    def __init__(
+        self, run: Run, routes: RoutesManager, metrics: MetricsManager, who: str, shared: SharedWorld, route: Route
+    ) -> None:
+        """Set it in a run; ``who`` is the case, for sentences, ``route`` the part of the run's that is its own."""
+        self.step_s, self.route, self.carla_map = run.step_s, route, run.carla_map
         self.rng = random.Random(f"{run.seed} {who}")  # noqa: S311 - chance that can be had again
         self._run, self._routes, self._metrics, self._who = run, routes, metrics, who
         self._cast: dict[str, Member] = {EGO: member_of(run.vehicle, EGO)}
         self._roles: dict[int, str] = {}  # of everybody who was ever in the cast
         self._types: dict[int, str] = {}
         self._puppets = Puppets(run.client)
-        self._surroundings = Surroundings(run.world)
+        self._surroundings = Surroundings(run.world, shared, who)
         self._changes: dict[str, Callable[[Controls], Controls]] = {}
         self._bodies: dict[str, Body] = {}
         self._frame: Frame | None = None
@@ -56,7 +60,7 @@ class LiveStage:
         return self._types
 
     def enter(self, specs: Sequence[ActorSpec]) -> None:
-        """Bring the cast into the world.
+        """Bring a part of the cast into the world; nobody moves yet, and vehicles are held by their brakes.
 
         Raises:
             ScenarioError: somebody cannot be brought.
@@ -64,11 +68,19 @@ class LiveStage:
         for member, spec in zip(bring(self._run.world, specs, self._who), specs, strict=True):
             self._cast[spec.name] = member
             self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
-            yaw_rad, speed_mps = spec.pose.yaw_rad, spec.speed_mps
-            if member.kind == "vehicle":  # one that stands is held by its brakes
-                self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
-            elif member.kind == "walker" and speed_mps:
-                self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
+            if member.kind == "vehicle":
+                self.move(spec.name, 0.0, 0.0, 0.0)
+        self._puppets.carry_out()
+
+    def set_off(self, specs: Sequence[ActorSpec]) -> None:
+        """Let those who come moving move."""
+        for spec in specs:
+            if spec.speed_mps:
+                yaw_rad, speed_mps, kind = spec.pose.yaw_rad, spec.speed_mps, self._member(spec.name).kind
+                if kind == "vehicle":
+                    self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
+                elif kind == "walker":
+                    self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
         self._puppets.carry_out()
 
     def begin(self, tick: int) -> None:

@@ -1,0 +1,105 @@
+"""Weather and lights as the scenarios of one run ask for them, several at a time.
+
+What a scenario asks for lies over what those before it asked for, and goes with it: whoever leaves first takes nothing
+from the others, and whoever leaves last leaves the world as it was.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, NamedTuple
+
+import carla
+
+from basu.errors import ScenarioError
+from basu.managers.stage.weather import changed
+from basu.routing.route_weather import WEATHER_FIELDS
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+LIGHT_STATES = {
+    "Red": carla.TrafficLightState.Red,
+    "Yellow": carla.TrafficLightState.Yellow,
+    "Green": carla.TrafficLightState.Green,
+    "Off": carla.TrafficLightState.Off,
+}
+
+
+class Wish(NamedTuple):
+    """A light that is to show a state."""
+
+    light: carla.TrafficLight
+    state: carla.TrafficLightState
+
+
+class SharedWorld:
+    """One for a run; its scenarios are told apart by their names."""
+
+    def __init__(self, world: carla.World) -> None:
+        self._world = world
+        self._weather: dict[str, dict[str, float]] = {}  # what each asks for, in the order of asking
+        self._beneath: carla.WeatherParameters | None = None  # the weather without any scenario
+        self._shown: carla.WeatherParameters | None = None  # what was set last
+        self._lights: dict[str, dict[str, Wish]] = {}  # likewise, by the OpenDRIVE signal's id
+
+    def ask_weather(self, who: str, values: Mapping[str, float]) -> None:
+        """Change fields of the weather.
+
+        Raises:
+            ScenarioError: weather has no such field.
+        """
+        changed(carla.WeatherParameters(), values)
+        if not self._weather:
+            self._beneath = self._world.get_weather()
+        self._weather.setdefault(who, {}).update(values)
+        self._show_weather()
+
+    def keep_up(self) -> None:
+        """Where somebody else has set the weather meanwhile, as a route's own does, lay the scenarios' over it."""
+        if self._weather:
+            now = self._world.get_weather()
+            if now != self._shown:
+                self._beneath = now
+                self._show_weather()
+
+    def ask_light(self, who: str, landmark_id: str, state: str) -> None:
+        """Let a traffic light show a state; all lights stand still until they are given back, as CARLA's freeze has it.
+
+        Raises:
+            ScenarioError: there is no such light or state.
+        """
+        if state not in LIGHT_STATES:
+            raise ScenarioError(f"a traffic light cannot show '{state}'; it shows {', '.join(LIGHT_STATES)}")
+        light = self._world.get_traffic_light_from_opendrive_id(landmark_id)
+        if light is None:
+            raise ScenarioError(f"the map has no traffic light whose OpenDRIVE signal is '{landmark_id}'")
+        if not self._lights:
+            light.freeze(True)
+        wishes = self._lights.setdefault(who, {})
+        wishes[landmark_id] = Wish(light, LIGHT_STATES[state])
+        light.set_state(LIGHT_STATES[state])
+
+    def give_back(self, who: str) -> None:
+        """Take away what one of them asked for; where the simulator is gone, so is all this."""
+        weather, lights = self._weather.pop(who, None), self._lights.pop(who, {})
+        with contextlib.suppress(RuntimeError):
+            if weather is not None:
+                self._show_weather()
+            for landmark_id, wish in lights.items():
+                others = [wishes[landmark_id] for wishes in self._lights.values() if landmark_id in wishes]
+                if others:
+                    wish.light.set_state(others[-1].state)
+                else:
+                    wish.light.reset_group()
+            if lights and not self._lights:
+                next(iter(lights.values())).light.freeze(False)
+
+    def _show_weather(self) -> None:
+        """Set the weather beneath with everybody's changes."""
+        assert self._beneath is not None, "somebody asks, or has asked"
+        weather = carla.WeatherParameters(**{name: getattr(self._beneath, name) for name in WEATHER_FIELDS})
+        for values in self._weather.values():
+            changed(weather, values)
+        self._world.set_weather(weather)
+        self._shown = weather
