@@ -238,9 +238,13 @@ def files_named(files: Iterable[str | Path]) -> tuple[Path, ...]:
 
 
 def _read(case: Case, scenario: type[Scenario]) -> Playable:
-    """A case with the values that its class reads; those that only ScenarioRunner's class reads are left alone."""
-    known = {parameter.name for parameter in scenario.parameters}
-    unread = tuple(name for name in case.values if name not in known and THEIRS.fullmatch(name))
+    """A case with the values that its class reads.
+
+    Those that only ScenarioRunner's class reads are left alone; under an alias also those of a name that ours has too,
+    such as a speed in km/h.
+    """
+    ours = {parameter.name for parameter in scenario.parameters} if case.type == scenario.__name__ else set()
+    unread = tuple(name for name in case.values if name not in ours and THEIRS.fullmatch(name))
     given = {name: text for name, text in case.values.items() if name not in unread}
     return Playable(case, scenario, read_values(scenario.parameters, given), unread)
 

@@ -145,6 +145,18 @@ def test_an_alias_reads_scenario_runners_file_and_leaves_alone_what_only_its_cla
     )
 
 
+def test_a_speed_of_scenario_runners_class_is_not_taken_for_one_of_ours(tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(
+        CLASSES.replace('Number("ahead", 40, 20, 80, "m"', 'Number("speed", 4, 2, 8, "m/s"')
+    )
+    inside = '<speed value="60"/>'
+    (tmp_path / "mine.xml").write_text(cases_xml(("a_1", "TheirTree", inside), ("a_2", "FallingTree", inside)))
+    (playable,) = cases_of("a_1", [tmp_path / "mine.xml"])
+    assert (playable.values["speed"], playable.unread) == (4.0, ("speed",))
+    with pytest.raises(ScenarioError, match="'speed' is '60'; it must be a number from 2 to 8 m/s"):
+        cases_of("a_2", [tmp_path / "mine.xml"])
+
+
 @pytest.mark.parametrize(
     ("case", "sentence"),
     [
