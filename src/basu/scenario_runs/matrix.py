@@ -65,6 +65,6 @@ def _design(options: ScenarioOptions) -> dict[str, Any] | None:
         return None
     vary = {"vary": list(options.vary)}
     if isinstance(design, Sweep):
-        return {"n": design.count, "seed": design.seed, **vary}
+        return {"n": design.samples, "seed": design.seed, **vary}
     assert isinstance(design, Grid), "there are two designs"
     return {"grid": design.steps, **vary}
