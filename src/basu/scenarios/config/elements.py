@@ -11,7 +11,7 @@ from lxml import etree
 from basu.errors import ScenarioError
 from basu.routing.route_weather import WEATHER_FIELDS
 from basu.scenarios.config.model import GivenActor
-from basu.scenarios.stage import Pose
+from basu.scenarios.stage import EGO, Pose
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
 EGO_MODEL = "vehicle.easymile.ez10"  # whom an <ego_vehicle> without `model` means: the shuttle
 OTHER_MODEL = "vehicle.*"  # likewise, as in ScenarioRunner
-ACTOR_ATTRIBUTES = ("x", "y", "z", "yaw", "model", "rolename", "speed", "color")
+EGO_ATTRIBUTES = ("x", "y", "z", "yaw", "model", "rolename")
+OTHER_ATTRIBUTES = (*EGO_ATTRIBUTES, "speed", "color")
 POINT_ATTRIBUTES = ("x", "y", "z", "yaw")
 
 
@@ -102,17 +103,29 @@ def pose_of(element: etree._Element, path: Path, *, yaw: bool) -> Pose:
     )
 
 
-def actor_of(element: etree._Element, role: str, model: str, path: Path) -> GivenActor:
-    """An ``<ego_vehicle>`` or ``<other_actor>``; ``role`` and ``model`` are what it is where it does not say.
+def ego_of(element: etree._Element, path: Path) -> GivenActor:
+    """An ``<ego_vehicle>``.
 
     Raises:
         ScenarioError: an attribute is missing, no number, or none that has an effect.
     """
-    only(element, ACTOR_ATTRIBUTES, path)
+    only(element, EGO_ATTRIBUTES, path)
+    if element.get("rolename", EGO) != EGO:
+        raise complaint(element, path, f"has rolename='{element.get('rolename')}'; who is under test is '{EGO}' here")
+    return GivenActor(role=EGO, model=element.get("model", EGO_MODEL), pose=pose_of(element, path, yaw=True))
+
+
+def other_of(element: etree._Element, path: Path) -> GivenActor:
+    """An ``<other_actor>``.
+
+    Raises:
+        ScenarioError: likewise.
+    """
+    only(element, OTHER_ATTRIBUTES, path)
     color = element.get("color")
     return GivenActor(
-        role=element.get("rolename", role),
-        model=element.get("model", model),
+        role=element.get("rolename", "scenario"),
+        model=element.get("model", OTHER_MODEL),
         pose=pose_of(element, path, yaw=True),
         attributes=() if color is None else (("color", color),),
         speed_mps=number_of(element, "speed", path, 0.0),

@@ -7,11 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from basu.scenarios.config.elements import (
-    OTHER_MODEL,
     POINT_ATTRIBUTES,
-    actor_of,
     complaint,
     only,
+    other_of,
     parts_of,
     pose_of,
     text_of,
@@ -75,6 +74,6 @@ def _scenario(element: etree._Element, path: Path) -> ScenarioOnRoute:
         type=kind,
         trigger=pose_of(triggers[0], path, yaw=True),
         values=values_of([part for part in parts if part.tag not in {"trigger_point", "other_actor"}], path),
-        others=tuple(actor_of(part, "scenario", OTHER_MODEL, path) for part in parts if part.tag == "other_actor"),
+        others=tuple(other_of(part, path) for part in parts if part.tag == "other_actor"),
         source=where(element, path),
     )

@@ -28,12 +28,11 @@ from lxml import etree
 
 from basu.errors import ScenarioError
 from basu.scenarios.config.elements import (
-    EGO_MODEL,
-    OTHER_MODEL,
     POINT_ATTRIBUTES,
-    actor_of,
     complaint,
+    ego_of,
     only,
+    other_of,
     parts_of,
     pose_of,
     text_of,
@@ -120,7 +119,7 @@ def _case(element: etree._Element, path: Path) -> Case:
         raise complaint(
             element, path, f"'{name}' has no <ego_vehicle x y z yaw model/>; it says where the drive begins"
         )
-    driver = actor_of(ego, EGO, EGO_MODEL, path)
+    driver = ego_of(ego, path)
     if trigger is not None:
         only(trigger, POINT_ATTRIBUTES, path)
     if place is not None:
@@ -154,7 +153,7 @@ def _at_most_one(elements: list[etree._Element], path: Path) -> etree._Element |
 
 def _others(parts: list[etree._Element], path: Path) -> tuple[GivenActor, ...]:
     """The ``<other_actor>`` elements in their order."""
-    return tuple(actor_of(part, "scenario", OTHER_MODEL, path) for part in parts if part.tag == "other_actor")
+    return tuple(other_of(part, path) for part in parts if part.tag == "other_actor")
 
 
 def _way(

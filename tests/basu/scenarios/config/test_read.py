@@ -109,6 +109,8 @@ def test_our_elements_say_where_it_is_where_it_goes_and_what_arms_it(tmp_path: P
         ('<ego_vehicle x="1" y="two" yaw="0"/>', "<ego_vehicle> has y='two', which is no number"),
         ('<ego_vehicle x="nan" y="2" yaw="0"/>', "has x='nan', which is no number"),
         ('<ego_vehicle x="1" y="2" yaw="0" modle="a"/>', "has the attribute 'modle', .* did you mean 'model'"),
+        ('<ego_vehicle x="1" y="2" yaw="0" speed="4"/>', "has the attribute 'speed', which is not read here"),
+        ('<ego_vehicle x="1" y="2" yaw="0" rolename="hero2"/>', "rolename='hero2'; who is under test is 'hero' here"),
         (EGO + '<other_actor x="1" y="2" yaw="0" autopilot="true"/>', "has the attribute 'autopilot'"),
         (EGO + '\n<weather rain="4"/>', "line 3: <weather> has the attribute 'rain', .*it may have cloudiness"),
         (EGO + '<weather cloudines="4"/>', "did you mean 'cloudiness'"),
