@@ -35,6 +35,8 @@ class Action(Behaviour):
 
     def terminate(self, new_status: Status) -> None:
         """Leave, once: done, or broken off by others."""
+        if self.status == Status.RUNNING and new_status == Status.INVALID:
+            self.feedback_message = f"broken off after {self.stage.time_s:.1f} s"
         if self.status == Status.RUNNING or new_status == Status.SUCCESS:
             self.leave(broken_off=new_status == Status.INVALID)
 

@@ -46,3 +46,8 @@ class Trigger(Behaviour):
             return Status.RUNNING
         self.feedback_message = words
         return Status.SUCCESS
+
+    def terminate(self, new_status: Status) -> None:
+        """Say so if others have put an end to the waiting."""
+        if self.status == Status.RUNNING and new_status == Status.INVALID:
+            self.feedback_message = f"broken off after {self.stage.time_s:.1f} s"

@@ -1,0 +1,101 @@
+"""A tree as plain values, for documents and pictures: the behaviour's phases beside the criteria, as in figure 4.4."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, TypedDict
+
+from py_trees.common import Status
+from py_trees.composites import Parallel, Selector
+from py_trees.composites import Sequence as Steps
+
+from basu.scenarios.triggers import Trigger
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from py_trees.behaviour import Behaviour
+
+    from basu.scenarios.criteria.criterion import Criterion, Judgement
+    from basu.scenarios.tree import Composed
+
+STATUS = {Status.SUCCESS: "success", Status.FAILURE: "failure", Status.RUNNING: "running"}
+
+
+class TreeNode(TypedDict):
+    """A node and all below it."""
+
+    name: str
+    kind: str  # sequence, parallel, selector, trigger, action, criterion
+    status: str  # waiting (never begun), running, success, failure, broken off, not judged
+    feedback: str  # in words, with figures; "" where there are none
+    children: list[TreeNode]
+
+
+def tree_of(composed: Composed, judgements: Sequence[Judgement] = (), criteria: Sequence[Criterion] = ()) -> TreeNode:
+    """The tree as it was left, with what the criteria said, or before a run with what they will be asked.
+
+    Without either, there is no branch of criteria.
+    """
+    root = composed.root.root
+    behaviour = node_of(root)
+    behaviour["name"] = "behaviour"
+    leaves = [_judged(judgement) for judgement in judgements] or [
+        TreeNode(name=criterion.name, kind="criterion", status="waiting", feedback="", children=[])
+        for criterion in criteria
+    ]
+    branches = [behaviour]
+    if leaves:
+        branches.append(
+            TreeNode(name="criteria", kind="parallel", status=_of_all(judgements), feedback="", children=leaves)
+        )
+    return TreeNode(name=root.name, kind="parallel", status=behaviour["status"], feedback="", children=branches)
+
+
+def node_of(behaviour: Behaviour) -> TreeNode:
+    """A behaviour and all below it."""
+    feedback = behaviour.feedback_message
+    broken_off = behaviour.status == Status.INVALID and bool(feedback)
+    return TreeNode(
+        name=behaviour.name,
+        kind=_kind(behaviour),
+        status="broken off" if broken_off else STATUS.get(behaviour.status, "waiting"),
+        feedback=feedback,
+        children=[node_of(child) for child in behaviour.children],
+    )
+
+
+def walk(tree: TreeNode, depth: int = 0) -> Iterator[tuple[int, TreeNode]]:
+    """Every node with its depth, from above."""
+    yield depth, tree
+    yield from itertools.chain.from_iterable(walk(child, depth + 1) for child in tree["children"])
+
+
+def _kind(behaviour: Behaviour) -> str:
+    """What a behaviour is, in a word."""
+    for base, word in ((Steps, "sequence"), (Parallel, "parallel"), (Selector, "selector"), (Trigger, "trigger")):
+        if isinstance(behaviour, base):
+            return word
+    return "action"
+
+
+def _judged(judgement: Judgement) -> TreeNode:
+    """A criterion with what it said."""
+    measured = "" if judgement.measured is None else f"{judgement.measured:.3g} {judgement.unit}".rstrip()
+    held = f"{measured} ({judgement.limit})" if measured and judgement.limit else measured or judgement.limit
+    words = ": ".join(part for part in (held, judgement.sentence) if part)
+    return TreeNode(
+        name=judgement.criterion if judgement.deciding else f"{judgement.criterion} (told only)",
+        kind="criterion",
+        status="not judged" if judgement.passed is None else "success" if judgement.passed else "failure",
+        feedback=words,
+        children=[],
+    )
+
+
+def _of_all(judgements: Sequence[Judgement]) -> str:
+    """What those that decide said together."""
+    said = [judgement.passed for judgement in judgements if judgement.deciding]
+    if False in said:
+        return "failure"
+    return "success" if True in said else "not judged" if judgements else "waiting"
