@@ -41,7 +41,7 @@ class Excursion(NamedTuple):
 class OutOfLane(Scenario):
     """The base: somebody comes out of its lane from ``out_m`` to ``back_m``, where the ego would meet it.
 
-    Each has ``kind``, ``speed`` and ``meets``; from the moment it leaves its lane it is driven on, whatever the ego does.
+    Each has ``kind``, ``speed`` and ``meets``; it is driven on whatever the ego does once it leaves its lane.
     """
 
     group = Group.OPPOSITE_DIRECTION
