@@ -91,7 +91,8 @@ def _both(rule: Rule, within: Rule, study: Study) -> str:
 
 def _told_by(pair: Pair) -> str:
     """The map's two parameters, and how far they can be trusted."""
+    near = neighbours_of(pair.asked)
     return (
-        f"{pair.x.name} and {pair.y.name} together foretell {pair.right} of {pair.asked} verdicts from the "
-        f"{neighbours_of(pair.asked)} or so cases nearest to each; the commoner verdict alone, {pair.commoner}."
+        f"of all pairs, {pair.x.name} and {pair.y.name} foretell best: {pair.right} of {pair.asked} verdicts, each "
+        f"from the {near} or so other cases nearest in them (the commoner verdict alone, {pair.commoner})."
     )

@@ -46,14 +46,18 @@ class Rule(NamedTuple):
 
     def told(self) -> str:
         """Where it fails, as a condition."""
-        unit = f" {self.axis.unit}" if self.axis.unit else ""
+        unit = f" {self.axis.unit}" if self.axis.unit and not self.axis.options else ""
+        return f"{self.axis.name} {self.condition()}{unit}"
+
+    def condition(self) -> str:
+        """The same without name and unit."""
         if self.axis.options:
-            return f"{self.axis.name} is {' or '.join(self.options)}"
+            return f"is {' or '.join(self.options)}"
         if self.low == -math.inf:
-            return f"{self.axis.name} < {self.high:g}{unit}"
+            return f"< {self.high:g}"
         if self.high == math.inf:
-            return f"{self.axis.name} > {self.low:g}{unit}"
-        return f"{self.axis.name} is {self.low:g} to {self.high:g}{unit}"
+            return f"> {self.low:g}"
+        return f"is {self.low:g} to {self.high:g}"
 
 
 def best_rule(axis: Axis, failed: NDArray[np.bool_], among: NDArray[np.bool_] | None = None) -> Rule | None:
