@@ -204,13 +204,14 @@ class ScenarioManager(BaseManager):
         if not self._own:
             stage.enter([spec for spec in cast if is_behind(playing.scenario.place, spec)])
         stage.set_off(cast)
-        playing.things = stage.things()
         asked(who, partial(set_on, playing.composed, stage))
 
     def _play(self, playing: Playing, frame: Frame) -> None:
         """One frame of one scenario."""
         stage, root = playing.stage, playing.composed.root
         stage.look(frame)
+        if not playing.things and frame.tick > (playing.armed_tick or 0):  # who has just come is in no frame yet
+            playing.things = stage.things()
         asked(playing.planned.case.name, root.tick)
         for phase, node in playing.composed.phases.items():
             if phase not in playing.phase_ticks and node.status is not NodeStatus.INVALID:
