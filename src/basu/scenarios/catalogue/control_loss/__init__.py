@@ -1,0 +1,1 @@
+"""The ego loses control of itself: scenario I of the thesis, and a second."""

@@ -1,0 +1,112 @@
+"""Scenario IV of the thesis: the ego stops at a junction without lights and negotiates it with another vehicle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+from basu.scenarios.actions import DriveAlong, InTurn, Meanwhile, ReachAtEgosArrival
+from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, LeastDistance, NoCollision
+from basu.scenarios.nhtsa import Group
+from basu.scenarios.parameters import Choice, Number
+from basu.scenarios.paths import crossing, next_junction
+from basu.scenarios.scenario import Scenario
+from basu.scenarios.stage import ActorSpec
+from basu.scenarios.triggers import EgoArrives, EgoPasses
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from py_trees.behaviour import Behaviour
+
+    from basu.scenarios.criteria import Criterion
+    from basu.scenarios.parameters import Parameter
+    from basu.scenarios.paths import Crossing, JunctionAhead
+    from basu.scenarios.paths.crossings import Side
+
+OTHER = "other"
+SIDES: dict[str, Side] = {"left": "left", "right": "right"}
+MODELS: dict[str, str] = {
+    "car": "vehicle.nissan.micra",
+    "van": "vehicle.volkswagen.t2",
+    "motorcycle": "vehicle.kawasaki.ninja",
+}
+APPROACH_M, LEAVE_M = 70.0, 40.0  # of the other's way, before and behind the junction
+SLOWEST_MPS = 3.0  # of the other while it makes for the meeting
+DAYLIGHT: dict[str, float] = {"cloudiness": 10.0, "sun_altitude_angle": 60.0}
+
+
+class UnsignalizedIntersection(Scenario):
+    """At a junction without lights another vehicle makes for the point that the ego has to cross.
+
+    The other sets off when the ego reaches a first region before the junction and tries to meet it; when the ego
+    reaches a second one, the other accelerates and goes on. The ego has to stop at its sign, give way and pass. NHTSA
+    pre-crash scenario: straight crossing paths, or turning into a path, at a non-signalized junction.
+    """
+
+    group = Group.CROSSING_PATHS
+    aliases = ("NoSignalJunctionCrossing",)
+    parameters: ClassVar[Sequence[Parameter]] = (
+        Choice("side", tuple(SIDES), "from which the other comes"),
+        Choice("other", tuple(MODELS), "what it is"),
+        Number("first", 38.0, 20.0, 60.0, "m", "from the junction to the region in which the other sets off"),
+        Number("second", 6.0, 2.0, 15.0, "m", "from the junction to the region in which it accelerates"),
+        Number("waits", 28.0, 15.0, 60.0, "m", "from the meeting point to where the other waits"),
+        Number("speed", 8.0, 4.0, 12.0, "m/s", "of the other once it goes on"),
+        Number("offset", 0.3, -1.0, 1.5, "s", "after the ego it would be at the meeting point"),
+    )
+    weather: ClassVar[Mapping[str, float]] = DAYLIGHT
+    timeout_s = 60.0
+    needs_m = 60.0
+
+    @property
+    def junction(self) -> JunctionAhead:
+        """The next one on the ego's route."""
+        return next_junction(self.place)
+
+    @property
+    def crossing(self) -> Crossing:
+        """The other's way across it."""
+        return crossing(
+            self.place, SIDES[self.choice("side")], junction=self.junction, approach_m=APPROACH_M, leave_m=LEAVE_M
+        )
+
+    def actors(self) -> Sequence[ActorSpec]:
+        """The other, waiting on its own street."""
+        way = self.crossing
+        return [ActorSpec(OTHER, MODELS[self.choice("other")], way.path.at(way.meet_s_m - self.number("waits")))]
+
+    def trigger(self) -> Behaviour:
+        """The ego is in the first region."""
+        return EgoPasses(self._before(self.number("first")), "the first region")
+
+    def conflict(self) -> Behaviour:
+        """The other makes for the meeting, and accelerates once the ego is in the second region."""
+        way, speed_mps = self.crossing, self.number("speed")
+        meeting = ReachAtEgosArrival(
+            OTHER,
+            way.path,
+            way.meet_s_m,
+            way.ego_s_m,
+            self.number("offset"),
+            low_mps=SLOWEST_MPS,
+            high_mps=speed_mps,
+            settled_s=0.8,
+        )
+        second = EgoPasses(self._before(self.number("second")), "the second region")
+        return InTurn(
+            Meanwhile(second, meeting, name="the other makes for the meeting"),
+            DriveAlong(OTHER, way.path, speed_mps, to_m=way.meet_s_m + 5.0, at_end="go on"),
+            name="negotiation",
+        )
+
+    def resolution(self) -> Behaviour:
+        """The other drives away, and the ego passes the junction and arrives."""
+        return Meanwhile(EgoArrives(), DriveAlong(OTHER, self.crossing.path, self.number("speed"), at_end="vanish"))
+
+    def criteria(self) -> Sequence[Criterion]:
+        """Stop at the sign, touch nobody, and pass; one metre to who has the right of way is near already."""
+        return [HeedsStopSigns(), NoCollision(), LeastDistance(1.0, to=OTHER, while_moving=True), Arrives(), InTime()]
+
+    def _before(self, ahead_m: float) -> float:
+        """So far before the junction, along the ego's route."""
+        return self.place.trigger_s_m + self.junction.from_m - ahead_m

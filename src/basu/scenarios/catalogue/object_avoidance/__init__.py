@@ -1,0 +1,1 @@
+"""Something is in the way: scenario III of the thesis, static and dynamic."""

@@ -1,0 +1,1 @@
+"""Who is ahead is slower, brakes or stands: scenario II of the thesis, and more."""

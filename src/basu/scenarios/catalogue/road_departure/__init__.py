@@ -1,0 +1,1 @@
+"""The ego is on its way off the road."""
