@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
+from basu.scenarios.triggers.trigger import BROKEN_OFF
+
 if TYPE_CHECKING:
     from basu.scenarios.stage import Stage
 
@@ -36,7 +38,7 @@ class Action(Behaviour):
     def terminate(self, new_status: Status) -> None:
         """Leave, once: done, or broken off by others."""
         if self.status == Status.RUNNING and new_status == Status.INVALID:
-            self.feedback_message = f"broken off after {self.stage.time_s:.1f} s"
+            self.feedback_message = f"{BROKEN_OFF} after {self.stage.time_s:.1f} s"
         if self.status == Status.RUNNING or new_status == Status.SUCCESS:
             self.leave(broken_off=new_status == Status.INVALID)
 

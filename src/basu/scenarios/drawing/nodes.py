@@ -9,7 +9,7 @@ from py_trees.common import Status
 from py_trees.composites import Parallel, Selector
 from py_trees.composites import Sequence as Steps
 
-from basu.scenarios.triggers import Trigger
+from basu.scenarios.triggers.trigger import BROKEN_OFF, Trigger
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -49,20 +49,29 @@ def tree_of(composed: Composed, judgements: Sequence[Judgement] = (), criteria: 
         branches.append(
             TreeNode(name="criteria", kind="parallel", status=_of_all(judgements), feedback="", children=leaves)
         )
-    return TreeNode(name=root.name, kind="parallel", status=behaviour["status"], feedback="", children=branches)
+    status = "failure" if branches[-1]["status"] == "failure" else behaviour["status"]
+    return TreeNode(name=root.name, kind="parallel", status=status, feedback="", children=branches)
 
 
 def node_of(behaviour: Behaviour) -> TreeNode:
     """A behaviour and all below it."""
-    feedback = behaviour.feedback_message
-    broken_off = behaviour.status == Status.INVALID and bool(feedback)
+    children = [node_of(child) for child in behaviour.children]
     return TreeNode(
         name=behaviour.name,
         kind=_kind(behaviour),
-        status="broken off" if broken_off else STATUS.get(behaviour.status, "waiting"),
-        feedback=feedback,
-        children=[node_of(child) for child in behaviour.children],
+        status=STATUS.get(behaviour.status) or _status_before(behaviour, children),
+        feedback=behaviour.feedback_message,
+        children=children,
     )
+
+
+def _status_before(behaviour: Behaviour, children: Sequence[TreeNode]) -> str:
+    """What became of a node that py_trees has reset: who breaks off a composite forgets what its parts had done."""
+    if children:
+        return "waiting" if all(child["status"] == "waiting" for child in children) else "broken off"
+    if not behaviour.feedback_message:
+        return "waiting"
+    return "broken off" if behaviour.feedback_message.startswith(BROKEN_OFF) else "success"
 
 
 def walk(tree: TreeNode, depth: int = 0) -> Iterator[tuple[int, TreeNode]]:
@@ -81,9 +90,7 @@ def _kind(behaviour: Behaviour) -> str:
 
 def _judged(judgement: Judgement) -> TreeNode:
     """A criterion with what it said."""
-    measured = "" if judgement.measured is None else f"{judgement.measured:.3g} {judgement.unit}".rstrip()
-    held = f"{measured} ({judgement.limit})" if measured and judgement.limit else measured or judgement.limit
-    words = ": ".join(part for part in (held, judgement.sentence) if part)
+    words = f"{judgement.sentence} ({judgement.limit})" if judgement.limit else judgement.sentence
     return TreeNode(
         name=judgement.criterion if judgement.deciding else f"{judgement.criterion} (told only)",
         kind="criterion",

@@ -12,6 +12,8 @@ from basu.scenarios.stage import EGO
 if TYPE_CHECKING:
     from basu.scenarios.stage import Stage
 
+BROKEN_OFF = "broken off"  # the feedback of who was begins so
+
 
 def named(who: str) -> str:
     """What the tree calls somebody."""
@@ -50,4 +52,4 @@ class Trigger(Behaviour):
     def terminate(self, new_status: Status) -> None:
         """Say so if others have put an end to the waiting."""
         if self.status == Status.RUNNING and new_status == Status.INVALID:
-            self.feedback_message = f"broken off after {self.stage.time_s:.1f} s"
+            self.feedback_message = f"{BROKEN_OFF} after {self.stage.time_s:.1f} s"
