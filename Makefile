@@ -33,6 +33,7 @@ docs:  ## the generated pages
 	@scripts/setup dev
 	$(BIN)/python scripts/observe_client.py
 	$(BIN)/python scripts/make_supported.py
+	$(BIN)/python scripts/make_scenarios_page.py
 
 clean:
 	rm -rf .venv build src/*.egg-info .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache

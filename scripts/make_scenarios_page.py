@@ -1,0 +1,125 @@
+"""Fill the tables and files of docs/scenarios.md from the code: `python scripts/make_scenarios_page.py [--check]`.
+
+Each stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; what is outside is written by hand.
+"""
+
+from __future__ import annotations
+
+import argparse
+import inspect
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+from basu.scenarios import actions, criteria, paths, triggers
+from basu.scenarios.library import ALL, open_library, snake
+from basu.scenarios.listing import as_text, listed
+from basu.scenarios.nhtsa import TOLLS, Group
+
+ROOT = Path(__file__).parent.parent
+PAGE = ROOT / "docs" / "scenarios.md"
+EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
+BASES = {"Trigger", "Action", "Puppet", "Criterion", "Judgement", "Played", "Thing", "told_always", "margins_of"}
+
+
+def main() -> int:
+    """Write the page, or say that it is not what the code says."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
+    check = parser.parse_args().check
+    before = PAGE.read_text("utf-8")
+    after = filled(before)
+    if not check:
+        PAGE.write_text(after, "utf-8")
+    elif after != before:
+        print(
+            "docs/scenarios.md is not what the code says; run `python scripts/make_scenarios_page.py`", file=sys.stderr
+        )
+        return 1
+    return 0
+
+
+def filled(page: str) -> str:
+    """The page with every part made anew."""
+    for name, part in PARTS.items():
+        pattern = re.compile(f"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
+        if not pattern.search(page):
+            raise SystemExit(f"docs/scenarios.md has no <!-- {name} --> … <!-- /{name} -->")
+        text = part()
+        page = pattern.sub(lambda found, text=text: f"{found[1]}{text}\n{found[2]}", page)
+    return page
+
+
+def catalogue() -> str:
+    """What comes with BASU, by group."""
+    library = open_library()
+    cases = [playable.scenario for playable in library.choose([ALL])]
+    lines = ["| group | crashes a year | scenario | what happens | cases |", "|---|---|---|---|---|"]
+    for group in Group:
+        toll = TOLLS.get(group)
+        told = f"{toll.crashes:,}" if toll else ""
+        for scenario in (scenario for scenario in library.scenarios if scenario.group is group):
+            name = f"`{snake(scenario.__name__)}`"
+            lines.append(f"| {group.value} | {told} | {name} | {cell(scenario.title())} | {cases.count(scenario)} |")
+    return "\n".join(lines)
+
+
+def example_list() -> str:
+    """What `basu scenario list` says of the example."""
+    lines = as_text(listed(open_library([EXAMPLE]), [str(EXAMPLE)]), full=True)
+    return "\n".join(["```", *(line.rstrip() for line in lines), "```"])
+
+
+def members(module: ModuleType) -> Callable[[], str]:
+    """A table of what a package offers."""
+
+    def table() -> str:
+        lines = ["| write | it |", "|---|---|"]
+        for name in module.__all__:
+            if name not in BASES:
+                member = getattr(module, name)
+                lines.append(f"| `{cell(call(name, member))}` | {cell(first_paragraph(member))} |")
+        return "\n".join(lines)
+
+    return table
+
+
+def call(name: str, member: Callable[..., object]) -> str:
+    """How it is written: names and defaults, without types."""
+    signature = inspect.signature(member)
+    bare = [p.replace(annotation=inspect.Parameter.empty) for p in signature.parameters.values()]
+    plain = signature.replace(parameters=bare, return_annotation=inspect.Signature.empty)
+    named = re.sub(r"<(\w+\.\w+): [^>]*>", r"\1", str(plain))  # a member of an enum as one writes it
+    return name + re.sub(r"Limits\([^)]+\)", "Limits()", named)
+
+
+def first_paragraph(member: object) -> str:
+    """What its docstring begins with."""
+    return " ".join((inspect.getdoc(member) or "").split("\n\n")[0].split())
+
+
+def cell(text: str) -> str:
+    """Text that does not end its cell."""
+    return text.replace("|", "\\|").replace("``", "`")
+
+
+def file(path: Path, language: str) -> Callable[[], str]:
+    """A file as it stands."""
+    return lambda: f"```{language}\n{path.read_text('utf-8').strip()}\n```"
+
+
+PARTS: dict[str, Callable[[], str]] = {
+    "catalogue": catalogue,
+    "triggers": members(triggers),
+    "actions": members(actions),
+    "criteria": members(criteria),
+    "paths": members(paths),
+    "example class": file(EXAMPLE.with_suffix(".py"), "python"),
+    "example list": example_list,
+    "example case": file(EXAMPLE, "xml"),
+}
+
+if __name__ == "__main__":
+    raise SystemExit(main())
