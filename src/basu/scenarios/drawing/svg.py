@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement, tostring
 
 from basu.scenarios.drawing.text import COLOURS, KINDS, MARKS
 
@@ -72,7 +72,8 @@ def as_svg(tree: TreeNode) -> str:
     _add(svg, "rect", {**size, "fill": "#ffffff"})
     for each in boxes:
         _draw(svg, each, lefts)
-    indent(svg, " ")
+    for part in svg:
+        part.tail = "\n"
     return tostring(svg, encoding="unicode") + "\n"
 
 
