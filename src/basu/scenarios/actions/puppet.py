@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from basu.errors import ScenarioError
 from basu.scenarios.actions.action import Action
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, Pose
@@ -62,6 +63,8 @@ class Puppet(Action):
         self.near = self.path.nearest(body.x_m, body.y_m)
         self.s_m, self.speed_mps = self.near.s_m, max(0.0, body.forward_mps)
         self.touched = False
+        for name in self.minds:
+            self.stage.body(name)
 
     def act(self) -> str | None:
         """One frame: go on, or say why not."""
@@ -115,7 +118,11 @@ class Puppet(Action):
         """
         slowest_mps = math.inf
         for name in self.minds:
-            ahead = gap_ahead(self.path, self.s_m, body, self.stage.body(name))
+            try:
+                other = self.stage.body(name)
+            except ScenarioError:  # it has left the world: `begin` has seen that there was one
+                continue
+            ahead = gap_ahead(self.path, self.s_m, body, other)
             if ahead is None:
                 continue
             comfortable = 2.0 * math.sqrt(self.limits.accelerate_mps2 * self.limits.brake_mps2)
