@@ -78,6 +78,17 @@ def _add_routes(run: argparse.ArgumentParser) -> None:
     which = run.add_mutually_exclusive_group()
     which.add_argument("--route-id", metavar="ID", help="only this route of the file (default: all)")
     which.add_argument("--routes-subset", metavar="LIST", help="only these routes of the file, such as 0-3,7")
+    run.add_argument(
+        "--no-scenarios", action="store_true", help="leave away the scenarios that the route file has on the way"
+    )
+    run.add_argument(
+        "--scenarios",
+        action="append",
+        default=[],
+        type=Path,
+        metavar="FILE.py",
+        help="classes for the scenarios of the route file; may be given several times",
+    )
     run.add_argument("--repetitions", type=int, default=1, metavar="N", help="(default: %(default)s)")
     run.add_argument(
         "--seed",
@@ -152,6 +163,8 @@ def _options(arguments: argparse.Namespace) -> RunOptions:
         weather=arguments.weather,
         vehicle=arguments.vehicle,
         traffic=_traffic(arguments),
+        with_scenarios=not arguments.no_scenarios,
+        scenario_files=tuple(arguments.scenarios),
         record=arguments.record,
         viewer=arguments.viewer,
         output=arguments.output,

@@ -11,6 +11,9 @@ from typing import TYPE_CHECKING, NoReturn
 from basu.cli.scenario_list import add_list_options, list_scenarios
 from basu.errors import UserError
 from basu.outcome import EXIT_CODES
+from basu.utils.atomic import write_bytes
+
+FORMS = ("text", "ascii", "svg", "dot", "json")  # of a drawn tree
 
 if TYPE_CHECKING:
     from types import FrameType
@@ -29,6 +32,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     add_list_options(listing)
     listing.set_defaults(command=list_scenarios)
     _add_run(actions)
+    _add_draw(actions)
 
 
 def _add_run(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -52,17 +56,33 @@ def _add_run(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="give a parameter a value")
     run.add_argument("--seed", type=int, default=0, help="of the samples and of all that is random (default: 0)")
     run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: as the case says)")
-    run.add_argument("--host", help="a simulator that runs already (default: start one for each worker)")
-    run.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
-    run.add_argument(
-        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
-    )
+    _add_simulator(run)
     run.add_argument("--workers", type=int, metavar="N", help="simulators beside each other (default: one a processor)")
     run.add_argument("--step-limit", type=float, default=10.0, metavar="S", help="wall time for one step of the agent")
     run.add_argument("--output", type=Path, default=Path("scenario-runs"), metavar="DIR", help="(default: %(default)s)")
     run.add_argument("--junit", type=Path, metavar="FILE", help="write the JUnit XML there as well")
     run.add_argument("--debug", action="store_true", help="show the traceback of an agent that fails")
     run.set_defaults(command=run_command)
+
+
+def _add_draw(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """``basu scenario draw``."""
+    draw = actions.add_parser("draw", help="show a behaviour tree", description=draw_command.__doc__)
+    draw.add_argument("what", metavar="WHAT", help="a case's id, or a scenario: its first case")
+    add_files(draw)
+    draw.add_argument("--form", choices=FORMS, default="text", help="(default: %(default)s)")
+    draw.add_argument("--output", type=Path, metavar="FILE", help="write it there (default: show it)")
+    _add_simulator(draw)
+    draw.set_defaults(command=draw_command)
+
+
+def _add_simulator(parser: argparse.ArgumentParser) -> None:
+    """Where to play."""
+    parser.add_argument("--host", help="a simulator that runs already (default: start our own)")
+    parser.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
+    parser.add_argument(
+        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
+    )
 
 
 def add_files(parser: argparse.ArgumentParser) -> None:
@@ -133,6 +153,28 @@ def run_command(arguments: argparse.Namespace) -> int:
         return run_scenarios(options)
     finally:
         signal.signal(signal.SIGTERM, before)
+
+
+def draw_command(arguments: argparse.Namespace) -> int:
+    """Draw the behaviour tree of a case as it stands before a run, with its criteria."""
+    from basu.scenario_runs.draw import drawn  # noqa: PLC0415 - brings in the client
+    from basu.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - likewise
+
+    text = drawn(
+        ScenarioOptions(
+            what=(arguments.what,),
+            files=tuple(arguments.scenarios),
+            host=arguments.host,
+            port=arguments.port,
+            timeout_s=arguments.timeout,
+        ),
+        arguments.form,
+    )
+    if arguments.output is None:
+        print(text)
+    else:
+        write_bytes(arguments.output, f"{text}\n".encode())
+    return 0
 
 
 def _terminated(_number: int, _frame: FrameType | None) -> NoReturn:

@@ -86,7 +86,7 @@ def test_a_case_that_goes_well_leaves_its_verdict_and_a_clean_world(
         ("dozes", "SETUP_FAULT", 2, "never triggered"),
         ("leads", "SETUP_FAULT", 2, "leads speaks of 'nobody', and nobody there is called so; there are hero, walker"),
         ("elsewhere", "SETUP_FAULT", 2, "elsewhere is in Town05, which this simulator does not have (it has Linden)"),
-        ("indoors", "SETUP_FAULT", 2, "indoors puts 'walker' at (295.7, 136.3), which is inside a house; move it"),
+        ("indoors", "SETUP_FAULT", 2, "indoors puts 'walker' at (294.2, 136.1), which is inside a house; move it"),
     ],
 )
 def test_what_is_wrong_with_a_case_is_said_and_nobodys_failure(
