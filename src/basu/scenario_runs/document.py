@@ -44,6 +44,7 @@ def document_of(
         "fault": judged.fault.name.lower(),
         "status": judged.outcome.status.value,
         "message": judged.message,
+        "ended": judged.outcome.message,  # how the run ended, for judging it again
         "phases_s": {} if playing is None else {k: round(t * STEP_S, 3) for k, t in playing.phase_ticks.items()},
         "judgements": [judgement._asdict() for judgement in judged.judgements],
         "margins": judged.margins,

@@ -60,6 +60,13 @@ class Margin(Criterion):
         """(T,) which frames count."""
         return np.ones(len(with_whom.history.frames), dtype=np.bool_)
 
+    def touched(self, with_whom: Company, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """(K,) whether the ego's collision sensor named this party in this frame."""
+        others = with_whom.history.others[rows]
+        named = {(event.tick, event.other_id) for event in with_whom.history.collisions}
+        pairs = zip(others["tick"].tolist(), others["id"].tolist(), strict=True)
+        return np.array([pair in named for pair in pairs], dtype=np.bool_)
+
     def judge(self, played: Played) -> Judgement:
         """The frame and the party of the least figure."""
         limit = "" if self.at_least is None else f"at least {self.at_least:g} {self.unit}"
@@ -73,8 +80,10 @@ class Margin(Criterion):
         if len(rows) == 0:
             who = "nobody" if self.to is None else f"{self.to} never"
             return self.says(played, None, f"{who} was within {NEAR_M:g} m of the ego", unit=self.unit, limit=limit)
+        touched = self.touched(with_whom, rows)
+        if touched.any():
+            return self._touched(played, with_whom, int(rows[np.argmax(touched)]), limit)
         values, ticks = self.measure(with_whom, rows)
-        values = np.where(_in_contact(with_whom, rows), 0.0, values)
         return self._least(played, with_whom, rows, values, ticks, limit)
 
     def _least(
@@ -95,9 +104,9 @@ class Margin(Criterion):
             return self.says(
                 played, passed, f"it never was below {self.horizon:g} {self.unit}", unit=self.unit, limit=limit
             )
-        tick = int(row["tick"]) if least == 0.0 else int(ticks[nearest])
         theirs_mps = math.hypot(float(row["velocity_x_mps"]), float(row["velocity_y_mps"]))
-        key, t_s = int(row["id"]), float(played.history.frames["t_s"][tick])
+        key, tick = int(row["id"]), int(ticks[nearest])
+        t_s = float(played.history.frames["t_s"][tick])
         return self.says(
             played,
             None if self.at_least is None else least >= self.at_least,
@@ -110,10 +119,18 @@ class Margin(Criterion):
             other=with_whom.called(key),
         )
 
-
-def _in_contact(with_whom: Company, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """(K,) whether the ego's collision sensor named this party in this frame."""
-    others = with_whom.history.others[rows]
-    touched = {(event.tick, event.other_id) for event in with_whom.history.collisions}
-    pairs = zip(others["tick"].tolist(), others["id"].tolist(), strict=True)
-    return np.array([pair in touched for pair in pairs], dtype=np.bool_)
+    def _touched(self, played: Played, with_whom: Company, row: int, limit: str) -> Judgement:
+        """The judgement of a contact; the speed told is that of the frame before."""
+        key, tick = int(with_whom.history.others["id"][row]), int(with_whom.history.others["tick"][row])
+        before_mps = float(played.history.speed_mps()[max(0, tick - 1)])
+        t_s = float(played.history.frames["t_s"][tick])
+        return self.says(
+            played,
+            None if self.at_least is None else self.at_least <= 0.0,
+            f"{with_whom.told(key)} was touched at {t_s:.2f} s, the ego at {before_mps:.2f} m/s",
+            tick=tick,
+            measured=0.0,
+            unit=self.unit,
+            limit=limit,
+            other=with_whom.called(key),
+        )

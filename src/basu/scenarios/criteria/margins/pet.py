@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from basu.metrics.passengers.boxes import other_boxes, own_boxes
-from basu.metrics.passengers.near_misses import post_encroachment_s
+from basu.metrics.passengers.near_misses import CROSSING_RAD, post_encroachment_s
 from basu.scenarios.criteria.margins.margin import Margin
 
 if TYPE_CHECKING:
@@ -37,6 +38,14 @@ class Pet(Margin):
         own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
         found_s, later = post_encroachment_s(history, own, others, HORIZON_S)
         return found_s[rows], later[rows]
+
+    def touched(self, with_whom: Company, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Only who came across the ego's way: who is run into from behind had it ahead, not across."""
+        history = with_whom.history
+        others = history.others[rows]
+        off_rad = others["yaw_rad"] - history.frames["yaw_rad"][others["tick"]]
+        crossing = np.asarray(np.abs(np.sin(off_rad)) >= math.sin(CROSSING_RAD), dtype=np.bool_)
+        return super().touched(with_whom, rows) & crossing
 
     def words(self, value: float) -> str:
         """How long between the two."""

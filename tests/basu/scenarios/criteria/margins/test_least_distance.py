@@ -69,3 +69,9 @@ def test_alone_there_is_nothing_to_judge() -> None:
     said = LeastDistance(0.5, to="child").judge(played(driven(at(10.0, 4.0))))
     assert (said.passed, said.sentence) == (None, "child never was within 60 m of the ego")
     assert LeastDistance(0.5, since="end").judge(played(driven(at(10.0, 4.0)))).sentence == "'end' never began"
+
+
+def test_a_contact_is_told_with_the_speed_before_it() -> None:
+    history = ride(5.0, eastward(braked(10.0, 2.95, 100.0), 6.0), others=[CHILD])
+    said = LeastDistance().judge(played(history, collisions=(hit(60, "vehicle.audi.tt", 9),)))
+    assert said.sentence == "child (vehicle.audi.tt) was touched at 3.00 s, the ego at 10.00 m/s"

@@ -3,6 +3,7 @@
 import pytest
 
 from basu.scenarios.criteria import Pet
+from fakes.drives import hit
 from fakes.played import played
 from fakes.rides import eastward, moving, ride
 
@@ -29,3 +30,10 @@ def test_who_goes_before_the_ego_counts_as_well() -> None:
 def test_who_follows_in_the_lane_crosses_nobodys_way() -> None:
     case = played(ride(4.0, eastward(lambda _: 10.0, 5.0), others=[(9, moving(12.0, 0.0, 10.0, 0.0))]))
     assert Pet(1.0).judge(case).measured is None
+
+
+@pytest.mark.parametrize(("velocity", "measured"), [((0.0, -4.0), 0.0), ((4.0, 0.0), None)], ids=["across", "ahead"])
+def test_who_was_hit_across_the_way_was_no_time_apart(velocity: tuple[float, float], measured: float | None) -> None:
+    history = ride(1.0, eastward(lambda _: 10.0, 2.0), others=[(9, moving(24.0, 4.0, *velocity))])
+    said = Pet().judge(played(history, collisions=(hit(18, "vehicle.audi.tt", 9),)))
+    assert said.measured == measured
