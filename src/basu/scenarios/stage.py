@@ -110,6 +110,9 @@ class Stage(Protocol):
     def body(self, name: str) -> Body:
         """An actor of the scenario; ``EGO`` for the vehicle under test."""
 
+    def is_there(self, name: str) -> bool:
+        """Whether it is in the world: not any more once removed, and not yet where it comes later."""
+
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Let a vehicle have this velocity and turning until told otherwise; (0, 0, 0) holds it by its brakes."""
 

@@ -150,6 +150,10 @@ class LiveStage:
             self._bodies[name] = self._seen(self._member(name))
         return self._bodies[name]
 
+    def is_there(self, name: str) -> bool:
+        """Whether somebody is in the world."""
+        return name in self._cast
+
     # what a tree may do -------------------------------------------------------------------------------------------
 
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:

@@ -123,6 +123,10 @@ class PaperStage:
                 f"nobody on the stage is called '{name}'; there are {', '.join(self._bodies)}"
             ) from None
 
+    def is_there(self, name: str) -> bool:
+        """Whether somebody is on the stage."""
+        return name in self._bodies
+
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Lead a vehicle; all zero holds it."""
         still = velocity_x_mps == velocity_y_mps == yaw_rate_radps == 0.0
