@@ -72,8 +72,11 @@ def report(run: RunRecord) -> bytes:
     return page(f"{run.agent}: {document['status']}", body, script=(HERE / "report.js").read_text(encoding="utf-8"))
 
 
-def page(title: str, body: Element, script: str = "") -> bytes:
-    """A page that asks nobody for anything: the browser itself holds it to that, and runs no script but ours."""
+def page(title: str, body: Element, script: str = "", style: str = "") -> bytes:
+    """A page that asks nobody for anything: the browser itself holds it to that, and runs no script but ours.
+
+    ``style`` comes after that of every report.
+    """
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     allowed = f"style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
     policy = f"default-src 'none'; {allowed}; base-uri 'none'; form-action 'none'"
@@ -83,7 +86,7 @@ def page(title: str, body: Element, script: str = "") -> bytes:
         e("meta", http_equiv="Content-Security-Policy", content=policy),
         e("meta", name="viewport", content="width=device-width, initial-scale=1"),
         e("title", title),
-        e("style", (HERE / "report.css").read_text(encoding="utf-8")),
+        e("style", f"{(HERE / 'report.css').read_text(encoding='utf-8')}{style}"),
     )
     if script:
         body.append(e("script", script))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from basu.report.markup import e, number
+from basu.report.scenarios.drawing.canvas import WIDTH_PX
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
 CHARACTER = 0.58  # width of one on average, in heights of the script
 EDGE_PX = 3.0
+REACHES = (1.0, 2.2, 3.6)  # how far away a word may stand, in gaps
 ALONG_PX, LINE_PX = 14.0, 3.5  # how far apart, and how wide, a line is kept free of words
 AROUND = (  # where a word may stand beside what it names: share of its width, of its height, both in front of a gap
     (0.0, -1.0, 0.55),
@@ -73,10 +76,14 @@ class Labels:
     def put(self, text: str, at_px: Point, style: str, *, size_px: float, gap_px: float, needed: bool = False) -> None:
         """Write it beside a place, where there is room."""
         width, height = len(text) * size_px * CHARACTER, size_px * 1.1
-        places = [self._place(at_px, width, height, gap_px * reach, way) for reach in (1.0, 2.2, 3.6) for way in AROUND]
-        inside = [place for place in places if self._inside(place)]
-        free = [place for place in inside if not any(place.meets(taken) for taken in self._taken)]
-        chosen = free[0] if free else (inside or places)[0] if needed else None
+        chosen: Taken | None = None
+        for reach, way in itertools.product(REACHES if needed else REACHES[:1], AROUND):
+            place = self._place(at_px, width, height, gap_px * reach, way)
+            if self._inside(place) and not any(place.meets(taken) for taken in self._taken):
+                chosen = place
+                break
+        if chosen is None and needed:
+            chosen = self._held(self._place(at_px, width, height, gap_px, AROUND[0]))
         if chosen is None:
             return
         self._taken.append(chosen)
@@ -92,6 +99,13 @@ class Labels:
         gap_y = 0.0 if share_y == -0.5 else gap_px * (1.0 if gap_x == 0.0 else 0.55) * (1.0 if share_y == 0.0 else -1.0)
         top = at_px[1] + share_y * height + gap_y
         return Taken(left, top, left + width, top + height)
+
+    def _held(self, place: Taken) -> Taken:
+        """Moved into the picture."""
+        right, bottom = WIDTH_PX - EDGE_PX, self._canvas.height_px - EDGE_PX
+        left = max(EDGE_PX, min(place.left, right - (place.right - place.left)))
+        top = max(EDGE_PX, min(place.top, bottom - (place.bottom - place.top)))
+        return Taken(left, top, left + place.right - place.left, top + place.bottom - place.top)
 
     def _inside(self, place: Taken) -> bool:
         return self._canvas.shows(place.left, place.top, EDGE_PX) and self._canvas.shows(

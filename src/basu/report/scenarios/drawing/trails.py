@@ -40,13 +40,12 @@ def own_trail(history: History, span: Span, canvas: Canvas) -> list[Element]:
     frames = history.frames[span.first : span.last + 1]
     points_m = np.column_stack([frames["x_m"], frames["y_m"]])
     speed_mps = history.speed_mps()[span.first : span.last + 1]
-    drawn = [e("path", d=_whole(points_m, canvas), class_="casing", stroke_width=CASING_PX)]
     found: dict[int, list[str]] = {}
     for first, last, band in _runs(np.searchsorted(SPEEDS_MPS, speed_mps, side="right")):
         found.setdefault(band, []).append(_whole(points_m[first : last + 2], canvas))
-    for band, lines in sorted(found.items()):
-        drawn.append(e("path", d="".join(lines) or None, class_=f"v{band}", stroke_width=EGO_PX))
-    return drawn
+    strokes = {band: "".join(lines) for band, lines in sorted(found.items()) if any(lines)}
+    casing = e("path", d="".join(strokes.values()) or None, class_="casing", stroke_width=CASING_PX)
+    return [casing, *(e("path", d=d, class_=f"v{band}", stroke_width=EGO_PX) for band, d in strokes.items())]
 
 
 def other_trail(x_m: NDArray[np.float64], y_m: NDArray[np.float64], canvas: Canvas) -> Element:
@@ -81,13 +80,23 @@ def drawn(found: list[Dot], style: str, radius_px: float) -> list[Element]:
 
 def _whole(points_m: NDArray[np.float64], canvas: Canvas) -> str:
     """A trail as a path with few points, as far as it comes into the picture."""
-    finite = points_m[np.isfinite(points_m).all(axis=1)]
+    finite = _moved(points_m[np.isfinite(points_m).all(axis=1)])
     if len(finite) < 2:
         return ""
     thin = np.array(path(finite, TOLERANCE_M))
     if len(thin) < 2:
         return ""
     return "".join(canvas.line(piece) for piece in canvas.pieces(thin))
+
+
+def _moved(points_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (N, 2) without those at which nothing had moved, the last among them kept."""
+    if len(points_m) <= 2:
+        return points_m
+    way_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_m, axis=0).T))])
+    kept = np.diff(np.floor(way_m / TOLERANCE_M), prepend=-1.0) > 0.0
+    kept[-1] = True
+    return points_m[kept]
 
 
 def _runs(bands: NDArray[np.int64]) -> list[tuple[int, int, int]]:
