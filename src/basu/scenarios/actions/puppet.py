@@ -81,6 +81,8 @@ class Puppet(Action):
 
     def leave(self, *, broken_off: bool) -> None:
         """Hold, go on straight or vanish; who was touched rolls."""
+        if not self.stage.is_there(self.actor):
+            return
         if self.touched:
             self.stage.let_go(self.actor)
         elif self.at_end == "vanish" and not broken_off:

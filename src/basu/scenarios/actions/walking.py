@@ -68,6 +68,8 @@ class WalkAlong(Action):
 
     def leave(self, *, broken_off: bool) -> None:
         """Stand, go on or vanish; who is broken off in the middle of a walk stands, unless it was to go on."""
+        if not self.stage.is_there(self.actor):
+            return
         if self.at_end == "vanish" and self.moving and not broken_off:
             self.stage.remove(self.actor)
         elif self.at_end != "go on" or not self.moving:

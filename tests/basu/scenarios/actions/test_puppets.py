@@ -17,6 +17,8 @@ from basu.scenarios.actions import (
     Hold,
     InTurn,
     ReachAtEgosArrival,
+    Remove,
+    Together,
     Wait,
 )
 from basu.scenarios.paths import Path
@@ -159,6 +161,22 @@ def test_whom_it_minds_may_be_somebody_else() -> None:
     with pytest.raises(AssertionError, match="not done"):
         play(DriveAlong("other", ROAD, 8.0, minds=("third",)), stage, until_s=25.0)
     assert 70.0 < stage.body("other").x_m < 74.5
+
+
+def test_whom_it_minds_may_vanish_before_it() -> None:
+    third = ActorSpec("third", "vehicle.audi.a2", Pose(20.0, 20.0), speed_mps=4.0)
+    stage = stage_with(parked(speed_mps=4.0), third)
+    row = Together(
+        DriveAlong("third", ROAD, 4.0, to_m=60.0, at_end="vanish"), DriveAlong("other", ROAD, 8.0, minds=("third",))
+    )
+    play(row, stage)
+    assert stage.names == ("other", EGO)
+
+
+def test_who_is_removed_by_others_is_left_alone() -> None:
+    stage = stage_with(parked(speed_mps=4.0))
+    play(Either(DriveAlong("other", ROAD, 4.0), InTurn(Wait(1.0), Remove("other"))), stage)
+    assert stage.names == (EGO,)
 
 
 def test_braking_and_accelerating_take_the_distance_that_mechanics_has() -> None:
