@@ -38,12 +38,14 @@ from basu.vehicle import vehicle_at_start
 if TYPE_CHECKING:
     from pathlib import Path
 
+    import numpy as np
+    from numpy.typing import NDArray
+
     from basu.drive import Driven
     from basu.managers.agent_loader import LoadedAgent
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
     from basu.preparation import SensorSet
-    from basu.routing import Route
     from basu.routing.lane_graph import LaneGraph
     from basu.scenario_runs.options import ScenarioOptions
     from basu.scenarios.library import Playable
@@ -53,21 +55,51 @@ if TYPE_CHECKING:
 POINT_M = 20.0  # between the points of a way that goes straight on
 
 
-@dataclass(frozen=True, slots=True)
+class Town(NamedTuple):
+    """A town's map and its lanes, made once: to read a map again takes the client as long as to drive a case."""
+
+    carla_map: carla.Map
+    lanes: LaneGraph
+    streets_m: list[NDArray[np.float64]]  # the lanes' centre lines, (K, 2) each
+
+
+@dataclass(slots=True)
 class Theatre:
     """What all cases of one worker share."""
 
     options: ScenarioOptions
     simulator: Simulator
-    towns: frozenset[str]  # that the simulator has
-    lanes: dict[str, LaneGraph] = field(default_factory=dict)  # by the town's OpenDRIVE text
+    names: frozenset[str]  # of the towns that the simulator has
+    towns: dict[str, Town] = field(default_factory=dict)  # that were played in
+    loaded: str | None = None  # the town that we have loaded; None: whatever was there
 
-    def lanes_of(self, carla_map: carla.Map) -> LaneGraph:
-        """The lanes of a map, made once."""
-        text = carla_map.to_opendrive()
-        if text not in self.lanes:
-            self.lanes[text] = lane_graph.build(carla_map)
-        return self.lanes[text]
+    def fresh_world(self, playable: Playable) -> carla.World:
+        """A world begun anew, in the town of a case.
+
+        Raises:
+            ScenarioError: the simulator does not have it.
+            SimulatorError: the simulator does not load it.
+        """
+        client, town = self.simulator.client, playable.case.town
+        if town not in self.names:
+            there = ", ".join(sorted(self.names))
+            raise ScenarioError(
+                f"{playable.case.name} is in {town}, which this simulator does not have (it has {there}): play it on "
+                f"one that has, with --host, or give the case a place in {there} ({playable.case.source})"
+            )
+        with asking(f"loading {town}"):
+            client.reload_world(reset_settings=False)
+            world = client.get_world() if self.loaded == town else world_of(client, town)
+        self.loaded = town
+        return world
+
+    def town(self, name: str, world: carla.World) -> Town:
+        """The map of the town that is loaded, and its lanes."""
+        if name not in self.towns:
+            carla_map = world.get_map()
+            lanes = lane_graph.build(carla_map)
+            self.towns[name] = Town(carla_map, lanes, lanes.streets())
+        return self.towns[name]
 
 
 class Performed(NamedTuple):
@@ -84,7 +116,7 @@ class _Attempt(NamedTuple):
     driven: Driven | None
     playing: Playing | None
     outcome: Outcome
-    lanes: LaneGraph | None
+    town: Town | None
 
 
 def perform(theatre: Theatre, loaded: LoadedAgent, playable: Playable, output: Path) -> Performed:
@@ -102,7 +134,7 @@ def perform(theatre: Theatre, loaded: LoadedAgent, playable: Playable, output: P
         write_json(draft / RESULT_FILE, document)
         if history is not None:
             write_history(draft, history)
-            streets = [] if attempt.lanes is None else around(attempt.lanes.streets(), history)
+            streets = [] if attempt.town is None else around(attempt.town.streets_m, history)
             write_streets(draft, streets)
             write_bytes(draft / PICTURE_FILE, case_picture(document, history, streets).encode())
     except BaseException:
@@ -127,34 +159,24 @@ def _judged(playable: Playable, attempt: _Attempt) -> Judged:
 
 def _attempt(theatre: Theatre, loaded: LoadedAgent, playable: Playable, draft: Path) -> _Attempt:
     """Drive it, or know why not."""
-    lanes = None
+    town = None
     try:
         agents = new_agents(loaded, theatre.options.run_options(loaded.name), theatre.options.seed)
-        town = playable.case.town
-        if town not in theatre.towns:
-            there = ", ".join(sorted(theatre.towns))
-            raise ScenarioError(
-                f"{playable.case.name} is in {town}, which this simulator does not have (it has {there}): play it on "
-                f"one that has, with --host, or give the case a place in {there} ({playable.case.source})"
-            )
-        with asking(f"loading {town}"):
-            theatre.simulator.client.reload_world(reset_settings=False)
-            world = world_of(theatre.simulator.client, town)
-        carla_map = world.get_map()
-        lanes = theatre.lanes_of(carla_map)
-        route = plan(carla_map, description_of(playable, carla_map), lanes)
+        sensors = sensor_set(agents, loaded)
+        world = theatre.fresh_world(playable)
+        town = theatre.town(playable.case.town, world)
         scenes = ScenarioManager([playable], own=True)
-        driven = _driven(theatre, agents, sensor_set(agents, loaded), playable, world, route, scenes, draft)
+        driven = _driven(theatre, agents, sensors, playable, world, town, scenes, draft)
     except UserError as error:
-        return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), lanes)
+        return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), town)
     except AgentError as error:
-        return _Attempt(None, None, Outcome(Status.AGENT_CRASHED, str(error)), lanes)
+        return _Attempt(None, None, Outcome(Status.AGENT_CRASHED, str(error)), town)
     except SimulatorError as error:
-        return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), lanes)
+        return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), town)
     for failure in (driven.bug, driven.agent_error if theatre.options.debug else None):
         if failure is not None:
             traceback.print_exception(failure)
-    return _Attempt(driven, next(iter(scenes.playing), None), driven.outcome, lanes)
+    return _Attempt(driven, next(iter(scenes.playing), None), driven.outcome, town)
 
 
 def _driven(
@@ -163,13 +185,14 @@ def _driven(
     sensors: SensorSet,
     playable: Playable,
     world: carla.World,
-    route: Route,
+    town: Town,
     scenes: ScenarioManager,
     folder: Path,
 ) -> Driven:
     """The drive, with everything that the simulator was asked for given back afterwards."""
     options, simulator, case = theatre.options, theatre.simulator, playable.case
     blueprint = options.vehicle or case.ego.model
+    route = plan(town.carla_map, description_of(playable, town.carla_map), town.lanes)
     agents.config = replace(agents.config, vehicle=blueprint)
     with (
         asking("getting the vehicle ready"),
@@ -180,7 +203,7 @@ def _driven(
         run = Run(
             client=simulator.client,
             world=world,
-            carla_map=world.get_map(),
+            carla_map=town.carla_map,
             vehicle=vehicle,
             route=route,
             config=agents.config,
