@@ -56,7 +56,8 @@ class KeepsLane(Criterion):
                 outside[begin:end] = False
         where = np.flatnonzero(outside)
         candidates = where if len(where) else np.arange(first, len(outside))
-        worst = int(candidates[np.argmax(beyond_m[candidates])])
+        aside_m = np.abs(history.frames["lateral_m"])
+        worst = int(max(candidates.tolist(), key=lambda tick: (beyond_m[tick], aside_m[tick])))
         most_m = float(beyond_m[worst])
         return self.says(
             played,

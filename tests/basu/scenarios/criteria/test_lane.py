@@ -96,3 +96,8 @@ def test_across_its_way_it_is_not_back_though_in_the_middle() -> None:
 
 def test_without_an_end_of_the_disturbance_there_is_nothing_to_regain() -> None:
     assert Regains().judge(played(disturbed(back_after_s=1.0), phases_s={})).passed is None
+
+
+def test_on_the_road_throughout_the_widest_swerve_is_told() -> None:
+    said = KeepsLane(passing=True).judge(played(swerved(-3.5)))
+    assert said.sentence.endswith("at most it was 3.50 m to the left of its route's middle at 2.00 s")

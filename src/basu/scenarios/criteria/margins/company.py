@@ -46,12 +46,16 @@ class Company(NamedTuple):
 
 
 def company(played: Played) -> Company:
-    """The record with a row for each thing in each frame in which it was as near as others are recorded."""
+    """The record with a row for each thing in each frame in which it was as near as others are recorded.
+
+    Things are actors without a row of their own, so contacts with them are told under the same ids.
+    """
     history, facts = played.history, played.history.facts
-    names, types, sizes = dict(played.roles), dict(facts.actor_types), dict(facts.actor_sizes)
+    names, sizes = dict(played.roles), dict(facts.actor_sizes)
+    key_of = {thing.name: LAST_ID - number for number, thing in enumerate(played.things)}
     rows = [history.others]
-    for number, thing in enumerate(played.things):
-        key = LAST_ID - number
+    for thing in played.things:
+        key = key_of[thing.name]
         names[key], sizes[key] = thing.name, (thing.half_length_m, thing.half_width_m)
         away_m = np.hypot(history.frames["x_m"] - thing.x_m, history.frames["y_m"] - thing.y_m)
         near = history.frames["tick"][away_m <= NEAR_M]
@@ -61,5 +65,9 @@ def company(played: Played) -> Company:
         rows.append(stood)
     together = np.concatenate(rows)
     others = together[np.argsort(together["tick"], kind="stable")]
-    facts = replace(facts, actor_types=types, actor_sizes=sizes)
-    return Company(replace(history, others=others, facts=facts), names)
+    contacts = tuple(
+        replace(event, other_id=key_of.get(played.roles.get(event.other_id, ""), event.other_id))
+        for event in history.collisions
+    )
+    facts = replace(facts, actor_sizes=sizes)
+    return Company(replace(history, others=others, collisions=contacts, facts=facts), names)

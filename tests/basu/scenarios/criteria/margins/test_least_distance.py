@@ -75,3 +75,13 @@ def test_a_contact_is_told_with_the_speed_before_it() -> None:
     history = ride(5.0, eastward(braked(10.0, 2.95, 100.0), 6.0), others=[CHILD])
     said = LeastDistance().judge(played(history, collisions=(hit(60, "vehicle.audi.tt", 9),)))
     assert said.sentence == "child (vehicle.audi.tt) was touched at 3.00 s, the ego at 10.00 m/s"
+
+
+def test_a_thing_that_was_touched_was_no_distance_away_whatever_its_box() -> None:
+    """The sensor names the actor that the thing is; its role is the thing's name."""
+    door = Thing("door", 20.0, 2.5, 0.0, 0.1, 0.5)
+    case = played(driven(at(10.0, 4.0)), roles={31: "door"}, things=(door,))
+    assert LeastDistance().judge(case).measured == pytest.approx(1.0)
+    case = played(case.history, roles={31: "door"}, things=(door,), collisions=(hit(38, "static.prop.sign", 31),))
+    said = LeastDistance(0.1, to="door").judge(case)
+    assert (said.measured, said.other, said.t_s) == (0.0, "door", pytest.approx(1.9))
