@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 import traceback
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timezone
@@ -12,6 +13,7 @@ from basu.drive import drive
 from basu.hud.seat import onlookers_for
 from basu.managers.base_manager import BaseManager, Live, Run
 from basu.managers.recording_manager import RecordingManager
+from basu.managers.route_scenarios import told
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.traffic_manager import TrafficManager
@@ -78,6 +80,7 @@ class Ground(NamedTuple):
     lanes: LaneGraph
     description: RouteDescription
     route: Route
+    scenarios: ScenarioManager  # laid on it
 
 
 def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str, fresh: bool) -> Finished:
@@ -114,12 +117,13 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         traffic=traffic.count,
         log=None if recording is None else recording.path,
     )
-    document = leave(draft, driven, session.scoring, ground.lanes, config)
+    met = told(ground.scenarios.playing, driven.history, driven.outcome)
+    document = leave(draft, driven, session.scoring, ground.lanes, config, met)
     return Finished(driven.outcome, draft, document, driven.bug)
 
 
 def _ground(session: Session, agents: AgentsManager, job: Job, *, fresh: bool) -> Ground:
-    """The world with the route's town in it, and the route on its lanes."""
+    """The world with the route's town in it, the route on its lanes, and its scenarios on the route."""
     town, simulator = job.description.town, session.simulator
     with asking(f"loading {town}"):
         if fresh and simulator.own:
@@ -128,10 +132,19 @@ def _ground(session: Session, agents: AgentsManager, job: Job, *, fresh: bool) -
     carla_map = world.get_map()
     lanes = session.lanes_of(carla_map)
     points = agents.own_route()
-    description = job.description
+    description, waiting = job.description, job.scenarios
     if points is not None:
         description = replace(description, id=f"{description.id}{OWN_ROUTE}", points=points, stops=())
-    return Ground(world, carla_map, lanes, description, plan(carla_map, description, lanes))
+        if waiting:
+            sys.stderr.write(
+                f"basu: warning: the agent goes a way of its own, so the {len(waiting)} scenarios on the way of route "
+                f"'{job.description.id}' are left away\n"
+            )
+            waiting = ()
+    route = plan(carla_map, description, lanes)
+    scenarios = ScenarioManager(waiting, own=False)
+    scenarios.lay(route, carla_map)
+    return Ground(world, carla_map, lanes, description, route, scenarios)
 
 
 def _driven(
@@ -156,6 +169,7 @@ def _driven(
         vehicle_at_start(world, ground.route, agents.config.vehicle) as vehicle,
     ):
         world.set_weather(weather_called(agents.config.weather))
+        ground.scenarios.try_out(world)
         this_run = Run(
             client=simulator.client,
             world=world,
@@ -180,5 +194,5 @@ def _driven(
             why_gone=simulator.why_gone,
             ended=simulator.ended,
             observers=observers,
-            scenarios=ScenarioManager((), own=False),
+            scenarios=ground.scenarios,
         )

@@ -43,6 +43,8 @@ class RunOptions:
     weather: str | None = None  # None: as the route file or else the agent's config says
     vehicle: str | None = None  # None: as the agent's config says
     traffic: Traffic = NOBODY
+    with_scenarios: bool = True  # meet those that the route file has on the way
+    scenario_files: tuple[Path, ...] = ()  # Python files with scenarios of one's own
     record: bool = False
     viewer: bool = False  # stream the run to Rerun's viewer, and keep it
     output: Path = Path("runs")

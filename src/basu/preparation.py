@@ -17,6 +17,7 @@ from basu.managers.agents_manager import AgentsManager
 from basu.managers.sensor_file import read_sensors
 from basu.routing.route_file import RouteDescription, read_routes
 from basu.routing.subset import subset
+from basu.scenarios.on_way import scenarios_on
 from basu.simulator import weather_called
 from basu.utils.packaged import find
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from basu.managers.agent_loader import LoadedAgent
     from basu.managers.sensor_file import SensorSpec
     from basu.options import RunOptions
+    from basu.scenarios.library import Playable
 
 
 class SensorSet(NamedTuple):
@@ -42,6 +44,7 @@ class Job(NamedTuple):
     label: str  # of the route in a folder's name
     repetition: int  # from 0
     seed: int
+    scenarios: tuple[Playable, ...] = ()  # on the way
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +75,26 @@ def prepare(options: RunOptions) -> Plan:
             file=sys.stderr,
         )
     routes = _chosen(read_routes(find(config.routes, "route file", loaded.file)), config, options)
+    waiting = {route.id: _scenarios(route, options) for route in routes}
     jobs = [
-        Job(number, description, _label(description, len(routes)), repetition, options.seed + repetition)
+        Job(
+            number,
+            description,
+            _label(description, len(routes)),
+            repetition,
+            options.seed + repetition,
+            waiting[description.id],
+        )
         for number, (description, repetition) in enumerate(
             (description, repetition) for description in routes for repetition in range(options.repetitions)
         )
     ]
     return Plan(loaded, agents, sensors, tuple(jobs))
+
+
+def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Playable, ...]:
+    """The scenarios on the way of a route, unless they are to be left away."""
+    return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
 
 
 def new_agents(loaded: LoadedAgent, options: RunOptions, seed: int) -> AgentsManager:

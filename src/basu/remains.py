@@ -25,7 +25,7 @@ from basu.report.streets import around, write_streets
 from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
     from datetime import datetime
     from pathlib import Path
 
@@ -105,6 +105,8 @@ def command(options: RunOptions, scoring: Scoring, description: RouteDescription
         if number != usually:
             values.append((option, number))
     words = [word for option, value in values if value is not None for word in (option, str(value))]
+    words += [word for file in options.scenario_files for word in ("--scenarios", str(file))]
+    words += [] if options.with_scenarios else ["--no-scenarios"]
     return ["basu", "run", options.agent, *words, *(["--record"] if options.record else [])]
 
 
@@ -122,8 +124,15 @@ def _recording(options: RunOptions, log: str | None, *, own_simulator: bool) -> 
     return {"file": log, "where": f"disk of the simulator at {options.host}:{options.port}"}
 
 
-def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, config: dict[str, Any]) -> dict[str, Any]:
-    """Write the folder of a run and show its table; the result."""
+def leave(
+    folder: Path,
+    driven: Driven,
+    scoring: Scoring,
+    lanes: LaneGraph,
+    config: dict[str, Any],
+    scenarios: Sequence[dict[str, Any]] = (),
+) -> dict[str, Any]:
+    """Write the folder of a run and show its table; the result. ``scenarios`` are those on the way."""
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
     meta = {
@@ -143,6 +152,8 @@ def leave(folder: Path, driven: Driven, scoring: Scoring, lanes: LaneGraph, conf
         "versions": config["versions"],
     }
     document = result(driven.outcome, history, scoring, meta)
+    if scenarios:
+        document["scenarios"] = list(scenarios)
     text, lanes_m = table(document), lanes.streets()
     print(text)
     write_json(folder / CONFIG_FILE, config)

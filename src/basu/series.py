@@ -116,6 +116,13 @@ def conditions(options: RunOptions, scoring: Scoring, prepared: Plan) -> dict[st
         "--agent-config": options.agent_config,
         "the routes": [route.id for route in routes],
         "what the routes say": _digest(repr(routes).encode()),
+        "the scenarios on the way": [
+            f"{waiting.case.name}: {waiting.scenario.__name__} {dict(waiting.values)} at {waiting.case.trigger}"
+            for job in prepared.jobs
+            if job.repetition == 0
+            for waiting in job.scenarios
+        ],
+        "--scenarios": [_digest(file.read_bytes()) for file in options.scenario_files],
         "--repetitions": options.repetitions,
         "--seed": options.seed,
         "the vehicle": config.vehicle,

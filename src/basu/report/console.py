@@ -6,6 +6,7 @@ from typing import Any
 
 from basu.report.measures_table import measured
 from basu.report.passengers_table import felt
+from basu.report.scenarios.on_way import met
 
 
 def table(document: dict[str, Any]) -> str:
@@ -26,7 +27,7 @@ def table(document: dict[str, Any]) -> str:
     stops = document["stops"]
     if stops:
         lines.append(f"service stops     {sum(stop['served'] for stop in stops)} of {len(stops)} served")
-    return "\n".join([*lines, *measured(document), *felt(document)])
+    return "\n".join([*lines, *measured(document), *felt(document), *met(document.get("scenarios", ()))])
 
 
 def _figures(document: dict[str, Any]) -> list[tuple[str, str]]:

@@ -9,16 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 from lxml import etree
 
 from basu.errors import UserError
 from basu.routing.route_weather import WeatherMark, read_weather
 from basu.routing.timetable import Timetable, read_timetable
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +68,34 @@ def read_routes(path: Path) -> tuple[RouteDescription, ...]:
     return routes
 
 
+def route_element(description: RouteDescription) -> etree._Element:
+    """The <route> that a description was read from, for those who read more of it.
+
+    Raises:
+        UserError: the file is no longer as it was.
+    """
+    path = Path(description.source)
+    for element in _root(path).iter("route"):
+        if element.get("id") == description.id:
+            return element
+    raise UserError(f"route file {path} has no route '{description.id}' any more; it was changed meanwhile")
+
+
 def _read(path: Path, including: tuple[Path, ...]) -> tuple[RouteDescription, ...]:
     """The routes of one file; ``including`` are the files that led here."""
+    root = _root(path)
+    chain = (*including, path.resolve())
+    included = [
+        route for element in root.iterfind("include") for route in _read(_included(path, element, chain), chain)
+    ]
+    elements = [root] if root.tag == "route" else list(root.iter("route"))
+    if not elements and not included:
+        raise UserError(f"route file {path} holds no <route> (its outermost element is <{root.tag}>)")
+    return (*included, *(_description(element, path) for element in elements))
+
+
+def _root(path: Path) -> etree._Element:
+    """The outermost element of a route file."""
     try:
         text = path.read_bytes()
     except OSError as error:
@@ -82,17 +105,10 @@ def _read(path: Path, including: tuple[Path, ...]) -> tuple[RouteDescription, ..
     if not text.strip():
         raise UserError(f"route file {path} is empty; it needs <routes><route id town>… with way points inside")
     try:
-        root = etree.fromstring(text, etree.XMLParser(resolve_entities=False, no_network=True))
+        root: etree._Element = etree.fromstring(text, etree.XMLParser(resolve_entities=False, no_network=True))
     except etree.XMLSyntaxError as error:
         raise UserError(f"route file {path} is not XML: {error}") from error
-    chain = (*including, path.resolve())
-    included = [
-        route for element in root.iterfind("include") for route in _read(_included(path, element, chain), chain)
-    ]
-    elements = [root] if root.tag == "route" else list(root.iter("route"))
-    if not elements and not included:
-        raise UserError(f"route file {path} holds no <route> (its outermost element is <{root.tag}>)")
-    return (*included, *(_description(element, path) for element in elements))
+    return root
 
 
 def _included(path: Path, element: etree._Element, chain: tuple[Path, ...]) -> Path:

@@ -83,4 +83,4 @@ def test_the_table_tells_scores_infractions_and_signs() -> None:
 
 def test_every_status_is_somebodys_doing() -> None:
     assert set(FAULT_OF) == set(Status)
-    assert [status for status in Status if status.fault.value == 0] == [Status.COMPLETED]
+    assert [status for status in Status if status.fault.value == 0] == [Status.COMPLETED, Status.SCENARIO_ENDED]
