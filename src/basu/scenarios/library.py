@@ -67,8 +67,8 @@ class Library:
         hint = f"did you mean '{close[0]}'? " if close else ""
         raise ScenarioError(
             f"{case.source}: '{case.name}' is of type '{case.type}', which there is not; {hint}`basu scenario list` "
-            "shows them; a class of your own goes into FILE.py beside FILE.xml, or into --scenarios FILE.py; other cases "
-            "of the file are played by their ids, with --scenarios FILE.xml"
+            "shows them; a class of your own goes into FILE.py beside FILE.xml, or --scenarios FILE.py; other cases of "
+            "the file are played by their ids, with --scenarios FILE.xml"
         )
 
     def playable(self, case: Case) -> Playable:
