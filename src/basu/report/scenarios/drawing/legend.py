@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
     from basu.report.scenarios.drawing.canvas import Canvas
 
-HEIGHT_PX = 48.0
-SWATCH_PX = 22.0
+HEIGHT_PX = 54.0
+SWATCH_PX = 20.0
 LETTER_PX = 6.2  # the width of one, on average
 
 
@@ -30,14 +30,14 @@ def legend(top_px: float, shown: set[str]) -> Element:
         x += SWATCH_PX
         if band < len(SPEEDS_MPS):
             group.append(e("text", f"{SPEEDS_MPS[band]:g}", x=x, y=y + 15.0, class_="small", text_anchor="middle"))
-    x += 18.0
+    x += 14.0
     for name, words in (
-        ("dot", "where it was, a dot a second"),
+        ("dot", "a dot a second"),
         ("way", "others"),
         ("plan", "planned route"),
     ):
         x = _entry(group, name, words, x, y)
-    x, y = 250.0, y + 20.0
+    x, y = 66.0, y + 27.0
     for name, words in (
         ("ghost", "conflict begins"),
         ("gap", "least distance"),

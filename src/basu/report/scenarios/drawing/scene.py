@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from basu.metrics.passengers.boxes import own_boxes
-from basu.report.markup import e, number
+from basu.report.markup import e
 from basu.report.plots.decimate import path
 from basu.report.scenarios.drawing import trails
 from basu.report.scenarios.drawing.bodies import NOSE, block, body, outline
@@ -192,6 +192,6 @@ class Scene:
             away = min((float(np.hypot(dot.at_px[0] - x, dot.at_px[1] - y)) for x, y in written), default=np.inf)
             if away >= APART_PX:
                 before = len(self._labels.drawn)
-                self._labels.put(f"{number(dot.t_s)} s", dot.at_px, style, size_px=SMALL_PX, gap_px=6.0)
+                self._labels.put(dot.label, dot.at_px, style, size_px=SMALL_PX, gap_px=6.0)
                 if len(self._labels.drawn) > before:
                     written.append(dot.at_px)

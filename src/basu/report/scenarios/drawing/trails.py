@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.report.markup import e, number
+from basu.report.markup import DASH, e, number
 from basu.report.plots.decimate import path
 
 if TYPE_CHECKING:
@@ -29,10 +29,16 @@ LONELY_M = 0.5  # dots nearer to the one before than this are one dot
 
 
 class Dot(NamedTuple):
-    """A place on a trail at a whole second."""
+    """A place on a trail at a whole second, or as long as nothing moved."""
 
-    t_s: int
+    first_s: int
+    last_s: int
     at_px: Point
+
+    @property
+    def label(self) -> str:
+        """When that was."""
+        return f"{self.first_s} s" if self.first_s == self.last_s else f"{self.first_s}{DASH}{self.last_s} s"
 
 
 def own_trail(history: History, span: Span, canvas: Canvas) -> list[Element]:
@@ -63,11 +69,13 @@ def dots(t_s: NDArray[np.float64], x_m: NDArray[np.float64], y_m: NDArray[np.flo
         if abs(t_s[index] - second) > DOT_S / 4.0 or not np.isfinite(place_m).all():
             continue
         if last_m is not None and np.hypot(place_m[0] - last_m[0], place_m[1] - last_m[1]) < LONELY_M:
+            if found and found[-1].at_px == canvas.at(*last_m):
+                found[-1] = found[-1]._replace(last_s=second)
             continue
         last_m = place_m
         placed = canvas.at(*place_m)
         if canvas.shows(*placed, 3.0):
-            found.append(Dot(second, placed))
+            found.append(Dot(second, second, placed))
     return found
 
 

@@ -76,7 +76,7 @@ def judgements(found: Sequence[dict[str, Any]]) -> Element:
         rows.append(
             e(
                 "tr",
-                e("td", sign, class_=f"sign {style}"),
+                e("td", sign, class_=f"outcome {style}"),
                 e("th", judgement["criterion"], e("small", judgement["sentence"]), scope="row"),
                 e("td", measured),
                 e("td", judgement["limit"] or ("told only" if not judgement["deciding"] else "")),

@@ -47,18 +47,18 @@ def write_matrix_page(folder: Path, matrix: dict[str, Any]) -> None:
         UserError: the disk is full or the folder cannot be written.
     """
 
-    def record(cell: Cell) -> CaseRecord | None:
+    def record(cell: Cell) -> CaseRecord | str:
         at = cell.case["results"][cell.agent]["folder"]
         try:
-            return read_case(folder / at) if at else None
-        except UserError:
-            return None  # its verdict stands in the matrix, and its card says that there is no more
+            return read_case(folder / at) if at else "It left no folder."
+        except UserError as error:
+            return str(error)
 
     write_bytes(folder / PAGE_FILE, matrix_page(matrix, record))
 
 
-def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | None]) -> bytes:
-    """The page; ``record`` finds what a case left, None where nothing is to be had."""
+def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | str]) -> bytes:
+    """The page; ``record`` finds what a case left, or says why there is nothing."""
     cells = chosen(matrix)
     carded = {anchor_of(cell.case["id"], cell.agent) for cell in cells}
     cards = _cards(cells, record)
@@ -85,7 +85,7 @@ def chosen(matrix: dict[str, Any]) -> list[Cell]:
     return [cell for cell in cells if id(cell) in kept]
 
 
-def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | None]) -> dict[str, list[Element]]:
+def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dict[str, list[Element]]:
     """Cards by the case's id; those that were not passed have their pictures before the rest."""
     made: dict[int, Element] = {}
     size = 0
@@ -93,8 +93,8 @@ def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | None]) -> di
     for number in order:
         cell = cells[number]
         found = record(cell)
-        if found is None:
-            made[number] = _bare(cell)
+        if isinstance(found, str):
+            made[number] = _bare(cell, found)
         else:
             made[number] = card(found.result, found.history, found.streets, picture=size < MOST_BYTES)
         size += len(html(made[number]))
@@ -104,14 +104,14 @@ def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | None]) -> di
     return cards
 
 
-def _bare(cell: Cell) -> Element:
-    """A card of a case that left no more than its line in the matrix."""
+def _bare(cell: Cell, why: str) -> Element:
+    """A card of a case of which no more is known than its line in the matrix."""
     result = cell.case["results"][cell.agent]
     return e(
         "article",
         e("h4", e("span", cell.agent, class_="agent"), " ", verdict_mark(result["verdict"])),
         e("p", result["message"], class_="message"),
-        e("p", "Nothing more was kept of it.", class_="note"),
+        e("p", why, class_="note"),
         class_=f"case-card {LOOKS[result['verdict']].style}",
         id=anchor_of(cell.case["id"], cell.agent),
         data_agent=cell.agent,

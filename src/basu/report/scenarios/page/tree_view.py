@@ -38,7 +38,7 @@ def _node(node: dict[str, Any]) -> Element:
     sign, style = SIGNS.get(status, ("○", "waiting"))
     label = e(
         "span",
-        e("b", sign, class_=f"sign {style}", title=status),
+        e("b", sign, class_=f"outcome {style}", title=status),
         e("i", KINDS.get(node["kind"], "·"), class_="kind", title=node["kind"]),
         e("span", node["name"], class_="called"),
         e("small", node["feedback"]) if node["feedback"] else None,
