@@ -33,6 +33,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     listing.set_defaults(command=list_scenarios)
     _add_run(actions)
     _add_draw(actions)
+    report = actions.add_parser("report", help="make the report of a run again", description=report_command.__doc__)
+    report.add_argument("folder", type=Path, metavar="FOLDER", help="of a run, such as scenario-runs/latest")
+    report.add_argument("--junit", type=Path, metavar="FILE", help="write the JUnit XML there as well")
+    report.set_defaults(command=report_command)
 
 
 def _add_run(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -174,6 +178,16 @@ def draw_command(arguments: argparse.Namespace) -> int:
         print(text)
     else:
         write_bytes(arguments.output, f"{text}\n".encode())
+    return 0
+
+
+def report_command(arguments: argparse.Namespace) -> int:
+    """Make table, JUnit XML, page and maps of a run again, from what lies in its folder."""
+    from basu.report.scenarios.page.records import read_matrix  # noqa: PLC0415 - brings in what draws
+    from basu.scenario_runs.leave import leave  # noqa: PLC0415 - likewise
+
+    folder: Path = arguments.folder.resolve()
+    leave(folder, read_matrix(folder), arguments.junit)
     return 0
 
 

@@ -14,15 +14,14 @@ from basu.errors import UserError
 from basu.managers.agent_loader import load_agent
 from basu.outcome import Fault
 from basu.report.folder import DRAFTS, make_draft, plain, point_latest, publish, write_json
-from basu.report.scenarios.console import matrix_text
-from basu.report.scenarios.junit import junit_xml
+from basu.report.scenarios.page.records import MATRIX_FILE
 from basu.scenario_runs.crew import Crew, Lost
 from basu.scenario_runs.document import lost
+from basu.scenario_runs.leave import leave
 from basu.scenario_runs.matrix import matrix_of
 from basu.scenario_runs.worker import Job, play
 from basu.scenarios.library import cases_of, varied
 from basu.scenarios.variation import Variation
-from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from basu.scenario_runs.worker import Done
     from basu.scenarios.library import Playable
 
-MATRIX_FILE, MATRIX_TEXT, JUNIT_FILE = "matrix.json", "matrix.txt", "junit.xml"
 TIMES = "%Y-%m-%dT%H-%M-%S"
 
 
@@ -70,7 +68,9 @@ def run_scenarios(options: ScenarioOptions) -> int:
             shutil.rmtree(draft, ignore_errors=True)
         if documents:
             wall_s = time.perf_counter() - began_s
-            _write(options, folder, matrix_of(options, names, playables, documents, began, wall_s))
+            matrix = matrix_of(options, names, playables, documents, began, wall_s)
+            write_json(folder / MATRIX_FILE, matrix)
+            leave(folder, matrix, options.junit)
     return Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
 
 
@@ -135,16 +135,3 @@ def _played(options: ScenarioOptions, folder: Path, jobs: Sequence[Job]) -> Iter
             yield from done
             waiting = waiting[len(done) :]
             done.clear()
-
-
-def _write(options: ScenarioOptions, folder: Path, matrix: dict[str, Any]) -> None:
-    """The matrix in all its forms."""
-    text = matrix_text(matrix)
-    write_json(folder / MATRIX_FILE, matrix)
-    write_bytes(folder / MATRIX_TEXT, f"{text}\n".encode())
-    junit = junit_xml(matrix)
-    write_bytes(folder / JUNIT_FILE, junit)
-    if options.junit is not None:
-        write_bytes(options.junit, junit)
-    print(matrix_text(matrix, colour=sys.stdout.isatty()))
-    print(f"\nfolder  {folder}")

@@ -251,4 +251,4 @@ def description_of(playable: Playable, carla_map: carla.Map) -> RouteDescription
         way = followed(waypoint_at(carla_map, start), playable.scenario.needs_m)
         places = [waypoint.transform.location for waypoint in [*way[int(POINT_M) :: int(POINT_M)], way[-1]]]
         points += [RoutePoint(at.x, at.y, at.z) for at in places]
-    return RouteDescription(id=case.name, town=case.town, points=tuple(points), stops=(), source=case.source)
+    return RouteDescription(id=case.name, town=case.town, points=tuple(points), stops=case.stops, source=case.source)
