@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from basu.scenarios.actions.puppet import AtEnd, Limits, Puppet
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from basu.scenarios.paths import Path
 
 LEAST_MPS = 0.5  # an ego slower than this is not taken to arrive ever later
@@ -35,6 +37,7 @@ class ReachAtEgosArrival(Puppet):
         accelerate_mps2: float = 3.0,
         brake_mps2: float = 4.0,
         at_end: AtEnd = "go on",
+        minds: Sequence[str] = (),
     ) -> None:
         when = f"{abs(offset_s):g} s {'after' if offset_s > 0 else 'before'} the ego" if offset_s else "with the ego"
         super().__init__(
@@ -43,6 +46,7 @@ class ReachAtEgosArrival(Puppet):
             path,
             limits=Limits(accelerate_mps2, brake_mps2),
             at_end=at_end,
+            minds=minds,
         )
         self.meet_s_m, self.ego_s_m, self.offset_s = meet_s_m, ego_s_m, offset_s
         self.low_mps, self.high_mps, self.settled_s = low_mps, high_mps, settled_s

@@ -94,6 +94,21 @@ def test_a_profile_of_speeds_is_kept_along_the_path() -> None:
     assert at[120] == pytest.approx(4.0, abs=0.05)
 
 
+def test_bends_are_slowed_down_for_before_they_begin() -> None:
+    # a radius of 12 m at 3 m/s² sideways: 6 m/s
+    stage, sideways = stage_with(parked(speed_mps=12.0)), []
+
+    def watch(stage: PaperStage) -> None:
+        body = stage.body("other")
+        near = BEND.nearest(body.x_m, body.y_m)
+        if 32.0 < near.s_m < 46.0:
+            sideways.append(body.speed_mps**2 / 12.0)
+
+    play(DriveAlong("other", BEND, 12.0, bends_mps2=3.0, at_end="go on"), stage, watch=watch)
+    assert 2.5 < max(sideways) < 3.4
+    assert stage.body("other").speed_mps > 10.0
+
+
 def test_the_three_ends_of_a_drive() -> None:
     rolling = stage_with(parked(speed_mps=5.0))
     play(DriveAlong("other", BEND, 5.0, at_end="go on"), rolling)
