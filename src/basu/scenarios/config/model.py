@@ -10,6 +10,8 @@ from basu.scenarios.stage import Pose
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from basu.routing.route_file import StopMark
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GivenActor:
@@ -32,6 +34,7 @@ class Case:
     ego: GivenActor
     others: tuple[GivenActor, ...] = ()
     way: tuple[Pose, ...] = ()  # points of the ego's route after its place; the last is where it is bound for
+    stops: tuple[StopMark, ...] = ()  # service stops on the way, where the ego is due
     trigger: Pose | None = None  # None: the ego's place
     weather: Mapping[str, float] | None = None  # fields of carla.WeatherParameters that the file gives; None: ClearNoon
     values: Mapping[str, str] = field(default_factory=dict)  # of its parameters, as text

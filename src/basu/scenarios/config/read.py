@@ -6,7 +6,7 @@
       <scenario name="pedestrian_crossing_1" type="PedestrianCrossing" town="Linden">
         <place name="Cleveland Ave at 8th Ave" route="true"/>
         <ego_vehicle x="1.0" y="2.0" z="0.5" yaw="90" model="vehicle.easymile.ez10"/>
-        <via x="1.0" y="40.0"/> <destination x="1.0" y="120.0"/>
+        <via x="1.0" y="40.0"/> <stop name="8th Ave" x="1.0" y="60.0"/> <destination x="1.0" y="120.0"/>
         <trigger_point x="1.0" y="30.0" z="0.5" yaw="90"/>
         <other_actor x="5.0" y="60.0" yaw="180" model="walker.*" rolename="child"/>
         <weather cloudiness="80" precipitation="60"/>
@@ -15,7 +15,8 @@
     </scenarios>
 
 Theirs are <ego_vehicle>, <other_actor>, <weather>, <route> and values as elements of their own; ours are <place>,
-<via>, <destination> and <trigger_point>. Coordinates are CARLA's: metres, y south, yaw in degrees clockwise.
+<via>, <stop> (a service stop), <destination> and <trigger_point>. Coordinates are CARLA's: metres, y south, yaw in
+degrees clockwise.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from typing import TYPE_CHECKING
 from lxml import etree
 
 from basu.errors import ScenarioError
+from basu.routing.route_file import RoutePoint, StopMark
 from basu.scenarios.config.elements import (
     POINT_ATTRIBUTES,
     complaint,
@@ -50,7 +52,7 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import Pose
 
 ONCE = ("ego_vehicle", "route", "destination", "trigger_point", "weather", "place")
-RESERVED = frozenset({*ONCE, "other_actor", "via"})  # no parameter can be called so
+RESERVED = frozenset({*ONCE, "other_actor", "via", "stop"})  # no parameter can be called so
 NAME = re.compile(r"[A-Za-z0-9._-]+")  # of a case: it names a folder, and ':' begins what is sampled
 AT_THE_EGO_M = 2.0  # a first way point so near to the ego is where it stands
 
@@ -131,6 +133,7 @@ def _case(element: etree._Element, path: Path) -> Case:
         ego=driver,
         others=_others(parts, path),
         way=_way(once["route"], once["destination"], [part for part in parts if part.tag == "via"], driver, path),
+        stops=tuple(_stop(part, path) for part in parts if part.tag == "stop"),
         trigger=None if trigger is None else pose_of(trigger, path, yaw=True),
         weather=None if weather is None else weather_of(weather, path),
         values=values_of([part for part in parts if part.tag not in RESERVED], path),
@@ -154,6 +157,13 @@ def _at_most_one(elements: list[etree._Element], path: Path) -> etree._Element |
 def _others(parts: list[etree._Element], path: Path) -> tuple[GivenActor, ...]:
     """The ``<other_actor>`` elements in their order."""
     return tuple(other_of(part, path) for part in parts if part.tag == "other_actor")
+
+
+def _stop(element: etree._Element, path: Path) -> StopMark:
+    """A service stop, by its name."""
+    only(element, ("name", "x", "y", "z"), path)
+    name, pose = text_of(element, "name", path), pose_of(element, path, yaw=False)
+    return StopMark(id=name, name=name, point=RoutePoint(pose.x_m, pose.y_m, pose.z_m))
 
 
 def _way(

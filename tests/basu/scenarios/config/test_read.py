@@ -175,3 +175,11 @@ def test_two_cases_of_one_name_are_told_with_both_lines(tmp_path: Path) -> None:
     case = f'<scenario name="a_1" type="A" town="Linden">{EGO}</scenario>\n'
     with pytest.raises(ScenarioError, match=r"line 3: the name 'a_1' is given in .*line 2 already"):
         read_cases(written(tmp_path, f"<scenarios>\n{case}{case}</scenarios>"))
+
+
+def test_service_stops_lie_on_the_way_and_are_no_values(tmp_path: Path) -> None:
+    case = one(tmp_path, f'{EGO}<stop name="8th Ave" x="1" y="60"/><destination x="1" y="120"/>')
+    assert [(stop.name, stop.point.x_m, stop.point.y_m) for stop in case.stops] == [("8th Ave", 1.0, 60.0)]
+    assert not case.values
+    with pytest.raises(ScenarioError, match="<stop> lacks its attribute 'name'"):
+        one(tmp_path, f'{EGO}<stop x="1" y="60"/>')
