@@ -21,6 +21,8 @@ from basu.report.markup import e, extended, html
 from basu.report.plots.signals import signals
 from basu.report.plots.timeline import timeline
 from basu.report.plots.town_map import town_map
+from basu.report.scenarios.page.on_route import on_the_way
+from basu.report.scenarios.page.style import card_style
 from basu.report.streets import bounds_of
 from basu.utils.atomic import write_bytes
 
@@ -62,6 +64,7 @@ def report(run: RunRecord) -> bytes:
             score_card(document),
             _map(run, history, found),
             e("section", e("h2", "Timeline"), timeline(history, felt, document, found)),
+            on_the_way(document, run.config.get("command", []), history, run.streets),
             charts(history, felt, found),
             *evidence(history, felt, found),
             reported(document),
@@ -69,7 +72,8 @@ def report(run: RunRecord) -> bytes:
             e("script", _samples(history, felt), type="application/json", id="samples"),
         ],
     )
-    return page(f"{run.agent}: {document['status']}", body, script=(HERE / "report.js").read_text(encoding="utf-8"))
+    script = (HERE / "report.js").read_text(encoding="utf-8")
+    return page(f"{run.agent}: {document['status']}", body, script, card_style() if document.get("scenarios") else "")
 
 
 def page(title: str, body: Element, script: str = "", style: str = "") -> bytes:

@@ -66,24 +66,24 @@ def anchor_of(case: str, agent: str) -> str:
 def judgements(found: Sequence[dict[str, Any]]) -> Element:
     """What each criterion said; those that decide first."""
     head = e("tr", *(e("th", text, scope="col") for text in ("", "criterion", "measured", "limit")))
-    rows = []
-    for judgement in sorted(found, key=lambda judgement: not judgement["deciding"]):
-        passed = judgement["passed"]
-        sign, style = {True: ("✓", "passed"), False: ("✗", "failed"), None: (DASH, "told")}[passed]
-        if not judgement["deciding"]:
-            style = "told"
-        measured = "" if judgement["measured"] is None else f"{figure(judgement['measured'], 2)} {judgement['unit']}"
-        rows.append(
-            e(
-                "tr",
-                e("td", sign, class_=f"outcome {style}"),
-                e("th", judgement["criterion"], e("small", judgement["sentence"]), scope="row"),
-                e("td", measured),
-                e("td", judgement["limit"] or ("told only" if not judgement["deciding"] else "")),
-                class_=None if judgement["deciding"] else "told",
-            )
-        )
-    return e("table", e("thead", head), e("tbody", *rows), class_="judgements")
+    ordered = sorted(found, key=lambda judgement: not judgement["deciding"])
+    return e("table", e("thead", head), *(_judgement(judgement) for judgement in ordered), class_="judgements")
+
+
+def _judgement(judgement: dict[str, Any]) -> Element:
+    """One of them: the figures, and below them the sentence."""
+    sign, style = {True: ("✓", "passed"), False: ("✗", "failed"), None: (DASH, "told")}[judgement["passed"]]
+    is_deciding = judgement["deciding"]
+    measured = "" if judgement["measured"] is None else f"{figure(judgement['measured'], 2)} {judgement['unit']}"
+    figures = e(
+        "tr",
+        e("td", sign, class_=f"outcome {style if is_deciding else 'told'}"),
+        e("th", judgement["criterion"], scope="row"),
+        e("td", measured),
+        e("td", judgement["limit"] if is_deciding else "told only"),
+    )
+    sentence = e("tr", e("td"), e("td", judgement["sentence"], colspan=3), class_="why")
+    return e("tbody", figures, sentence, class_=None if is_deciding else "told")
 
 
 def parameters(found: Sequence[dict[str, Any]]) -> Element | None:

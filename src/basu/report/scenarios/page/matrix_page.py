@@ -12,7 +12,7 @@ from basu.report.scenarios.page import matrix_table, tree_view
 from basu.report.scenarios.page.card import anchor_of, card, parameters, verdict_mark
 from basu.report.scenarios.page.records import read_case
 from basu.report.scenarios.page.shares_view import shares_view
-from basu.report.scenarios.page.style import style
+from basu.report.scenarios.page.style import card_style
 from basu.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.report.scenarios.sweep.study import studies
 from basu.report.scenarios.sweep.success_map import drawing
@@ -67,7 +67,7 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
     table = e("section", e("h2", "Matrix"), matrix_table.key(), matrix_table.matrix_table(matrix, carded))
     extended(body, [table, _cases(matrix, cards)])
     script = (HERE / "matrix.js").read_text(encoding="utf-8")
-    return page(f"Scenarios: {matrix['what']}", body, script=script, style=style())
+    return page(f"Scenarios: {matrix['what']}", body, script=script, style=card_style())
 
 
 def chosen(matrix: dict[str, Any]) -> list[Cell]:

@@ -12,6 +12,6 @@ HERE = Path(__file__).parent
 
 
 @functools.lru_cache
-def style() -> str:
+def card_style() -> str:
     """All of it."""
     return "\n".join([(HERE / "scenarios.css").read_text(encoding="utf-8"), picture_style(), map_style()])
