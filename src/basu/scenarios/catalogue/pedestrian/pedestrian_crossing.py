@@ -40,7 +40,6 @@ class PedestrianCrossing(Scenario):
         Choice("walker", ("adult", "child"), "who walks"),
     )
     needs_m = 100.0
-    aliases = ("DynamicObjectCrossing",)
 
     @property
     def from_m(self) -> float:
