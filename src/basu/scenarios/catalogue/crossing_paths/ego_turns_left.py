@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
-from basu.scenarios.catalogue.crossing_paths.from_the_side import NARROWLY, SETS_OFF_MPS2, SETTLED_S
-from basu.scenarios.catalogue.crossing_paths.stream import LEAVES_M, Lane, Stream
+from basu.scenarios.catalogue.crossing_paths.from_the_side import run_up_m
+from basu.scenarios.catalogue.crossing_paths.stream import LEAVES_M, NOTICE_S, Lane, Stream, Way
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, along_lane, crossing, next_junction
 
@@ -19,18 +18,10 @@ if TYPE_CHECKING:
     from py_trees.behaviour import Behaviour
 
     from basu.scenarios.parameters import Parameter
+    from basu.scenarios.stage import Pose
 
 TURNS_MPS = 5.0
-SLOWS_M = 12.0  # before the junction the first has the speed of its turn
 LOOK_M = 30.0
-
-
-class Meeting(NamedTuple):
-    """Where the first of them crosses the lane that the ego leaves."""
-
-    path: Path
-    meet_s_m: float
-    ego_s_m: float
 
 
 class EgoTurnsLeft(Stream):
@@ -51,10 +42,11 @@ class EgoTurnsLeft(Stream):
 
     def ways(self) -> Sequence[Lane]:
         """Straight on towards the ego."""
-        return [Lane(crossing(self.place, "opposite", "straight", approach_m=self.back_m, leave_m=LEAVES_M), 0.0)]
+        way = crossing(self.place, "opposite", "straight", approach_m=self.back_m, leave_m=LEAVES_M)
+        return [Lane(Way(way.path, way.meet_s_m, way.ego_s_m), 0.0)]
 
     @cached_property
-    def meeting(self) -> Meeting:
+    def meeting(self) -> Way:
         """The way of the first, and where it crosses the ego's lane, drawn on straight through the junction."""
         way = self.lanes[0].way
         entered = next_junction(self.place)
@@ -65,25 +57,18 @@ class EgoTurnsLeft(Stream):
         s_m = np.arange(before_m, path.length_m, 0.25)
         near = [ahead.nearest(path.at(float(s)).x_m, path.at(float(s)).y_m) for s in s_m]
         best = int(np.argmin([place.distance_m for place in near]))
-        return Meeting(path, float(s_m[best]), self.place.trigger_s_m + entered.from_m + near[best].s_m)
+        return Way(path, float(s_m[best]), self.place.trigger_s_m + entered.from_m + near[best].s_m)
+
+    def _begins(self, lane: Lane, index: int) -> Pose:
+        """The first is nearest; the second is timed by the ego as well, so it stands where that takes it."""
+        if index == 0:
+            return self.meeting.path.at(self.meeting.meet_s_m - run_up_m(TURNS_MPS, NOTICE_S))
+        return super()._begins(lane, index - 1)
 
     def _drives(self, lane: Lane, names: Sequence[str], index: int) -> Behaviour:
-        """The first turns left in front of whoever goes straight on."""
-        if index > 0:
+        """The first turns left in front of whoever goes straight on; the second meets who turns without waiting."""
+        if index > 1:
             return super()._drives(lane, names, index)
-        meeting, speed_mps = self.meeting, self.number("speed")
-        low, high = NARROWLY
-        return InTurn(
-            ReachAtEgosArrival(
-                names[0],
-                meeting.path,
-                meeting.meet_s_m,
-                meeting.ego_s_m,
-                low_mps=low * TURNS_MPS,
-                high_mps=high * speed_mps,
-                settled_s=SETTLED_S,
-                accelerate_mps2=SETS_OFF_MPS2,
-            ),
-            DriveAlong(names[0], meeting.path, TURNS_MPS, at_end="vanish"),
-            name=f"{names[0]} turns left",
-        )
+        if index == 1:
+            return self._timed(names[1], lane, self.number("speed"))
+        return self._timed(names[0], Lane(self.meeting, 0.0), TURNS_MPS, name=f"{names[0]} turns left")

@@ -30,13 +30,12 @@ class StraightCrossingPaths(Stream):
         Number("headway", 2.2, 1.5, 6.0, "s", "from one to the next"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 30.0, "sun_altitude_angle": 45.0}
-    aliases: ClassVar[Sequence[str]] = ("NoSignalJunctionCrossing",)
 
     def ways(self) -> Sequence[Lane]:
         """Straight on, from one side or both."""
         if self.choice("side") != "both":
             side = "left" if self.choice("side") == "left" else "right"
-            return [Lane(crossing(self.place, side, approach_m=self.back_m, leave_m=LEAVES_M), 0.0)]
+            return [Lane(crossing(self.place, side, approach_m=self.back_m, leave_m=LEAVES_M), 0.0, side)]
         left = crossing(self.place, "left", approach_m=self.back_m + 20.0, leave_m=LEAVES_M)
         right = crossing(self.place, "right", approach_m=self.back_m + 20.0, leave_m=LEAVES_M)
-        return [Lane(left, 0.0), Lane(right, SECOND_ROW_S)]
+        return [Lane(left, 0.0, "left"), Lane(right, SECOND_ROW_S, "right")]

@@ -20,18 +20,28 @@ if TYPE_CHECKING:
     from py_trees.behaviour import Behaviour
 
     from basu.scenarios.criteria import Criterion
-    from basu.scenarios.paths import Crossing
+    from basu.scenarios.paths import Crossing, Path
+    from basu.scenarios.stage import Pose
 
 KINDS = ("car", "suv", "van")  # of the first, the second, … and again
 NOTICE_S = 6.0  # before the ego would arrive without stopping, when all set off
 LEAVES_M = 45.0
 
 
+class Way(NamedTuple):
+    """A path, and where it meets the ego's: along it, and along the ego's route."""
+
+    path: Path
+    meet_s_m: float
+    ego_s_m: float
+
+
 class Lane(NamedTuple):
     """One row of cars."""
 
-    way: Crossing
+    way: Way | Crossing
     first_s: float  # after the ego would arrive, the first of them does
+    name: str = "oncoming"  # of each, before its number
 
 
 class Stream(Scenario):
@@ -59,7 +69,7 @@ class Stream(Scenario):
     def actors(self) -> Sequence[ActorSpec]:
         """All of them, in their rows."""
         return [
-            ActorSpec(name, BLUEPRINTS[KINDS[index % len(KINDS)]], lane.way.path.at(self._begins_m(lane, index)))
+            ActorSpec(name, BLUEPRINTS[KINDS[index % len(KINDS)]], self._begins(lane, index))
             for row, lane in enumerate(self.lanes)
             for index, name in enumerate(self._names(row))
         ]
@@ -88,29 +98,34 @@ class Stream(Scenario):
         return range(round(self.number("cars")))
 
     def _names(self, row: int) -> list[str]:
-        return [f"{self.lanes[row].way.side} {index + 1}" for index in self._row]
+        return [f"{self.lanes[row].name} {index + 1}" for index in self._row]
 
-    def _begins_m(self, lane: Lane, index: int) -> float:
+    def _begins(self, lane: Lane, index: int) -> Pose:
+        """Where one of them stands at first."""
         behind_m = index * self.number("headway") * self.number("speed")
-        return lane.way.meet_s_m - run_up_m(self.number("speed"), NOTICE_S + lane.first_s) - behind_m
+        before_m = run_up_m(self.number("speed"), NOTICE_S + lane.first_s) + behind_m
+        return lane.way.path.at(lane.way.meet_s_m - before_m)
 
     def _drives(self, lane: Lane, names: Sequence[str], index: int) -> Behaviour:
         """One of them: the first times itself by the ego, the others drive behind it."""
-        speed_mps, path = self.number("speed"), lane.way.path
-        if index > 0:
-            return DriveAlong(
-                names[index],
-                path,
-                speed_mps,
-                minds=(names[index - 1],),
-                accelerate_mps2=SETS_OFF_MPS2,
-                at_end="vanish",
-            )
+        if index == 0:
+            return self._timed(names[0], lane, self.number("speed"))
+        return DriveAlong(
+            names[index],
+            lane.way.path,
+            self.number("speed"),
+            minds=(names[index - 1],),
+            accelerate_mps2=SETS_OFF_MPS2,
+            at_end="vanish",
+        )
+
+    def _timed(self, who: str, lane: Lane, speed_mps: float, name: str = "") -> Behaviour:
+        """One who is at the meeting place when the ego is, if it does not wait."""
         low, high = NARROWLY
         return InTurn(
             ReachAtEgosArrival(
-                names[index],
-                path,
+                who,
+                lane.way.path,
                 lane.way.meet_s_m,
                 lane.way.ego_s_m,
                 lane.first_s,
@@ -119,6 +134,6 @@ class Stream(Scenario):
                 settled_s=SETTLED_S,
                 accelerate_mps2=SETS_OFF_MPS2,
             ),
-            DriveAlong(names[index], path, speed_mps, at_end="vanish"),
-            name=f"{names[index]} drives through",
+            DriveAlong(who, lane.way.path, speed_mps, at_end="vanish"),
+            name=name or f"{who} drives through",
         )

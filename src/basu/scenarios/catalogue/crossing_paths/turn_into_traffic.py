@@ -31,4 +31,4 @@ class TurnIntoTraffic(Stream):
 
     def ways(self) -> Sequence[Lane]:
         """From the left, straight on."""
-        return [Lane(crossing(self.place, "left", "straight", approach_m=self.back_m, leave_m=LEAVES_M), 0.0)]
+        return [Lane(crossing(self.place, "left", "straight", approach_m=self.back_m, leave_m=LEAVES_M), 0.0, "left")]

@@ -27,7 +27,7 @@ NEIGHBOUR = "neighbour"
 NOTICE_S = 6.0
 BACK_S = 2.0
 STREET_MPS = 10.0
-NARROWLY = (0.8, 1.4)  # of its own speed: what it varies by to be where it has to be
+NARROWLY = (0.8, 2.0)  # of its own speed: what it varies by to be where it has to be
 LEAVES_M = 80.0
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from basu.scenarios.actions import DriveAlong, Together
+from basu.scenarios.actions import DriveAlong, Meanwhile
 from basu.scenarios.catalogue.motorists import BLUEPRINTS, HALF_LENGTH_M
 from basu.scenarios.catalogue.opposite_direction.out_of_lane import OTHER, OutOfLane
 from basu.scenarios.parameters import Choice, Number
@@ -75,4 +75,4 @@ class OncomingOvertaker(OutOfLane):
         slow_from_m = self.passed_m + self.number("slow_speed") * self.notice_s
         path = oncoming(self.place, slow_from_m + 5.0, -10.0)
         drives = DriveAlong(SLOW, path, self.number("slow_speed"), accelerate_mps2=8.0, minds=(OTHER,), at_end="vanish")
-        return Together(self.comes(), drives, name="both come")
+        return Meanwhile(self.comes(), drives, name="both come")

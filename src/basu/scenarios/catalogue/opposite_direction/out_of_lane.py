@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 OTHER = "oncoming"
 SETS_OFF_MPS2 = 3.0
-NARROWLY = (0.85, 1.2)  # of its own speed: what it varies by to meet the ego
+NARROWLY = (0.8, 1.5)  # of its own speed: what it varies by to meet the ego, which may still speed up
 BEFORE_S = 2.0  # it drives in its own lane for at least so long before it leaves it
 BEHIND_M = 25.0  # it vanishes so far behind the trigger point
 
