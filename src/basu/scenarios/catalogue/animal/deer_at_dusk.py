@@ -1,0 +1,99 @@
+"""A deer runs across the street at dusk, and a second one after it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from basu.scenarios.actions import InTurn, Together, Wait, WalkAlong
+from basu.scenarios.catalogue.on_foot import STARTS_MPS2, across, ego_is_due, facing_deg, walking_s
+from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
+from basu.scenarios.nhtsa import Group
+from basu.scenarios.parameters import Choice, Number
+from basu.scenarios.scenario import Scenario
+from basu.scenarios.stage import ActorSpec
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from py_trees.behaviour import Behaviour
+
+    from basu.scenarios.criteria import Criterion
+
+DEER = "walker.pedestrian.0048"  # half a metre across, 1.1 m high
+AWAY_M = 8.0  # from the middle of the lane, where they stand and where they vanish to
+APART_M = 2.5  # the second one runs so far behind the first, seen along the street
+NEAR_M = 0.5  # nearer than this is luck: a deer turns on the spot
+
+
+class DeerAtDusk(Scenario):
+    """Two deer run across the street at dusk; the second freezes in the ego's lane.
+
+    The first crosses in time and is the warning. The second follows a second later, is dazzled, stands in the middle of
+    the lane ``sight`` seconds before the ego would be there, and runs on after a moment. NHTSA 2007, scenario 10:
+    animal, no prior vehicle maneuver. The hard one of its group. CARLA has no animals: walkers of a child's size run in
+    their place. BASU's own agents know who is where, and the dusk is none to them.
+    """
+
+    group = Group.ANIMAL
+    parameters = (
+        Number("ahead", 60.0, 40.0, 90.0, "m", "from the trigger point to where they cross"),
+        Number("speed", 8.0, 4.0, 12.0, "m/s", "of their run"),
+        Number("gap", 1.2, 0.6, 3.0, "s", "between the two"),
+        Number("sight", 1.8, 1.0, 3.5, "s", "from the second one's freezing to the ego's being there"),
+        Number("freezes", 2.5, 0.5, 5.0, "s", "that it stands in the lane"),
+        Choice("side", ("left", "right"), "from which they come"),
+    )
+    weather = {  # noqa: RUF012 - declared as a mapping that nobody changes
+        "sun_altitude_angle": -3.0,  # civil twilight
+        "sun_azimuth_angle": 250.0,
+        "cloudiness": 40.0,
+        "fog_density": 10.0,
+        "fog_distance": 30.0,
+    }
+    needs_m = 100.0
+
+    @property
+    def _from_m(self) -> float:
+        return AWAY_M if self.choice("side") == "right" else -AWAY_M
+
+    @property
+    def _top_mps(self) -> float:
+        """The speed that the second reaches: half of its way to the lane's middle it needs to stop again."""
+        return min(self.number("speed"), math.sqrt(STARTS_MPS2 * AWAY_M))
+
+    def actors(self) -> Sequence[ActorSpec]:
+        """Both beside the street."""
+        ahead_m = self.number("ahead")
+        return [
+            ActorSpec("deer_1", DEER, self.place.at(ahead_m, self._from_m, facing_deg(self._from_m))),
+            ActorSpec("deer_2", DEER, self.place.at(ahead_m + APART_M, self._from_m, facing_deg(self._from_m))),
+        ]
+
+    def trigger(self) -> Behaviour:
+        """The second will stand in the lane so long before the ego is there."""
+        slides_s = self._top_mps / (2.0 * STARTS_MPS2)
+        there_s = self.number("gap") + walking_s(AWAY_M, self._top_mps) + slides_s
+        return ego_is_due(
+            self.place, self.number("ahead") + APART_M, there_s + self.number("sight"), "where they cross"
+        )
+
+    def conflict(self) -> Behaviour:
+        """One runs across; the other follows, freezes, and runs on."""
+        ahead_m, speed_mps, from_m = self.number("ahead"), self.number("speed"), self._from_m
+        second = WalkAlong(
+            "deer_2",
+            across(self.place, ahead_m + APART_M, from_m, -from_m),
+            speed_mps,
+            pause_at_m=AWAY_M - self._top_mps**2 / (2.0 * STARTS_MPS2),  # from where it slides to a stand
+            pause_s=self.number("freezes"),
+        )
+        return Together(
+            WalkAlong("deer_1", across(self.place, ahead_m, from_m, -from_m), speed_mps),
+            InTurn(Wait(self.number("gap")), second, name="the second"),
+        )
+
+    def criteria(self) -> Sequence[Criterion]:
+        """Neither is touched or nearly so, and the ego goes on."""
+        near = [LeastDistance(NEAR_M, to=name, while_moving=True) for name in ("deer_1", "deer_2")]
+        return [NoCollision(), *near, Arrives(), InTime()]
