@@ -16,7 +16,7 @@ from types import ModuleType
 from basu.scenarios import actions, criteria, paths, triggers
 from basu.scenarios.library import ALL, open_library, snake
 from basu.scenarios.listing import as_text, listed
-from basu.scenarios.nhtsa import TOLLS, Group
+from basu.scenarios.nhtsa import Group
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "scenarios.md"
@@ -56,13 +56,12 @@ def catalogue() -> str:
     """What comes with BASU, by group."""
     library = open_library()
     cases = [playable.scenario for playable in library.choose([ALL])]
-    lines = ["| group | crashes a year | scenario | what happens | cases |", "|---|---|---|---|---|"]
+    lines = ["| group | scenario | what happens | cases | reads ScenarioRunner's |", "|---|---|---|---|---|"]
     for group in Group:
-        toll = TOLLS.get(group)
-        told = f"{toll.crashes:,}" if toll else ""
         for scenario in (scenario for scenario in library.scenarios if scenario.group is group):
-            name = f"`{snake(scenario.__name__)}`"
-            lines.append(f"| {group.value} | {told} | {name} | {cell(scenario.title())} | {cases.count(scenario)} |")
+            theirs = ", ".join(f"`{name}`" for name in scenario.aliases)
+            row = (group.value, f"`{snake(scenario.__name__)}`", scenario.title(), str(cases.count(scenario)), theirs)
+            lines.append(f"| {' | '.join(map(cell, row))} |")
     return "\n".join(lines)
 
 
