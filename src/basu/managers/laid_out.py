@@ -96,8 +96,8 @@ def _on_the_way_s_m(planned: Playable, route: Route, trigger: Pose) -> float:
     if not len(candidates):
         index = int(away_m.argmin())
         raise ScenarioError(
-            f"{who} looks to {math.degrees(trigger.yaw_rad):.0f}°, and the route goes to "
-            f"{math.degrees(float(route.yaw_rad[index])):.0f}° there; turn it"
+            f"{who} looks to {round(math.degrees(trigger.yaw_rad)) % 360}°, and the route goes to "
+            f"{round(math.degrees(float(route.yaw_rad[index]))) % 360}° there; turn it"
         )
     least_m = float(away_m[candidates].min())
     first = int(candidates[away_m[candidates] <= least_m + ALIKE_M][0])
