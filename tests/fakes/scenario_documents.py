@@ -39,7 +39,7 @@ VERDICT_FAULTS = {
 
 
 def crossing(*, brakes: bool = True, seconds: float = 12.0) -> History:
-    """East at 6 m/s; a walker crosses from the right at x = 50 m. Who brakes stops 3 m before; who does not hits it."""
+    """East at 6 m/s; a walker crosses from the right at x = 50 m. Who brakes stops before; who does not hits it."""
     recorder, x_m, speed_mps = Recorder(), 0.0, 6.0
     contact = None
     for tick in range(round(seconds / STEP_S)):
@@ -47,7 +47,7 @@ def crossing(*, brakes: bool = True, seconds: float = 12.0) -> History:
         walker_y_m = 7.0 - 1.5 * max(0.0, t_s - 4.0)
         if brakes and t_s > 4.5:
             in_the_way = abs(walker_y_m) < 3.0 or walker_y_m > 0.0
-            gain_mps2 = -2.5 if in_the_way and x_m < 50.0 else 1.5
+            gain_mps2 = -2.5 if in_the_way and 45.0 - x_m < speed_mps**2 / 5.0 else 1.5
             speed_mps = min(6.0, max(0.0, speed_mps + gain_mps2 * STEP_S))
         if not brakes and contact is None and abs(walker_y_m) < 1.3 and abs(x_m - 50.0) < 2.3:
             contact = Collision(tick=tick, other_id=WALKER, other_type="walker.pedestrian.0001", impulse_ns=(-90, 0, 0))

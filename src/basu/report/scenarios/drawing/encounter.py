@@ -53,7 +53,7 @@ def span_of(result: dict[str, Any], history: History) -> Span:
     t_s = history.frames["t_s"]
     phases_s = result["phases_s"]
     first = int(np.searchsorted(t_s, min(phases_s.values(), default=0.0) - 1e-6))
-    last = int(np.searchsorted(t_s, phases_s["end"] + 1e-6)) if "end" in phases_s else len(t_s)
+    last = int(np.searchsorted(t_s, phases_s["end"] + 1e-6)) - 1 if "end" in phases_s else len(t_s)
     return Span(min(first, len(t_s) - 1), max(0, min(last, len(t_s) - 1)))
 
 
@@ -100,17 +100,21 @@ def boxes_at(history: History, tick: int) -> list[tuple[int, Box]]:
     return list(zip(rows["id"].tolist(), other_boxes(history.facts, rows), strict=True))
 
 
-def thing_boxes(result: dict[str, Any]) -> list[tuple[str, Box]]:
-    """What the scenario brought that never moves."""
+def thing_boxes(result: dict[str, Any], t_s: float | None = None) -> list[tuple[str, Box]]:
+    """What the scenario brought that is no actor of the record: wherever it stood, or where it stood at a time."""
     keys = ("x_m", "y_m", "yaw_rad", "half_length_m", "half_width_m")
-    return [(str(thing["name"]), np.array([thing[key] for key in keys])) for thing in result["things"]]
+    return [
+        (str(thing["name"]), np.array([thing[key] for key in keys]))
+        for thing in result["things"]
+        if t_s is None or thing.get("from_s", 0.0) <= t_s + 1e-6 < (thing.get("until_s") or math.inf)
+    ]
 
 
 def _beside(result: dict[str, Any], history: History, tick: int) -> list[tuple[str, Box]]:
     """Everybody and everything near in a tick, by what it is called."""
     roles, types = roles_of(result), history.facts.actor_types
     actors = [(roles.get(key, types.get(key, "somebody")), box) for key, box in boxes_at(history, tick)]
-    return [*actors, *thing_boxes(result)]
+    return [*actors, *thing_boxes(result, float(history.frames["t_s"][tick]))]
 
 
 def _searched(result: dict[str, Any], history: History, span: Span) -> Encounter | None:

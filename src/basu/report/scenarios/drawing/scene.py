@@ -14,6 +14,7 @@ from basu.report.scenarios.drawing.bodies import NOSE, block, body, outline
 from basu.report.scenarios.drawing.encounter import boxes_at, contacts_of, encounter_of, roles_of, span_of, thing_boxes
 from basu.report.scenarios.drawing.labels import Labels
 from basu.report.scenarios.drawing.legend import cross
+from basu.report.streets import on_the_map
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -113,8 +114,8 @@ class Scene:
                 drawn += trails.drawn(found, "spot", 2.2)
                 self._timed += [(dot, "small halo") for dot in found]
         frames = history.frames[span.first : span.last + 1]
-        own_px = np.column_stack(canvas.at(frames["x_m"], frames["y_m"]))
-        self._labels.keep_line_free(own_px[np.isfinite(own_px).all(axis=1)])
+        for piece in canvas.pieces(on_the_map(np.column_stack([frames["x_m"], frames["y_m"]]))):
+            self._labels.keep_line_free(np.array([canvas.at(x_m, y_m) for x_m, y_m in piece]))
         found = trails.dots(frames["t_s"], frames["x_m"], frames["y_m"], canvas)
         self._timed = [(dot, "small halo") for dot in found] + self._timed
         return [*drawn, *trails.own_trail(history, span, canvas), *trails.drawn(found, "dot", 2.6)]
@@ -123,11 +124,12 @@ class Scene:
         """Everybody when the ego was nearest to somebody, and the distance as a line."""
         story, canvas, labels = self._story, self._canvas, self._labels
         begun = [] if story.conflict_tick is None else [self._ghost(story.conflict_tick)]
-        things = [block(box, canvas, "thing") for _, box in thing_boxes(story.result)]
-        if things:
-            self.shown.add("thing")
         met = story.met
         tick = story.span.last if met is None else met.tick
+        t_s = float(story.history.frames["t_s"][tick])
+        things = [block(box, canvas, "thing") for _, box in thing_boxes(story.result, t_s)]
+        if things:
+            self.shown.add("thing")
         own = story.own_box(tick)
         drawn = [body(own, canvas, "own")]
         labels.keep_free(outline(own, canvas, NOSE))

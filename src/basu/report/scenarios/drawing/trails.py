@@ -8,6 +8,7 @@ import numpy as np
 
 from basu.report.markup import DASH, e, number
 from basu.report.plots.decimate import path
+from basu.report.streets import on_the_map
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -66,7 +67,7 @@ def dots(t_s: NDArray[np.float64], x_m: NDArray[np.float64], y_m: NDArray[np.flo
     for second in range(int(np.ceil(t_s[0] - 1e-6)), int(t_s[-1] + 1e-6) + 1):
         index = int(np.argmin(np.abs(t_s - second)))
         place_m = (float(x_m[index]), float(y_m[index]))
-        if abs(t_s[index] - second) > DOT_S / 4.0 or not np.isfinite(place_m).all():
+        if abs(t_s[index] - second) > DOT_S / 4.0 or not len(on_the_map(np.array([place_m]))):
             continue
         if last_m is not None and np.hypot(place_m[0] - last_m[0], place_m[1] - last_m[1]) < LONELY_M:
             if found and found[-1].at_px == canvas.at(*last_m):
@@ -88,7 +89,7 @@ def drawn(found: list[Dot], style: str, radius_px: float) -> list[Element]:
 
 def _whole(points_m: NDArray[np.float64], canvas: Canvas) -> str:
     """A trail as a path with few points, as far as it comes into the picture."""
-    finite = _moved(points_m[np.isfinite(points_m).all(axis=1)])
+    finite = _moved(on_the_map(points_m))
     if len(finite) < 2:
         return ""
     thin = np.array(path(finite, TOLERANCE_M))

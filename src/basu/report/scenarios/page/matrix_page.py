@@ -138,7 +138,7 @@ def _sweeps(matrix: dict[str, Any]) -> Iterator[Element]:
         for study in found:
             if study.scenario == scenario:
                 known = boundary_of(study)
-                told = e("ul", *(e("li", text) for text in sentences(known)))
+                told = e("ul", *(e("li", text[0].upper() + text[1:]) for text in sentences(known)))
                 maps.append(e("figure", e("figcaption", e("b", study.agent), told), drawing(known), class_="sweep"))
         section.append(maps)
         yield section

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from basu.report.scenarios.sweep.study import Axis
 
 BY_CHANCE = 0.05  # a rule more likely than this by chance is none
-MOST_CUTS = 60  # between values of one parameter; among more of them, these are spread evenly over the cases
+MOST_CUTS = 200  # that ranges lie between; among more of them, these are spread evenly over the cases
 MOST_OPTIONS = 12  # of a choice; with more of them no rule is looked for
 MOST_DIGITS = 6
 EXACT = 12  # rules of a kind whose chance is computed: those with the greatest information gain
@@ -79,14 +79,13 @@ def _of_numbers(axis: Axis, failed: NDArray[np.bool_], asked: NDArray[np.bool_])
     """The best threshold and the best range, each against all of its kind."""
     values, order = np.sort(axis.values[asked]), np.argsort(axis.values[asked], kind="stable")
     fails = np.concatenate([[0], np.cumsum(failed[asked][order])])
-    cuts = _cuts(values)
+    cuts, total = np.flatnonzero(np.diff(values) > 0.0) + 1, len(values)
     if len(cuts) == 0:
         return []
-    total = len(values)
-    ends = np.concatenate([[0], cuts, [total]])
-    first, last = np.triu_indices(len(ends), 1)
-    whole = (first == 0) & (last == len(ends) - 1)
-    first, last = ends[first[~whole]], ends[last[~whole]]
+    inner = cuts[np.unique(np.linspace(0, len(cuts) - 1, MOST_CUTS).round().astype(np.int64))]
+    begins, ends = np.triu_indices(len(inner), 1)
+    first = np.concatenate([np.zeros_like(cuts), cuts, inner[begins]])
+    last = np.concatenate([cuts, np.full_like(cuts, total), inner[ends]])
     hits, drawn = fails[last] - fails[first], last - first
     gains = _gains(hits, drawn, int(fails[-1]), total)
     is_threshold = (first == 0) | (last == total)
@@ -148,14 +147,6 @@ def _rule(
         int((failed & asked & ~inside).sum()),
         log_chance,
     )
-
-
-def _cuts(values: NDArray[np.float64]) -> NDArray[np.int64]:
-    """How many of the ascending values lie below each cut: between neighbours that differ, thinned out."""
-    cuts = np.flatnonzero(np.diff(values) > 0.0) + 1
-    if len(cuts) > MOST_CUTS:
-        cuts = cuts[np.unique(np.linspace(0, len(cuts) - 1, MOST_CUTS).round().astype(np.int64))]
-    return cuts
 
 
 def _gains(hits: NDArray[np.int64], drawn: NDArray[np.int64], failed: int, total: int) -> NDArray[np.float64]:
