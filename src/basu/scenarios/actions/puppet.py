@@ -147,19 +147,22 @@ def gap_ahead(path: Path, s_m: float, body: Body, other: Body) -> Ahead | None:
     """How far another is ahead on a path that ``body`` follows at ``s_m``; None where it is not on it."""
     if math.hypot(other.x_m - body.x_m, other.y_m - body.y_m) > LOOK_M:
         return None
+    reach_m = body.half_width_m + MARGIN_M
+    middle = path.nearest(other.x_m, other.y_m, s_m, LOOK_M + 10.0)
+    if middle.distance_m > reach_m + math.hypot(other.half_length_m, other.half_width_m):
+        return None
     cos, sin = math.cos(other.yaw_rad), math.sin(other.yaw_rad)
-    on_path: list[OnPath] = []
-    for along, across in ((1, 1), (1, -1), (-1, 1), (-1, -1), (0, 0)):
+    on_path = [middle]
+    for along, across in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         forward_m, right_m = along * other.half_length_m, across * other.half_width_m
         x_m, y_m = other.x_m + forward_m * cos - right_m * sin, other.y_m + forward_m * sin + right_m * cos
         on_path.append(path.nearest(x_m, y_m, s_m, LOOK_M + 10.0))
-    reach_m = body.half_width_m + MARGIN_M
     if min(p.right_m for p in on_path) > reach_m or max(p.right_m for p in on_path) < -reach_m:
         return None
     gap_m = min(p.s_m for p in on_path) - s_m - body.half_length_m
     if max(p.s_m for p in on_path) < s_m or gap_m > LOOK_M:
         return None
-    yaw_rad = path.heading_rad(on_path[-1].s_m)
+    yaw_rad = path.heading_rad(middle.s_m)
     speed_mps = other.velocity_x_mps * math.cos(yaw_rad) + other.velocity_y_mps * math.sin(yaw_rad)
     return Ahead(gap_m, max(0.0, speed_mps))
 
