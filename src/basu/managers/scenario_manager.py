@@ -21,7 +21,7 @@ from basu.managers.stage.cast import bring, take_away
 from basu.managers.stage.live_stage import LiveStage
 from basu.managers.stage.shared_world import SharedWorld
 from basu.outcome import Outcome, Status
-from basu.scenarios.criteria.criterion import Played
+from basu.scenarios.criteria.criterion import Played, moved
 from basu.scenarios.stage import Controls
 from basu.scenarios.tree import set_on
 
@@ -253,6 +253,7 @@ class ScenarioManager(BaseManager):
     def _end(self, playing: Playing, tick: int | None) -> None:
         """Leave the world clean."""
         playing.over, playing.over_tick = True, tick
+        playing.things = moved(playing.things, playing.stage.moves)
         playing.stage.clear()
 
 

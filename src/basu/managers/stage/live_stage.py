@@ -13,7 +13,7 @@ from basu.errors import ScenarioError
 from basu.managers.stage.cast import bring, member_of, take_away
 from basu.managers.stage.puppets import Puppets
 from basu.managers.stage.surroundings import Surroundings
-from basu.scenarios.criteria.criterion import Thing
+from basu.scenarios.criteria.criterion import Move, Thing
 from basu.scenarios.stage import EGO, Body
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ class LiveStage:
         self._bodies: dict[str, Body] = {}
         self._frame: Frame | None = None
         self._began_tick = 0
+        self._moves: list[Move] = []
         self._touched: frozenset[str] = frozenset()
 
     @property
@@ -122,6 +123,11 @@ class LiveStage:
             for name, body in bodies
         )
 
+    @property
+    def moves(self) -> tuple[Move, ...]:
+        """Who was put elsewhere or taken away, and when on the record's clock."""
+        return tuple(self._moves)
+
     # what a tree may ask ------------------------------------------------------------------------------------------
 
     @property
@@ -169,6 +175,7 @@ class LiveStage:
         member = self._member(name)
         rotation = carla.Rotation(yaw=math.degrees(pose.yaw_rad))
         member.actor.set_transform(carla.Transform(carla.Location(pose.x_m, pose.y_m, pose.z_m), rotation))
+        self._moves.append(Move(name, self._next_s, pose))
 
     def let_go(self, name: str) -> None:
         """Lead it no more."""
@@ -179,6 +186,7 @@ class LiveStage:
         member = self._member(name)
         self._puppets.let_go(member)
         take_away([self._cast.pop(name)])
+        self._moves.append(Move(name, self._next_s, None))
         self._bodies.pop(name, None)
 
     def open_door(self, name: str, door: Door) -> None:
@@ -206,6 +214,11 @@ class LiveStage:
         self._changes.pop(key, None)
         if change is not None:
             self._changes[key] = change
+
+    @property
+    def _next_s(self) -> float:
+        """When this frame's commands have come true, on the record's clock."""
+        return (self._now.tick + 1) * self.step_s
 
     @property
     def _now(self) -> Frame:

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from basu.history import History
     from basu.outcome import Outcome
+    from basu.scenarios.stage import Pose
 
 
 class Thing(NamedTuple):
@@ -23,6 +24,32 @@ class Thing(NamedTuple):
     yaw_rad: float
     half_length_m: float
     half_width_m: float
+    from_s: float = 0.0  # when it came to stand there, on the record's clock
+    until_s: float | None = None  # when it was put elsewhere or taken away; None: it stayed
+
+
+class Move(NamedTuple):
+    """A thing that was put elsewhere; no pose where it was taken away."""
+
+    name: str
+    t_s: float
+    pose: Pose | None
+
+
+def moved(things: Sequence[Thing], moves: Sequence[Move]) -> tuple[Thing, ...]:
+    """Where things stood, and from when until when: one entry for each place, moves in the order of their times."""
+    latest = {thing.name: thing for thing in things}
+    past = []
+    for move in moves:
+        thing = latest.pop(move.name, None)
+        if thing is None:
+            continue
+        if move.t_s > thing.from_s:
+            past.append(thing._replace(until_s=move.t_s))
+        if move.pose is not None:
+            x_m, y_m, _, yaw_rad = move.pose
+            latest[move.name] = thing._replace(x_m=x_m, y_m=y_m, yaw_rad=yaw_rad, from_s=move.t_s)
+    return (*past, *latest.values())
 
 
 class Played(NamedTuple):

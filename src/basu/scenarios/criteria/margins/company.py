@@ -52,13 +52,15 @@ def company(played: Played) -> Company:
     """
     history, facts = played.history, played.history.facts
     names, sizes = dict(played.roles), dict(facts.actor_sizes)
-    key_of = {thing.name: LAST_ID - number for number, thing in enumerate(played.things)}
+    key_of = {name: LAST_ID - number for number, name in enumerate(dict.fromkeys(t.name for t in played.things))}
+    t_s, slack_s = history.frames["t_s"], facts.step_s / 2.0
     rows = [history.others]
     for thing in played.things:
         key = key_of[thing.name]
         names[key], sizes[key] = thing.name, (thing.half_length_m, thing.half_width_m)
         away_m = np.hypot(history.frames["x_m"] - thing.x_m, history.frames["y_m"] - thing.y_m)
-        near = history.frames["tick"][away_m <= NEAR_M]
+        there = (t_s >= thing.from_s - slack_s) & (thing.until_s is None or t_s < thing.until_s - slack_s)
+        near = history.frames["tick"][there & (away_m <= NEAR_M)]
         stood = np.zeros(len(near), dtype=OTHER)
         stood["tick"], stood["id"] = near, key
         stood["x_m"], stood["y_m"], stood["yaw_rad"] = thing.x_m, thing.y_m, thing.yaw_rad
