@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import Pose
 
 TURNS_MPS = 5.0
+NEARER_S = 0.8  # by so much of its way the first stands nearer than it has time for: the next needs room behind it
+NEXT_S = 0.4  # the second meets who turns without waiting, so long after the ego would arrive
 LOOK_M = 30.0
 
 
@@ -43,7 +45,7 @@ class EgoTurnsLeft(Stream):
     def ways(self) -> Sequence[Lane]:
         """Straight on towards the ego."""
         way = crossing(self.place, "opposite", "straight", approach_m=self.back_m, leave_m=LEAVES_M)
-        return [Lane(Way(way.path, way.meet_s_m, way.ego_s_m), 0.0)]
+        return [Lane(Way(way.path, way.meet_s_m, way.ego_s_m), NEXT_S)]
 
     @cached_property
     def meeting(self) -> Way:
@@ -62,7 +64,7 @@ class EgoTurnsLeft(Stream):
     def _begins(self, lane: Lane, index: int) -> Pose:
         """The first is nearest; the second is timed by the ego as well, so it stands where that takes it."""
         if index == 0:
-            return self.meeting.path.at(self.meeting.meet_s_m - run_up_m(TURNS_MPS, NOTICE_S))
+            return self.meeting.path.at(self.meeting.meet_s_m - run_up_m(TURNS_MPS, NOTICE_S - NEARER_S))
         return super()._begins(lane, index - 1)
 
     def _drives(self, lane: Lane, names: Sequence[str], index: int) -> Behaviour:

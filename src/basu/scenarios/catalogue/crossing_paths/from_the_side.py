@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from basu.scenarios.paths.lanes import Turn
 
 OTHER = "other"
-SETS_OFF_MPS2 = 3.0
-SETTLED_S = 2.2  # before they meet, the other has its speed and keeps it, whatever the ego does
+SETS_OFF_MPS2 = 3.5
+SETTLED_S = 1.8  # before they meet, the other has its speed and keeps it, whatever the ego does
 NARROWLY = (0.75, 1.7)  # of its own speed: what it varies by to meet the ego, which may still speed up
 LEAVES_M = 35.0  # of its way behind the junction, then it is out of sight
 

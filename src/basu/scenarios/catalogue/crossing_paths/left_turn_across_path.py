@@ -29,7 +29,7 @@ class LeftTurnAcrossPath(AcrossTheWay):
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("kind", ("car", "van", "suv", "motorcycle"), "who turns"),
         Number("speed", 5.0, 3.5, 7.0, "m/s", "of the other in its turn"),
-        Number("lateness", -0.5, -2.0, 0.5, "s", "after the ego at the place where they meet; negative: before it"),
+        Number("lateness", -1.0, -2.0, 0.5, "s", "after the ego at the place where they meet; negative: before it"),
         Number("notice", 5.5, 3.0, 7.0, "s", "before the ego's arrival, when the other sets off"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 10.0, "sun_altitude_angle": 15.0}

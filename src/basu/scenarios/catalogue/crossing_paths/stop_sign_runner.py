@@ -24,7 +24,7 @@ class StopSignRunner(AcrossTheWay):
         Choice("side", ("right", "left"), "from which the other comes"),
         Choice("kind", ("car", "van", "suv", "motorcycle"), "who it is"),
         Number("speed", 6.5, 4.0, 11.0, "m/s", "of the other"),
-        Number("lateness", -0.3, -1.5, 1.0, "s", "after the ego at the place where they meet; negative: before it"),
+        Number("lateness", -0.5, -1.5, 1.0, "s", "after the ego at the place where they meet; negative: before it"),
         Number("notice", 5.5, 4.0, 7.0, "s", "before the ego's arrival, when the other sets off"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 70.0, "sun_altitude_angle": 25.0}

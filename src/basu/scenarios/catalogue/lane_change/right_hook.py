@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from basu.scenarios.parameters import Parameter
 
-CHANGE_M = 12.0  # it is back in the lane where the junction begins
+CHANGE_M = 12.0
+SLOWS_M = 14.0  # in the ego's lane before the junction begins
 LEAVES_M = 40.0
 EASES_M = 8.0  # behind the junction's beginning, before it speeds up again
 
@@ -39,8 +40,8 @@ class RightHook(OvertakesEgo):
 
     @property
     def cuts_in_m(self) -> float:
-        """It is back in the lane where the junction begins."""
-        return next_junction(self.place).from_m - CHANGE_M
+        """So that it is in the lane before the junction and can slow down for its turn there."""
+        return next_junction(self.place).from_m - SLOWS_M - CHANGE_M
 
     def conflict(self) -> Behaviour:
         """It gets past, cuts in and turns."""

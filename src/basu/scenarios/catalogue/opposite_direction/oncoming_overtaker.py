@@ -36,7 +36,7 @@ class OncomingOvertaker(OutOfLane):
         Number("speed", 9.0, 6.0, 14.0, "m/s", "of the overtaker"),
         Number("slow_speed", 4.0, 2.0, 5.0, "m/s", "of the overtaken"),
         Number("warning", 5.0, 4.0, 7.0, "s", "from when it begins to get out until they would meet"),
-        Number("meets", 55.0, 45.0, 70.0, "m", "ahead of the trigger point: where they would meet"),
+        Number("meets", 55.0, 45.0, 70.0, "m", "ahead of the trigger point: where it begins to go back"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 20.0, "sun_altitude_angle": 70.0}
 

@@ -24,6 +24,7 @@ OTHER = "oncoming"
 SETS_OFF_MPS2 = 3.0
 NARROWLY = (0.8, 1.5)  # of its own speed: what it varies by to meet the ego, which may still speed up
 BEFORE_S = 2.0  # it drives in its own lane for at least so long before it leaves it
+BEFORE_M = 10.0  # it goes back when the ego, unbraked, is still so far away: too late for that one by a second
 BEHIND_M = 25.0  # it vanishes so far behind the trigger point
 
 
@@ -41,7 +42,8 @@ class Excursion(NamedTuple):
 class OutOfLane(Scenario):
     """The base: somebody comes out of its lane from ``out_m`` to ``back_m``, where the ego would meet it.
 
-    Each has ``kind``, ``speed`` and ``meets``; it is driven on whatever the ego does once it leaves its lane.
+    Each has ``kind``, ``speed`` and ``meets``. Out of its lane it drives on whatever the ego does; once it goes back it
+    brakes for an ego that stands in its way.
     """
 
     group = Group.OPPOSITE_DIRECTION
@@ -50,7 +52,7 @@ class OutOfLane(Scenario):
 
     @property
     def back_m(self) -> float:
-        """Ahead of the trigger point, where it begins to go back, and the ego meets it without braking."""
+        """Ahead of the trigger point, where it begins to go back."""
         return self.number("meets")
 
     @property
@@ -94,8 +96,8 @@ class OutOfLane(Scenario):
 
     @property
     def ego_s_m(self) -> float:
-        """Where they would meet, along the ego's route."""
-        return self.place.trigger_s_m + self.back_m
+        """Where the ego would be when the other begins to go back, along its route."""
+        return self.place.trigger_s_m + self.back_m - BEFORE_M
 
     def trigger(self) -> Behaviour:
         """The ego is on its way to where they would meet."""
@@ -120,7 +122,7 @@ class OutOfLane(Scenario):
                 settled_s=self.notice_s - BEFORE_S,
                 accelerate_mps2=SETS_OFF_MPS2,
             ),
-            DriveAlong(OTHER, way.path, speed_mps, at_end="vanish"),
+            DriveAlong(OTHER, way.path, speed_mps, considerate=True, at_end="vanish"),
             name="comes towards the ego",
         )
 

@@ -28,7 +28,7 @@ class StrayingOncoming(OutOfLane):
         Number("over", 2.2, 1.4, 3.2, "m", "to its left"),
         Number("drift", 2.0, 1.0, 4.0, "s", "for which it drifts until it is there"),
         Number("warning", 4.8, 3.5, 7.0, "s", "from when it begins to drift until they would meet"),
-        Number("meets", 55.0, 45.0, 70.0, "m", "ahead of the trigger point: where they would meet"),
+        Number("meets", 55.0, 45.0, 70.0, "m", "ahead of the trigger point: where it begins to go back"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 40.0, "sun_altitude_angle": -5.0}
     aliases: ClassVar[Sequence[str]] = ("InvadingTurn",)
