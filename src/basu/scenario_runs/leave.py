@@ -9,7 +9,6 @@ from basu.report.folder import plain
 from basu.report.scenarios.console import matrix_text
 from basu.report.scenarios.junit import junit_xml
 from basu.report.scenarios.page.matrix_page import PAGE_FILE, write_matrix_page
-from basu.report.scenarios.sweep.boundary import boundary
 from basu.report.scenarios.sweep.study import studies
 from basu.report.scenarios.sweep.success_map import sweep_map
 from basu.utils.atomic import write_bytes
@@ -26,8 +25,7 @@ def leave(folder: Path, matrix: dict[str, Any], junit: Path | None) -> None:
     Raises:
         UserError: the disk is full or the folder cannot be written.
     """
-    told = boundary(matrix)
-    write_bytes(folder / TEXT_FILE, "\n\n".join([matrix_text(matrix), *told, ""]).encode())
+    write_bytes(folder / TEXT_FILE, f"{matrix_text(matrix)}\n".encode())
     for file in (folder / JUNIT_FILE, junit):
         if file is not None:
             write_bytes(file, junit_xml(matrix))
@@ -35,5 +33,5 @@ def leave(folder: Path, matrix: dict[str, Any], junit: Path | None) -> None:
         name = f"success-{plain(study.scenario)}-{plain(study.agent)}.svg"
         write_bytes(folder / name, sweep_map(matrix, study.agent, study.scenario).encode())
     write_matrix_page(folder, matrix)
-    print("\n\n".join([matrix_text(matrix, colour=sys.stdout.isatty()), *told]))
+    print(matrix_text(matrix, colour=sys.stdout.isatty()))
     print(f"\nreport  {folder / PAGE_FILE}")
