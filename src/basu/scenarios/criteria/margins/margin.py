@@ -56,6 +56,10 @@ class Margin(Criterion):
     def words(self, value: float) -> str:
         """What the least figure means, after a party's name."""
 
+    def never(self) -> str:
+        """What is said where nobody came within the horizon."""
+        return f"it never was below {self.horizon:g} {self.unit}"
+
     def frames(self, with_whom: Company) -> NDArray[np.bool_]:
         """(T,) which frames count."""
         return np.ones(len(with_whom.history.frames), dtype=np.bool_)
@@ -101,9 +105,7 @@ class Margin(Criterion):
         row = with_whom.history.others[rows[nearest]]
         if math.isinf(least):
             passed = None if self.at_least is None else True
-            return self.says(
-                played, passed, f"it never was below {self.horizon:g} {self.unit}", unit=self.unit, limit=limit
-            )
+            return self.says(played, passed, self.never(), unit=self.unit, limit=limit)
         theirs_mps = math.hypot(float(row["velocity_x_mps"]), float(row["velocity_y_mps"]))
         key, tick = int(row["id"]), int(ticks[nearest])
         t_s = float(played.history.frames["t_s"][tick])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.passengers.boxes import other_boxes, own_boxes
-from basu.metrics.passengers.near_misses import CROSSING_RAD, post_encroachment_s
+from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, post_encroachment_s
 from basu.scenarios.criteria.margins.margin import Margin
 
 if TYPE_CHECKING:
@@ -40,12 +40,20 @@ class Pet(Margin):
         return found_s[rows], later[rows]
 
     def touched(self, with_whom: Company, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Only who came across the ego's way: who is run into from behind had it ahead, not across."""
+        """Only who was coming across the ego's way: not who was run into from behind, and not who stood."""
         history = with_whom.history
         others = history.others[rows]
+        came = history.others[np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > STILL_MPS]
+        just_before = set(zip((came["tick"] + 1).tolist(), came["id"].tolist(), strict=True))
+        pairs = zip(others["tick"].tolist(), others["id"].tolist(), strict=True)
+        moving = np.array([pair in just_before for pair in pairs], dtype=np.bool_)
         off_rad = others["yaw_rad"] - history.frames["yaw_rad"][others["tick"]]
         crossing = np.asarray(np.abs(np.sin(off_rad)) >= math.sin(CROSSING_RAD), dtype=np.bool_)
-        return super().touched(with_whom, rows) & crossing
+        return super().touched(with_whom, rows) & crossing & moving
+
+    def never(self) -> str:
+        """That no way was crossed."""
+        return f"nobody crossed its way within {self.horizon:g} s"
 
     def words(self, value: float) -> str:
         """How long between the two."""
