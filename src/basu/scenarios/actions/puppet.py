@@ -61,7 +61,8 @@ class Puppet(Action):
         body = self.stage.body(self.actor)
         self.path = self.given or Path.straight(Pose(body.x_m, body.y_m, body.z_m, body.yaw_rad), STRAIGHT_M)
         self.near = self.path.nearest(body.x_m, body.y_m)
-        self.s_m, self.speed_mps = self.near.s_m, max(0.0, body.forward_mps)
+        self.began_m = self.s_m = self.near.s_m
+        self.speed_mps = max(0.0, body.forward_mps)
         self.touched = False
         for name in self.minds:
             self.stage.body(name)
@@ -101,7 +102,7 @@ class Puppet(Action):
         """What is done, once it is; here, the end of the path."""
         if self.s_m < self.path.length_m - self.speed_mps * self.stage.step_s / 2.0 - 0.05:
             return None
-        return f"{self.path.length_m:.0f} m driven, at {self.speed_mps:.1f} m/s"
+        return f"{self.s_m - self.began_m:.0f} m driven, at {self.speed_mps:.1f} m/s"
 
     def _drive(self, body: Body) -> None:
         """Change the speed within the limits and command this frame's motion."""

@@ -90,12 +90,12 @@ def _kind(behaviour: Behaviour) -> str:
 
 def _judged(judgement: Judgement) -> TreeNode:
     """A criterion with what it said."""
-    words = f"{judgement.sentence} ({judgement.limit})" if judgement.limit else judgement.sentence
+    held = "" if judgement.limit in {"", "none"} else f" ({judgement.limit})"
     return TreeNode(
         name=judgement.criterion if judgement.deciding else f"{judgement.criterion} (told only)",
         kind="criterion",
         status="not judged" if judgement.passed is None else "success" if judgement.passed else "failure",
-        feedback=words,
+        feedback=judgement.sentence + held,
         children=[],
     )
 
