@@ -41,7 +41,7 @@ class DeerAtDusk(Scenario):
         Number("speed", 8.0, 4.0, 12.0, "m/s", "of their run"),
         Number("gap", 1.2, 0.6, 3.0, "s", "between the two"),
         Number("sight", 1.8, 1.0, 3.5, "s", "from the second one's freezing to the ego's being there"),
-        Number("freezes", 2.5, 0.5, 5.0, "s", "that it stands in the lane"),
+        Number("freezes", 3.0, 0.5, 5.0, "s", "that it stands in the lane"),
         Choice("side", ("left", "right"), "from which they come"),
     )
     weather = {  # noqa: RUF012 - declared as a mapping that nobody changes
