@@ -63,14 +63,17 @@ def roles_of(result: dict[str, Any]) -> dict[int, str]:
 
 
 def encounter_of(result: dict[str, Any], history: History, span: Span) -> Encounter | None:
-    """The moment that the criteria judged; where none did, the nearest of the record. None where nobody was there."""
+    """The moment that the criteria judged; where none did, the nearest of the record. None where nobody was there.
+
+    A criterion that decides comes before those that only tell: it is about whom the scenario is about.
+    """
     judged = [
         j
         for j in result["judgements"]
         if j["criterion"].startswith(LEAST_DISTANCE) and j["measured"] is not None and j["t_s"] is not None
     ]
     if judged:
-        found = min(judged, key=lambda j: j["measured"])
+        found = min(judged, key=lambda j: (not j["deciding"], j["measured"]))
         tick = int(np.argmin(np.abs(history.frames["t_s"] - found["t_s"])))
         beside = _beside(result, history, tick)
         named = [party for party in beside if party[0] == found["other"]] or beside

@@ -14,6 +14,7 @@ from basu.report.scenarios.drawing.bodies import NOSE, block, body, outline
 from basu.report.scenarios.drawing.encounter import boxes_at, contacts_of, encounter_of, roles_of, span_of, thing_boxes
 from basu.report.scenarios.drawing.labels import Labels
 from basu.report.scenarios.drawing.legend import cross
+from basu.report.scenarios.drawing.lens import LENS_PX, lens
 from basu.report.streets import on_the_map
 
 if TYPE_CHECKING:
@@ -81,10 +82,15 @@ class Scene:
 
     def draw(self, streets: Sequence[Line]) -> list[Element]:
         """Everything, the lowest first."""
+        larger = lens(self._story, self._canvas, streets)
+        if larger is not None:
+            left, top = larger.corner_px
+            self._labels.keep_free([(left, top), (left + LENS_PX[0], top + LENS_PX[1])], 2.0)
         ground, ways = self._ground(streets), self._ways()
         moment, contacts = self._moment(), self._contacts()
         self._write_times()
-        return [*ground, *ways, *moment, *contacts, *self._labels.drawn]
+        drawn = [*ground, *ways, *moment, *contacts, *self._labels.drawn]
+        return drawn if larger is None else [*drawn, larger.drawn]
 
     def _ground(self, streets: Sequence[Line]) -> list[Element]:
         """Lanes and the ego's plan."""
