@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from basu.scenarios.parameters import Parameter
+    from basu.scenarios.paths.crossings import Side
 
 SECOND_ROW_S = 0.8  # after the first row
 
@@ -34,7 +35,7 @@ class StraightCrossingPaths(Stream):
     def ways(self) -> Sequence[Lane]:
         """Straight on, from one side or both."""
         if self.choice("side") != "both":
-            side = "left" if self.choice("side") == "left" else "right"
+            side: Side = "left" if self.choice("side") == "left" else "right"
             return [Lane(crossing(self.place, side, approach_m=self.back_m, leave_m=LEAVES_M), 0.0, side)]
         left = crossing(self.place, "left", approach_m=self.back_m + 20.0, leave_m=LEAVES_M)
         right = crossing(self.place, "right", approach_m=self.back_m + 20.0, leave_m=LEAVES_M)

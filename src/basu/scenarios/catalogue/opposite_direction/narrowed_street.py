@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 PARKED = ("van", "car")  # in the way of who comes, the nearer to the ego first
 BETWEEN_M = 2.0  # bumpers of the parked
-CHANGE_M = 14.0  # along the way, to get round them and back
+CHANGE_M = 12.0  # along the way, to get round them and back
 CLEARS_M = 1.0  # it keeps to the parked ones' side before it goes back, from middle to bumper
 
 

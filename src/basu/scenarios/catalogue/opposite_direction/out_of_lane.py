@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 OTHER = "oncoming"
 SETS_OFF_MPS2 = 3.0
 NARROWLY = (0.8, 1.5)  # of its own speed: what it varies by to meet the ego, which may still speed up
+SETTLED_S = 3.0  # before it goes back it has its speed and keeps it, whatever the ego does
 BEFORE_S = 2.0  # it drives in its own lane for at least so long before it leaves it
 BEFORE_M = 10.0  # it goes back when the ego, unbraked, is still so far away: too late for that one by a second
 BEHIND_M = 25.0  # it vanishes so far behind the trigger point
@@ -42,8 +43,7 @@ class Excursion(NamedTuple):
 class OutOfLane(Scenario):
     """The base: somebody comes out of its lane from ``out_m`` to ``back_m``, where the ego would meet it.
 
-    Each has ``kind``, ``speed`` and ``meets``. Out of its lane it drives on whatever the ego does; once it goes back it
-    brakes for an ego that stands in its way.
+    Each has ``kind``, ``speed`` and ``meets``. Once it goes back it brakes for an ego that stands in its way.
     """
 
     group = Group.OPPOSITE_DIRECTION
@@ -108,7 +108,7 @@ class OutOfLane(Scenario):
         return self.comes()
 
     def comes(self) -> Behaviour:
-        """It drives its way, timed by the ego until it has left its lane."""
+        """It drives its way, timed by the ego."""
         way, speed_mps = self.excursion(), self.number("speed")
         low, high = NARROWLY
         return InTurn(
@@ -119,7 +119,7 @@ class OutOfLane(Scenario):
                 self.ego_s_m,
                 low_mps=low * speed_mps,
                 high_mps=high * speed_mps,
-                settled_s=self.notice_s - BEFORE_S,
+                settled_s=SETTLED_S,
                 accelerate_mps2=SETS_OFF_MPS2,
             ),
             DriveAlong(OTHER, way.path, speed_mps, considerate=True, at_end="vanish"),
