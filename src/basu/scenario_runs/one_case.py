@@ -50,12 +50,12 @@ if TYPE_CHECKING:
     from basu.routing.lane_graph import LaneGraph
     from basu.scenario_runs.options import ScenarioOptions
     from basu.scenarios.library import Playable
+    from basu.scenarios.scenario import Scenario
     from basu.scenarios.verdict import Judged
     from basu.simulator import Simulator
 
 POINT_M = 20.0  # between the points of a way that goes straight on
-STRAIGHT_ON_M = 250.0  # its greatest length, unless its scenario needs more
-BEHIND_JUNCTION_M = 30  # there it ends: cases of ScenarioRunner's name no end, and many of them need a junction
+JUNCTION_WITHIN_M, BEHIND_JUNCTION_M = 250.0, 30  # such a way goes on to behind a junction, where that is needed
 
 
 class Town(NamedTuple):
@@ -251,16 +251,18 @@ def description_of(playable: Playable, carla_map: carla.Map) -> RouteDescription
     if case.way:
         points += [RoutePoint(pose.x_m, pose.y_m, pose.z_m) for pose in case.way]
     else:
-        way = _straight_on(waypoint_at(carla_map, start), playable.scenario.needs_m)
+        way = _straight_on(waypoint_at(carla_map, start), playable.scenario)
         places = [waypoint.transform.location for waypoint in [*way[int(POINT_M) :: int(POINT_M)], way[-1]]]
         points += [RoutePoint(at.x, at.y, at.z) for at in places]
     return RouteDescription(id=case.name, town=case.town, points=tuple(points), stops=case.stops, source=case.source)
 
 
-def _straight_on(start: carla.Waypoint, needs_m: float) -> list[carla.Waypoint]:
-    """A way point a metre, to behind the first junction that comes, and as far as the scenario needs."""
-    way = followed(start, max(STRAIGHT_ON_M, needs_m))
+def _straight_on(start: carla.Waypoint, scenario: type[Scenario]) -> list[carla.Waypoint]:
+    """A way point a metre, as far as the scenario needs: ScenarioRunner's cases name no end."""
+    if not scenario.needs_junction:
+        return followed(start, scenario.needs_m)
+    way = followed(start, max(JUNCTION_WITHIN_M, scenario.needs_m))
     inside = [waypoint.is_junction for waypoint in way]
     entry = inside.index(True) if True in inside else len(way)
     behind = inside.index(False, entry) if False in inside[entry:] else len(way)
-    return way[: 1 + max(math.ceil(needs_m), behind + BEHIND_JUNCTION_M)]
+    return way[: 1 + max(math.ceil(scenario.needs_m), behind + BEHIND_JUNCTION_M)]

@@ -55,6 +55,7 @@ class Scenario(ABC):
     weather: ClassVar[Mapping[str, float]] = {}  # fields of carla.WeatherParameters, where the case gives none
     timeout_s: ClassVar[float] = 60.0  # of simulated time from the first frame to the end
     needs_m: ClassVar[float] = 60.0  # of the ego's route behind the trigger point
+    needs_junction: ClassVar[bool] = False  # behind it: a case without a destination goes on to the next
     aliases: ClassVar[Sequence[str]] = ()  # types of ScenarioRunner and the leaderboard that mean this one
     reference: ClassVar[str] = "behavioral"  # an agent that comes with BASU and passes every case
 

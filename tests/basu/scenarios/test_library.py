@@ -239,3 +239,21 @@ def test_ids_are_in_snake_case(name: str, told: str) -> None:
 def test_all_is_bounded_by_what_is_packaged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, mine: Path) -> None:
     monkeypatch.setattr(library, "INSTANCES", tmp_path / "nothing")
     assert names("all", mine) == ["tree_1", "tree_2", "rock_1"]
+
+
+@pytest.mark.parametrize(
+    ("identity", "type_name"),
+    [
+        ("LindenFollowLeadingVehicle_1", "FollowLeadingVehicle"),
+        ("LindenFollowLeadingVehicleWithObstacle_1", "FollowLeadingVehicleWithObstacle"),
+        ("LindenControlLoss_1", "ControlLoss"),
+        ("LindenDynamicObjectCrossing_2", "DynamicObject"),
+        ("LindenOppositeVehicleRunningRedLight_1", "RedLightRunner"),
+        ("LindenOppositeVehicleTakingPriority_1", "StopSignRunner"),
+    ],
+)
+def test_the_file_that_scenario_runner_plays_is_read_as_it_is(identity: str, type_name: str) -> None:
+    theirs = Path(__file__).parents[3] / "examples" / "scenario_runner" / "linden.xml"
+    (playable,) = cases_of(identity, [theirs])
+    assert playable.scenario.__name__ == type_name
+    assert playable.case.ego.model == "vehicle.lincoln.mkz_2017"

@@ -48,6 +48,7 @@ class AcrossTheWay(Scenario):
     group = Group.CROSSING_PATHS
     timeout_s = 60.0
     needs_m = 50.0
+    needs_junction = True
     turn: Turn | None = None  # of the other; None: straight on where it can
 
     @property

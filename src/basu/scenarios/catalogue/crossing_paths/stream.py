@@ -50,6 +50,7 @@ class Stream(Scenario):
     group = Group.CROSSING_PATHS
     timeout_s = 90.0
     needs_m = 40.0
+    needs_junction = True
 
     def ways(self) -> Sequence[Lane]:
         """Where they come from."""

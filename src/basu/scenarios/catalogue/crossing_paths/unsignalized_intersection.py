@@ -57,6 +57,7 @@ class UnsignalizedIntersection(Scenario):
     weather: ClassVar[Mapping[str, float]] = DAYLIGHT
     timeout_s = 60.0
     needs_m = 60.0
+    needs_junction = True
 
     @property
     def junction(self) -> JunctionAhead:

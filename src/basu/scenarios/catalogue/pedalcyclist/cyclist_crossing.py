@@ -44,6 +44,7 @@ class CyclistCrossing(Scenario):
         Choice("side", ("right", "left"), "from which they come"),
     )
     needs_m = 90.0
+    needs_junction = True
 
     @cached_property
     def _way(self) -> Crossing:

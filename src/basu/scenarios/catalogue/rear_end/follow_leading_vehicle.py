@@ -51,6 +51,7 @@ class FollowLeadingVehicle(Scenario):
     weather: ClassVar[Mapping[str, float]] = DAYLIGHT
     timeout_s = 60.0
     needs_m = 40.0
+    needs_junction = True
 
     def actors(self) -> Sequence[ActorSpec]:
         """The leader, ahead in the lane."""
