@@ -42,7 +42,7 @@ def _told(playing: Playing, history: History | None, outcome: Outcome) -> dict[s
         "reached": playing.armed_tick is not None,
         "verdict": None,
         "fault": "nobody",
-        "message": f"not reached: it waits at {trigger_s_m:.0f} m of the route, and {outcome.message}",
+        "message": f"it waits at {trigger_s_m:.0f} m of the route, and the run ended before: {outcome.message}",
     }
     if history is None or (playing.armed_tick is None and playing.error is None):
         return {**document, **_evidence(playing, None, 0.0)}

@@ -243,7 +243,7 @@ def test_what_was_not_reached_is_told_as_such() -> None:
     playing = Playing(laid.planned, laid.scenario, laid.composed, stage)
     (row,) = told([playing], None, Outcome(Status.AGENT_CRASHED, "the agent raised KeyError"))
     assert (row["reached"], row["verdict"]) == (False, None)
-    assert row["message"] == "not reached: it waits at 10 m of the route, and the agent raised KeyError"
+    assert row["message"] == "it waits at 10 m of the route, and the run ended before: the agent raised KeyError"
     schema = read_schema(RESULT_SCHEMA)
     assert list(mistakes(row, {**schema["$defs"]["scenario"], "$defs": schema["$defs"]})) == []
     text = "\n".join(met([row]))
