@@ -6,13 +6,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
-from basu.scenarios.catalogue.on_foot import FRONT_M, ego_is_due, parked_m
+from basu.scenarios.catalogue.on_foot import FRONT_M, ego_is_due
 from basu.scenarios.catalogue.pedalcyclist.bicycles import BICYCLE, SWAY_M
 from basu.scenarios.catalogue.pedalcyclist.car_door import HINGE_M, car_with_door, opens_and_shuts
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
-from basu.scenarios.paths import Path
+from basu.scenarios.paths import Path, parked_m
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.scenarios.catalogue.on_foot import ego_is_due, parked_m
+from basu.scenarios.catalogue.on_foot import ego_is_due
 from basu.scenarios.catalogue.pedalcyclist.car_door import HINGE_M, car_with_door, opens_and_shuts
 from basu.scenarios.criteria import Arrives, InTime, KeepsLane, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
+from basu.scenarios.paths import parked_m
 from basu.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:

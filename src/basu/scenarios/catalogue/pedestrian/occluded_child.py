@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.scenarios.actions import WalkAlong
-from basu.scenarios.catalogue.on_foot import across, ego_is_due, facing_deg, parked_m, pavement_m, walking_s
+from basu.scenarios.catalogue.on_foot import across, ego_is_due, facing_deg, walking_s
 from basu.scenarios.catalogue.pedestrian.pedestrian_crossing import SWAY_M
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
+from basu.scenarios.paths import parked_m, pavement_m
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import WalkAlong
-from basu.scenarios.catalogue.on_foot import across, ego_is_due, facing_deg, other_side, pavement_m, walking_s
+from basu.scenarios.catalogue.on_foot import across, ego_is_due, facing_deg, other_side, walking_s
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
+from basu.scenarios.paths import pavement_m
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import WalkAlong
-from basu.scenarios.catalogue.on_foot import facing_deg, pavement_m
+from basu.scenarios.catalogue.on_foot import facing_deg
 from basu.scenarios.criteria import Arrives, Gentle, InTime, LeastDistance, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
-from basu.scenarios.paths import Path
+from basu.scenarios.paths import Path, pavement_m
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec, Pose
 from basu.scenarios.triggers import Faster
