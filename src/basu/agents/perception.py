@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import carla
 
 RADIUS_M = 80.0  # who is farther away does not matter: 11 m/s through the longest gap that is waited for
+LOOK_AGAIN_TICKS = 10  # somebody may come in the tick in which another goes: then the number stays
 SMALLEST_M = 0.15  # half size of a body whose box the server leaves empty
 KIND_OF_PREFIX = {"vehicle.": Kind.VEHICLE, "walker.pedestrian.": Kind.WALKER, "static.prop.": Kind.PROP}
 
@@ -34,24 +35,34 @@ class Perception:
         self._world = world
         self._radius_m = radius_m
         self._shapes: dict[int, _Shape | None] = {own_id: None}  # None: nothing that one could drive into
+        self._solid: list[int] = []  # who could be driven into, in the snapshot's order when it was last gone through
+        self._count, self._left = -1, 0  # actors in it then, and ticks until it is gone through again
 
     def others(self, snapshot: carla.WorldSnapshot, ego: Ego) -> list[Other]:
         """All bodies within the radius, in the snapshot's order."""
+        if len(snapshot) != self._count or self._left == 0:
+            self._go_through(snapshot)
+        self._left -= 1
         shapes, radius_m = self._shapes, self._radius_m
-        bodies = [actor for actor in snapshot if shapes.get(actor.id, actor) is not None]
-        unknown = [actor.id for actor in bodies if actor.id not in shapes]
-        if unknown:
-            self._learn(unknown)
         found = []
-        for actor in bodies:
-            shape = shapes[actor.id]
-            if shape is None:
+        for actor_id in self._solid:
+            shape, actor = shapes[actor_id], snapshot.find(actor_id)
+            if shape is None or actor is None:
                 continue
             pose = actor.get_transform()
             at = pose.location
             if abs(at.x - ego.x_m) < radius_m and abs(at.y - ego.y_m) < radius_m:
                 found.append(_other(actor, pose, shape))
         return found
+
+    def _go_through(self, snapshot: carla.WorldSnapshot) -> None:
+        """Look who is there: a town has hundreds of lights and signs, and most ticks nobody comes or goes."""
+        ids = [actor.id for actor in snapshot]
+        unknown = [actor_id for actor_id in ids if actor_id not in self._shapes]
+        if unknown:
+            self._learn(unknown)
+        self._solid = [actor_id for actor_id in ids if self._shapes[actor_id] is not None]
+        self._count, self._left = len(ids), LOOK_AGAIN_TICKS
 
     def _learn(self, ids: Iterable[int]) -> None:
         """Ask what new actors are."""

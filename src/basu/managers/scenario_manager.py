@@ -208,11 +208,11 @@ class ScenarioManager(BaseManager):
 
     def _play(self, playing: Playing, frame: Frame) -> None:
         """One frame of one scenario."""
-        stage, root = playing.stage, playing.composed.root
+        stage, root = playing.stage, playing.composed.root.root  # without the visitors that nobody has
         stage.look(frame)
         if not playing.things and frame.tick > (playing.armed_tick or 0):  # who has just come is in no frame yet
             playing.things = stage.things()
-        asked(playing.planned.case.name, root.tick)
+        asked(playing.planned.case.name, root.tick_once)
         for phase, node in playing.composed.phases.items():
             if phase not in playing.phase_ticks and node.status is not NodeStatus.INVALID:
                 playing.phase_ticks[phase] = frame.tick

@@ -7,7 +7,7 @@ from typing import Any
 import carla
 import pytest
 
-from basu.agents.perception import RADIUS_M, SMALLEST_M, Lights, Perception, see_ego
+from basu.agents.perception import LOOK_AGAIN_TICKS, RADIUS_M, SMALLEST_M, Lights, Perception, see_ego
 from basu.agents.rules.traffic_lights import Light
 from basu.agents.scene import Ego, Kind
 
@@ -22,6 +22,13 @@ def seen(number: int, x_m: float, y_m: float, yaw_deg: float = 0.0) -> SimpleNam
         get_velocity=lambda: carla.Vector3D(3.0, 4.0, 0.0),
         get_angular_velocity=lambda: carla.Vector3D(0.0, 0.0, 90.0),
     )
+
+
+class Snapshot(list[Any]):
+    """A ``carla.WorldSnapshot`` as far as it is asked."""
+
+    def find(self, number: int) -> Any:
+        return next((actor for actor in self if actor.id == number), None)
 
 
 class World:
@@ -45,7 +52,7 @@ def test_vehicles_walkers_and_props_are_seen_and_nothing_else() -> None:
         _5="traffic.stop",
         _6="sensor.camera.rgb",
     )
-    others = Perception(world, 1).others([seen(i, 110.0, 50.0) for i in (1, 2, 3, 4, 5, 6)], EGO)
+    others = Perception(world, 1).others(Snapshot([seen(i, 110.0, 50.0) for i in (1, 2, 3, 4, 5, 6)]), EGO)
     assert [(other.id, other.kind) for other in others] == [(2, Kind.VEHICLE), (3, Kind.WALKER), (4, Kind.PROP)]
 
 
@@ -53,19 +60,29 @@ def test_an_actor_is_asked_about_once() -> None:
     world = World(_2="vehicle.tesla.model3", _5="traffic.stop")
     perception = Perception(world, 1)
     for _ in range(3):
-        perception.others([seen(i, 110.0, 50.0) for i in (1, 2, 5)], EGO)
-    perception.others([seen(i, 110.0, 50.0) for i in (1, 2, 5, 7)], EGO)
+        perception.others(Snapshot([seen(i, 110.0, 50.0) for i in (1, 2, 5)]), EGO)
+    perception.others(Snapshot([seen(i, 110.0, 50.0) for i in (1, 2, 5, 7)]), EGO)
     assert world.questions == [[2, 5], [7]]
+
+
+def test_who_comes_as_another_goes_is_seen_soon_and_who_is_gone_is_not_seen_at_all() -> None:
+    world = World(_2="vehicle.tesla.model3", _3="vehicle.tesla.model3")
+    perception = Perception(world, 1)
+    met = [
+        [other.id for other in perception.others(Snapshot([seen(i, 110.0, 50.0) for i in (1, there)]), EGO)]
+        for there in (2, *[3] * LOOK_AGAIN_TICKS)
+    ]
+    assert met == [[2], *[[]] * (LOOK_AGAIN_TICKS - 1), [3]]
 
 
 def test_who_is_far_away_does_not_matter() -> None:
     world = World(_2="vehicle.tesla.model3", _3="vehicle.tesla.model3")
-    there = [seen(2, 100.0 + RADIUS_M + 1.0, 50.0), seen(3, 100.0, 50.0 + RADIUS_M - 1.0)]
+    there = Snapshot([seen(2, 100.0 + RADIUS_M + 1.0, 50.0), seen(3, 100.0, 50.0 + RADIUS_M - 1.0)])
     assert [other.id for other in Perception(world, 1).others(there, EGO)] == [3]
 
 
 def test_the_box_is_seen_where_it_is_and_as_it_moves() -> None:
-    other = Perception(World(_2="vehicle.tesla.model3"), 1).others([seen(2, 110.0, 50.0, 90.0)], EGO)[0]
+    other = Perception(World(_2="vehicle.tesla.model3"), 1).others(Snapshot([seen(2, 110.0, 50.0, 90.0)]), EGO)[0]
     assert (other.x_m, other.y_m) == pytest.approx((110.0, 50.5))
     assert (other.half_length_m, other.half_width_m) == pytest.approx((2.0, 0.9))
     assert other.speed_mps == pytest.approx(5.0)
@@ -76,7 +93,7 @@ def test_a_body_without_a_box_has_some_size_all_the_same() -> None:
     world = World(_4="static.prop.mesh")
     bare = SimpleNamespace(id=4, type_id="static.prop.mesh", bounding_box=carla.BoundingBox())
     world.get_actors = lambda _ids: [bare]  # type: ignore[method-assign]
-    assert Perception(world, 1).others([seen(4, 110.0, 50.0)], EGO)[0].half_width_m == SMALLEST_M
+    assert Perception(world, 1).others(Snapshot([seen(4, 110.0, 50.0)]), EGO)[0].half_width_m == SMALLEST_M
 
 
 def test_the_own_speed_is_that_along_the_vehicles_axis() -> None:
