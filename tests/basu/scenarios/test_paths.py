@@ -11,7 +11,18 @@ import linden
 from basu.errors import ScenarioError
 from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription, RoutePoint
-from basu.scenarios.paths import Path, along_lane, crossing, crossings, junctions, next_junction, oncoming
+from basu.scenarios.paths import (
+    Path,
+    along_lane,
+    crossing,
+    crossings,
+    junctions,
+    lanes_apart_m,
+    next_junction,
+    oncoming,
+    parked_m,
+    pavement_m,
+)
 from basu.scenarios.place import Place
 from basu.scenarios.rehearsal import paper_place
 from basu.scenarios.stage import Pose
@@ -170,7 +181,9 @@ def test_a_way_that_is_not_there_is_refused_with_those_that_are(westward: Place)
         crossing(westward, "opposite", "straight")
 
 
-def test_every_junction_of_the_shuttles_street_has_somebody_who_crosses() -> None:
+@pytest.fixture(scope="module")
+def in_linden() -> Place:
+    """Three hundred metres along a street of Linden."""
     text = (File(linden.__file__).parent / "data/Linden.xodr").read_text()
     town = carla.Map("Linden", text)
     waypoint = town.generate_waypoints(200.0)[3]
@@ -184,10 +197,31 @@ def test_every_junction_of_the_shuttles_street_has_somebody_who_crosses() -> Non
         stops=(),
         source="a test",
     )
-    place = Place(route=plan(town, description), trigger_s_m=0.0, carla_map=town)
+    return Place(route=plan(town, description), trigger_s_m=0.0, carla_map=town)
+
+
+def test_every_junction_of_a_street_of_linden_has_ways_that_meet_the_egos(in_linden: Place) -> None:
+    place = in_linden
     assert junctions(place)
     for junction in junctions(place):
         for way in crossings(place, junction):
             met, ego = way.path.at(way.meet_s_m), place.at(way.ego_s_m)
             assert math.dist(met[:2], ego[:2]) < 1.5
             assert np.abs(np.diff(way.path.yaw_rad)).max() < math.radians(40.0)  # no jumps back
+
+
+def test_the_pavement_is_beyond_whoever_parks(in_linden: Place) -> None:
+    for ahead_m in (10.0, 100.0, 200.0):
+        parked, right, left = (
+            parked_m(in_linden, ahead_m),
+            pavement_m(in_linden, ahead_m, "right"),
+            pavement_m(in_linden, ahead_m, "left"),
+        )
+        assert in_linden.width_m(ahead_m) / 2.0 < parked < right < 9.0
+        assert -14.0 < left < -lanes_apart_m(in_linden, ahead_m) - 1.4  # beyond the oncoming lane
+
+
+def test_without_a_map_pavement_and_parking_are_where_they_mostly_are() -> None:
+    place = paper_place([(0.0, 0.0), (50.0, 0.0)])
+    assert pavement_m(place, 10.0, "right") == -pavement_m(place, 10.0, "left") == 5.6
+    assert parked_m(place, 10.0) == pytest.approx(1.75 + 1.05)
