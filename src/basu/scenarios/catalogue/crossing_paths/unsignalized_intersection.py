@@ -52,7 +52,7 @@ class UnsignalizedIntersection(Scenario):
         Number("second", 6.0, 2.0, 15.0, "m", "from the junction to the region in which it accelerates"),
         Number("waits", 28.0, 15.0, 60.0, "m", "from the meeting point to where the other waits"),
         Number("speed", 8.0, 4.0, 12.0, "m/s", "of the other once it goes on"),
-        Number("offset", 0.3, -1.0, 1.5, "s", "after the ego it would be at the meeting point"),
+        Number("offset", 1.2, -1.0, 2.5, "s", "after the ego it would be at the meeting point, did it not accelerate"),
     )
     weather: ClassVar[Mapping[str, float]] = DAYLIGHT
     timeout_s = 60.0

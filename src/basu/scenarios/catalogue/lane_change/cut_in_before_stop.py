@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from basu.scenarios.parameters import Parameter
 
 CHANGE_M = 12.0
-CUTS_IN_MPS = 8.5  # about what the overtaker has then; who is faster brakes harder
+CUTS_IN_MPS = 9.5  # what the overtaker has then at the most, past a shuttle; past a faster ego it stops over the line
 LINE_M = 0.5  # its bumper stops so far before the line
 RESTS_S = 2.0
 
