@@ -59,8 +59,8 @@ def verdict_mark(verdict: str) -> Element:
 
 
 def anchor_of(case: str, agent: str) -> str:
-    """The name of a card in a page."""
-    return "case-" + re.sub(r"[^A-Za-z0-9_.-]+", "-", f"{case}--{agent}")
+    """The name of a card in a page: what no address may hold is written as its number, so that all are told apart."""
+    return "case-" + re.sub(r"[^A-Za-z0-9_-]", lambda found: f".{ord(found[0]):x}.", f"{case}--{agent}")
 
 
 def judgements(found: Sequence[dict[str, Any]]) -> Element:
