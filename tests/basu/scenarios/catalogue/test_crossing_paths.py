@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from basu.errors import ScenarioError
-from basu.scenarios.catalogue.crossing_paths.from_the_side import AcrossTheWay, run_up_m
+from basu.scenarios.catalogue.crossing_paths.from_the_side import AcrossTheWay
 from basu.scenarios.catalogue.crossing_paths.stream import Stream
+from basu.scenarios.catalogue.motorists import run_up_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import next_junction
 from basu.scenarios.rehearsal import Driver, PaperStage, rehearse, waiting_at

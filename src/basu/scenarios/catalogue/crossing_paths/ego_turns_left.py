@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from basu.scenarios.catalogue.crossing_paths.from_the_side import run_up_m
 from basu.scenarios.catalogue.crossing_paths.stream import LEAVES_M, NOTICE_S, Lane, Stream, Way
+from basu.scenarios.catalogue.motorists import run_up_m
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, along_lane, crossing, next_junction
 

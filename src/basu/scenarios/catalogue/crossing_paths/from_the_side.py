@@ -6,7 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
-from basu.scenarios.catalogue.motorists import BLUEPRINTS
+from basu.scenarios.catalogue.motorists import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import crossing
@@ -25,18 +25,9 @@ if TYPE_CHECKING:
     from basu.scenarios.paths.lanes import Turn
 
 OTHER = "other"
-SETS_OFF_MPS2 = 3.5
 SETTLED_S = 1.8  # before they meet, the other has its speed and keeps it, whatever the ego does
 NARROWLY = (0.75, 1.7)  # of its own speed: what it varies by to meet the ego, which may still speed up
 LEAVES_M = 35.0  # of its way behind the junction, then it is out of sight
-
-
-def run_up_m(speed_mps: float, notice_s: float) -> float:
-    """How far before a place one stands who has to be there, at that speed, so long after setting off."""
-    rise_s = speed_mps / SETS_OFF_MPS2
-    if notice_s <= rise_s:
-        return 0.5 * SETS_OFF_MPS2 * notice_s * notice_s
-    return speed_mps * notice_s - 0.5 * speed_mps * rise_s
 
 
 class AcrossTheWay(Scenario):

@@ -5,13 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
-from basu.scenarios.catalogue.crossing_paths.from_the_side import (
-    NARROWLY,
-    OTHER,
-    SETS_OFF_MPS2,
-    SETTLED_S,
-    AcrossTheWay,
-)
+from basu.scenarios.catalogue.crossing_paths.from_the_side import NARROWLY, OTHER, SETTLED_S, AcrossTheWay
+from basu.scenarios.catalogue.motorists import SETS_OFF_MPS2
 from basu.scenarios.parameters import Choice, Number
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
-from basu.scenarios.catalogue.crossing_paths.from_the_side import NARROWLY, SETS_OFF_MPS2, SETTLED_S, run_up_m
-from basu.scenarios.catalogue.motorists import BLUEPRINTS
+from basu.scenarios.catalogue.crossing_paths.from_the_side import NARROWLY, SETTLED_S
+from basu.scenarios.catalogue.motorists import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.scenario import Scenario

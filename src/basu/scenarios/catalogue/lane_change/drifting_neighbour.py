@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import ChangeLane, Drift, DriveAlong, InTurn, ReachAtEgosArrival
-from basu.scenarios.catalogue.crossing_paths.from_the_side import SETS_OFF_MPS2, run_up_m
-from basu.scenarios.catalogue.motorists import BLUEPRINTS, EGO_HALF_LENGTH_M, HALF_LENGTH_M
+from basu.scenarios.catalogue.motorists import BLUEPRINTS, EGO_HALF_LENGTH_M, HALF_LENGTH_M, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
-from basu.scenarios.catalogue.motorists import BLUEPRINTS
+from basu.scenarios.catalogue.motorists import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import Path, oncoming
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from basu.scenarios.criteria import Criterion
 
 OTHER = "oncoming"
-SETS_OFF_MPS2 = 3.0
 NARROWLY = (0.8, 1.5)  # of its own speed: what it varies by to meet the ego, which may still speed up
 SETTLED_S = 3.0  # before it goes back it has its speed and keeps it, whatever the ego does
 BEFORE_S = 2.0  # it drives in its own lane for at least so long before it leaves it
@@ -78,8 +77,7 @@ class OutOfLane(Scenario):
     @property
     def begins_m(self) -> float:
         """Where it stands at first."""
-        speed_mps = self.number("speed")
-        return self.back_m + speed_mps * self.notice_s - 0.5 * speed_mps * speed_mps / SETS_OFF_MPS2
+        return self.back_m + run_up_m(self.number("speed"), self.notice_s)
 
     def excursion(self) -> Excursion:
         """Its way."""
