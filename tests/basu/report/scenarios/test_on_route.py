@@ -1,4 +1,4 @@
-"""Claims about a route's report with scenarios on its way: a card for each that was reached, a sentence for the rest."""
+"""Claims about a route's report with scenarios on its way: a card for each that was reached, else a sentence."""
 
 from typing import Any
 

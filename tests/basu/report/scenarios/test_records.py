@@ -20,7 +20,7 @@ from fakes.scenario_documents import STREETS, case_result, crossing, failed, gri
 DOCUMENTS = [
     (case_result(), CASE_SCHEMA),
     (failed(tree=None, actors=[], things=[]), CASE_SCHEMA),
-    (matrix(), MATRIX_SCHEMA),
+    (matrix(["basic"], instances=1), MATRIX_SCHEMA),
     (sweep(10), MATRIX_SCHEMA),
     (grid(2), MATRIX_SCHEMA),
 ]
