@@ -38,8 +38,8 @@ def as_text(cases_by_type: Listed, *, full: bool) -> list[str]:
         lines.append(f"{group.value.upper()}{told}")
         for scenario in scenarios:
             cases = cases_by_type[scenario]
-            count = f"{len(cases)} case{'s' * (len(cases) != 1)}"
-            lines.append(f"  {snake(scenario.__name__):<32} {count:>8}  {scenario.title()}")
+            told = f"{snake(scenario.__name__)} ({_many(len(cases), 'case')}): {scenario.title()}"
+            lines += textwrap.wrap(told, WIDTH, initial_indent="  ", subsequent_indent="      ")
             lines += _in_full(scenario, cases) if full else _in_short(scenario, cases)
         lines.append("")
     groups = len({scenario.group for scenario in cases_by_type})

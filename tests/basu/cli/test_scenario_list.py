@@ -52,7 +52,7 @@ def test_the_list_has_group_count_title_places_and_parameters(capsys: pytest.Cap
     lines = told(capsys, "--scenarios", mine).splitlines()
     assert "ROAD DEPARTURE: 547,098 crashes a year, 97,737 million dollars" in lines
     begin = next(index for index, line in enumerate(lines) if line.startswith("  falling_tree "))
-    assert lines[begin].split() == ["falling_tree", "2", "cases", "A", "tree", "falls."]
+    assert lines[begin] == "  falling_tree (2 cases): A tree falls."
     assert lines[begin + 1] == "      at   Cleveland Ave, on the route; (-13, 2) of Linden"
     assert lines[begin + 2] == "      with ahead 40 (20 to 80) m; side left | right"
 
@@ -61,7 +61,7 @@ def test_what_is_named_is_shown_in_full_and_alone(capsys: pytest.CaptureFixture[
     text = told(capsys, mine)
     assert [" ".join(line.split()) for line in text.splitlines()] == [
         "ROAD DEPARTURE: 547,098 crashes a year, 97,737 million dollars",
-        "falling_tree 2 cases A tree falls.",
+        "falling_tree (2 cases): A tree falls.",
         "ahead 40 (20 to 80) m of the trigger point",
         "side left | right of it",
         "tree_1 Cleveland Ave, on the route",
