@@ -186,9 +186,7 @@ def in_linden() -> Place:
     """Three hundred metres along a street of Linden."""
     text = (File(linden.__file__).parent / "data/Linden.xodr").read_text()
     town = carla.Map("Linden", text)
-    waypoint = town.generate_waypoints(200.0)[3]
-    start = waypoint.transform
-    pose = Pose(start.location.x, start.location.y, start.location.z, math.radians(start.rotation.yaw))
+    pose = Pose(263.2, 116.9, 247.3, math.radians(3.2))  # on Bonham Avenue, to the east
     ahead = along_lane(town, pose, 300.0)
     description = RouteDescription(
         id="r",
@@ -225,3 +223,9 @@ def test_without_a_map_pavement_and_parking_are_where_they_mostly_are() -> None:
     place = paper_place([(0.0, 0.0), (50.0, 0.0)])
     assert pavement_m(place, 10.0, "right") == -pavement_m(place, 10.0, "left") == 5.6
     assert parked_m(place, 10.0) == pytest.approx(1.75 + 1.05)
+
+
+def test_without_a_map_who_comes_the_other_way_drives_a_lanes_width_to_the_left() -> None:
+    path = oncoming(paper_place([(0.0, 0.0), (50.0, 0.0)], lane_width_m=3.0), 40.0, 5.0)
+    assert path.points_m[:, 1] == pytest.approx(-3.0)
+    assert path.at(0.0).yaw_rad == pytest.approx(math.pi)
