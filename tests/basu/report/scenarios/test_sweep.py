@@ -52,6 +52,14 @@ def test_options_are_found() -> None:
     assert "fails where kind is bicycle or bus (" in boundary(sampled(lambda a, b, kind: kind != "car"))[1]
 
 
+def test_where_several_cases_were_sampled_the_case_may_be_what_tells() -> None:
+    document = sampled(lambda a, b, kind: False)
+    for number, row in enumerate(document["cases"]):
+        row["id"] = f"one_{number % 3}:sweep-120-3-{number}"
+        row["results"]["basic"]["verdict"] = "FAILURE" if number % 3 == 1 else "SUCCESS"
+    assert boundary(document)[1] == "basic in One: fails where case is one_1 (40 of 40), passes elsewhere (80 of 80)."
+
+
 def test_a_second_condition_is_found_within_the_first() -> None:
     found = boundary_of(studies(sampled(lambda a, b, kind: a < 5.0 and kind == "bus"))[0])
     assert found.rule is not None

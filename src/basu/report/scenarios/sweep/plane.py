@@ -22,6 +22,8 @@ ROOM = 0.04  # of an axis, beyond its ends
 GOLDEN = 0.6180339887498949  # spreads cases of one option evenly, in any number
 SPREAD = 0.55  # of the room that an option has
 
+LETTER_PX = 6.6  # the width of one, on average
+
 Place = tuple[float, float]
 
 
@@ -63,11 +65,18 @@ class Scale(NamedTuple):
         """Where the axis is written on, and what."""
         if self.axis.options:
             numbers = np.arange(len(self.axis.options), dtype=np.float64)
-            return list(zip(self.at(numbers).tolist(), self.axis.options, strict=True))
+            room = abs(self.end_px - self.begin_px) / len(self.axis.options)
+            names = [shortened(name, int(room / LETTER_PX)) for name in self.axis.options]
+            return list(zip(self.at(numbers).tolist(), names, strict=True))
         values = ticks(self.axis.low, self.axis.high, 6)
         return [
             (place, f"{value:.6g}") for place, value in zip(self.at(np.array(values)).tolist(), values, strict=True)
         ]
+
+
+def shortened(name: str, letters: int) -> str:
+    """A name in so much room: its end is kept, which tells cases of one scenario apart."""
+    return name if len(name) <= letters else f"…{name[-max(letters - 1, 1) :]}"
 
 
 def scales(x: Axis, y: Axis) -> tuple[Scale, Scale]:

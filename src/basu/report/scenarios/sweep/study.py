@@ -94,6 +94,51 @@ def _study(scenario: str, agent: str, cases: list[dict[str, Any]]) -> Study | No
 
 
 def _axes(cases: list[dict[str, Any]]) -> list[Axis]:
+    """Every parameter as a column, and last the case that was sampled: several may be, each at its place."""
+    found = [
+        _column(
+            parameter["name"],
+            parameter["unit"],
+            parameter["about"],
+            [case["parameters"][number]["value"] for case in cases],
+        )
+        for number, parameter in enumerate(cases[0]["parameters"])
+    ]
+    return [*found, _column("case", "", "that was sampled", [case["id"].partition(":")[0] for case in cases])]
+
+
+def _column(name: str, unit: str, about: str, values: list[float | str]) -> Axis:
+    """A parameter's values as numbers."""
+    if not any(isinstance(value, str) for value in values):
+        return Axis(name, unit, about, np.array(values, dtype=np.float64), ())
+    options = tuple(sorted({str(value) for value in values}))
+    numbers = {option: float(number) for number, option in enumerate(options)}
+    return Axis(name, unit, about, np.array([numbers[str(value)] for value in values]), options)
+
+
+def _study(scenario: str, agent: str, cases: list[dict[str, Any]]) -> Study | None:
+    """One of them; None where too little was driven or nothing varied."""
+    driven = [(case, case["results"][agent]) for case in cases if agent in case["results"]]
+    judged = [(case, result) for case, result in driven if LOOKS[result["verdict"]].is_judged]
+    if len(judged) < LEAST_CASES:
+        return None
+    axes = [axis for axis in _axes([case for case, _ in judged]) if axis.high > axis.low]
+    if not axes:
+        return None
+    distances = [result["margins"].get("distance_m") for _, result in judged]
+    return Study(
+        scenario=scenario,
+        agent=agent,
+        ids=[case["id"] for case, _ in judged],
+        axes=axes,
+        failed=np.array([result["verdict"] != "SUCCESS" for _, result in judged]),
+        broken=np.array([result["verdict"] == "AGENT_FAULT" for _, result in judged]),
+        distance_m=np.array([np.nan if value is None else value for value in distances], dtype=np.float64),
+        unjudged=len(driven) - len(judged),
+    )
+
+
+def _axes(cases: list[dict[str, Any]]) -> list[Axis]:
     """Every parameter as a column; choices as numbers of their options."""
     found = []
     for number, parameter in enumerate(cases[0]["parameters"]):
@@ -104,4 +149,13 @@ def _axes(cases: list[dict[str, Any]]) -> list[Axis]:
         else:
             options, column = (), np.array(values, dtype=np.float64)
         found.append(Axis(parameter["name"], parameter["unit"], parameter["about"], column, options))
-    return found
+    return [*found, _column("case", "", "that was sampled", [case["id"].partition(":")[0] for case in cases])]
+
+
+def _column(name: str, unit: str, about: str, values: list[float | str]) -> Axis:
+    """A parameter's values as numbers."""
+    if not any(isinstance(value, str) for value in values):
+        return Axis(name, unit, about, np.array(values, dtype=np.float64), ())
+    options = tuple(sorted({str(value) for value in values}))
+    numbers = {option: float(number) for number, option in enumerate(options)}
+    return Axis(name, unit, about, np.array([numbers[str(value)] for value in values]), options)
