@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 TURNS_MPS = 5.0
 NEARER_S = 0.8  # by so much of its way the first stands nearer than it has time for: the next needs room behind it
 NEXT_S = 0.4  # the second meets who turns without waiting, so long after the ego would arrive
+BEHIND_M = 8.5  # from the first's middle to the second's at the least
 LOOK_M = 30.0
 
 
@@ -35,9 +36,9 @@ class EgoTurnsLeft(Stream):
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Number("cars", 4.0, 2.0, 6.0, "", "how many come, rounded, the one that turns among them"),
-        Number("speed", 8.0, 5.0, 12.0, "m/s", "of those who go straight on"),
-        Number("headway", 2.5, 1.8, 6.0, "s", "from one to the next"),
+        Number("cars", 4.0, 2.0, 5.0, "", "how many come, rounded, the one that turns among them"),
+        Number("speed", 8.0, 5.0, 11.0, "m/s", "of those who go straight on"),
+        Number("headway", 2.5, 1.8, 4.0, "s", "from one to the next"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 0.0, "sun_altitude_angle": 12.0}
     aliases: ClassVar[Sequence[str]] = ("SignalizedJunctionLeftTurn", "NonSignalizedJunctionLeftTurn")
@@ -62,10 +63,13 @@ class EgoTurnsLeft(Stream):
         return Way(path, float(s_m[best]), self.place.trigger_s_m + entered.from_m + near[best].s_m)
 
     def _begins(self, lane: Lane, index: int) -> Pose:
-        """The first is nearest; the second is timed by the ego as well, so it stands where that takes it."""
+        """The first is nearest; the second is timed by the ego as well, and stands a little behind it at the least."""
+        first_m = self.meeting.meet_s_m - run_up_m(TURNS_MPS, NOTICE_S - NEARER_S)
         if index == 0:
-            return self.meeting.path.at(self.meeting.meet_s_m - run_up_m(TURNS_MPS, NOTICE_S - NEARER_S))
-        return super()._begins(lane, index - 1)
+            return self.meeting.path.at(first_m)
+        speed_mps = self.number("speed")
+        second_m = min(lane.way.meet_s_m - run_up_m(speed_mps, NOTICE_S + lane.first_s), first_m - BEHIND_M)
+        return lane.way.path.at(second_m - (index - 1) * self.number("headway") * speed_mps)
 
     def _drives(self, lane: Lane, names: Sequence[str], index: int) -> Behaviour:
         """The first turns left in front of whoever goes straight on; the second meets who turns without waiting."""

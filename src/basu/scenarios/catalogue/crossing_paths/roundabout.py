@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, Meanwhile, ReachAtEgosArrival
@@ -51,7 +52,7 @@ class Roundabout(Scenario):
     timeout_s = 60.0
     needs_m = 50.0
 
-    @property
+    @cached_property
     def crossing(self) -> Crossing:
         """The others' way: it meets the ego's at the ego's entry."""
         side = SIDES[self.choice("side")]

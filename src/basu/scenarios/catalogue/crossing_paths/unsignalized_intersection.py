@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, Meanwhile, ReachAtEgosArrival
@@ -64,7 +65,7 @@ class UnsignalizedIntersection(Scenario):
         """The next one on the ego's route."""
         return next_junction(self.place)
 
-    @property
+    @cached_property
     def crossing(self) -> Crossing:
         """The other's way across it."""
         return crossing(

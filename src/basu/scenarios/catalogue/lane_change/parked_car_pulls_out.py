@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from basu.scenarios.parameters import Parameter
 
 PARKED = "parked car"
+AHEAD_M = 50.0  # of the trigger point, to its middle: a case is placed where the kerb is free there
 KERB_M = 1.05  # from the lane's edge to the middle of a parking lane of 7 ft
 CHANGE_M = 9.0  # along the street, to get out of the parking lane
 DAWDLES_M = 15.0  # in the lane before it drives as others do
@@ -45,7 +46,6 @@ class ParkedCarPullsOut(Scenario):
         Number("warning", 2.8, 2.0, 5.0, "s", "from when it sets off until the ego would be level with its tail"),
         Number("pace", 3.0, 1.5, 5.0, "m/s", "at which it pulls out and drives for the first metres"),
         Number("accelerate", 1.5, 0.8, 3.0, "m/s²", "with which it sets off"),
-        Number("ahead", 50.0, 40.0, 80.0, "m", "of the trigger point: the middle of the parked car"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 15.0, "sun_altitude_angle": 30.0}
     timeout_s = 60.0
@@ -54,20 +54,20 @@ class ParkedCarPullsOut(Scenario):
 
     @property
     def _right_m(self) -> float:
-        return self.place.width_m(self.number("ahead")) / 2.0 + KERB_M
+        return self.place.width_m(AHEAD_M) / 2.0 + KERB_M
 
     def actors(self) -> Sequence[ActorSpec]:
         """The car at the kerb."""
-        return [ActorSpec(PARKED, BLUEPRINTS[self.choice("kind")], self.place.at(self.number("ahead"), self._right_m))]
+        return [ActorSpec(PARKED, BLUEPRINTS[self.choice("kind")], self.place.at(AHEAD_M, self._right_m))]
 
     def trigger(self) -> Behaviour:
         """The ego is about to be there."""
-        ahead_m = self.number("ahead") - HALF_LENGTH_M[self.choice("kind")] - EGO_HALF_LENGTH_M
+        ahead_m = AHEAD_M - HALF_LENGTH_M[self.choice("kind")] - EGO_HALF_LENGTH_M
         return TimeToArrival(self.place.trigger_s_m + ahead_m, self.number("warning"), "the parked car")
 
     def conflict(self) -> Behaviour:
         """It pulls out, dawdles, and drives on."""
-        begin_m = self.place.trigger_s_m + self.number("ahead")
+        begin_m = self.place.trigger_s_m + AHEAD_M
         lane = Path.of_route(self.place.route, begin_m - 5.0, begin_m + LEAVES_M)
         path = lane.swerved(5.0, CHANGE_M, self._right_m, 0.0)
         pace_mps, slow_m = self.number("pace"), 5.0 + CHANGE_M + DAWDLES_M
