@@ -1,8 +1,11 @@
-"""Claims about docs/scenarios.md: its tables and files are what the code says."""
+"""Claims about docs/scenarios.md: its tables and files are what the code says, and its ids mean cases."""
 
+import re
 import subprocess
 import sys
 from pathlib import Path
+
+from basu.scenarios.library import by_id
 
 ROOT = Path(__file__).parents[3]
 
@@ -16,3 +19,11 @@ def test_the_page_is_what_the_code_says() -> None:
         check=False,
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_every_id_on_the_page_means_a_case() -> None:
+    page = (ROOT / "docs" / "scenarios.md").read_text("utf-8")
+    ids = set(re.findall(r"\b[a-z_]+_\d+:[\w=.,:-]*\w", page))
+    assert len(ids) >= 5
+    for identity in ids:
+        assert by_id(identity).case.name == identity
