@@ -10,6 +10,7 @@ from linden.scene.weather import CLEAR_NOON
 from linden.sensors.instrument import Instrument
 from linden.simulation import rows
 from linden.simulation.bones import Poses
+from linden.simulation.buried import Buried
 from linden.simulation.doors import Doors
 from linden.simulation.eyes import Eye
 from linden.simulation.grip import Grip
@@ -48,6 +49,7 @@ class Episode:
         elapsed_s: simulated time since it began.
         actors: who is there, with the packed rows of the snapshot.
         bodies: what occupies space and moves.
+        buried: whose physics is withheld, far below the ground.
         surroundings: what stands there, its lamps, and what clients drew.
         traffic: the lights.
         contacts: of the last step, as ``physics`` reports them.
@@ -66,6 +68,7 @@ class Episode:
         self.elapsed_s = 0.0
         self.actors = ActorTable()
         self.bodies = Bodies()
+        self.buried = Buried(world_map.ground, self.bodies)
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)
         self.traffic = Traffic(scenery.signals)
@@ -191,6 +194,7 @@ class Episode:
             self.actors.place(actor_id, pose)
         else:
             self.bodies.set_pose(record.slot, pose)
+            self.buried.settle(record.slot)
 
     # -- what the snapshot shows ---------------------------------------------------------------------------------
 

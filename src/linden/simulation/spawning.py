@@ -78,6 +78,8 @@ def spawn(
         slot=NO_BODY if parent_id else _embody(episode, blueprint, description, world_pose),
     )
     episode.actors.add(record, world_pose, pose if parent_id else None)
+    if record.slot != NO_BODY:
+        episode.buried.arrive(record.slot)
     if made_trigger is not None:
         episode.grip.add(record.id, made_trigger)
     if (made := instrument(description)) is not None:
