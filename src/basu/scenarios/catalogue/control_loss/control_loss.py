@@ -49,8 +49,8 @@ class ControlLoss(Scenario):
         Number("jitter", 0.06, 0.0, 0.3, "", "standard deviation of the steering's noise, share of the full steering"),
         Number("surge", 0.15, 0.0, 0.5, "", "standard deviation of the throttle's noise, share of the full throttle"),
         Number("friction", 0.35, 0.1, 1.0, "", "of the tyres on a wet patch; a dry road has 1.1 for the shuttle"),
-        Number("first", 22.0, 10.0, 60.0, "m", "from the trigger point to the first place"),
-        Number("apart", 16.0, 12.0, 40.0, "m", "between the places"),
+        Number("first", 22.0, 10.0, 35.0, "m", "from the trigger point to the first place"),
+        Number("apart", 16.0, 12.0, 20.0, "m", "between the places"),
     )
     weather: ClassVar[Mapping[str, float]] = WET
     timeout_s = 45.0

@@ -48,8 +48,8 @@ class DynamicObject(Scenario):
     aliases = ("DynamicObjectCrossing",)
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("object", tuple(MODELS), "what crosses"),
-        Number("ahead", 45.0, 30.0, 80.0, "m", "from the trigger point to where it crosses"),
-        Number("from_right", 5.5, 4.0, 15.0, "m", "from the middle of the lane to where it waits"),
+        Number("ahead", 45.0, 30.0, 60.0, "m", "from the trigger point to where it crosses"),
+        Number("from_right", 5.5, 4.5, 8.0, "m", "from the middle of the lane to where it waits"),
         Number("speed", 3.0, 1.5, 6.0, "m/s", "of it at most"),
         Number("offset", 0.0, -1.0, 1.0, "s", "after the ego it would be at the meeting point"),
     )

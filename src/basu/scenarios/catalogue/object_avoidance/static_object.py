@@ -44,7 +44,7 @@ class StaticObject(Scenario):
     aliases = ("StationaryObjectCrossing",)
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("object", tuple(MODELS), "what stands there"),
-        Number("ahead", 50.0, 30.0, 100.0, "m", "from the trigger point to its middle"),
+        Number("ahead", 50.0, 30.0, 65.0, "m", "from the trigger point to its middle"),
         Number("right", 0.2, -0.8, 1.5, "m", "of the middle of the lane"),
         Number("turned", 0.0, -90.0, 90.0, "°", "from the direction of the lane, clockwise"),
     )

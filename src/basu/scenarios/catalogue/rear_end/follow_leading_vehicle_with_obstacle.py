@@ -25,6 +25,7 @@ MODELS: dict[str, str] = {
 }
 KERB_M = 4.5  # from the middle of the lane to where it waits, on the pavement or between parked cars
 ACROSS_M = 9.0  # that it walks, to beyond the other lane
+LEAST_M = 2.0  # that the leader drives before it brakes
 LOOK_M = 7.0  # from the leader's middle to the one who steps out, when it brakes
 
 
@@ -52,21 +53,26 @@ class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
 
     @property
     def brakes_m(self) -> float:
-        """Where the leader's middle is when it brakes, ahead of the trigger point."""
-        return self.number("ahead") + self.number("after")
+        """Where the leader's middle is when it brakes, ahead of the trigger point: never too near to the junction."""
+        latest_m = self.stop_m - self.braking_m - LOOK_M
+        return max(self.number("ahead") + LEAST_M, min(self.number("ahead") + self.number("after"), latest_m))
+
+    @property
+    def braking_m(self) -> float:
+        """What the leader needs to stand."""
+        return self.number("speed") ** 2 / (2.0 * self.number("brake"))
 
     @property
     def cross_m(self) -> float:
         """Where the other crosses: beyond where the leader stops."""
-        way_m = self.number("speed") ** 2 / (2.0 * self.number("brake"))
-        return self.brakes_m + way_m + LOOK_M
+        return self.brakes_m + self.braking_m + LOOK_M
 
     def conflict(self) -> Behaviour:
         """Drive, brake for who crosses, wait until it has, drive on."""
         way = self.way()
         start = self.place.at(self.cross_m, KERB_M, -90.0)
         return InTurn(
-            DriveAlong(LEADER, way, self.number("speed"), to_m=self.number("after"), at_end="go on"),
+            DriveAlong(LEADER, way, self.number("speed"), to_m=self.brakes_m - self.number("ahead"), at_end="go on"),
             Together(
                 Brake(LEADER, at_mps2=self.number("brake"), path=way),
                 WalkAlong(CROSSER, Path.straight(start, ACROSS_M), self.number("pace")),

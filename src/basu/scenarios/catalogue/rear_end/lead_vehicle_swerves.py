@@ -27,6 +27,7 @@ VAN = "vehicle.volkswagen.t2"  # high enough that nobody sees over it
 CAR = "vehicle.nissan.micra"
 CLOSE_M = 30.0  # middle to middle, in which the ego stands; who wants to swing out stays back
 LENGTHS_M = 4.1  # of half a van and half a car: from middle to middle where they would touch
+LEAST_M = 2.0  # that it drives before it swerves, were it placed ever so near
 AWAY_M = 25.0  # that the leader drives on beside or behind the one who stands
 
 
@@ -42,7 +43,7 @@ class LeadVehicleSwerves(Scenario):
     parameters: ClassVar[Sequence[Parameter]] = (
         Number("ahead", 16.0, 9.0, 30.0, "m", "from the trigger point to the van's middle at first"),
         Number("speed", 7.0, 4.0, 9.0, "m/s", "of the van"),
-        Number("stands_at", 65.0, 40.0, 120.0, "m", "from the trigger point to the standing car's middle"),
+        Number("stands_at", 65.0, 50.0, 85.0, "m", "from the trigger point to the standing car's middle"),
         Number("late", 12.0, 9.0, 25.0, "m", "between van and car, bumper to bumper, when the van begins to swerve"),
     )
     weather: ClassVar[Mapping[str, float]] = DAYLIGHT
@@ -62,14 +63,14 @@ class LeadVehicleSwerves(Scenario):
         """Drive up to the car, swerve into the other lane, and on beside it."""
         place, speed_mps = self.place, self.number("speed")
         way = Path.of_route(place.route, place.trigger_s_m + self.number("ahead"))
-        to_m = self.number("stands_at") - self.number("ahead") - self.number("late") - LENGTHS_M
+        free_m = self.number("stands_at") - self.number("ahead") - LENGTHS_M  # between their bumpers at first
+        late_m = min(self.number("late"), free_m - LEAST_M)
+        to_m = free_m - late_m
         left_m = -lanes_apart_m(place, self.number("stands_at"))
         return InTurn(
             DriveAlong(LEADER, way, speed_mps, to_m=to_m, at_end="go on"),
-            ChangeLane(LEADER, way, left_m, over_m=self.number("late"), name=f"{LEADER} swerves"),
-            DriveAlong(
-                LEADER, way.beside(left_m), speed_mps, to_m=to_m + self.number("late") + AWAY_M, at_end="vanish"
-            ),
+            ChangeLane(LEADER, way, left_m, over_m=late_m, name=f"{LEADER} swerves"),
+            DriveAlong(LEADER, way.beside(left_m), speed_mps, to_m=free_m + AWAY_M, at_end="vanish"),
             name="drives up to the standing car and swerves",
         )
 

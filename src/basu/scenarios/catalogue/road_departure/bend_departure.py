@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -56,7 +57,7 @@ class BendDeparture(Scenario):
     timeout_s = 50.0
     needs_m = 50.0
 
-    @property
+    @cached_property
     def bend(self) -> tuple[float, float, float]:
         """Where the next bend begins and ends along the ego's route, and 1.0 if it is to the right, -1.0 if not.
 

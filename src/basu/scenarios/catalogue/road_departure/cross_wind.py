@@ -35,9 +35,9 @@ class CrossWind(Scenario):
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("side", ("right", "left"), "to which it is pushed"),
         Number("push", 0.22, 0.05, 0.5, "", "share of the full steering that a gust is worth"),
-        Number("gust", 2.0, 0.5, 4.0, "s", "a gust lasts"),
-        Number("gusts", 2.0, 1.0, 4.0, "", "in a row; rounded"),
-        Number("first", 25.0, 10.0, 60.0, "m", "from the trigger point to where the first gust begins"),
+        Number("gust", 2.0, 0.5, 2.5, "s", "a gust lasts"),
+        Number("gusts", 2.0, 1.0, 3.0, "", "in a row; rounded"),
+        Number("first", 25.0, 10.0, 35.0, "m", "from the trigger point to where the first gust begins"),
     )
     weather: ClassVar[Mapping[str, float]] = WINDY
     timeout_s = 40.0
