@@ -36,7 +36,7 @@ class EgoTurnsLeft(Stream):
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Number("cars", 4.0, 2.0, 5.0, "", "how many come, rounded, the one that turns among them"),
+        Number("cars", 3.0, 2.0, 5.0, "", "how many come, rounded, the one that turns among them"),
         Number("speed", 8.0, 5.0, 11.0, "m/s", "of those who go straight on"),
         Number("headway", 2.5, 1.8, 4.0, "s", "from one to the next"),
     )
