@@ -18,10 +18,12 @@ if TYPE_CHECKING:
 
     from py_trees.behaviour import Behaviour
 
+    from basu.scenarios.actions.walking import Then
     from basu.scenarios.criteria import Criterion
 
 DEER = "walker.pedestrian.0048"  # half a metre across, 1.1 m high
 AWAY_M = 8.0  # from the middle of the lane, where they stand and where they vanish to
+SLOW_MPS = 3.0  # to which the second one has come down when it is in the lane's middle
 APART_M = 2.5  # the second one runs so far behind the first, seen along the street
 NEAR_M = 0.5  # nearer than this is luck: a deer turns on the spot
 
@@ -58,9 +60,10 @@ class DeerAtDusk(Scenario):
         return AWAY_M if self.choice("side") == "right" else -AWAY_M
 
     @property
-    def _top_mps(self) -> float:
-        """The speed that the second reaches: half of its way to the lane's middle it needs to stop again."""
-        return min(self.number("speed"), math.sqrt(STARTS_MPS2 * AWAY_M))
+    def _slows_m(self) -> float:
+        """Before the middle of the lane, from where on the second one slows down, as fast as walkers do."""
+        slides_m = (self.number("speed") ** 2 - SLOW_MPS**2) / (2.0 * STARTS_MPS2)
+        return min(slides_m, AWAY_M / 2.0) + NEAR_M
 
     def actors(self) -> Sequence[ActorSpec]:
         """Both beside the street."""
@@ -72,26 +75,30 @@ class DeerAtDusk(Scenario):
 
     def trigger(self) -> Behaviour:
         """The second will stand in the lane so long before the ego is there."""
-        slides_s = self._top_mps / (2.0 * STARTS_MPS2)
-        there_s = self.number("gap") + walking_s(AWAY_M, self._top_mps) + slides_s
-        return ego_is_due(
-            self.place, self.number("ahead") + APART_M, there_s + self.number("sight"), "where they cross"
-        )
+        slows_m, speed_mps = self._slows_m, self.number("speed")
+        run_s = walking_s(AWAY_M - slows_m, speed_mps) + 2.0 * slows_m / (SLOW_MPS + speed_mps)
+        due_s = self.number("gap") + run_s + self.number("sight")
+        return ego_is_due(self.place, self.number("ahead") + APART_M, due_s, "where they cross")
 
     def conflict(self) -> Behaviour:
         """One runs across; the other follows, freezes, and runs on."""
-        ahead_m, speed_mps, from_m = self.number("ahead"), self.number("speed"), self._from_m
-        second = WalkAlong(
-            "deer_2",
-            across(self.place, ahead_m + APART_M, from_m, -from_m),
-            speed_mps,
-            pause_at_m=AWAY_M - self._top_mps**2 / (2.0 * STARTS_MPS2),  # from where it slides to a stand
-            pause_s=self.number("freezes"),
+        ahead_m, speed_mps, side = self.number("ahead"), self.number("speed"), math.copysign(1.0, self._from_m)
+
+        def second(from_m: float, to_m: float, mps: float, at_end: Then = "stand") -> WalkAlong:
+            return WalkAlong(
+                "deer_2", across(self.place, ahead_m + APART_M, side * from_m, side * to_m), mps, at_end=at_end
+            )
+
+        follows = InTurn(
+            Wait(self.number("gap")),
+            second(AWAY_M, self._slows_m, speed_mps, at_end="go on"),
+            second(self._slows_m, 0.3, SLOW_MPS),
+            Wait(self.number("freezes")),
+            second(0.0, -AWAY_M, speed_mps),
+            name="the second",
         )
-        return Together(
-            WalkAlong("deer_1", across(self.place, ahead_m, from_m, -from_m), speed_mps),
-            InTurn(Wait(self.number("gap")), second, name="the second"),
-        )
+        first = WalkAlong("deer_1", across(self.place, ahead_m, self._from_m, -self._from_m), speed_mps)
+        return Together(first, follows)
 
     def criteria(self) -> Sequence[Criterion]:
         """Neither is touched or nearly so, and the ego goes on."""

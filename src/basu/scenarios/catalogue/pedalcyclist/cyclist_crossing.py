@@ -6,12 +6,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
-from basu.scenarios.catalogue.on_foot import FRONT_M
+from basu.scenarios.catalogue.on_foot import FRONT_M, other_side
 from basu.scenarios.catalogue.pedalcyclist.bicycles import BICYCLE, SWAY_M
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
-from basu.scenarios.paths import crossing
+from basu.scenarios.paths import crossing, crossings, next_junction
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
 from basu.scenarios.triggers import TimeToArrival
@@ -41,14 +41,17 @@ class CyclistCrossing(Scenario):
         Number("speed", 4.0, 2.5, 6.0, "m/s", "of the cyclist, about which they time themselves"),
         Number("early", 0.2, -0.8, 1.0, "s", "by which they are in the lane's middle before the ego"),
         Number("settled", 2.0, 1.2, 3.5, "s", "for which at last they ride on without looking at the ego"),
-        Choice("side", ("right", "left"), "from which they come"),
+        Choice("side", ("right", "left"), "from which they come, where a street leads there"),
     )
     needs_m = 90.0
     needs_junction = True
 
     @cached_property
     def _way(self) -> Crossing:
-        return crossing(self.place, cast("Side", self.choice("side")), approach_m=50.0, leave_m=30.0)
+        junction, side = next_junction(self.place), cast("Side", self.choice("side"))
+        if side not in {way.side for way in crossings(self.place, junction)}:
+            side = other_side(side)
+        return crossing(self.place, side, junction=junction, approach_m=50.0, leave_m=30.0)
 
     @property
     def _ego_s_m(self) -> float:
