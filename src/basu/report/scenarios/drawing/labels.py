@@ -22,16 +22,18 @@ CHARACTER = 0.58  # width of one on average, in heights of the script
 EDGE_PX = 3.0
 REACHES = (1.0, 2.2, 3.6)  # how far away a word may stand, in gaps
 ALONG_PX, LINE_PX = 14.0, 3.5  # how far apart, and how wide, a line is kept free of words
-AROUND = (  # where a word may stand beside what it names: share of its width, of its height, both in front of a gap
-    (0.0, -1.0, 0.55),
-    (0.0, 0.0, 0.55),
-    (-0.5, -1.0, 0.0),
-    (-0.5, 0.0, 0.0),
-    (0.0, -0.5, 1.0),
-    (-1.0, -0.5, -1.0),
-    (-1.0, -1.0, -0.55),
-    (-1.0, 0.0, -0.55),
+AROUND = (  # where a word may stand beside what it names: shares of its width and height, then of the gap, both ways
+    (0.0, -1.0, 0.55, -0.55),
+    (0.0, 0.0, 0.55, 0.55),
+    (-0.5, -1.0, 0.0, -1.0),
+    (-0.5, 0.0, 0.0, 1.0),
+    (0.0, -0.5, 1.0, 0.0),
+    (-1.0, -0.5, -1.0, 0.0),
+    (-1.0, -1.0, -0.55, -0.55),
+    (-1.0, 0.0, -0.55, 0.55),
 )
+
+Way = tuple[float, float, float, float]
 
 
 class Taken(NamedTuple):
@@ -90,14 +92,10 @@ class Labels:
         baseline = chosen.bottom - 0.27 * height
         self.drawn.append(e("text", text, x=number(chosen.left, 1), y=number(baseline, 1), class_=style))
 
-    def _place(
-        self, at_px: Point, width: float, height: float, gap_px: float, way: tuple[float, float, float]
-    ) -> Taken:
+    def _place(self, at_px: Point, width: float, height: float, gap_px: float, way: Way) -> Taken:
         """One of the places beside a point."""
-        share_x, share_y, gap_x = way
-        left = at_px[0] + share_x * width + gap_x * gap_px
-        gap_y = 0.0 if share_y == -0.5 else gap_px * (1.0 if gap_x == 0.0 else 0.55) * (1.0 if share_y == 0.0 else -1.0)
-        top = at_px[1] + share_y * height + gap_y
+        left = at_px[0] + way[0] * width + way[2] * gap_px
+        top = at_px[1] + way[1] * height + way[3] * gap_px
         return Taken(left, top, left + width, top + height)
 
     def _held(self, place: Taken) -> Taken:

@@ -11,6 +11,7 @@ from basu.report.markup import e
 from basu.report.plots.decimate import path
 from basu.report.scenarios.drawing import trails
 from basu.report.scenarios.drawing.bodies import NOSE, block, body, outline
+from basu.report.scenarios.drawing.canvas import WIDTH_PX
 from basu.report.scenarios.drawing.encounter import boxes_at, contacts_of, encounter_of, roles_of, span_of, thing_boxes
 from basu.report.scenarios.drawing.labels import Labels
 from basu.report.scenarios.drawing.legend import cross
@@ -86,6 +87,8 @@ class Scene:
         if larger is not None:
             left, top = larger.corner_px
             self._labels.keep_free([(left, top), (left + LENS_PX[0], top + LENS_PX[1])], 2.0)
+        self._labels.keep_free([(WIDTH_PX - 44.0, 0.0), (WIDTH_PX, 24.0)])  # where north is
+        self._labels.keep_free([(0.0, self._canvas.height_px - 30.0), (180.0, self._canvas.height_px)])  # the scale
         ground, ways = self._ground(streets), self._ways()
         moment, contacts = self._moment(), self._contacts()
         self._write_times()
