@@ -29,6 +29,10 @@ def test_the_supported_page_is_what_the_code_says() -> None:
         "basu metrics",
         "basu replay",
         "basu experiment",
+        "basu scenario list",
+        "basu scenario run",
+        "basu scenario draw",
+        "basu scenario report",
     ],
 )
 def test_every_command_has_a_place_in_the_pages(command: str) -> None:
