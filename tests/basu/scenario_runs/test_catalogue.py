@@ -14,7 +14,7 @@ from basu.scenarios.library import open_library
 
 LIBRARY = open_library()
 BLIND = "forward"
-OFF_THE_ROUTE = {"DriftingNeighbour"}  # the route has no street with two lanes a way
+OFF_THE_ROUTE = {"DriftingNeighbour", "RedLightRunner"}  # the route has no two lanes a way and no lights
 
 
 def first_cases() -> dict[str, tuple[str, str]]:
