@@ -98,7 +98,7 @@ def _evidence(case: dict[str, Any], result: dict[str, Any]) -> Sequence[str]:
         f"with {parameters}" if parameters else "",
         "; ".join(margins),
         f"files: {result['folder']}",
-        f"again: basu scenario run {case['id']}",
+        f"again, with this agent: basu scenario run {case['id']}",
     ]
     return [line for line in lines if line]
 
