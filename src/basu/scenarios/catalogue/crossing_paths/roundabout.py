@@ -41,7 +41,6 @@ class Roundabout(Scenario):
     """
 
     group = Group.CROSSING_PATHS
-    aliases = ("EnterActorFlow",)
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("side", tuple(SIDES), "from which the others come into the roundabout"),
         Number("cars", 2.0, 1.0, 4.0, "", "that circulate; rounded"),

@@ -44,7 +44,6 @@ class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
         Number("brake", 5.0, 2.0, 8.0, "m/s²", "of the leader for who crosses"),
         Number("pace", 1.4, 0.8, 3.0, "m/s", "of who crosses"),
     )
-    aliases = ()
 
     def actors(self) -> Sequence[ActorSpec]:
         """The leader, and on the right who will cross."""

@@ -33,6 +33,7 @@ class LeadVehicleBrakes(Scenario):
     """
 
     group = Group.REAR_END
+    aliases: ClassVar[Sequence[str]] = ("HardBreakRoute",)
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("leader", tuple(MODELS), "who is followed"),
         Number("ahead", 13.0, 9.0, 30.0, "m", "from the trigger point to the leader's middle at first"),

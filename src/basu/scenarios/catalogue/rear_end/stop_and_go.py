@@ -24,6 +24,7 @@ class StopAndGo(LeadVehicleBrakes):
     pre-crash scenario: lead vehicle stopped, at the end of a queue. Fair as LeadVehicleBrakes.
     """
 
+    aliases = ()
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("leader", tuple(MODELS), "who is followed"),
         Number("ahead", 10.0, 8.0, 20.0, "m", "from the trigger point to the leader's middle at first"),
