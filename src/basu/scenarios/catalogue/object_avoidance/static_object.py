@@ -48,7 +48,7 @@ class StaticObject(Scenario):
         Number("right", 0.2, -0.8, 1.5, "m", "of the middle of the lane"),
         Number("turned", 0.0, -90.0, 90.0, "°", "from the direction of the lane, clockwise"),
     )
-    timeout_s = 60.0
+    timeout_s = 45.0
     needs_m = 95.0
 
     def actors(self) -> Sequence[ActorSpec]:
