@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
+from basu.routing.stretch import until
 
 if TYPE_CHECKING:
     from basu.history import History
-    from basu.routing import Route
 
 
 def part_of(history: History, first: int, end: int, until_s_m: float | None = None) -> History:
@@ -25,28 +24,9 @@ def part_of(history: History, first: int, end: int, until_s_m: float | None = No
     route = history.facts.route
     return replace(
         history,
-        facts=replace(history.facts, route=route if until_s_m is None else _up_to(route, until_s_m)),
+        facts=replace(history.facts, route=route if until_s_m is None else until(route, until_s_m)),
         frames=frames,
         others=others,
         collisions=tuple(replace(e, tick=e.tick - first) for e in history.collisions if first <= e.tick < end),
         lane_invasions=tuple(replace(e, tick=e.tick - first) for e in history.lane_invasions if first <= e.tick < end),
-    )
-
-
-def _up_to(route: Route, until_s_m: float) -> Route:
-    """The route cut off behind its first point at or beyond ``until_s_m``."""
-    count = min(int(np.searchsorted(route.s_m, until_s_m)) + 1, len(route.s_m))
-    return replace(
-        route,
-        points_m=route.points_m[:count],
-        s_m=route.s_m[:count],
-        yaw_rad=route.yaw_rad[:count],
-        lane_width_m=route.lane_width_m[:count],
-        speed_limit_mps=route.speed_limit_mps[:count],
-        is_junction=route.is_junction[:count],
-        road_id=route.road_id[:count],
-        lane_id=route.lane_id[:count],
-        stops=tuple(stop for stop in route.stops if stop.s_m <= route.s_m[count - 1]),
-        controls=tuple(control for control in route.controls if control.s_m <= route.s_m[count - 1]),
-        waypoints=route.waypoints[:count],
     )
