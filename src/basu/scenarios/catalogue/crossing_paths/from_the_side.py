@@ -5,14 +5,14 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, cast
 
-from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
+from basu.scenarios.actions import DriveAlong, Either, InTurn, ReachAtEgosArrival
 from basu.scenarios.catalogue.motorists import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import crossing
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
-from basu.scenarios.triggers import TimeToArrival
+from basu.scenarios.triggers import EgoPasses, TimeToArrival
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,7 +27,17 @@ if TYPE_CHECKING:
 OTHER = "other"
 SETTLED_S = 1.8  # before they meet, the other has its speed and keeps it, whatever the ego does
 NARROWLY = (0.75, 1.7)  # of its own speed: what it varies by to meet the ego, which may still speed up
+SHUTTLE_MPS = 6.0  # its pace, a little less than the agents keep
 LEAVES_M = 35.0  # of its way behind the junction, then it is out of sight
+
+
+def due(ego_s_m: float, seconds: float) -> Behaviour:
+    """The ego is so many seconds from a crossing, at its own speed or, where it slows down for it, at the shuttle's."""
+    return Either(
+        TimeToArrival(ego_s_m, seconds, "the crossing"),
+        EgoPasses(ego_s_m - SHUTTLE_MPS * seconds, f"{SHUTTLE_MPS * seconds:.0f} m before the crossing"),
+        name="ego is due at the crossing",
+    )
 
 
 class AcrossTheWay(Scenario):
@@ -60,7 +70,7 @@ class AcrossTheWay(Scenario):
 
     def trigger(self) -> Behaviour:
         """The ego is on its way to where they meet."""
-        return TimeToArrival(self.crossing.ego_s_m, self.number("notice"), "the crossing")
+        return due(self.crossing.ego_s_m, self.number("notice"))
 
     def conflict(self) -> Behaviour:
         """It drives through, and the ego has to let it."""

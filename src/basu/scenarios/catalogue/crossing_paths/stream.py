@@ -6,13 +6,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
-from basu.scenarios.catalogue.crossing_paths.from_the_side import NARROWLY, SETTLED_S
+from basu.scenarios.catalogue.crossing_paths.from_the_side import NARROWLY, SETTLED_S, due
 from basu.scenarios.catalogue.motorists import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, NoCollision
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
-from basu.scenarios.triggers import TimeToArrival
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -77,7 +76,7 @@ class Stream(Scenario):
 
     def trigger(self) -> Behaviour:
         """The ego is on its way to where they meet."""
-        return TimeToArrival(self.lanes[0].way.ego_s_m, NOTICE_S, "the crossing")
+        return due(self.lanes[0].way.ego_s_m, NOTICE_S)
 
     def conflict(self) -> Behaviour:
         """They drive through, the first of each row so as to meet who does not wait."""
