@@ -87,7 +87,7 @@ class ControlLoss(Scenario):
 
     def criteria(self) -> Sequence[Criterion]:
         """The ego's middle never leaves the lane, and soon after the last place it is back in the middle of it."""
-        return [NoCollision(), KeepsLane(0.0), Regains(), Arrives(), InTime()]
+        return [KeepsLane(0.0), Regains(), NoCollision(), Arrives(), InTime()]
 
     def _lost(self, sign: float) -> list[Behaviour]:
         """What happens to the controls in one place."""
