@@ -77,7 +77,7 @@ def test_without_a_light_nobody_can_run_it(laid):
 
 def test_the_side_chosen_is_the_side_it_comes_from(laid):
     for side, sign in (("left", -1.0), ("right", 1.0)):
-        scenario = laid("stop_sign_runner_4", side=side)
+        scenario = laid("red_light_runner_1", side=side)
         assert isinstance(scenario, AcrossTheWay)
         junction_m = next_junction(scenario.place).from_m
         here, there = scenario.place.at(junction_m), scenario.actors()[0].pose

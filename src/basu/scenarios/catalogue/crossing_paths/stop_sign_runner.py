@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.catalogue.crossing_paths.from_the_side import AcrossTheWay
 from basu.scenarios.parameters import Choice, Number
+from basu.scenarios.paths import crossings, next_junction
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from basu.scenarios.parameters import Parameter
+    from basu.scenarios.paths.crossings import Side
 
 
 class StopSignRunner(AcrossTheWay):
@@ -21,7 +23,6 @@ class StopSignRunner(AcrossTheWay):
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("side", ("right", "left"), "from which the other comes"),
         Choice("kind", ("car", "van", "suv", "motorcycle"), "who it is"),
         Number("speed", 6.5, 4.0, 11.0, "m/s", "of the other"),
         Number("lateness", -0.5, -1.5, 1.0, "s", "after the ego at the place where they meet; negative: before it"),
@@ -29,3 +30,9 @@ class StopSignRunner(AcrossTheWay):
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 70.0, "sun_altitude_angle": 25.0}
     aliases: ClassVar[Sequence[str]] = ("OppositeVehicleTakingPriority",)
+
+    @property
+    def side(self) -> Side:
+        """From the right where a street comes from there, else from the left: a side street may end here."""
+        there = {way.side for way in crossings(self.place, next_junction(self.place))}
+        return "right" if "right" in there else "left"

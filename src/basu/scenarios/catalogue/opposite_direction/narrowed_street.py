@@ -33,7 +33,7 @@ class NarrowedStreet(OutOfLane):
         Choice("kind", ("car", "suv", "van"), "who comes"),
         Number("speed", 6.0, 3.5, 9.0, "m/s", "of who comes"),
         Number(
-            "into_lane", 1.3, 0.8, 1.8, "m", "by which the middle of the parked cars lies in from the lane's right edge"
+            "into_lane", 1.3, 1.0, 1.8, "m", "by which the middle of the parked cars lies in from the lane's right edge"
         ),
         Number("room", 0.5, 0.3, 1.0, "m", "between the parked cars and who comes"),
         Number("meets", 55.0, 45.0, 70.0, "m", "ahead of the trigger point: where the narrow place begins"),

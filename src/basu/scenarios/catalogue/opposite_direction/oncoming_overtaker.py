@@ -33,8 +33,8 @@ class OncomingOvertaker(OutOfLane):
 
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("slow", ("bicycle", "van", "truck"), "who is overtaken"),
-        Number("speed", 9.0, 6.0, 14.0, "m/s", "of the overtaker"),
-        Number("slow_speed", 4.0, 2.0, 5.0, "m/s", "of the overtaken"),
+        Number("speed", 9.0, 8.0, 14.0, "m/s", "of the overtaker"),
+        Number("slow_speed", 4.0, 2.0, 4.0, "m/s", "of the overtaken"),
         Number("warning", 5.0, 4.0, 7.0, "s", "from when it begins to get out until they would meet"),
         Number("meets", 55.0, 45.0, 70.0, "m", "ahead of the trigger point: where it begins to go back"),
     )
