@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.report.scenarios.shares import shares_text
 from basu.report.scenarios.sweep.boundary import boundary
-from basu.report.scenarios.tally import blocks, tally
+from basu.report.scenarios.tally import blocks, counted, tally
 from basu.report.scenarios.verdicts import LOOKS
 
 if TYPE_CHECKING:
@@ -48,8 +48,8 @@ def _headline(matrix: dict[str, Any]) -> str:
     drives = sum(len(case["results"]) for case in matrix["cases"])
     minutes, seconds = divmod(round(matrix["wall_s"]), 60)
     lasted = f"{minutes} min {seconds} s" if minutes else f"{seconds} s"
-    agents = ", ".join(matrix["agents"])
-    text = f"{matrix['what']} with {agents}: {len(matrix['cases'])} cases, {drives} drives in {lasted}"
+    agents, cases = ", ".join(matrix["agents"]), counted(len(matrix["cases"]), "case")
+    text = f"{matrix['what']} with {agents}: {cases}, {counted(drives, 'drive')} in {lasted}"
     return textwrap.fill(text, WIDTH)
 
 

@@ -81,3 +81,8 @@ def _least(results: Sequence[dict[str, Any]], margin: str) -> float | None:
     """The least of a margin, over those that have one."""
     found = [result["margins"].get(margin) for result in results]
     return min((value for value in found if value is not None), default=None)
+
+
+def counted(number: int, thing: str) -> str:
+    """So many of a thing: "1 case", "2 cases"."""
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"

@@ -17,7 +17,7 @@ class Wait(Action):
     """Let some seconds go by."""
 
     def __init__(self, seconds: float) -> None:
-        super().__init__(f"wait {seconds:g} s")
+        super().__init__(f"wait {seconds:.3g} s")
         self.seconds = seconds
 
     def begin(self) -> None:
@@ -26,7 +26,7 @@ class Wait(Action):
 
     def act(self) -> str | None:
         """When the time is over."""
-        return f"{self.seconds:g} s over" if self.stage.time_s >= self.until_s - 1e-6 else None
+        return f"{self.seconds:.3g} s over" if self.stage.time_s >= self.until_s - 1e-6 else None
 
 
 class InTurn(Sequence):

@@ -35,7 +35,7 @@ class _Disturbance(Action):
         """One frame's disturbance."""
         elapsed_s = self.stage.time_s - self.began_s
         if elapsed_s >= self.seconds - 1e-6:
-            return f"{self.seconds:g} s, steering off by up to {self.worst:.2f}"
+            return f"{self.seconds:.3g} s, steering off by up to {self.worst:.2f}"
         self.change(elapsed_s)
         self.worst = max(self.worst, abs(self.steer))
         return None
@@ -60,7 +60,7 @@ class JitterControls(_Disturbance):
         self, seconds: float, *, steer: float = 0.1, throttle: float = 0.2, correlated_s: float = 0.3, pull: float = 0.0
     ) -> None:
         """``pull`` is added to the steering all the time, positive to the right."""
-        super().__init__(f"controls jitter for {seconds:g} s", seconds)
+        super().__init__(f"controls jitter for {seconds:.3g} s", seconds)
         self.steer_sd, self.throttle_sd, self.correlated_s, self.pull = steer, throttle, correlated_s, pull
 
     def begin(self) -> None:
@@ -83,7 +83,7 @@ class PullSteering(_Disturbance):
     """Steering off by a constant share, reached within ``rising_s``, positive to the right: the incident of Linden."""
 
     def __init__(self, amount: float, seconds: float, rising_s: float = 0.3) -> None:
-        super().__init__(f"steering pulls to the {'right' if amount > 0.0 else 'left'} for {seconds:g} s", seconds)
+        super().__init__(f"steering pulls to the {'right' if amount > 0.0 else 'left'} for {seconds:.3g} s", seconds)
         self.amount, self.rising_s = amount, rising_s
 
     def change(self, elapsed_s: float) -> None:

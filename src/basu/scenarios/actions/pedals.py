@@ -70,7 +70,7 @@ class Hold(Puppet):
     """Hold a vehicle where it is, by its brakes, for some seconds."""
 
     def __init__(self, actor: str, seconds: float) -> None:
-        super().__init__(f"{actor} stands for {seconds:g} s", actor, None, at_end="hold")
+        super().__init__(f"{actor} stands for {seconds:.3g} s", actor, None, at_end="hold")
         self.seconds = seconds
 
     def begin(self) -> None:
@@ -84,4 +84,4 @@ class Hold(Puppet):
 
     def over(self) -> str | None:
         """When the time is over."""
-        return f"stood for {self.seconds:g} s" if self.stage.time_s >= self.until_s - 1e-6 else None
+        return f"stood for {self.seconds:.3g} s" if self.stage.time_s >= self.until_s - 1e-6 else None

@@ -66,7 +66,7 @@ class TimeToArrival(Trigger):
     """The ego, at the speed it has, needs no more than ``seconds`` to a place ``s_m`` along its route."""
 
     def __init__(self, s_m: float, seconds: float, what: str = "") -> None:
-        super().__init__(f"ego {seconds:g} s from {what or f'{s_m:.0f} m'}")
+        super().__init__(f"ego {seconds:.3g} s from {what or f'{s_m:.0f} m'}")
         self.s_m, self.seconds = s_m, seconds
 
     def has_come(self) -> str | None:
@@ -81,7 +81,7 @@ class ActorTimeToArrival(Trigger):
     """An actor needs, at the speed it has, no more than ``seconds`` to a place ``s_m`` along its path."""
 
     def __init__(self, actor: str, path: Path, s_m: float, seconds: float) -> None:
-        super().__init__(f"{actor} {seconds:g} s from {s_m:.0f} m of its path")
+        super().__init__(f"{actor} {seconds:.3g} s from {s_m:.0f} m of its path")
         self.actor, self.path, self.s_m, self.seconds = actor, path, s_m, seconds
 
     def has_come(self) -> str | None:

@@ -40,7 +40,7 @@ class StandsStill(Trigger):
     """Somebody has stood for so long, without a break."""
 
     def __init__(self, seconds: float, *, who: str = EGO) -> None:
-        super().__init__(f"{named(who)} stands for {seconds:g} s")
+        super().__init__(f"{named(who)} stands for {seconds:.3g} s")
         self.seconds, self.who = seconds, who
 
     def begin(self) -> None:
@@ -60,7 +60,7 @@ class ClosesIn(Trigger):
     """The ego would be at an actor within ``seconds`` if the distance went on to shrink as it does, edge to edge."""
 
     def __init__(self, actor: str, seconds: float) -> None:
-        super().__init__(f"ego {seconds:g} s from {actor}")
+        super().__init__(f"ego {seconds:.3g} s from {actor}")
         self.actor, self.seconds = actor, seconds
 
     def has_come(self) -> str | None:
@@ -81,7 +81,7 @@ class Elapsed(Trigger):
     """So much time has gone since the scenario began."""
 
     def __init__(self, seconds: float) -> None:
-        super().__init__(f"{seconds:g} s since the beginning")
+        super().__init__(f"{seconds:.3g} s since the beginning")
         self.seconds = seconds
 
     def has_come(self) -> str | None:

@@ -16,7 +16,7 @@ from basu.report.scenarios.page.style import card_style
 from basu.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.report.scenarios.sweep.study import studies
 from basu.report.scenarios.sweep.success_map import drawing
-from basu.report.scenarios.tally import blocks
+from basu.report.scenarios.tally import blocks, counted
 from basu.report.scenarios.verdicts import LOOKS
 from basu.utils.atomic import write_bytes
 
@@ -124,7 +124,7 @@ def _head(matrix: dict[str, Any]) -> Element:
     drives = sum(len(case["results"]) for case in matrix["cases"])
     versions = ", ".join(f"{name} {text}" for name, text in matrix["versions"].items())
     minutes, seconds = divmod(round(matrix["wall_s"]), 60)
-    what = f"{len(matrix['cases'])} cases with {', '.join(matrix['agents'])}: {drives} drives"
+    what = f"{counted(len(matrix['cases']), 'case')} with {', '.join(matrix['agents'])}: {counted(drives, 'drive')}"
     told = f"{what} in {minutes} min {seconds} s, started {matrix['started']}; {versions}"
     return e("header", e("h1", f"Scenarios: {matrix['what']}"), e("p", told))
 
