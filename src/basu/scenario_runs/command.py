@@ -127,11 +127,9 @@ def _played(options: ScenarioOptions, folder: Path, jobs: Sequence[Job]) -> Iter
             finally:
                 crew.end()
             return
-        waiting: list[Job] = list(jobs)
-        done: list[Done] = []
-        while waiting:
-            play(options, folder, waiting, done.append)
-            bar.update(len(done))
-            yield from done
-            waiting = waiting[len(done) :]
-            done.clear()
+        done = 0
+        while done < len(jobs):
+            for answer in play(options, folder, jobs[done:]):
+                done += 1
+                bar.update()
+                yield answer

@@ -15,7 +15,7 @@ from basu.simulator import asking, simulator_for, towns_of
 from basu.utils import client_threads
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Iterable, Iterator
     from multiprocessing.connection import Connection
     from pathlib import Path
 
@@ -48,12 +48,13 @@ class Refused(NamedTuple):
     sentence: str
 
 
-def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job], tell: Callable[[Done], None]) -> None:
-    """Play jobs in a simulator until there are no more, or it is better to begin with a fresh one.
+def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterator[Done]:
+    """Play jobs in a simulator until there are no more, or it is better to begin with a fresh one; what came of each.
 
     Raises:
         UserError: an agent or a case cannot be had.
         SimulatorError: there is no simulator to play in.
+        KeyboardInterrupt: the user interrupted a case; what came of it has been yielded.
     """
     library = open_library(options.all_files)
     agents = {agent: load_agent(agent) for agent in options.agents}
@@ -65,7 +66,9 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job], tell: Call
             loaded = agents[job.agent]
             performed = perform(theatre, loaded, playable, output / plain(loaded.name))
             leaves = performed.outcome.status in LEAVING
-            tell(Done(job.number, performed.document, str(performed.folder.relative_to(output)), leaves))
+            yield Done(job.number, performed.document, str(performed.folder.relative_to(output)), leaves)
+            if performed.outcome.status is Status.INTERRUPTED:
+                raise KeyboardInterrupt
             if leaves:
                 return
 
@@ -79,7 +82,8 @@ def work(connection: Connection, options: ScenarioOptions, output: Path) -> None
             yield job
 
     try:
-        play(options, output, jobs(), connection.send)
+        for done in play(options, output, jobs()):
+            connection.send(done)
     except BasuError as error:
         connection.send(Refused(str(error)))
     except EOFError:

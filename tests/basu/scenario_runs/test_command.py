@@ -143,6 +143,20 @@ def test_a_process_that_dies_costs_its_own_case_only(files: Path, tmp_path: Path
     assert "died 2 times" in results["bad"]["message"]
 
 
+def test_ctrl_c_ends_the_run_and_what_was_played_is_written(
+    simulator: RunningServer, files: Path, tmp_path: Path
+) -> None:
+    agent = tmp_path / "bad.py"
+    agent.write_text(AGENTS.replace("time.sleep(60.0)", "os.kill(os.getpid(), signal.SIGINT)"), encoding="utf-8")
+    words = ("goes_well:ahead=30", "goes_well", "--scenarios", files, "--agent", "basic", "--agent", f"{agent}:Hangs")
+    assert run(simulator, tmp_path, *words) == 130
+    results = [case["results"] for case in matrix(tmp_path)["cases"]]
+    assert [{name: result["verdict"] for name, result in row.items()} for row in results] == [
+        {"basic": "SUCCESS", "bad": "INTERRUPTED"},
+        {},
+    ]
+
+
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
