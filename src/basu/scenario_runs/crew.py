@@ -8,11 +8,10 @@ from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import SimulatorError
-from basu.scenario_runs.worker import Done, Job, Refused, work
+from basu.scenario_runs.worker import Done, Job, Ready, Refused, work
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from multiprocessing.connection import Connection
     from pathlib import Path
 
     from basu.scenario_runs.options import ScenarioOptions
@@ -38,6 +37,7 @@ class _Worker:
         self.process.start()
         theirs.close()
         self.job: Job | None = None
+        self.is_ready = False
 
     def give(self, job: Job | None) -> None:
         """The next job, or None: no more."""
@@ -46,6 +46,24 @@ class _Worker:
             self.connection.send(job)
         except OSError:
             return  # it is gone, which is seen at its pipe
+
+    def says(self) -> Done | Ready | None:
+        """What it says; None where it is gone.
+
+        Raises:
+            SimulatorError: it cannot work.
+            RuntimeError: it was gone before it had come into being.
+        """
+        try:
+            answer: Done | Ready | Refused = self.connection.recv()
+        except (EOFError, OSError):
+            if not self.is_ready:
+                raise RuntimeError("a worker's process did not come into being; what it said stands above") from None
+            return None
+        if isinstance(answer, Refused):
+            raise SimulatorError(answer.sentence)
+        self.is_ready = True
+        return answer
 
     def end(self) -> None:
         """Wait until it has ended, and end it where it does not."""
@@ -70,16 +88,17 @@ class Crew:
 
         Raises:
             SimulatorError: a worker cannot work.
+            RuntimeError: a worker's process does not come into being, which is a bug of ours.
         """
         for _ in range(min(self._options.workers, len(self._waiting))):
             self._employ()
         while self._workers:
             for connection in wait(list(self._workers)):
                 worker = self._workers[connection]
-                answer = _answer(worker.connection)
-                if isinstance(answer, Refused):
-                    raise SimulatorError(answer.sentence)
-                if isinstance(answer, Done):
+                answer = worker.says()
+                if isinstance(answer, Ready):
+                    continue
+                if answer is not None:
                     worker.job = None
                     yield answer
                     if not answer.leaves:
@@ -123,11 +142,3 @@ class Crew:
         return Lost(
             job.number, f"the process that played it died {ATTEMPTS} times (exit status {worker.process.exitcode})"
         )
-
-
-def _answer(connection: Connection) -> object:
-    """What a worker says; None where it is gone."""
-    try:
-        return connection.recv()
-    except (EOFError, OSError):
-        return None

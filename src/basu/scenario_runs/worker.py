@@ -42,6 +42,10 @@ class Done(NamedTuple):
     leaves: bool  # whether the worker ends now
 
 
+class Ready(NamedTuple):
+    """A worker that has come into being; one that dies before has not died over a job."""
+
+
 class Refused(NamedTuple):
     """A worker that cannot work, and why."""
 
@@ -81,6 +85,7 @@ def work(connection: Connection, options: ScenarioOptions, output: Path) -> None
         while (job := connection.recv()) is not None:
             yield job
 
+    connection.send(Ready())
     try:
         for done in play(options, output, jobs()):
             connection.send(done)
