@@ -21,6 +21,7 @@ from basu.scenario_runs.leave import leave
 from basu.scenario_runs.matrix import matrix_of
 from basu.scenario_runs.worker import Job, play
 from basu.scenarios.library import cases_of, varied
+from basu.scenarios.nhtsa import Group
 from basu.scenarios.variation import Variation
 
 if TYPE_CHECKING:
@@ -75,13 +76,15 @@ def run_scenarios(options: ScenarioOptions) -> int:
 
 
 def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
-    """The cases that were asked for, sampled where that was.
+    """The cases that were asked for in the order of the typology, sampled where that was.
 
     Raises:
         UserError: there is none of that name, or it cannot be sampled like this.
     """
     variation = Variation(fixed=options.fixed, design=options.design, vary=options.vary)
-    return varied(cases_of(options.what, options.files), variation)
+    typology = list(Group)
+    by_group = sorted(cases_of(options.what, options.files), key=lambda each: typology.index(each.scenario.group))
+    return varied(by_group, variation)
 
 
 def worst(documents: Iterator[dict[str, Any]]) -> int:
