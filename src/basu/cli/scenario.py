@@ -58,7 +58,9 @@ def _add_run(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     design.add_argument("--grid", type=int, metavar="K", help="play each case with K values of every number")
     run.add_argument("--vary", metavar="NAME[,NAME]", help="the parameters to sample (default: all)")
     run.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="give a parameter a value")
-    run.add_argument("--seed", type=int, default=0, help="of the samples and of all that is random (default: 0)")
+    run.add_argument(
+        "--seed", type=int, default=0, help="of the samples; without --sweep, of chance in the drives (default: 0)"
+    )
     run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: as the case says)")
     _add_simulator(run)
     run.add_argument("--workers", type=int, metavar="N", help="simulators beside each other (default: one a processor)")
@@ -130,7 +132,7 @@ def _options(arguments: argparse.Namespace) -> ScenarioOptions:
         port=arguments.port,
         timeout_s=arguments.timeout,
         vehicle=arguments.vehicle,
-        seed=arguments.seed,
+        seed=0 if isinstance(design, Sweep) else arguments.seed,  # of chance in the drives, which an id does not hold
         workers=workers,
         step_limit_s=arguments.step_limit,
         output=arguments.output,

@@ -86,7 +86,7 @@ def about(playable: Playable) -> dict[str, Any]:
 def command(playable: Playable, options: ScenarioOptions, agent: str) -> list[str]:
     """The command that plays this case alone again."""
     words = ["basu", "scenario", "run", playable.case.name, "--agent", agent]
-    for file in options.files:
+    for file in options.all_files:
         words += ["--scenarios", str(file)]
     for option, value, usual in (
         ("--vehicle", options.vehicle, None),

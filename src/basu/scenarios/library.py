@@ -150,7 +150,11 @@ class Library:
         groups = [group.value for group in Group]
         names = [*(case.name for case in self.cases), *(snake(s.__name__) for s in self.scenarios), *groups, ALL]
         close = difflib.get_close_matches(snake(wanted.partition(":")[0]), names, 1)
-        hint = f"did you mean '{close[0]}'?" if close else "it may be a case, a type, a group, FILE.xml or all;"
+        hint = (
+            f"did you mean '{close[0]}'?"
+            if close
+            else "it may be a case, a type, a group, FILE.xml or all, and one of yours with --scenarios FILE;"
+        )
         return f"{hint} `basu scenario list` shows what there is"
 
 

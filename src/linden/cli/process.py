@@ -42,12 +42,19 @@ class Ending:
         self._ask = stop
 
     def _signalled(self, number: int, _frame: FrameType | None) -> None:
-        if self._ask is None or self._reminder is not None:
-            raise SystemExit(0)
+        ask = None if self._reminder is not None else self._ask
+        self._remind(number)
+        if ask is None:
+            raise SystemExit(0)  # where a callback of the compiler's swallows it, the reminder comes again
+        ask()
+
+    def _remind(self, number: int) -> None:
+        """Send the signal again after a moment."""
+        if self._reminder is not None:
+            self._reminder.cancel()
         self._reminder = threading.Timer(GRACE_S, signal.raise_signal, (number,))
         self._reminder.daemon = True
         self._reminder.start()
-        self._ask()
 
 
 @contextmanager

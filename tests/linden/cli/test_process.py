@@ -54,6 +54,30 @@ def test_the_second_signal_breaks_off_at_once(stuck: subprocess.Popen[str]) -> N
     assert time.monotonic() - began_s < GRACE_S
 
 
+SWALLOWS = """
+import os
+from linden.cli.process import Ending
+with Ending():
+    try:
+        os.write(1, b"compiling\\n")
+        while True:
+            sum(range(1000))
+    except SystemExit:  # as a callback of the compiler's would
+        os.write(1, b"swallowed\\n")
+    while True:
+        sum(range(1000))
+"""
+
+
+def test_an_end_that_a_callback_swallows_comes_again() -> None:
+    with subprocess.Popen([sys.executable, "-c", SWALLOWS], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "compiling\n"
+        process.send_signal(signal.SIGTERM)
+        assert process.stdout.readline() == "swallowed\n"
+        assert process.wait(10) == 0
+
+
 def pipe_of_log(monkeypatch: pytest.MonkeyPatch) -> tuple[int, logging.Logger]:
     """The reading end of a pipe, and a logger that writes into it."""
     reading, writing = os.pipe()

@@ -163,7 +163,7 @@ def _endings(matrix: dict[str, Any], *, colour: bool) -> str:
         lines.append(f"{_painted(agent, BOLD, colour=colour)} did not pass {len(found)}:")
         for id_, result in found[:MOST_TOLD]:
             text = f"{LOOKS[result['verdict']].sign} {id_}: {result['message']}"
-            lines.append(f"  {textwrap.shorten(text, WIDTH - 2, placeholder=' …')}")
+            lines.append(textwrap.fill(text, WIDTH, initial_indent="  ", subsequent_indent="      "))
         if len(found) > MOST_TOLD:
             lines.append(f"  and {len(found) - MOST_TOLD} more")
     return "\n".join(lines)

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import Body, Stage
 
 AtEnd = Literal["hold", "go on", "vanish"]
+BACKWARDS_RAD = math.radians(100.0)  # a path that begins farther off a vehicle's heading leads behind it
 STRAIGHT_M = 400.0  # of a path for who is given none
 PULL_PER_S = 2.0  # of the way off its path that a puppet makes good in a second
 SIDEWAYS = 0.35  # of its speed that it may do so with
@@ -61,6 +62,12 @@ class Puppet(Action):
         body = self.stage.body(self.actor)
         self.path = self.given or Path.straight(Pose(body.x_m, body.y_m, body.z_m, body.yaw_rad), STRAIGHT_M)
         self.near = self.path.nearest(body.x_m, body.y_m)
+        off_rad = math.remainder(self.path.heading_rad(self.near.s_m) - body.yaw_rad, math.tau)
+        if abs(off_rad) > BACKWARDS_RAD:
+            raise ScenarioError(
+                f"'{self.actor}' is led along a path that goes {math.degrees(abs(off_rad)):.0f}° off its heading; "
+                "a vehicle is led forwards only: turn it, or let the path begin ahead of it"
+            )
         self.began_m = self.s_m = self.near.s_m
         self.speed_mps = max(0.0, body.forward_mps)
         self.touched = False
