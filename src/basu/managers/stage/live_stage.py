@@ -27,6 +27,10 @@ if TYPE_CHECKING:
     from basu.routing import Route
     from basu.scenarios.stage import ActorSpec, Controls, Door, Pose
 
+# A contact comes on a thread of the client's, in its frame or soon after: each is known exactly so many frames later.
+HEARD_TICKS = 3
+LOOK_BACK_TICKS = 12
+
 
 class LiveStage:
     """See ``basu.scenarios.stage.Stage``. ``look`` begins a frame, ``carry_out`` ends it, ``clear`` ends all."""
@@ -92,8 +96,11 @@ class LiveStage:
         """Take in a frame."""
         self._frame = frame
         self._bodies.clear()
-        contacts = self._metrics.contacts_since(max(self._began_tick, frame.tick - 2))
-        new = {self._roles.get(contact.other_id, contact.other_type) for contact in contacts}
+        new = {
+            self._roles.get(contact.other_id, contact.other_type)
+            for contact in self._metrics.contacts_since(max(self._began_tick, frame.tick - LOOK_BACK_TICKS))
+            if contact.tick <= frame.tick - HEARD_TICKS
+        }
         if new:
             self._touched |= new
 
