@@ -5,9 +5,17 @@ from pathlib import Path
 
 import pytest
 
+from basu.leaderboard.modules import step_back
 from servers import RunningServer, running_server
 
 SHORT_ROUTE = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"
+
+
+@pytest.fixture(autouse=True)
+def _no_stand_ins() -> Iterator[None]:
+    """Forget the modules that an agent's file brought with it: other tests' files find their own."""
+    yield
+    step_back()
 
 
 @pytest.fixture(scope="session")

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import difflib
 import importlib
-import importlib.util
 import inspect
-import sys
 import traceback
 from pathlib import Path
 from typing import NamedTuple
@@ -19,6 +17,7 @@ from basu.leaderboard.adapter import LeaderboardAgent, adapted
 from basu.leaderboard.foreign import ENTRY_POINT, foreign_agent
 from basu.leaderboard.modules import stand_in
 from basu.managers.time_limit import OverrunError, call_within
+from basu.utils.user_module import module_of
 
 BUILT_IN = {
     "basic": "basu.agents.basic",
@@ -91,16 +90,8 @@ def _run_file(path: Path) -> tuple[dict[str, object], str]:
     """
     stand_in()
     name = f"basu_agent_{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None, "a path that ends in .py has a loader"
-    loader = spec.loader
-    assert loader is not None, "likewise"
-    module = importlib.util.module_from_spec(spec)
+    module, loader = module_of(path, name)
     module.__dict__.update(carla=carla, AutonomousAgent=AutonomousAgent)
-    sys.modules[name] = module
-    beside = str(path.resolve().parent)
-    if beside not in sys.path:
-        sys.path.append(beside)  # after everything else: an agent of several files finds its own, and shadows nothing
     try:
         call_within(LOAD_LIMIT_S, lambda: loader.exec_module(module))
     except OverrunError:
@@ -109,7 +100,7 @@ def _run_file(path: Path) -> tuple[dict[str, object], str]:
         raise UserError(f"the agent's file {path} is no Python: line {error.lineno}: {error.msg}") from error
     except (Exception, SystemExit) as error:
         line = next(
-            (f.lineno for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename == spec.origin), 0
+            (f.lineno for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename == module.__file__), 0
         )
         raise UserError(
             f"the agent's file {path} does not load: line {line}: {type(error).__name__}: {error}"

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
 from basu.recording.basic_metric import BasicMetric
+from basu.utils.user_module import module_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -54,17 +55,9 @@ def run_metric(wanted: str, town_map: Any, log: MetricsLog, criteria: Mapping[st
 
 def _executed(path: Path) -> ModuleType:
     """The file as a module."""
-    name = f"basu_metric_{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path.resolve())
-    assert spec is not None, "a path that ends in .py has a loader"
-    assert spec.loader is not None, "likewise"
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    beside = str(path.resolve().parent)
-    if beside not in sys.path:
-        sys.path.append(beside)  # after everything else: a metric of several files finds its own, and shadows nothing
+    module, loader = module_of(path.resolve(), f"basu_metric_{path.stem}")
     try:
-        spec.loader.exec_module(module)
+        loader.exec_module(module)
     except SyntaxError as error:
         raise UserError(f"the metric {path} is no Python: line {error.lineno}: {error.msg}") from error
     except (Exception, SystemExit) as error:

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import inspect
 import pkgutil
-import sys
 import traceback
 from pathlib import Path
 from types import ModuleType
@@ -15,6 +13,7 @@ from basu.errors import ScenarioError
 from basu.scenarios import catalogue
 from basu.scenarios.declaration import check_class
 from basu.scenarios.scenario import Scenario
+from basu.utils.user_module import module_of
 
 
 def own_scenarios() -> list[type[Scenario]]:
@@ -68,21 +67,13 @@ def _is_base(scenario: type[Scenario]) -> bool:
 
 def _executed(path: Path) -> ModuleType:
     """The file as a module."""
-    name = f"basu_scenario_{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path.resolve())
-    assert spec is not None, "a path that ends in .py has a loader"
-    assert spec.loader is not None, "likewise"
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    beside = str(path.resolve().parent)
-    if beside not in sys.path:
-        sys.path.append(beside)  # after everything else: a scenario of several files finds its own, and shadows nothing
+    module, loader = module_of(path.resolve(), f"basu_scenario_{path.stem}")
     try:
-        spec.loader.exec_module(module)
+        loader.exec_module(module)
     except SyntaxError as error:
         raise ScenarioError(f"the scenario file {path} is no Python: line {error.lineno}: {error.msg}") from error
     except (Exception, SystemExit) as error:
-        lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == spec.origin]
+        lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == module.__file__]
         line = f"line {lines[-1]}: " if lines else ""
         raise ScenarioError(f"the scenario file {path} does not load: {line}{type(error).__name__}: {error}") from error
     return module

@@ -54,13 +54,11 @@ class World:
 @pytest.fixture(autouse=True)
 def host() -> Iterator[None]:
     """A host that has a world with a hero in it."""
-    modules.step_back()
     modules.stand_in()
     CarlaDataProvider.set_world(World())
     CarlaDataProvider.register_actor(SimpleNamespace(id=7, attributes={"role_name": "hero"}))
     yield
     CarlaDataProvider.cleanup()
-    modules.step_back()
 
 
 def loaded(base: str) -> Any:

@@ -1,13 +1,11 @@
 """Claims about finding an agent of the leaderboard or of ScenarioRunner, and a sentence for every way it is none."""
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from basu.errors import UserError
-from basu.leaderboard import modules
 from basu.leaderboard.adapter import LeaderboardAgent
 from basu.leaderboard.foreign import Dialect
 from basu.managers.agent_loader import LoadedAgent, load_agent
@@ -24,12 +22,6 @@ class Mine:
     def set_global_plan(self, global_plan_gps, global_plan_world_coord): pass
     def destroy(self): pass
 """
-
-
-@pytest.fixture(autouse=True)
-def alone() -> Iterator[None]:
-    yield
-    modules.step_back()
 
 
 def loaded(folder: Path, text: str, class_name: str = "", agent_config: str | None = None) -> LoadedAgent:

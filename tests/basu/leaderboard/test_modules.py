@@ -10,14 +10,6 @@ import pytest
 from basu.leaderboard import modules
 
 
-@pytest.fixture(autouse=True)
-def alone() -> Iterator[None]:
-    """Each test begins without our modules, and leaves none behind."""
-    modules.step_back()
-    yield
-    modules.step_back()
-
-
 @pytest.fixture
 def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """A leaderboard that is installed, with one module in it."""

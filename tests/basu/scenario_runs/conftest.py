@@ -1,11 +1,8 @@
 """A scenario of a user's, short and quiet, with cases that go well and cases that go wrong."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-
-from basu.leaderboard.modules import step_back
 
 CLASSES = '''
 """What a user may write."""
@@ -92,10 +89,3 @@ def files(tmp_path: Path) -> Path:
     path = tmp_path / "mine.xml"
     path.write_text("<scenarios>\n" + "\n".join(CASES) + "\n</scenarios>\n", encoding="utf-8")
     return path
-
-
-@pytest.fixture(autouse=True)
-def _no_stand_ins() -> Iterator[None]:
-    """Forget the modules that an agent's file brought with it: other tests' files find their own."""
-    yield
-    step_back()
