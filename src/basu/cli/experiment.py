@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from basu.cli.driving import add_simulator, check_positive
 from basu.options import RunOptions
 
 
@@ -12,11 +13,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """The command ``experiment``."""
     command = commands.add_parser("experiment", help="drive the thesis's test runs again", description=drive.__doc__)
     command.add_argument("name", choices=["thesis"], help="section 5.5: four agents on the short route")
-    command.add_argument("--host", help="a simulator that runs already (default: start one for each run)")
-    command.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
-    command.add_argument(
-        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
-    )
+    add_simulator(command, "start one for each run")
     command.add_argument("--seed", type=int, default=0, help="of all that is random (default: %(default)s)")
     command.add_argument(
         "--output", type=Path, default=Path("runs"), metavar="DIR", help="for the folder (default: %(default)s)"
@@ -26,6 +23,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 def drive(arguments: argparse.Namespace) -> int:
     """Drive basic, behavioral, forward and human as section 5.5 of the thesis did, and print both tables."""
+    check_positive(arguments, "timeout")
     from basu.experiment.thesis import thesis  # noqa: PLC0415 - the client and the plots, which `--help` does not need
 
     options = RunOptions(

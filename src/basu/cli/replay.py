@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from basu.cli.driving import add_simulator, check_positive
 from basu.cli.scoring import read_scoring
 from basu.errors import UserError
 
@@ -32,11 +33,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"where --viewer keeps it (default: {RRD_FILE} in the run's folder)",
     )
     replay.add_argument("--map", type=Path, metavar="FILE.xodr", help="to draw with --viewer (default: the run's)")
-    replay.add_argument("--host", help="a simulator that runs already (default: start one, end it afterwards)")
-    replay.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
-    replay.add_argument(
-        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
-    )
+    add_simulator(replay, "start one, end it afterwards")
     replay.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="times real time, 0 for unbraked (default: %(default)s)"
     )
@@ -47,6 +44,7 @@ def replay_run(arguments: argparse.Namespace) -> int:
     """Play a run again: on a simulator, where any client can watch it, or with --viewer in Rerun's, without one."""
     if not arguments.speed >= 0.0:
         raise UserError(f"--speed is {arguments.speed}; it is a factor, or 0")
+    check_positive(arguments, "timeout")
     recording: Path = arguments.recording
     if not arguments.viewer:
         return _on_simulator(arguments)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import argparse
 import math
-import signal
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
 
+from basu.cli.driving import add_simulator, check_positive, terminated_as_interrupted
 from basu.cli.hud import add_hud, hud_options
 from basu.cli.scoring import add_scoring, adjusted
 from basu.errors import UserError
@@ -15,9 +14,6 @@ from basu.metrics.score import Scoring
 from basu.options import RunOptions, Traffic
 from basu.outcome import EXIT_CODES
 from basu.viewer.stream import require
-
-if TYPE_CHECKING:
-    from types import FrameType
 
 LATER = {
     "sumo": "SUMO co-simulation follows with the TrafficManager",
@@ -36,7 +32,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     run.add_argument(
         "--agent-config", metavar="FILE", help="handed to the setup of an agent of the leaderboard or ScenarioRunner"
     )
-    _add_simulator(run)
+    add_simulator(run, "start one, end it afterwards")
     _add_routes(run)
     run.add_argument("--weather", metavar="NAME", help="a preset of CARLA's (default: the route file's or the agent's)")
     run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: the agent's)")
@@ -61,15 +57,6 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     add_hud(run)
     add_scoring(run)
     run.set_defaults(command=run_agent)
-
-
-def _add_simulator(run: argparse.ArgumentParser) -> None:
-    """Where to drive."""
-    run.add_argument("--host", help="a simulator that runs already (default: start one, end it afterwards)")
-    run.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
-    run.add_argument(
-        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
-    )
 
 
 def _add_routes(run: argparse.ArgumentParser) -> None:
@@ -146,9 +133,7 @@ def _options(arguments: argparse.Namespace) -> RunOptions:
         raise UserError(f"--repetitions is {arguments.repetitions}; it must be at least 1")
     if arguments.resume and arguments.series is None:
         raise UserError("--resume goes on with a series; name it with --series, as when it was begun")
-    for option in ("timeout", "step_limit"):
-        if not getattr(arguments, option) > 0.0:
-            raise UserError(f"--{option.replace('_', '-')} is {getattr(arguments, option)} s; it must be positive")
+    check_positive(arguments, "timeout", "step_limit")
     return RunOptions(
         agent=arguments.agent or arguments.agent_option or "basic",
         agent_config=arguments.agent_config,
@@ -187,12 +172,5 @@ def run_agent(arguments: argparse.Namespace) -> int:
     scoring = adjusted(Scoring(), arguments)
     from basu.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
 
-    before = signal.signal(signal.SIGTERM, _terminated)  # ends a run as Ctrl-C does: what was measured is written
-    try:
+    with terminated_as_interrupted():
         return run(options, scoring)
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
-def _terminated(_number: int, _frame: FrameType | None) -> NoReturn:
-    raise KeyboardInterrupt

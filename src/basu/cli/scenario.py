@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
+from basu.cli.driving import add_simulator, check_positive, terminated_as_interrupted
 from basu.cli.scenario_list import add_list_options, list_scenarios
 from basu.errors import UserError
 from basu.outcome import EXIT_CODES
@@ -16,8 +16,6 @@ from basu.utils.atomic import write_bytes
 FORMS = ("text", "ascii", "svg", "dot", "json")  # of a drawn tree
 
 if TYPE_CHECKING:
-    from types import FrameType
-
     from basu.scenario_runs.options import ScenarioOptions
     from basu.scenarios.sampling import Design
 
@@ -62,7 +60,7 @@ def _add_run(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
         "--seed", type=int, default=0, help="of the samples; without --sweep, of chance in the drives (default: 0)"
     )
     run.add_argument("--vehicle", metavar="BLUEPRINT", help="to drive (default: as the case says)")
-    _add_simulator(run)
+    add_simulator(run, "start our own")
     run.add_argument("--workers", type=int, metavar="N", help="simulators beside each other (default: one a processor)")
     run.add_argument("--step-limit", type=float, default=10.0, metavar="S", help="wall time for one step of the agent")
     run.add_argument("--output", type=Path, default=Path("scenario-runs"), metavar="DIR", help="(default: %(default)s)")
@@ -78,17 +76,8 @@ def _add_draw(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     add_files(draw)
     draw.add_argument("--form", choices=FORMS, default="text", help="(default: %(default)s)")
     draw.add_argument("--output", type=Path, metavar="FILE", help="write it there (default: show it)")
-    _add_simulator(draw)
+    add_simulator(draw, "start our own")
     draw.set_defaults(command=draw_command)
-
-
-def _add_simulator(parser: argparse.ArgumentParser) -> None:
-    """Where to play."""
-    parser.add_argument("--host", help="a simulator that runs already (default: start our own)")
-    parser.add_argument("--port", type=int, default=2000, help="of --host (default: %(default)s)")
-    parser.add_argument(
-        "--timeout", type=float, default=20.0, metavar="S", help="to wait for the simulator (default: %(default)s)"
-    )
 
 
 def add_files(parser: argparse.ArgumentParser) -> None:
@@ -112,9 +101,7 @@ def _options(arguments: argparse.Namespace) -> ScenarioOptions:
     from basu.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - brings in the client
     from basu.scenarios.sampling import Grid, Sweep  # noqa: PLC0415 - likewise
 
-    for option in ("timeout", "step_limit"):
-        if not getattr(arguments, option) > 0.0:
-            raise UserError(f"--{option.replace('_', '-')} is {getattr(arguments, option)} s; it must be positive")
+    check_positive(arguments, "timeout", "step_limit")
     workers = arguments.workers if arguments.workers is not None else len(os.sched_getaffinity(0))
     if workers < 1:
         raise UserError(f"--workers is {workers}; it must be at least 1")
@@ -154,15 +141,13 @@ def run_command(arguments: argparse.Namespace) -> int:
     options = _options(arguments)
     from basu.scenario_runs.command import run_scenarios  # noqa: PLC0415 - brings in the client and the plots
 
-    before = signal.signal(signal.SIGTERM, _terminated)  # as Ctrl-C: what was played is written
-    try:
+    with terminated_as_interrupted():
         return run_scenarios(options)
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def draw_command(arguments: argparse.Namespace) -> int:
     """Draw the behaviour tree of a case as it stands before a run, with its criteria."""
+    check_positive(arguments, "timeout")
     from basu.scenario_runs.draw import drawn  # noqa: PLC0415 - brings in the client
     from basu.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - likewise
 
@@ -191,7 +176,3 @@ def report_command(arguments: argparse.Namespace) -> int:
     folder: Path = arguments.folder.resolve()
     leave(folder, read_matrix(folder), arguments.junit)
     return 0
-
-
-def _terminated(_number: int, _frame: FrameType | None) -> NoReturn:
-    raise KeyboardInterrupt

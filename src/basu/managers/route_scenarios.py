@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.errors import UserError
-from basu.managers.asked import asked
 from basu.outcome import Outcome, Status
 from basu.scenarios.criteria.part import part_of
 from basu.scenarios.drawing import tree_of
@@ -26,18 +24,10 @@ def told(scenarios: Sequence[Playing], history: History | None, outcome: Outcome
 
 def _told(playing: Playing, history: History | None, outcome: Outcome) -> dict[str, Any]:
     """One of them; its verdict is None where the ego never came to its trigger point."""
-    playable, scenario = playing.planned, playing.scenario
-    trigger_s_m = scenario.place.trigger_s_m
+    trigger_s_m = playing.scenario.place.trigger_s_m
     document: dict[str, Any] = {
-        "id": playable.case.name,
-        "scenario": type(scenario).__name__,
-        "title": scenario.title(),
-        "group": scenario.group.value,
-        "parameters": [
-            {"name": p.name, "value": playable.values[p.name], "unit": p.unit, "about": p.about}
-            for p in scenario.parameters
-        ],
-        "unread": list(playable.unread),
+        **playing.planned.about(),
+        "unread": list(playing.planned.unread),
         "trigger_s_m": round(trigger_s_m, 3),
         "reached": playing.armed_tick is not None,
         "verdict": None,
@@ -55,21 +45,14 @@ def judged_on_the_way(playing: Playing, history: History, outcome: Outcome) -> J
     """The verdict, by the part of the run's record in which the scenario was played."""
     if playing.error is not None:
         return judge((), None, Outcome(Status.SETUP_FAILED, str(playing.error)), triggered=playing.triggered)
-    ended = playing.outcome or outcome
     first = playing.armed_tick or 0
     end = len(history.frames) if playing.over_tick is None else playing.over_tick + 1
     part = part_of(history, first, end, playing.stage.route.length_m)
-    who = playing.planned.case.name
-    try:
-        criteria = asked(who, playing.scenario.criteria)
-        return asked(who, lambda: judge(criteria, playing.played(part, ended), ended, triggered=playing.triggered))
-    except UserError as error:
-        return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=playing.triggered)
+    return playing.judged(part, playing.outcome or outcome)
 
 
 def _evidence(playing: Playing, judged: Judged | None, step_s: float) -> dict[str, Any]:
     """When it was played, with whom, and what its criteria say."""
-    types = playing.stage.types
     judgements = () if judged is None else judged.judgements
     return {
         "began_s": None if playing.armed_tick is None else round(playing.armed_tick * step_s, 3),
@@ -78,7 +61,7 @@ def _evidence(playing: Playing, judged: Judged | None, step_s: float) -> dict[st
         "judgements": [judgement._asdict() for judgement in judgements],
         "margins": {} if judged is None else judged.margins,
         "tree": dict(tree_of(playing.composed, judgements)),
-        "actors": [{"id": key, "role": role, "type": types[key]} for key, role in playing.stage.roles.items()],
+        "actors": playing.actors(),
         "things": [thing._asdict() for thing in playing.things],
         "timeout_s": playing.scenario.timeout_s,
         "scenarios_file": playing.planned.case.source,

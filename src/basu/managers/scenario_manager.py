@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import carla
 from py_trees.common import Status as NodeStatus
 
-from basu.errors import ScenarioError
+from basu.errors import ScenarioError, UserError
 from basu.managers.asked import asked
 from basu.managers.base_manager import BaseManager
 from basu.managers.laid_out import is_behind, lay_out
@@ -24,6 +24,7 @@ from basu.outcome import Outcome, Status
 from basu.scenarios.criteria.criterion import Played, moved
 from basu.scenarios.stage import Controls
 from basu.scenarios.tree import set_on
+from basu.scenarios.verdict import judge
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.stage import ActorSpec
     from basu.scenarios.tree import Composed
+    from basu.scenarios.verdict import Judged
 
 NEAR_M = 100.0  # before its trigger point along the route, a scenario's actors come into the world
 LAST_CALL_M = 30.0  # until then, who finds no room, as others are on the road, is brought a moment later
@@ -80,6 +82,21 @@ class Playing:
             phases_s={phase: tick * step_s for phase, tick in self.phase_ticks.items()},
             timeout_s=self.scenario.timeout_s,
         )
+
+    def judged(self, history: History, outcome: Outcome) -> Judged:
+        """The verdict, by the record of the whole run; criteria that raise are the scenario's own fault."""
+        who = self.planned.case.name
+        try:
+            criteria = asked(who, self.scenario.criteria)
+            played = self.played(history, outcome)
+            return asked(who, lambda: judge(criteria, played, outcome, triggered=self.triggered))
+        except UserError as error:
+            return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=self.triggered)
+
+    def actors(self) -> list[dict[str, Any]]:
+        """Everybody whom it brought, as plain values for a result."""
+        types = self.stage.types
+        return [{"id": actor, "role": role, "type": types[actor]} for actor, role in self.stage.roles.items()]
 
 
 class ScenarioManager(BaseManager):

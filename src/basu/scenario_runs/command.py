@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
+    from basu.managers.agent_loader import LoadedAgent
     from basu.scenario_runs.options import ScenarioOptions
     from basu.scenario_runs.worker import Done
     from basu.scenarios.library import Playable
@@ -44,7 +45,8 @@ def run_scenarios(options: ScenarioOptions) -> int:
     """
     began, began_s = datetime.now(timezone.utc), time.perf_counter()
     playables = chosen(options)
-    names = _names(options.agents)
+    agents = _loaded(options.agents)
+    names = [agent.name for agent in agents]
     folder = _folder(options, began)
     jobs = [
         Job(number, agent, playable.case.name)
@@ -55,11 +57,8 @@ def run_scenarios(options: ScenarioOptions) -> int:
     try:
         for answer in _played(options, folder, jobs):
             if isinstance(answer, Lost):
-                playable = playables[answer.number // len(names)]
-                documents[answer.number] = (
-                    lost(playable, names[answer.number % len(names)], answer.sentence, options),
-                    "",
-                )
+                playable, agent = playables[answer.number // len(agents)], agents[answer.number % len(agents)]
+                documents[answer.number] = (lost(playable, agent, answer.sentence, options), "")
             else:
                 documents[answer.number] = (answer.document, answer.folder)
     except KeyboardInterrupt:
@@ -96,17 +95,18 @@ def worst(documents: Iterator[dict[str, Any]]) -> int:
     return max(codes, default=Fault.SETUP.value)
 
 
-def _names(agents: Sequence[str]) -> list[str]:
-    """What the agents are called in tables and folders; each is loaded once, so that a wrong one is told at once.
+def _loaded(typed: Sequence[str]) -> list[LoadedAgent]:
+    """The agents, loaded before anything begins, so that a wrong one is told at once.
 
     Raises:
         UserError: one cannot be had, or two have one name.
     """
-    names = [load_agent(agent).name for agent in agents]
+    agents = [load_agent(agent) for agent in typed]
+    names = [agent.name for agent in agents]
     for name in names:
         if names.count(name) > 1:
             raise UserError(f"two agents are called '{name}'; name each once, or rename a file")
-    return names
+    return agents
 
 
 def _folder(options: ScenarioOptions, began: datetime) -> Path:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.managers.agent_loader import load_agent
 from basu.options import STEP_S
 from basu.outcome import Outcome, Status
 from basu.scenarios.drawing import tree_of
@@ -49,7 +48,7 @@ def document_of(
         "judgements": [judgement._asdict() for judgement in judged.judgements],
         "margins": judged.margins,
         "tree": None if playing is None else tree_of(playing.composed, judged.judgements),
-        "actors": [] if playing is None else _actors(playing),
+        "actors": [] if playing is None else playing.actors(),
         "things": [] if playing is None else [thing._asdict() for thing in playing.things],
         "scenarios_file": case.source,
         "command": command(playable, options, loaded.name if loaded.file is None else str(loaded.file)),
@@ -59,28 +58,15 @@ def document_of(
     }
 
 
-def lost(playable: Playable, agent: str, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
+def lost(playable: Playable, loaded: LoadedAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
     """The document of a case whose process died: nothing is known of it."""
-    loaded = load_agent(next(typed for typed in options.agents if load_agent(typed).name == agent))
     judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
     return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)
 
 
 def about(playable: Playable) -> dict[str, Any]:
-    """Which case of which scenario, and its parameters."""
-    case, scenario = playable.case, playable.scenario
-    return {
-        "id": case.name,
-        "scenario": scenario.__name__,
-        "title": scenario.title(),
-        "group": scenario.group.value,
-        "place": case.place,
-        "on_route": case.on_route,
-        "parameters": [
-            {"name": p.name, "value": playable.values[p.name], "unit": p.unit, "about": p.about}
-            for p in scenario.parameters
-        ],
-    }
+    """Which case of which scenario, where, and its parameters."""
+    return {**playable.about(), "place": playable.case.place, "on_route": playable.case.on_route}
 
 
 def command(playable: Playable, options: ScenarioOptions, agent: str) -> list[str]:
@@ -96,9 +82,3 @@ def command(playable: Playable, options: ScenarioOptions, agent: str) -> list[st
         if value != usual:
             words += [option, str(value)]
     return words
-
-
-def _actors(playing: Playing) -> list[dict[str, Any]]:
-    """Everybody whom the scenario brought."""
-    types = playing.stage.types
-    return [{"id": actor_id, "role": role, "type": types[actor_id]} for actor_id, role in playing.stage.roles.items()]

@@ -5,11 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
-from basu.errors import ScenarioError
 from basu.managers.asked import asked
 from basu.managers.laid_out import lay_out
 from basu.routing import lane_graph, plan
-from basu.scenario_runs.one_case import description_of
+from basu.scenario_runs.one_case import check_town, description_of
 from basu.scenarios.drawing import draw
 from basu.scenarios.library import cases_of
 from basu.simulator import asking, simulator_for, towns_of, world_of
@@ -28,8 +27,7 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
     with simulator_for(options.run_options("basic")) as simulator, asking(f"loading {case.town}"):
-        if case.town not in (there := towns_of(simulator.client)):
-            raise ScenarioError(f"{case.name} is in {case.town}, which this simulator does not have; it has {there}")
+        check_town(case, towns_of(simulator.client))
         carla_map = world_of(simulator.client, case.town).get_map()
         route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))
         laid = lay_out(playable, route, carla_map, own=True)

@@ -14,7 +14,6 @@ import carla
 from basu.drive import drive
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.history.files import write_history
-from basu.managers.asked import asked
 from basu.managers.base_manager import Run
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
@@ -43,12 +42,14 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.drive import Driven
+    from basu.history import History
     from basu.managers.agent_loader import LoadedAgent
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
     from basu.preparation import SensorSet
     from basu.routing.lane_graph import LaneGraph
     from basu.scenario_runs.options import ScenarioOptions
+    from basu.scenarios.config.model import Case
     from basu.scenarios.library import Playable
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.verdict import Judged
@@ -84,12 +85,7 @@ class Theatre:
             SimulatorError: the simulator does not load it.
         """
         client, town = self.simulator.client, playable.case.town
-        if town not in self.names:
-            there = ", ".join(sorted(self.names))
-            raise ScenarioError(
-                f"{playable.case.name} is in {town}, which this simulator does not have (it has {there}): play it on "
-                f"one that has, with --host, or give the case a place in {there} ({playable.case.source})"
-            )
+        check_town(playable.case, self.names)
         with asking(f"loading {town}"):
             client.reload_world(reset_settings=False)
             world = client.get_world() if self.loaded == town else world_of(client, town)
@@ -103,6 +99,20 @@ class Theatre:
             lanes = lane_graph.build(carla_map)
             self.towns[name] = Town(carla_map, lanes, lanes.streets())
         return self.towns[name]
+
+
+def check_town(case: Case, names: frozenset[str]) -> None:
+    """Whether a case can be played in a simulator with towns of these names.
+
+    Raises:
+        ScenarioError: its town is not among them.
+    """
+    if case.town not in names:
+        there = ", ".join(sorted(names))
+        raise ScenarioError(
+            f"{case.name} is in {case.town}, which this simulator does not have (it has {there}): play it on one that "
+            f"has, with --host, or give the case a place in {there} ({case.source})"
+        )
 
 
 class Performed(NamedTuple):
@@ -129,8 +139,8 @@ def perform(theatre: Theatre, loaded: LoadedAgent, playable: Playable, output: P
     draft = make_draft(output, plain(case.name))
     try:
         attempt = _attempt(theatre, loaded, playable, draft)
-        judged = _judged(playable, attempt)
         history = None if attempt.driven is None else attempt.driven.history
+        judged = _judged(attempt, history)
         document = document_of(
             playable, loaded, attempt.playing, judged, options, history=history, wall_s=time.perf_counter() - began_s
         )
@@ -146,18 +156,11 @@ def perform(theatre: Theatre, loaded: LoadedAgent, playable: Playable, output: P
     return Performed(document, publish(draft, plain(case.name)), attempt.outcome)
 
 
-def _judged(playable: Playable, attempt: _Attempt) -> Judged:
-    """The verdict; criteria that raise are the scenario's own fault."""
-    playing, driven, outcome = attempt.playing, attempt.driven, attempt.outcome
-    if playing is None or driven is None or driven.history is None:
-        return judge((), None, outcome, triggered=False)
-    played = playing.played(driven.history, outcome)
-    who = playable.case.name
-    try:
-        criteria = asked(who, playing.scenario.criteria)
-        return asked(who, lambda: judge(criteria, played, outcome, triggered=playing.triggered))
-    except UserError as error:
-        return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=playing.triggered)
+def _judged(attempt: _Attempt, history: History | None) -> Judged:
+    """The verdict."""
+    if attempt.playing is None or history is None:
+        return judge((), None, attempt.outcome, triggered=False)
+    return attempt.playing.judged(history, attempt.outcome)
 
 
 def _attempt(theatre: Theatre, loaded: LoadedAgent, playable: Playable, draft: Path) -> _Attempt:

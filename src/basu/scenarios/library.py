@@ -9,7 +9,7 @@ import difflib
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import ScenarioError
 from basu.scenarios.class_file import own_scenarios, users_scenarios
@@ -43,6 +43,20 @@ class Playable(NamedTuple):
     scenario: type[Scenario]
     values: Mapping[str, Value]
     unread: tuple[str, ...] = ()  # values that ScenarioRunner's class reads and ours does not
+
+    def about(self) -> dict[str, Any]:
+        """Which case of which scenario, and its parameters, as plain values for a result."""
+        scenario = self.scenario
+        return {
+            "id": self.case.name,
+            "scenario": scenario.__name__,
+            "title": scenario.title(),
+            "group": scenario.group.value,
+            "parameters": [
+                {"name": p.name, "value": self.values[p.name], "unit": p.unit, "about": p.about}
+                for p in scenario.parameters
+            ],
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,22 +1,14 @@
 """Claims about report.html in a real browser: it asks nobody, opens its evidence, fits on paper and phones."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, Page
 
 from basu.report.html.page import report
-from browsers import running_browser
 from fakes.run_records import crashing, record
 
 HOSTILE = "</title><script>document.title = 'owned'</script><img src=http://127.0.0.1:9/x onerror=alert(1)>"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with running_browser() as running:
-        yield running
 
 
 @pytest.fixture(scope="module")
@@ -25,21 +17,6 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("run") / "report.html"
     path.write_bytes(report(record(crashing(), agent=HOSTILE, message=HOSTILE)))
     return path
-
-
-@pytest.fixture
-def context(browser: Browser) -> Iterator[BrowserContext]:
-    context = browser.new_context(offline=True)
-    yield context
-    context.close()
-
-
-@pytest.fixture
-def page(context: BrowserContext, file: Path) -> Page:
-    """The report, open."""
-    page = context.new_page()
-    page.goto(file.as_uri())
-    return page
 
 
 def test_it_asks_nobody_for_anything_and_does_not_complain(context: BrowserContext, file: Path) -> None:

@@ -1,6 +1,5 @@
 """Claims about matrix.html in a real browser: it asks nobody, opens cards, filters, fits on phones and paper."""
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -8,16 +7,9 @@ from playwright.sync_api import Browser, BrowserContext, Page
 
 from basu.report.scenarios.page.matrix_page import Cell, matrix_page
 from basu.report.scenarios.page.records import CaseRecord
-from browsers import running_browser
 from fakes.scenario_documents import STREETS, case_result, crossing, failed, matrix, told
 
 CARD = "#case-pedestrian_crossing_2--basic"
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
-    with running_browser() as running:
-        yield running
 
 
 @pytest.fixture(scope="module")
@@ -36,21 +28,6 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("run") / "matrix.html"
     path.write_bytes(matrix_page(matrix_, left))
     return path
-
-
-@pytest.fixture
-def context(browser: Browser) -> Iterator[BrowserContext]:
-    context = browser.new_context(offline=True)
-    yield context
-    context.close()
-
-
-@pytest.fixture
-def page(context: BrowserContext, file: Path) -> Page:
-    """The page, open."""
-    page = context.new_page()
-    page.goto(file.as_uri())
-    return page
 
 
 def test_it_asks_nobody_for_anything_and_does_not_complain(context: BrowserContext, file: Path) -> None:
