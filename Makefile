@@ -8,7 +8,8 @@ run:  ## drive the shuttle route and score the drive
 	@scripts/setup run
 	@$(BIN)/basu run $(AGENT)
 
-test: check  ## all that CI runs
+test:  ## all that CI runs: check, then all tests
+	@scripts/setup dev
 	@scripts/run-tests
 
 check:  ## format, lint, types, import rules

@@ -1,6 +1,7 @@
 """Claims about scenarios on the way of a route: read, laid, met, judged, and gone without a trace."""
 
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -34,7 +35,7 @@ from basu.scenarios.stage import ActorSpec, Pose
 from basu.scenarios.triggers import EgoArrives
 from basu.series import conditions
 from fakes.one_road import one_road, way_along
-from servers import RunningServer
+from servers import RunningServer, running_server
 
 TOWN = one_road()
 WAY = way_along(TOWN)
@@ -327,17 +328,17 @@ class Dozes(Dark):
 '''
 
 
+@pytest.fixture
+def simulator() -> Iterator[RunningServer]:
+    """One that nobody else has been in, since what is there before and afterwards is compared."""
+    with running_server() as running:
+        yield running
+
+
 def world_of(simulator: RunningServer) -> carla.World:
     client = carla.Client("127.0.0.1", simulator.port)
     client.set_timeout(20.0)
     return client.get_world()
-
-
-def fresh_world(simulator: RunningServer) -> carla.World:
-    """Without what other tests on this server have left."""
-    client = carla.Client("127.0.0.1", simulator.port)
-    client.set_timeout(20.0)
-    return client.reload_world()
 
 
 def seen(world: carla.World) -> set[tuple[int, str]]:
@@ -365,7 +366,7 @@ def test_a_run_meets_its_scenarios_and_leaves_the_world_as_it_was(
     (tmp_path / "way.py").write_text(CLASSES, encoding="utf-8")
     waiting = [("rain_1", "Crosser", 20.0), ("stumbles_1", "Stumbles", 30.0), ("dozes_1", "Dozes", 70.0)]
     path = route_file(tmp_path, "\n".join(at(*each) for each in waiting))
-    fresh_world(simulator).set_weather(carla.WeatherParameters.ClearNoon)
+    world_of(simulator).set_weather(carla.WeatherParameters.ClearNoon)
     before = seen(world_of(simulator))
     code, result = driven(simulator, tmp_path, path, "--weather", "ClearNoon")
     world = world_of(simulator)
