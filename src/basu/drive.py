@@ -61,14 +61,16 @@ def drive(
     ended: Callable[[], bool],
     observers: Callable[[Live], Sequence[BaseManager]],
     scenarios: ScenarioManager,
+    lane_invasions: bool = True,
 ) -> Driven:
     """Drive one run to its end, whatever that is.
 
     ``why_gone`` tells whether the simulator is still there, ``ended`` whether it is seen without asking that it is not;
     ``observers`` makes those who look on and change nothing; they are ticked after all others but the ``scenarios``.
+    ``lane_invasions`` says whether those are recorded.
     """
     routes = RoutesManager()
-    metrics = MetricsManager(agents, routes, scoring)
+    metrics = MetricsManager(agents, routes, scoring, lane_invasions=lane_invasions)
     scenarios.join(routes, metrics)
     live = Live(agents, sensors, routes, metrics)
     onlookers = tuple(observers(live))

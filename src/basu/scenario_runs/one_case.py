@@ -22,7 +22,7 @@ from basu.managers.traffic_manager import TrafficManager
 from basu.metrics.score import Scoring
 from basu.options import NOBODY, STEP_S
 from basu.outcome import Outcome, Status
-from basu.preparation import new_agents, sensor_set
+from basu.preparation import SensorSet, new_agents, sensor_set
 from basu.report.folder import RESULT_FILE, make_draft, plain, publish, write_json
 from basu.report.scenarios.pictures import PICTURE_FILE, case_picture
 from basu.report.streets import around, write_streets
@@ -46,7 +46,6 @@ if TYPE_CHECKING:
     from basu.managers.agent_loader import LoadedAgent
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
-    from basu.preparation import SensorSet
     from basu.routing.lane_graph import LaneGraph
     from basu.scenario_runs.options import ScenarioOptions
     from basu.scenarios.config.model import Case
@@ -168,7 +167,7 @@ def _attempt(theatre: Theatre, loaded: LoadedAgent, playable: Playable, draft: P
     town = None
     try:
         agents = new_agents(loaded, theatre.options.run_options(loaded.name), theatre.options.seed)
-        sensors = sensor_set(agents, loaded)
+        sensors = _sensors(agents, loaded)
         world = theatre.fresh_world(playable)
         town = theatre.town(playable.case.town, world)
         scenes = ScenarioManager([playable], own=True)
@@ -183,6 +182,15 @@ def _attempt(theatre: Theatre, loaded: LoadedAgent, playable: Playable, draft: P
         if failure is not None:
             traceback.print_exception(failure)
     return _Attempt(driven, next(iter(scenes.playing), None), driven.outcome, town)
+
+
+def _sensors(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
+    """What the agent senses with; those of our own read no sensors, theirs are for who looks on, as nobody does here.
+
+    Raises:
+        UserError: the agent asks for what is no sensor set.
+    """
+    return SensorSet((), loaded.name) if loaded.file is None else sensor_set(agents, loaded)
 
 
 def _driven(
@@ -229,6 +237,7 @@ def _driven(
             ended=simulator.ended,
             observers=lambda _live: (),
             scenarios=scenes,
+            lane_invasions=False,  # no criterion asks for them
         )
 
 

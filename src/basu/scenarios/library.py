@@ -15,14 +15,14 @@ from basu.errors import ScenarioError
 from basu.scenarios.class_file import own_scenarios, users_scenarios
 from basu.scenarios.config.read import read_cases
 from basu.scenarios.nhtsa import Group
-from basu.scenarios.parameters import read_values
+from basu.scenarios.parameters import narrowed, read_values
 from basu.scenarios.variation import variant, variants
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from basu.scenarios.config.model import Case
-    from basu.scenarios.parameters import Value
+    from basu.scenarios.parameters import Parameter, Value
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.variation import Variation
 
@@ -43,6 +43,11 @@ class Playable(NamedTuple):
     scenario: type[Scenario]
     values: Mapping[str, Value]
     unread: tuple[str, ...] = ()  # values that ScenarioRunner's class reads and ours does not
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The scenario's, as the case narrows them for its place."""
+        return narrowed(self.scenario.parameters, self.case.values)[0]
 
     def about(self) -> dict[str, Any]:
         """Which case of which scenario, and its parameters, as plain values for a result."""
@@ -132,7 +137,7 @@ class Library:
             return ()
         if len(same) > 1:
             raise _two_of_one_name(*same[:2])
-        case = variant(same[0], self.type_of(same[0]).parameters, identity)
+        case = variant(same[0], self.playable(same[0]).parameters, identity)
         return (self.playable(case),)
 
     def _of_kind(self, wanted: str) -> tuple[Playable, ...]:
@@ -225,7 +230,7 @@ def varied(chosen: Iterable[Playable], variation: Variation) -> tuple[Playable, 
     return tuple(
         _read(case, playable.scenario)
         for playable in chosen
-        for case in variants(playable.case, playable.scenario.parameters, variation)
+        for case in variants(playable.case, playable.parameters, variation)
     )
 
 
@@ -265,7 +270,7 @@ def _read(case: Case, scenario: type[Scenario]) -> Playable:
     ours = {parameter.name for parameter in scenario.parameters} if case.type == scenario.__name__ else set()
     unread = tuple(name for name in case.values if name not in ours and THEIRS.fullmatch(name))
     given = {name: text for name, text in case.values.items() if name not in unread}
-    return Playable(case, scenario, read_values(scenario.parameters, given), unread)
+    return Playable(case, scenario, read_values(*narrowed(scenario.parameters, given)), unread)
 
 
 def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scenario]], path: Path) -> None:

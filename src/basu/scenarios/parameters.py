@@ -79,6 +79,44 @@ class Choice(NamedTuple):
 Parameter = Number | Choice
 
 
+def narrowed(parameters: Sequence[Parameter], given: Mapping[str, str]) -> tuple[tuple[Parameter, ...], dict[str, str]]:
+    """The parameters as a case narrows them for its place, and the values that it gives besides.
+
+    ``<ahead value="30" low="25" high="38"/>`` leaves a number a part of its range, ``<side among="left opposite"/>`` a
+    choice some of its options.
+
+    Raises:
+        ScenarioError: nothing is left, or what is left is more than was declared or lacks the value.
+    """
+    values, taken = dict(given), {parameter.name for parameter in parameters}
+    left: list[Parameter] = []
+    for parameter in parameters:
+        ends = ("low", "high") if isinstance(parameter, Number) else ("among",)
+        keys = {end: f"{parameter.name}_{end}" for end in ends}
+        texts = {end: values.pop(key) for end, key in keys.items() if key in values and key not in taken}
+        left.append(_narrowed(parameter, texts, said=parameter.name in values) if texts else parameter)
+    return tuple(left), values
+
+
+def _narrowed(parameter: Parameter, texts: Mapping[str, str], *, said: bool) -> Parameter:
+    """One of them."""
+    name = parameter.name
+    if isinstance(parameter, Choice):
+        wanted = [parameter.read(text) for text in texts["among"].split()]
+        if not wanted:
+            raise ScenarioError(f"'{name}' is left nothing; it may be among {' '.join(parameter.options)}")
+        return parameter._replace(options=tuple(option for option in parameter.options if option in wanted))
+    low, high = (parameter.read(texts.get(end, repr(getattr(parameter, end)))) for end in ("low", "high"))
+    if not low < high:
+        raise ScenarioError(f"'{name}' is to be from {low:g} to {high:g}; low must be below high")
+    if not said and not low <= parameter.default <= high:
+        raise ScenarioError(
+            f"'{name}' is to be from {low:g} to {high:g}, and is {parameter.default:g} unless the case says otherwise; "
+            f'write <{name} value="…"/>'
+        )
+    return parameter._replace(low=low, high=high)
+
+
 def read_values(parameters: Sequence[Parameter], given: Mapping[str, str]) -> dict[str, Value]:
     """A value for every parameter: what a case gives, and the defaults for the rest, in the order of declaration.
 

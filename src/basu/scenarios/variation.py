@@ -9,7 +9,7 @@ An id is the case's name and what was done to it, in this order, each behind a c
     roundabout_1:sweep-200-7-13:speed,offset        likewise, over `speed` and `offset`
     roundabout_1:grid-5-13:speed,offset             the 13th of a grid of 5 steps over them
 
-What an id means depends on the scenario's declared ranges, and on nothing else.
+What an id means depends on the scenario's declared ranges, or what its case leaves of them, and on nothing else.
 """
 
 from __future__ import annotations

@@ -127,6 +127,19 @@ def test_a_sampled_case_is_found_again_by_its_id_alone(mine: Path) -> None:
         assert names(playable.case.name, mine) == [playable.case.name]
 
 
+def test_a_case_is_sampled_within_what_it_leaves_of_its_parameters(tmp_path: Path, mine: Path) -> None:
+    limits = '<ahead value="50" low="45" high="60"/><side among="right"/>'
+    (tmp_path / "mine.xml").write_text(cases_xml(("tree_1", "FallingTree", limits)))
+    sampled = varied(cases_of("tree_1", [mine]), Variation(design=Sweep(20, 3)))
+    aheads = [each.values["ahead"] for each in sampled]
+    assert 45.0 < min(aheads) < 46.0
+    assert 59.0 < max(aheads) < 60.0
+    assert {each.values["side"] for each in sampled} == {"right"}
+    assert by_id(sampled[7].case.name, [mine]).values == sampled[7].values
+    with pytest.raises(ScenarioError, match="'ahead' is '30'; it must be a number from 45 to 60 m"):
+        by_id("tree_1:ahead=30", [mine])
+
+
 def test_an_alias_reads_scenario_runners_file_and_leaves_alone_what_only_its_class_reads(
     tmp_path: Path, mine: Path
 ) -> None:

@@ -10,12 +10,13 @@
         <trigger_point x="1.0" y="30.0" z="0.5" yaw="90"/>
         <other_actor x="5.0" y="60.0" yaw="180" model="walker.*" rolename="child"/>
         <weather cloudiness="80" precipitation="60"/>
-        <speed value="1.4"/>
+        <speed value="1.4"/> <ahead low="20" high="35"/> <side among="left opposite"/>
       </scenario>
     </scenarios>
 
 Theirs are <ego_vehicle>, <other_actor>, <weather>, <route> and values as elements of their own; ours are <place>,
-<via>, <stop> (a service stop), <destination> and <trigger_point>. Coordinates are CARLA's: metres, y south, yaw in
+<via>, <stop> (a service stop), <destination> and <trigger_point>, and ``low``, ``high`` and ``among``, which narrow a
+parameter at its place. Coordinates are CARLA's: metres, y south, yaw in
 degrees clockwise.
 """
 

@@ -12,7 +12,7 @@ import linden
 from basu.routing import Route, lane_graph, plan
 from basu.scenario_runs.one_case import description_of
 from basu.scenarios.library import Playable, open_library
-from basu.scenarios.parameters import read_values
+from basu.scenarios.parameters import narrowed, read_values
 from basu.scenarios.paths import Path
 from basu.scenarios.place import Place
 from basu.scenarios.scenario import Scenario
@@ -35,7 +35,7 @@ def laid() -> Laid:
     def make(name: str, **values: str) -> Scenario:
         playable, way = route(name)
         given = replace(playable.case, values={**playable.case.values, **values})
-        read = read_values(playable.scenario.parameters, given.values)
+        read = read_values(*narrowed(playable.scenario.parameters, given.values))
         at = given.trigger or given.ego.pose
         along = Path.through(way.points_m).nearest(at.x_m, at.y_m)
         place = Place(route=way, trigger_s_m=max(0.0, along.s_m), carla_map=town, others=given.others)

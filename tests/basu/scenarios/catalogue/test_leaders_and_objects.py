@@ -190,9 +190,8 @@ def test_as_many_cars_circulate_as_are_asked_for_apart_from_each_other(laid: Lai
 
 @pytest.mark.parametrize("kind", [*MET, *AT_JUNCTIONS])
 def test_every_choice_can_be_played(laid: Laid, kind: str) -> None:
-    scenario = next(s for s in LIBRARY.scenarios if s.__name__ == kind)
-    for choice in scenario.parameters:
-        for option in choice.options if isinstance(choice, Choice) else ():
-            if (kind, option) in {("UnsignalizedIntersection", "right"), ("Roundabout", "right")}:
-                continue  # from there nobody crosses the way of the first case
-            assert laid(names(kind)[0], **{choice.name: option}).actors()
+    for name in names(kind):
+        (playable,) = LIBRARY.of_id(name)
+        for choice in playable.parameters:
+            for option in choice.options if isinstance(choice, Choice) else ():
+                assert laid(name, **{choice.name: option}).actors(), name

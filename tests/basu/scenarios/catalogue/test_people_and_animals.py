@@ -237,7 +237,7 @@ def test_a_car_at_the_stop_stands_at_the_stop_of_the_case(laid: Laid) -> None:
 @pytest.mark.parametrize("kind", [*MET, *TIMED_BY_TURNING, *OTHERS])
 def test_the_ends_of_every_range_can_be_set_on_a_stage(laid: Laid, kind: str) -> None:
     name = names({kind})[0]
-    for parameter in LIBRARY.playable(next(case for case in CASES if case.name == name)).scenario.parameters:
+    for parameter in LIBRARY.playable(next(case for case in CASES if case.name == name)).parameters:
         ends = parameter.options if isinstance(parameter, Choice) else (str(parameter.low), str(parameter.high))
         for end in ends:
             scenario = laid(name, **{parameter.name: end})
