@@ -39,6 +39,18 @@ class Hangs(Bad):
 class Dies(Bad):
     def fail(self):
         os.kill(os.getpid(), signal.SIGKILL)
+
+class Senses(Bad):
+    def config(self):
+        return {"sensors": "config/sensors.json"}
+
+    def fail(self):
+        there = {actor.type_id.rpartition(".")[2] for actor in self.world.get_actors().filter("sensor.*")}
+        raise ValueError(f"felt {sorted(self.felt)}, there are {sorted(there)}")
+
+    def run_step(self, sensor_data):
+        self.felt = sensor_data.keys()
+        return super().run_step(sensor_data)
 """
 
 
@@ -97,6 +109,15 @@ def test_what_is_wrong_with_a_case_is_said_and_nobodys_failure(
     assert result["verdict"] == verdict
     assert sentence in result["message"]
     assert matrix(tmp_path)["shares"]["basic"]["share_of_cost"] is None
+
+
+def test_an_agent_in_a_file_has_the_sensors_that_it_asks_for(
+    simulator: RunningServer, files: Path, tmp_path: Path
+) -> None:
+    (tmp_path / "senses.py").write_text(AGENTS)
+    run(simulator, tmp_path, "goes_well", "--scenarios", files, "--agent", f"{tmp_path / 'senses.py'}:Senses")
+    said = played(tmp_path)["goes_well"]["message"]
+    assert "felt ['GNSS', 'IMU'], there are ['collision', 'gnss', 'imu', 'lane_invasion']" in said
 
 
 def test_a_driver_who_looks_at_nothing_fails_with_evidence(
