@@ -169,7 +169,7 @@ def _driven(
         vehicle_at_start(world, ground.route, agents.config.vehicle) as vehicle,
     ):
         world.set_weather(weather_called(agents.config.weather))
-        ground.scenarios.try_out(world)
+        ground.scenarios.try_out(simulator.client, world)
         this_run = Run(
             client=simulator.client,
             world=world,

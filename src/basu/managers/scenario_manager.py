@@ -139,7 +139,7 @@ class ScenarioManager(BaseManager):
         if len(self._laid) < len(self._planned):
             self._laid = [lay_out(planned, route, carla_map, own=self._own) for planned in self._planned]
 
-    def try_out(self, world: carla.World) -> None:
+    def try_out(self, client: carla.Client, world: carla.World) -> None:
         """Bring every cast, and take it away at once: what has no place in this world is known before the run begins.
 
         Raises:
@@ -147,7 +147,8 @@ class ScenarioManager(BaseManager):
         """
         for laid in self._laid:
             who = laid.planned.case.name
-            take_away(bring(world, asked(who, laid.scenario.actors), who))
+            cast = bring(client, world, asked(who, laid.scenario.actors), who)
+            take_away(client, [member.actor for member in cast])
 
     def tick(self, frame: Frame) -> None:
         """Play a frame of every scenario that has begun."""

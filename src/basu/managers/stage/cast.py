@@ -35,7 +35,7 @@ class Member(NamedTuple):
     half_width_m: float
 
 
-def bring(world: carla.World, specs: Sequence[ActorSpec], who: str) -> list[Member]:
+def bring(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], who: str) -> list[Member]:
     """Put everybody of ``specs`` into the world, ``who`` being the case; all of them, or nobody.
 
     Raises:
@@ -51,16 +51,21 @@ def bring(world: carla.World, specs: Sequence[ActorSpec], who: str) -> list[Memb
         for spec in specs:
             members.append(_brought(world, library, spec, who))  # noqa: PERF401 - whoever came must go if one cannot
     except BaseException:
-        take_away(members)
+        take_away(client, [member.actor for member in members])
         raise
     return members
 
 
-def take_away(members: Iterable[Member]) -> None:
-    """Take members out of the world; where the simulator is gone, so are they."""
-    for member in members:
+def take_away(client: carla.Client, actors: Iterable[carla.Actor]) -> None:
+    """Take actors out of the world; where the simulator is gone, so are they.
+
+    By commands: of an actor that no snapshot has shown yet, ``destroy`` now and then says that it is dead already, and
+    leaves it in the world.
+    """
+    commands = [carla.command.DestroyActor(actor.id) for actor in actors]
+    if commands:
         with contextlib.suppress(RuntimeError):
-            member.actor.destroy()
+            client.apply_batch_sync(commands)
 
 
 def member_of(actor: carla.Actor, name: str) -> Member:

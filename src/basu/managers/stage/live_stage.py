@@ -46,7 +46,7 @@ class LiveStage:
         self._roles: dict[int, str] = {}  # of everybody who was ever in the cast
         self._types: dict[int, str] = {}
         self._puppets = Puppets(run.client)
-        self._surroundings = Surroundings(run.world, shared, who)
+        self._surroundings = Surroundings(run.client, run.world, shared, who)
         self._changes: dict[str, Callable[[Controls], Controls]] = {}
         self._bodies: dict[str, Body] = {}
         self._frame: Frame | None = None
@@ -70,7 +70,7 @@ class LiveStage:
         Raises:
             ScenarioError: somebody cannot be brought.
         """
-        for member, spec in zip(bring(self._run.world, specs, self._who), specs, strict=True):
+        for member, spec in zip(bring(self._run.client, self._run.world, specs, self._who), specs, strict=True):
             self._cast[spec.name] = member
             self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
             if member.kind == "vehicle":
@@ -112,7 +112,7 @@ class LiveStage:
         """Leave the world as it was before."""
         self._changes.clear()
         self._surroundings.give_back()
-        take_away(member for name, member in self._cast.items() if name != EGO)
+        take_away(self._run.client, [member.actor for name, member in self._cast.items() if name != EGO])
         self._cast = {EGO: self._cast[EGO]}
         self._puppets.forget()
 
@@ -192,7 +192,7 @@ class LiveStage:
         """Take an actor out of the world."""
         member = self._member(name)
         self._puppets.let_go(member)
-        take_away([self._cast.pop(name)])
+        take_away(self._run.client, [self._cast.pop(name).actor])
         self._moves.append(Move(name, self._next_s, None))
         self._bodies.pop(name, None)
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 from typing import TYPE_CHECKING
 
 import carla
+
+from basu.managers.stage.cast import take_away
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,8 +21,8 @@ TRIGGER_HEIGHT_M = 3.0  # of the box in which wheels feel the friction
 class Surroundings:
     """Of one scenario, ``who``; weather and lights are shared with the others of its run."""
 
-    def __init__(self, world: carla.World, shared: SharedWorld, who: str) -> None:
-        self._world, self._shared, self._who = world, shared, who
+    def __init__(self, client: carla.Client, world: carla.World, shared: SharedWorld, who: str) -> None:
+        self._client, self._world, self._shared, self._who = client, world, shared, who
         self._patches: list[carla.Actor] = []
 
     def set_weather(self, values: Mapping[str, float]) -> None:
@@ -53,8 +54,6 @@ class Surroundings:
 
     def give_back(self) -> None:
         """Leave everything as it was; where the simulator is gone, so is all this."""
-        with contextlib.suppress(RuntimeError):
-            for patch in self._patches:
-                patch.destroy()
+        take_away(self._client, self._patches)
         self._patches = []
         self._shared.give_back(self._who)
