@@ -16,8 +16,7 @@
 
 Theirs are <ego_vehicle>, <other_actor>, <weather>, <route> and values as elements of their own; ours are <place>,
 <via>, <stop> (a service stop), <destination> and <trigger_point>, and ``low``, ``high`` and ``among``, which narrow a
-parameter at its place. Coordinates are CARLA's: metres, y south, yaw in
-degrees clockwise.
+parameter at its place. Coordinates are CARLA's: metres, y south, yaw in degrees clockwise.
 """
 
 from __future__ import annotations
