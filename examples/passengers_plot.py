@@ -10,9 +10,9 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from basu.history.files import read_history
 from basu.metrics.passengers import felt
 from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
+from basu.records.history.files import read_history
 
 
 def draw(runs, to, around_s=None):

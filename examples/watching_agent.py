@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from basu.agents.basic import BasicAgent
+from basu.agents.builtin.basic import BasicAgent
 
 KEEP_EVERY = 100  # steps of 0.05 s
 HALF_WIDTH_M = 1.2  # of the lane ahead in which the lidar's points count

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
-from basu.agents.basic import BasicAgent
-from basu.agents.human import HumanAgent
+from basu.agents.builtin.basic import BasicAgent
+from basu.agents.builtin.human import HumanAgent
 from basu.cli import main as basu
 
 if TYPE_CHECKING:

@@ -14,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from basu.scenarios import actions, criteria, paths, triggers
-from basu.scenarios.library import ALL, open_library, snake
+from basu.scenarios.cases import ALL, open_library, snake
 from basu.scenarios.listing import as_text, listed
 from basu.scenarios.nhtsa import Group
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from basu.cli import main
-from basu.history import LaneInvasion
-from basu.history.files import write_history
+from basu.records.history import LaneInvasion
+from basu.records.history.files import write_history
 from fakes.drives import at, driven, hit
 
 SAMPLE = str(Path(__file__).parents[2] / "examples" / "forward_agent.py")

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from basu.cli import main
-from basu.history.files import read_history
 from basu.managers.traffic_places import CLEAR_M
+from basu.records.history.files import read_history
 from servers import RunningServer
 
 WATCHER = """

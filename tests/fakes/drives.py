@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from basu.history import FRAME, Collision, Facts, History, LaneInvasion, Recorder, Vehicle
-from basu.history.model import NO_LIGHT
+from basu.records.history import FRAME, Collision, Facts, History, LaneInvasion, Recorder, Vehicle
+from basu.records.history.model import NO_LIGHT
 from basu.routing import Control, ControlKind, Route, Stop
 
 STEP_S = 0.05

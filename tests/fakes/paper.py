@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING
 
 from py_trees.common import Status
 
-from basu.scenarios.rehearsal import PaperStage, paper_place, steady
 from basu.scenarios.stage import ActorSpec, Pose
+from basu.testing import PaperStage, paper_place, steady
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from py_trees.behaviour import Behaviour
 
-    from basu.scenarios.rehearsal import Driver
+    from basu.testing import Driver
 
 
 def somebody(

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from basu.history import Collision, History
 from basu.outcome import Outcome, Status
+from basu.records.history import Collision, History
 from basu.scenarios.criteria import Judgement, Played, Thing
 
 ARRIVED = Outcome(Status.COMPLETED, "arrived")

@@ -3,10 +3,10 @@
 import json
 from typing import Any
 
-from basu.history import LaneInvasion
 from basu.metrics.score import Scoring
 from basu.outcome import Outcome, Status
-from basu.report.result import result
+from basu.output.report.result import result
+from basu.records.history import LaneInvasion
 from fakes.drives import at, driven, hit
 
 META = {

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from basu.history import FRAME, Facts, History, Recorder
-from basu.history.model import NO_LIGHT, OTHER
+from basu.records.history import FRAME, Facts, History, Recorder
+from basu.records.history.model import NO_LIGHT, OTHER
 from basu.routing import Route
 from fakes.drives import STEP_S, VEHICLE, straight_route
 

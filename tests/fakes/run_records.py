@@ -3,14 +3,14 @@
 from pathlib import Path
 from typing import Any
 
-from basu.history import History
-from basu.history.files import write_history
 from basu.metrics.score import Scoring
 from basu.outcome import Outcome, Status
-from basu.report.folder import CONFIG_FILE, RESULT_FILE, write_json
-from basu.report.reading import RunRecord
-from basu.report.result import result
-from basu.report.streets import Line, write_streets
+from basu.output.report.folder import CONFIG_FILE, RESULT_FILE, write_json
+from basu.output.report.reading import RunRecord
+from basu.output.report.result import result
+from basu.output.report.streets import Line, write_streets
+from basu.records.history import History
+from basu.records.history.files import write_history
 from fakes.drives import at, driven, hit, stop_sign, straight_route
 from fakes.results import META
 

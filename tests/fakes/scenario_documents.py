@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from basu.history import FRAME, Collision, Facts, History, Recorder
-from basu.history.model import NO_LIGHT
-from basu.report.streets import Line
+from basu.output.report.streets import Line
+from basu.records.history import FRAME, Collision, Facts, History, Recorder
+from basu.records.history.model import NO_LIGHT
 from basu.scenarios.shares import results_from, standing, standing_to_json
 from fakes.drives import STEP_S, VEHICLE, straight_route
 

@@ -20,7 +20,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 def compare_runs(arguments: argparse.Namespace) -> int:
     """Print a table as table 5.1 of the thesis; write compare.html, and compare.png as its figure 5.3."""
-    from basu.report.compare.writing import compare  # noqa: PLC0415 - plots, which `--help` does not need
+    from basu.output.report.compare.writing import compare  # noqa: PLC0415 - plots, which `--help` does not need
 
     folders: list[Path] = arguments.folders
     if len(folders) < 2:

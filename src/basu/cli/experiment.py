@@ -24,7 +24,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 def drive(arguments: argparse.Namespace) -> int:
     """Drive basic, behavioral, forward and human as section 5.5 of the thesis did, and print both tables."""
     check_positive(arguments, "timeout")
-    from basu.experiment.thesis import thesis  # noqa: PLC0415 - the client and the plots, which `--help` does not need
+    from basu.running.experiment.thesis import thesis  # noqa: PLC0415 - the client and the plots, which `--help` does not need
 
     options = RunOptions(
         host=arguments.host,

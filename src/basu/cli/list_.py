@@ -13,7 +13,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 def list_all(_arguments: argparse.Namespace) -> int:
     """Show the agents and routes that come with BASU."""
-    from basu.managers.agent_loader import BUILT_IN  # noqa: PLC0415 - brings in the client
+    from basu.agents.loader import BUILT_IN  # noqa: PLC0415 - brings in the client
     from basu.routing.route_file import read_routes  # noqa: PLC0415 - likewise
     from basu.utils.packaged import PACKAGE_FOLDER  # noqa: PLC0415 - likewise
 

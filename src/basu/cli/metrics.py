@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from basu.errors import UserError
 
 if TYPE_CHECKING:
-    from basu.recording.sources import Source
+    from basu.records.carla_log.sources import Source
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -43,11 +43,11 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 def ask_recording(arguments: argparse.Namespace) -> int:
     """Run a metric on a recording alone; no simulator is asked."""
-    from basu.recording import read_log  # noqa: PLC0415 - brings in the client, which `--help` does not need
-    from basu.recording.metric_file import run_metric  # noqa: PLC0415 - likewise
-    from basu.recording.metrics_log import MetricsLog  # noqa: PLC0415 - likewise
-    from basu.recording.pictures import drawn, off_screen  # noqa: PLC0415 - likewise, and matplotlib
-    from basu.recording.sources import source  # noqa: PLC0415 - likewise
+    from basu.records.carla_log import read_log  # noqa: PLC0415 - brings in the client, which `--help` does not need
+    from basu.records.carla_log.metric_file import run_metric  # noqa: PLC0415 - likewise
+    from basu.records.carla_log.metrics_log import MetricsLog  # noqa: PLC0415 - likewise
+    from basu.records.carla_log.pictures import drawn, off_screen  # noqa: PLC0415 - likewise, and matplotlib
+    from basu.records.carla_log.sources import source  # noqa: PLC0415 - likewise
 
     where = source(arguments.recording, arguments.map)
     log = read_log(where.log)
@@ -67,13 +67,13 @@ def ask_recording(arguments: argparse.Namespace) -> int:
 
 
 def _map(where: Source, name: str) -> Any:  # noqa: ANN401 - a carla.Map, or what stands for one
-    from basu.recording.sources import AbsentMap, read_map  # noqa: PLC0415 - as above
+    from basu.records.carla_log.sources import AbsentMap, read_map  # noqa: PLC0415 - as above
 
     return AbsentMap(name) if where.map is None else read_map(where.map, name)
 
 
 def _criteria(where: Source, given: Path | None) -> dict[str, Any] | None:
-    from basu.recording.sources import criteria_of, read_criteria  # noqa: PLC0415 - as above
+    from basu.records.carla_log.sources import criteria_of, read_criteria  # noqa: PLC0415 - as above
 
     if given is not None:
         return read_criteria(given)

@@ -12,7 +12,7 @@ from basu.cli.scoring import read_scoring
 from basu.errors import UserError
 
 if TYPE_CHECKING:
-    from basu.recording import Log
+    from basu.records.carla_log import Log
 
 RRD_FILE = "replay.rrd"
 
@@ -48,7 +48,7 @@ def replay_run(arguments: argparse.Namespace) -> int:
     recording: Path = arguments.recording
     if not arguments.viewer:
         return _on_simulator(arguments)
-    from basu.viewer.stream import require  # noqa: PLC0415 - with the rest of the viewer, which needs an extra
+    from basu.output.viewer.stream import require  # noqa: PLC0415 - with the rest of the viewer, which needs an extra
 
     require()
     return _run_in_viewer(arguments, recording) if recording.is_dir() else _log_in_viewer(arguments, recording)
@@ -56,9 +56,9 @@ def replay_run(arguments: argparse.Namespace) -> int:
 
 def _run_in_viewer(arguments: argparse.Namespace, folder: Path) -> int:
     """A run's folder, from its history."""
-    from basu.report.folder import CONFIG_FILE  # noqa: PLC0415 - as above
-    from basu.viewer.from_record import show_run  # noqa: PLC0415 - as above
-    from basu.viewer.stream import has_screen  # noqa: PLC0415 - as above
+    from basu.output.report.folder import CONFIG_FILE  # noqa: PLC0415 - as above
+    from basu.output.viewer.from_record import show_run  # noqa: PLC0415 - as above
+    from basu.output.viewer.stream import has_screen  # noqa: PLC0415 - as above
 
     rrd = arguments.save or folder / RRD_FILE
     with _bar() as bar:
@@ -71,9 +71,9 @@ def _run_in_viewer(arguments: argparse.Namespace, folder: Path) -> int:
 
 def _log_in_viewer(arguments: argparse.Namespace, file: Path) -> int:
     """A recorder file by itself."""
-    from basu.recording.sources import read_map  # noqa: PLC0415 - as above
-    from basu.viewer.from_log import show_log  # noqa: PLC0415 - as above
-    from basu.viewer.stream import has_screen  # noqa: PLC0415 - as above
+    from basu.output.viewer.from_log import show_log  # noqa: PLC0415 - as above
+    from basu.output.viewer.stream import has_screen  # noqa: PLC0415 - as above
+    from basu.records.carla_log.sources import read_map  # noqa: PLC0415 - as above
 
     log, carla_map = _log(arguments)
     rrd = arguments.save or Path(f"{file.stem}.rrd")
@@ -86,7 +86,7 @@ def _log_in_viewer(arguments: argparse.Namespace, file: Path) -> int:
 
 def _on_simulator(arguments: argparse.Namespace) -> int:
     """The log on a simulator."""
-    from basu.viewer.on_server import Progress, Where, play  # noqa: PLC0415 - brings in the client
+    from basu.output.viewer.on_server import Progress, Where, play  # noqa: PLC0415 - brings in the client
 
     if arguments.save is not None or arguments.map is not None:
         raise UserError("--save and --map belong to --viewer; add it, or leave them out")
@@ -103,8 +103,8 @@ def _on_simulator(arguments: argparse.Namespace) -> int:
 
 def _log(arguments: argparse.Namespace) -> tuple[Log, Path | None]:
     """The recorder file that is meant, and its map."""
-    from basu.recording import read_log  # noqa: PLC0415 - as above
-    from basu.recording.sources import source  # noqa: PLC0415 - as above
+    from basu.records.carla_log import read_log  # noqa: PLC0415 - as above
+    from basu.records.carla_log.sources import source  # noqa: PLC0415 - as above
 
     where = source(arguments.recording, arguments.map)
     log = read_log(where.log)

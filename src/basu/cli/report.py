@@ -17,8 +17,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 def write(arguments: argparse.Namespace) -> int:
     """Write report.html: score card, map, timeline, plots and evidence in one file that opens offline."""
-    from basu.report.html.page import REPORT_FILE, write_report  # noqa: PLC0415 - numpy, which `--help` does not need
-    from basu.report.reading import read_run  # noqa: PLC0415 - pyarrow, likewise
+    from basu.output.report.html.page import REPORT_FILE, write_report  # noqa: PLC0415 - numpy, which `--help` does not need
+    from basu.output.report.reading import read_run  # noqa: PLC0415 - pyarrow, likewise
 
     for folder in arguments.folders:
         write_report(folder, read_run(folder))

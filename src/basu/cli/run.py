@@ -13,7 +13,7 @@ from basu.errors import UserError
 from basu.metrics.score import Scoring
 from basu.options import RunOptions, Traffic
 from basu.outcome import EXIT_CODES
-from basu.viewer.stream import require
+from basu.output.viewer.stream import require
 
 LATER = {
     "sumo": "SUMO co-simulation follows with the TrafficManager",
@@ -170,7 +170,7 @@ def run_agent(arguments: argparse.Namespace) -> int:
     if options.viewer:
         require()
     scoring = adjusted(Scoring(), arguments)
-    from basu.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
+    from basu.running.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
 
     with terminated_as_interrupted():
         return run(options, scoring)

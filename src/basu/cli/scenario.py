@@ -16,7 +16,7 @@ from basu.utils.atomic import write_bytes
 FORMS = ("text", "ascii", "svg", "dot", "json")  # of a drawn tree
 
 if TYPE_CHECKING:
-    from basu.scenario_runs.options import ScenarioOptions
+    from basu.running.scenario_runs.options import ScenarioOptions
     from basu.scenarios.sampling import Design
 
 
@@ -98,7 +98,7 @@ def _options(arguments: argparse.Namespace) -> ScenarioOptions:
     Raises:
         UserError: it makes no sense.
     """
-    from basu.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - brings in the client
+    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - brings in the client
     from basu.scenarios.sampling import Grid, Sweep  # noqa: PLC0415 - likewise
 
     check_positive(arguments, "timeout", "step_limit")
@@ -139,7 +139,7 @@ def _fixed(text: str) -> tuple[str, str]:
 def run_command(arguments: argparse.Namespace) -> int:
     """Play cases with agents: a verdict, a picture and a folder for each, and the matrix of all."""
     options = _options(arguments)
-    from basu.scenario_runs.command import run_scenarios  # noqa: PLC0415 - brings in the client and the plots
+    from basu.running.scenario_runs.command import run_scenarios  # noqa: PLC0415 - brings in the client and the plots
 
     with terminated_as_interrupted():
         return run_scenarios(options)
@@ -148,8 +148,8 @@ def run_command(arguments: argparse.Namespace) -> int:
 def draw_command(arguments: argparse.Namespace) -> int:
     """Draw the behaviour tree of a case as it stands before a run, with its criteria."""
     check_positive(arguments, "timeout")
-    from basu.scenario_runs.draw import drawn  # noqa: PLC0415 - brings in the client
-    from basu.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - likewise
+    from basu.running.scenario_runs.draw import drawn  # noqa: PLC0415 - brings in the client
+    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - likewise
 
     text = drawn(
         ScenarioOptions(
@@ -170,8 +170,8 @@ def draw_command(arguments: argparse.Namespace) -> int:
 
 def report_command(arguments: argparse.Namespace) -> int:
     """Make table, JUnit XML, page and maps of a run again, from what lies in its folder."""
-    from basu.report.scenarios.page.records import read_matrix  # noqa: PLC0415 - brings in what draws
-    from basu.scenario_runs.leave import leave  # noqa: PLC0415 - likewise
+    from basu.output.report.scenarios.page.records import read_matrix  # noqa: PLC0415 - brings in what draws
+    from basu.running.scenario_runs.leave import leave  # noqa: PLC0415 - likewise
 
     folder: Path = arguments.folder.resolve()
     leave(folder, read_matrix(folder), arguments.junit)

@@ -26,7 +26,7 @@ def add_list_options(command: argparse.ArgumentParser) -> None:
 
 def list_scenarios(arguments: argparse.Namespace) -> int:
     """Show scenarios by group, with their parameters and cases."""
-    from basu.scenarios.library import files_among, open_library  # noqa: PLC0415 - every scenario, not for `--help`
+    from basu.scenarios.cases import files_among, open_library  # noqa: PLC0415 - every scenario, not for `--help`
     from basu.scenarios.listing import as_json, as_text, listed  # noqa: PLC0415 - likewise
 
     words: list[str] = arguments.what

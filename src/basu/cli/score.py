@@ -25,13 +25,13 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 def score_run(arguments: argparse.Namespace) -> int:
     """Compute scores and infractions of a run again, from its history and facts; no simulator is asked."""
-    from basu.history.files import read_history  # noqa: PLC0415 - pyarrow, which `--help` does not need
-    from basu.report.folder import CONFIG_FILE, RESULT_FILE  # noqa: PLC0415 - likewise
-    from basu.report.measures_table import measured  # noqa: PLC0415 - likewise
-    from basu.report.passengers_table import felt  # noqa: PLC0415 - likewise
-    from basu.report.result import judgement  # noqa: PLC0415 - likewise
-    from basu.report.schema import read_result  # noqa: PLC0415 - likewise
-    from basu.series import SERIES_FILE  # noqa: PLC0415 - likewise
+    from basu.output.report.folder import CONFIG_FILE, RESULT_FILE  # noqa: PLC0415 - likewise
+    from basu.output.report.measures_table import measured  # noqa: PLC0415 - likewise
+    from basu.output.report.passengers_table import felt  # noqa: PLC0415 - likewise
+    from basu.output.report.result import judgement  # noqa: PLC0415 - likewise
+    from basu.output.report.schema import read_result  # noqa: PLC0415 - likewise
+    from basu.records.history.files import read_history  # noqa: PLC0415 - pyarrow, which `--help` does not need
+    from basu.running.series import SERIES_FILE  # noqa: PLC0415 - likewise
 
     folder: Path = arguments.folder
     if not folder.is_dir():

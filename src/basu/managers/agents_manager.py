@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import carla
 
+from basu.agents.config import AgentConfig, parse_config
+from basu.agents.sensor_file import SensorSpec, parse_sensors
+from basu.agents.time_limit import OverrunError, call_within
 from basu.errors import AgentCrashedError, AgentError, AgentInvalidControlError, AgentTimedOutError, UserError
-from basu.managers.agent_config import AgentConfig, parse_config
 from basu.managers.base_manager import BaseManager
-from basu.managers.sensor_file import SensorSpec, parse_sensors
-from basu.managers.time_limit import OverrunError, call_within
 from basu.routing.route_file import RoutePoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.managers.agent_loader import LoadedAgent
+    from basu.agents.loader import LoadedAgent
+    from basu.agents.manual.person import Person
     from basu.managers.base_manager import Frame, Run
-    from basu.manual.person import Person
 
 T = TypeVar("T")
 SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first tick, not during it

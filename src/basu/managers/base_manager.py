@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     import carla
 
-    from basu.managers.agent_config import AgentConfig
+    from basu.agents.config import AgentConfig
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager

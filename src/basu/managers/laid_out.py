@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import carla
 
     from basu.routing import Route
-    from basu.scenarios.library import Playable
+    from basu.scenarios.cases import Playable
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.stage import ActorSpec, Pose
     from basu.scenarios.tree import Composed

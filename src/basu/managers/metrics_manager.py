@@ -8,23 +8,23 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.errors import SimulatorError
-from basu.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
-from basu.history.model import NO_LIGHT
 from basu.managers.base_manager import BaseManager
 from basu.managers.lane_under import LaneFinder
 from basu.managers.neighbours import Neighbours
 from basu.managers.route_lights import RouteLights
 from basu.metrics.so_far import SoFar
+from basu.records.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
+from basu.records.history.model import NO_LIGHT
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.history import History
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import Frame, Run
     from basu.managers.routes_manager import RoutesManager
     from basu.metrics.infraction import Evidence
     from basu.metrics.score import Scores, Scoring
+    from basu.records.history import History
 
 MPS_PER_KMH = 1.0 / 3.6
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from basu.history.model import NEAR_M, NEAREST
+from basu.records.history.model import NEAR_M, NEAREST
 
 if TYPE_CHECKING:
     import carla

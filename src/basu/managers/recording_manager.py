@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from basu.errors import UserError
 from basu.managers.base_manager import BaseManager
-from basu.recording.sources import MAP_FILE
+from basu.records.carla_log.sources import MAP_FILE
 from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.history.model import NO_LIGHT
+from basu.records.history.model import NO_LIGHT
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from basu.scenarios.verdict import judge
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.history import History
     from basu.managers.scenario_manager import Playing
+    from basu.records.history import History
     from basu.scenarios.verdict import Judged
 
 

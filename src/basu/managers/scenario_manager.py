@@ -29,14 +29,14 @@ from basu.scenarios.verdict import judge
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.history import History
     from basu.managers.base_manager import Frame, Run
     from basu.managers.laid_out import LaidOut
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
+    from basu.records.history import History
     from basu.routing import Route
+    from basu.scenarios.cases import Playable
     from basu.scenarios.criteria.criterion import Thing
-    from basu.scenarios.library import Playable
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.stage import ActorSpec
     from basu.scenarios.tree import Composed

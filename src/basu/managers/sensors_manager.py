@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import carla
 
+from basu.agents.sensor_file import SensorSpec, check_sensors
 from basu.errors import SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
-from basu.managers.sensor_file import SensorSpec, check_sensors
 
 if TYPE_CHECKING:
     from collections.abc import Callable

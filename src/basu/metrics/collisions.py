@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from basu.metrics.infraction import Evidence, Infraction, evidence
 
 if TYPE_CHECKING:
-    from basu.history import Collision, History
+    from basu.records.history import Collision, History
 
 # A contact with one party lasts until it has not been reported for so long: a vehicle that rebounds from a wall and
 # leans on it again has hit it once. The CARLA leaderboard, too, counts a second touch of one actor only after a while.

@@ -13,7 +13,7 @@ from basu.metrics.infraction import Evidence, Incident, evidence
 from basu.metrics.stretches import stretches
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
     from basu.routing import Route
 
 BLOCKED_S, BLOCKED_MPS = 180.0, 0.1

@@ -15,7 +15,7 @@ from basu.metrics.infraction import Evidence, Incident, evidence
 from basu.metrics.stretches import chords, path_m, stretches, total_m
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
 
 M_PER_MILE = 1609.344
 

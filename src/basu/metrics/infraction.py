@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.history import History
+    from basu.records.history import History
 
 
 class Infraction(enum.Enum):

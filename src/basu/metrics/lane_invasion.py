@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
 
 
 class LaneInvasions(NamedTuple):

@@ -24,7 +24,7 @@ from basu.metrics.stretches import chords, path_m, total_m
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 BEYOND_M = 0.5  # ALLOWED_OUT_DISTANCE of leaderboard 2.0 and 2.1; 1.0 has 1.3
 AGAINST_RAD = np.radians(120.0)  # between two directions; MAX_VEHICLE_ANGLE of the leaderboard

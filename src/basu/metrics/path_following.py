@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 ARRIVED_M = 5.0  # a run that got this near to the end of the plan has driven to its end
 

@@ -17,15 +17,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.history.model import NO_LIGHT
 from basu.metrics.infraction import Evidence, Infraction, evidence
 from basu.metrics.stretches import stretches
+from basu.records.history.model import NO_LIGHT
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
     from basu.routing import Control, Route
 
 STATES = ("red", "yellow", "green", "off", "unknown")  # the values of carla.TrafficLightState

@@ -17,7 +17,7 @@ from basu.metrics.infraction import Incident
 from basu.metrics.shares import Share, share_of
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
 
 THRESHOLD_M = 2.0
 

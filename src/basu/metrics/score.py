@@ -21,7 +21,7 @@ from basu.metrics.stop_signs import stop_signs
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from basu.history import History
+    from basu.records.history import History
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

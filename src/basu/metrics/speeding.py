@@ -12,7 +12,7 @@ from basu.metrics.stretches import stretches
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 TOLERANCE_MPS = 1.0  # above the limit; 2.2 mph, about what a speedometer may be off at 25 mph
 ON_ROUTE_M = 2.0  # from the planned line; nearer than this the vehicle is on the plan's lane, and its limit holds

@@ -20,7 +20,7 @@ from basu.routing import ControlKind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
     from basu.routing import Control
 
 AT_REST_MPS = 0.1

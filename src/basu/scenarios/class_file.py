@@ -10,14 +10,14 @@ from pathlib import Path
 from types import ModuleType
 
 from basu.errors import ScenarioError
-from basu.scenarios import catalogue
+from basu.scenarios import library as catalogue
 from basu.scenarios.declaration import check_class
 from basu.scenarios.scenario import Scenario
 from basu.utils.user_module import module_of
 
 
 def own_scenarios() -> list[type[Scenario]]:
-    """Every scenario of ``basu.scenarios.catalogue``, by its name in alphabetical order.
+    """Every scenario of ``basu.scenarios.library``, by its name in alphabetical order.
 
     Raises:
         ScenarioError: one declares itself badly.

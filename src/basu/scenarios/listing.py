@@ -5,13 +5,13 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from basu.scenarios.library import ALL, Playable, snake
+from basu.scenarios.cases import ALL, Playable, snake
 from basu.scenarios.nhtsa import TOLLS, Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
-    from basu.scenarios.library import Library
+    from basu.scenarios.cases import Library
     from basu.scenarios.parameters import Parameter
 
 Listed = dict[type[Scenario], list[Playable]]  # the cases of each scenario

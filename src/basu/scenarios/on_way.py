@@ -12,19 +12,19 @@ from typing import TYPE_CHECKING
 
 from basu.errors import ScenarioError
 from basu.routing.route_file import route_element
+from basu.scenarios.cases import Library, file_in, plain
 from basu.scenarios.class_file import own_scenarios, users_scenarios
 from basu.scenarios.config.elements import EGO_MODEL
 from basu.scenarios.config.model import Case, GivenActor
 from basu.scenarios.config.on_route import scenarios_of
-from basu.scenarios.library import Library, file_in, plain
 from basu.scenarios.stage import EGO
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.routing.route_file import RouteDescription
+    from basu.scenarios.cases import Playable
     from basu.scenarios.config.on_route import ScenarioOnRoute
-    from basu.scenarios.library import Playable
 
 
 def scenarios_on(description: RouteDescription, files: Sequence[str | Path] = ()) -> tuple[Playable, ...]:

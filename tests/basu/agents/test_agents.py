@@ -6,13 +6,13 @@ import carla
 import pytest
 
 from basu.agents.autonomous_agent import AutonomousAgent
-from basu.agents.basic import BasicAgent
-from basu.agents.behavioral import BehavioralAgent
-from basu.agents.deviating import DeviatingAgent
-from basu.agents.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL, Manner
-from basu.agents.forward import THROTTLE, ForwardAgent
+from basu.agents.builtin.basic import BasicAgent
+from basu.agents.builtin.behavioral import BehavioralAgent
+from basu.agents.builtin.deviating import DeviatingAgent
+from basu.agents.builtin.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL, Manner
+from basu.agents.builtin.forward import THROTTLE, ForwardAgent
+from basu.agents.loader import load_agent
 from basu.errors import UserError
-from basu.managers.agent_loader import load_agent
 
 
 def bound(agent: AutonomousAgent) -> AutonomousAgent:

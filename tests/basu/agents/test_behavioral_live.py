@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from basu.cli import main
-from basu.history import History
-from basu.history.files import read_history
+from basu.records.history import History
+from basu.records.history.files import read_history
 from servers import RunningServer
 
 # 140 m of a straight street, one lane of 2.9 m each way, no junction
@@ -25,7 +25,7 @@ ROUNDABOUT = [(480.0, -22.3), (470.526, -25.861), (448.135, -39.865), (448.541, 
 AGENT = """
 import math
 import carla
-from basu.agents.behavioral import BehavioralAgent
+from basu.agents.builtin.behavioral import BehavioralAgent
 
 class Visitor(BehavioralAgent):
     def setup(self):

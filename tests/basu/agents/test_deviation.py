@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from basu.agents.deviation import FARTHEST_M, LEAVES_M, Thing, aim_rad, choose
-from basu.agents.driving.driver import Command
-from basu.agents.driving.path import make_path
-from basu.agents.scene import Ego
+from basu.agents.builtin.deviation import FARTHEST_M, LEAVES_M, Thing, aim_rad, choose
+from basu.agents.builtin.driving.driver import Command
+from basu.agents.builtin.driving.path import make_path
+from basu.agents.builtin.scene import Ego
 from driving_plant import DT_S, Plant, line
 
 POINTS_M = line(300.0)

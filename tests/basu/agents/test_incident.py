@@ -6,9 +6,9 @@ from typing import Any
 import carla
 import pytest
 
-from basu.agents.basic import BasicAgent
-from basu.agents.driving.longitudinal import HOLD_BRAKE
-from basu.agents.incident import DEVIATION_SHARE, DEVIATION_STEER, STANDING_S, STOP_MPS2, IncidentAgent
+from basu.agents.builtin.basic import BasicAgent
+from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
+from basu.agents.builtin.incident import DEVIATION_SHARE, DEVIATION_STEER, STANDING_S, STOP_MPS2, IncidentAgent
 
 FULL_BRAKE_MPS2, END_M = 7.0, 100.0
 

@@ -7,9 +7,9 @@ from typing import Any
 import carla
 import pytest
 
-from basu.agents.perception import LOOK_AGAIN_TICKS, RADIUS_M, SMALLEST_M, Lights, Perception, see_ego
-from basu.agents.rules.traffic_lights import Light
-from basu.agents.scene import Ego, Kind
+from basu.agents.builtin.perception import LOOK_AGAIN_TICKS, RADIUS_M, SMALLEST_M, Lights, Perception, see_ego
+from basu.agents.builtin.rules.traffic_lights import Light
+from basu.agents.builtin.scene import Ego, Kind
 
 EGO = Ego(0.0, 100.0, 50.0, 0.0, 5.0)
 

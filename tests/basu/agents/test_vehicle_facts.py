@@ -6,7 +6,14 @@ from types import SimpleNamespace
 import carla
 import pytest
 
-from basu.agents.vehicle_facts import OTHERS_TOP_MPS, SHUTTLE, SHUTTLE_TOP_MPS, Steering, VehicleFacts, read_facts
+from basu.agents.builtin.vehicle_facts import (
+    OTHERS_TOP_MPS,
+    SHUTTLE,
+    SHUTTLE_TOP_MPS,
+    Steering,
+    VehicleFacts,
+    read_facts,
+)
 
 
 def vehicle_at(pose: carla.Transform, type_id: str = SHUTTLE, *, wheels_known: bool = True) -> SimpleNamespace:

@@ -2,8 +2,8 @@
 
 import pytest
 
+from basu.agents.config import AgentConfig, parse_config
 from basu.errors import UserError
-from basu.managers.agent_config import AgentConfig, parse_config
 
 
 def test_nothing_said_is_everything_default() -> None:

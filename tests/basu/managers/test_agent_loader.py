@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from basu.agents import loader as agent_loader
 from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.loader import load_agent
 from basu.errors import UserError
-from basu.managers import agent_loader
-from basu.managers.agent_loader import load_agent
 
 SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
 COMPLETE = """
@@ -44,7 +44,7 @@ def test_the_built_in_agents_are_found_by_name(name: str) -> None:
 
 
 def test_imported_agents_are_not_taken_for_the_files_own(tmp_path: Path) -> None:
-    text = "from basu.agents.forward import ForwardAgent" + COMPLETE.format(name="Mine")
+    text = "from basu.agents.builtin.forward import ForwardAgent" + COMPLETE.format(name="Mine")
     assert load_agent(written(tmp_path, text)).agent_class.__name__ == "Mine"
 
 

@@ -11,8 +11,8 @@ import carla
 import pytest
 
 from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.loader import LoadedAgent
 from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, UserError
-from basu.managers.agent_loader import LoadedAgent
 from basu.managers.agents_manager import AgentsManager
 from basu.managers.base_manager import Run
 from basu.routing.route_file import RoutePoint

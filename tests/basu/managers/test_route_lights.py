@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from basu.history.model import NO_LIGHT
 from basu.managers.route_lights import RouteLights
+from basu.records.history.model import NO_LIGHT
 from fakes.drives import stop_sign, straight_route, traffic_light
 
 RED, GREEN = 0, 2

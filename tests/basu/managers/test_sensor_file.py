@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
+from basu.agents.sensor_file import check_sensors, parse_sensors, read_sensors
 from basu.errors import UserError
-from basu.managers.sensor_file import check_sensors, parse_sensors, read_sensors
 
 GNSS = {"type": "sensor.other.gnss", "id": "GPS", "x": 0.7, "y": -0.4, "z": 1.6}
 

@@ -8,12 +8,12 @@ import carla
 import pytest
 
 from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.loader import LoadedAgent
+from basu.agents.manual.inputs import Held, Input, Strike
+from basu.agents.manual.person import Person
+from basu.agents.manual.session import Played, Session, Setting
 from basu.errors import AgentCrashedError
-from basu.managers.agent_loader import LoadedAgent
 from basu.managers.agents_manager import AgentsManager
-from basu.manual.inputs import Held, Input, Strike
-from basu.manual.person import Person
-from basu.manual.session import Played, Session, Setting
 
 P = Input(strikes=(Strike.AUTOPILOT,))
 SETTING = Setting(town="Linden", route="1", vehicle="vehicle.tesla.model3", step_s=0.05)

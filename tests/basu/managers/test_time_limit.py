@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from basu.managers.time_limit import OverrunError, call_within
+from basu.agents.time_limit import OverrunError, call_within
 
 LIMIT_S = 0.1
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from basu.history import History
 from basu.metrics.disengagements import M_PER_MILE, disengagements
+from basu.records.history import History
 from fakes.drives import at, driven, straight_route
 
 

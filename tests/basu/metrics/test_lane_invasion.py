@@ -1,8 +1,8 @@
 """Claims about lane invasions: events are counted, corners are not, and the score does not know."""
 
-from basu.history import LaneInvasion
 from basu.metrics.lane_invasion import lane_invasions
 from basu.metrics.score import Scoring, score
+from basu.records.history import LaneInvasion
 from fakes.drives import at, driven
 
 EVENTS = (

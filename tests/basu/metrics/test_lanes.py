@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from basu.history import History
 from basu.metrics.lanes import FORGIVEN_M, Where, outside_lanes, wrong_way
+from basu.records.history import History
 from fakes.drives import at, driven, straight_route
 
 SIDEWALK, DRIVING, PARKING = 32, 2, 256

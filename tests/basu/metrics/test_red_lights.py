@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from basu.history import History
-from basu.history.model import NO_LIGHT
 from basu.metrics.red_lights import lights_passed, red_lights
+from basu.records.history import History
+from basu.records.history.model import NO_LIGHT
 from fakes.drives import at, driven, straight_route, traffic_light
 
 RED, YELLOW, GREEN = 0, 1, 2

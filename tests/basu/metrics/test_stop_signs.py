@@ -2,8 +2,8 @@
 
 import pytest
 
-from basu.history import History
 from basu.metrics.stop_signs import AT_REST_MPS, signs_passed, stop_signs
+from basu.records.history import History
 from fakes.drives import at, driven, ramp, stop_sign, straight_route
 
 FRONT_M = 2.0

@@ -12,10 +12,10 @@ from basu.scenarios.actions import Either, InTurn, Meanwhile, SetLight, Wait
 from basu.scenarios.criteria.criterion import Judgement
 from basu.scenarios.drawing import FORMS, TreeNode, as_dot, as_svg, as_text, draw, tree_of
 from basu.scenarios.drawing.nodes import walk
-from basu.scenarios.rehearsal import paper_place, rehearse
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.tree import PHASES, compose
 from basu.scenarios.triggers import EgoPasses
+from basu.testing import paper_place, rehearse
 
 SVG = "{http://www.w3.org/2000/svg}"
 

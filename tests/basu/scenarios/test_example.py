@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from basu.scenarios.library import Playable, cases_of
-from basu.scenarios.rehearsal import Driver, Rehearsal, careful, paper_place, rehearse, steady
+from basu.scenarios.cases import Playable, cases_of
+from basu.testing import Driver, Rehearsal, careful, paper_place, rehearse, steady
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from basu.errors import ScenarioError
-from basu.scenarios import library
-from basu.scenarios.library import by_id, cases_of, open_library, snake, varied
+from basu.scenarios import cases as library
+from basu.scenarios.cases import by_id, cases_of, open_library, snake, varied
 from basu.scenarios.sampling import Sweep
 from basu.scenarios.variation import Variation
 

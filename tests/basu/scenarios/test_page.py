@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from basu.scenarios.library import by_id
+from basu.scenarios.cases import by_id
 
 ROOT = Path(__file__).parents[3]
 

@@ -24,8 +24,8 @@ from basu.scenarios.paths import (
     pavement_m,
 )
 from basu.scenarios.place import Place
-from basu.scenarios.rehearsal import paper_place
 from basu.scenarios.stage import Pose
+from basu.testing import paper_place
 from fakes.crossing_map import crossing as crossing_map
 
 QUARTER = [(20.0 * math.sin(a), 20.0 - 20.0 * math.cos(a)) for a in np.linspace(0.0, math.pi / 2.0, 60)]  # to the right

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from basu.errors import ScenarioError
-from basu.scenarios.rehearsal import paper_place
+from basu.testing import paper_place
 
 ARC = [(30.0 * math.sin(a), 30.0 - 30.0 * math.cos(a)) for a in np.linspace(0.0, math.pi / 2.0, 90)]  # to the right
 

@@ -12,10 +12,10 @@ from basu.scenarios.actions import WalkAlong
 from basu.scenarios.parameters import Number, Parameter, read_values
 from basu.scenarios.paths import Path
 from basu.scenarios.place import Place
-from basu.scenarios.rehearsal import PaperStage, careful, paper_place, rehearse, steady, waiting_at
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import EGO, ActorSpec
 from basu.scenarios.triggers import TimeToArrival
+from basu.testing import PaperStage, careful, paper_place, rehearse, steady, waiting_at
 
 
 class StepsOut(Scenario):

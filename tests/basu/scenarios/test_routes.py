@@ -19,21 +19,21 @@ from basu.managers.scenario_manager import Playing
 from basu.metrics.score import Scoring
 from basu.options import RunOptions
 from basu.outcome import Outcome, Status
-from basu.preparation import prepare
-from basu.report.scenarios.on_way import met
-from basu.report.schema import RESULT_SCHEMA, mistakes, read_schema
+from basu.output.report.scenarios.on_way import met
+from basu.output.report.schema import RESULT_SCHEMA, mistakes, read_schema
 from basu.routing import Route
 from basu.routing.route_file import read_routes
 from basu.routing.stretch import until
+from basu.running.preparation import prepare
+from basu.running.series import conditions
 from basu.scenarios.actions import Wait
+from basu.scenarios.cases import Playable
 from basu.scenarios.config.model import Case, GivenActor
-from basu.scenarios.library import Playable
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.on_way import scenarios_on
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec, Pose
 from basu.scenarios.triggers import EgoArrives
-from basu.series import conditions
 from fakes.one_road import one_road, way_along
 from servers import RunningServer, running_server
 

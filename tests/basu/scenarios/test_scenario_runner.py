@@ -20,8 +20,8 @@ import pytest
 
 from basu.managers.laid_out import lay_out
 from basu.routing import plan
-from basu.scenario_runs.one_case import description_of
-from basu.scenarios.library import by_id, cases_of
+from basu.running.scenario_runs.one_case import description_of
+from basu.scenarios.cases import by_id, cases_of
 from servers import RunningServer
 
 PROJECT = Path(__file__).parents[3]

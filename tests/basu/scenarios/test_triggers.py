@@ -7,7 +7,6 @@ from py_trees.common import Status
 
 from basu.managers import routes_manager
 from basu.scenarios.paths import Path
-from basu.scenarios.rehearsal import PaperStage, steady, waiting_at
 from basu.scenarios.stage import Pose
 from basu.scenarios.triggers import (
     ActorTimeToArrival,
@@ -33,6 +32,7 @@ from basu.scenarios.triggers import (
     TimeToArrival,
     along_route,
 )
+from basu.testing import PaperStage, steady, waiting_at
 from fakes.paper import play, somebody, stage_with
 
 FRAME_S = 0.051  # a frame, and what rounding adds

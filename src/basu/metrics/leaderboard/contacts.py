@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from basu.metrics.leaderboard.rules import Event, Kind, Version
 
 if TYPE_CHECKING:
-    from basu.history import Collision, History
+    from basu.records.history import Collision, History
 
 Place = tuple[float, float]
 SAME_PLACE_M, FORGOTTEN_M, SAME_PARTY_S = 3.0, 5.0, 5.0  # 1.0: MIN_AREA, MAX_AREA, MAX_ID_TIME

@@ -19,7 +19,7 @@ from basu.metrics.stretches import stretches
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 ARRIVED_PERCENT, ARRIVED_M = 99.0, 10.0  # farther along than this, and this near to the end
 OFF_ROUTE_M, FAR_M, FAR_PERCENT = 30.0, 15.0, 30.0  # off the route at once; or far from it for too much of the route

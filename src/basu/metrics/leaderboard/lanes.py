@@ -21,7 +21,7 @@ from basu.metrics.stretches import total_m
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 ALLOWED_M = {Version.V1_0: 1.3, Version.V2_0: 0.5, Version.V2_1: 0.5}
 ACROSS_RAD = np.radians(120.0)  # between the vehicle and the lane that it leaves a junction on

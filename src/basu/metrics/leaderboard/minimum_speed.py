@@ -19,7 +19,7 @@ from basu.metrics.leaderboard.rules import Event, Kind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 CHECKPOINTS = 4
 LAST_AT = 0.95  # of the route: a drive that ends beyond it has its last quarter judged

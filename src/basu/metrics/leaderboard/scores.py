@@ -20,7 +20,7 @@ from basu.metrics.red_lights import red_lights
 from basu.metrics.stop_signs import stop_signs
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
 
 ARRIVED_M, PARKED_M, PARKED_MPS = 1.0, 5.0, 0.1  # the benchmark's own end of a route, where it ends the drive
 

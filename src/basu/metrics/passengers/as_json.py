@@ -9,11 +9,11 @@ from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.near_misses import NEAR_S
 
 if TYPE_CHECKING:
-    from basu.history import History
     from basu.metrics.passengers.causes import Cause
     from basu.metrics.passengers.harsh_stops import HarshStop
     from basu.metrics.passengers.near_misses import Party
     from basu.metrics.passengers.verdict import Judged
+    from basu.records.history import History
 
 
 def passengers_to_json(history: History, judged: Judged | None) -> dict[str, Any] | None:

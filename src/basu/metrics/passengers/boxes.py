@@ -12,7 +12,7 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import Facts
+    from basu.records.history import Facts
 
     Boxes = NDArray[np.float64]  # (N, 5)
 

@@ -20,8 +20,8 @@ from basu.routing import ControlKind
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from basu.history import History
     from basu.metrics.passengers.harsh_stops import HarshStop
+    from basu.records.history import History
 
 THINK_S, SPARE_M = 1.0, 2.0
 BEYOND_M = 1.0  # a line this far behind the front bumper is still braked for

@@ -17,7 +17,7 @@ from basu.metrics.passengers.lowpass import lowpass, moving_mean
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 GRAVITY_MPS2 = 9.80665  # standard gravity, ISO 80000-3
 JERK_WINDOW_S = 0.5  # UN Regulation No. 79, 03 series: jerk is a 500 ms moving average of the filtered derivative

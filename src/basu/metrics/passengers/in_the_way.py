@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 MARGIN_M = 0.3  # beside the vehicle
 SPACING_M = 0.5

@@ -20,7 +20,7 @@ from basu.metrics.passengers.boxes import other_boxes, own_boxes, time_to_touch_
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 NEAR_S = 1.5  # a time to collision or a post-encroachment time up to this is a near miss
 SEEN_S = 3.0  # up to this it is told of

@@ -20,7 +20,7 @@ from basu.metrics.passengers.service import Visit, service
 from basu.metrics.passengers.vibration import Vibration, vibration
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
 
 UNCOMFORTABLE_MPS2 = 0.8  # where "uncomfortable" begins, ISO 2631-1 annex C.2.3
 

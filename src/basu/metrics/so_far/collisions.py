@@ -10,8 +10,8 @@ from basu.metrics.collisions import Party, contacts
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.history import History
     from basu.metrics.infraction import Evidence
+    from basu.records.history import History
 
 LATE_S = 1.0  # a message that comes later than this after its frame is judged at the end only
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.history.model import NO_LIGHT
 from basu.metrics.infraction import Evidence, counts
 from basu.metrics.path_following import compared
 from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
@@ -21,6 +20,7 @@ from basu.metrics.so_far.collisions import CollisionsSoFar
 from basu.metrics.so_far.speeding import SpeedingSoFar
 from basu.metrics.stop_signs import ZONE_BEFORE_M, stop_signs
 from basu.metrics.stretches import SPACING_M, chords, path_m, total_m
+from basu.records.history.model import NO_LIGHT
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
 
 
 @dataclass(slots=True)

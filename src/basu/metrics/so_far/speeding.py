@@ -10,8 +10,8 @@ from basu.metrics.speeding import LEAST_S, episode, limits_mps
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.history import History
     from basu.metrics.infraction import Evidence
+    from basu.records.history import History
 
 
 @dataclass(slots=True)

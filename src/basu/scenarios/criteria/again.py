@@ -6,8 +6,8 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
-from basu.history.files import read_history
 from basu.outcome import Outcome, Status
+from basu.records.history.files import read_history
 from basu.scenarios.criteria.criterion import Judgement, Played, Thing
 
 if TYPE_CHECKING:

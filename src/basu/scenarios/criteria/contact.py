@@ -11,7 +11,7 @@ from basu.scenarios.criteria.criterion import Criterion
 if TYPE_CHECKING:
     from collections.abc import Collection
 
-    from basu.history import Collision
+    from basu.records.history import Collision
     from basu.scenarios.criteria.criterion import Judgement, Played
 
 STANDING_MPS = 0.1

@@ -10,8 +10,8 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from basu.history import History
     from basu.outcome import Outcome
+    from basu.records.history import History
     from basu.scenarios.stage import Pose
 
 

@@ -11,7 +11,7 @@ from basu.scenarios.criteria.criterion import Criterion
 from basu.scenarios.triggers.along_route import ARRIVED_M, PARKED_M, PARKED_MPS
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
     from basu.scenarios.criteria.criterion import Judgement, Played
 
 

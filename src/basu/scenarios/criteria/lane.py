@@ -12,7 +12,7 @@ from basu.scenarios.criteria.criterion import Criterion
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
     from basu.scenarios.criteria.criterion import Judgement, Played
 
 HOLD_S = 1.0  # who is back for so long has regained its lane, and not swung through it

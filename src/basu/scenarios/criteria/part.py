@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from basu.routing.stretch import until
 
 if TYPE_CHECKING:
-    from basu.history import History
+    from basu.records.history import History
 
 
 def part_of(history: History, first: int, end: int, until_s_m: float | None = None) -> History:

@@ -2,9 +2,9 @@
 
 import pytest
 
-from basu.history import Collision, History
 from basu.metrics.leaderboard.contacts import collisions
 from basu.metrics.leaderboard.rules import Kind, Version
+from basu.records.history import Collision, History
 from fakes.drives import at, driven, hit, straight_route
 
 CAR, FENCE = "vehicle.audi.tt", "static.fence"

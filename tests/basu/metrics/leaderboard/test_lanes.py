@@ -10,11 +10,11 @@ import carla
 import numpy as np
 import pytest
 
-from basu.history import History
 from basu.managers.base_manager import Ego
 from basu.managers.lane_under import lane_under
 from basu.metrics.leaderboard.lanes import in_wrong_lane, outside_lanes
 from basu.metrics.leaderboard.rules import Version
+from basu.records.history import History
 from fakes.crossing_map import crossing
 from fakes.drives import STEP_S, at, driven, straight_route
 

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from basu.history import OTHER, History
 from basu.metrics.leaderboard.minimum_speed import too_slow
 from basu.metrics.leaderboard.rules import Kind
+from basu.records.history import OTHER, History
 from fakes.drives import at, driven, straight_route
 
 ROUTE_M = 200.0

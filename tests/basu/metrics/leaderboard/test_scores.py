@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from basu.history import OTHER, History
 from basu.metrics.leaderboard import Kind, LeaderboardScores, Version, leaderboard_scores
+from basu.records.history import OTHER, History
 from fakes.drives import at, driven, hit, stop_sign, straight_route, traffic_light
 
 CAR = "vehicle.audi.tt"

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from basu.history import History
 from basu.metrics.passengers.causes import Cause, Kind, cause, reach_m
 from basu.metrics.passengers.felt import Felt, felt
 from basu.metrics.passengers.harsh_stops import HarshStop, harsh_stops
+from basu.records.history import History
 from basu.routing import Control, ControlKind, Route, Stop
 from fakes.drives import hit, straight_route
 from fakes.rides import braked, eastward, moving, ride

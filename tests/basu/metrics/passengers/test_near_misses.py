@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from basu.history import History
 from basu.metrics.passengers.near_misses import near_misses
+from basu.records.history import History
 from fakes.drives import hit
 from fakes.rides import braked, circling, eastward, moving, ride
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from basu.history import History
 from basu.metrics.passengers.service import service
+from basu.records.history import History
 from basu.routing import Stop
 from basu.routing.timetable import Call, Hours, Timetable
 from fakes.drives import straight_route

@@ -6,14 +6,14 @@ import jsonschema
 import pytest
 
 from basu.errors import UserError
-from basu.history import History
 from basu.metrics.passengers.as_json import passengers_to_json
 from basu.metrics.passengers.balance import balance
 from basu.metrics.passengers.comfort_score import ComfortWeights, comfort_score, weights_from
 from basu.metrics.passengers.felt import felt
 from basu.metrics.passengers.verdict import Judged, judge
 from basu.metrics.score import Scoring, score
-from basu.report.schema import RESULT_SCHEMA, read_schema
+from basu.output.report.schema import RESULT_SCHEMA, read_schema
+from basu.records.history import History
 from fakes.rides import braked, eastward, moving, ride
 
 WALKING_MPS = 7.1 * 0.44704

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from basu.history import FRAME, Collision, History, Recorder
 from basu.metrics.score import Scoring, infractions, score
 from basu.metrics.so_far import SoFar
+from basu.records.history import FRAME, Collision, History, Recorder
 from fakes.drives import at, driven, hit, ramp, stop_sign, straight_route, traffic_light
 
 RED = 0

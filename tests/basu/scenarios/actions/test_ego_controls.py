@@ -5,8 +5,8 @@ import pytest
 
 from basu.scenarios.actions import Bump, Either, JitterControls, PullSteering, Wait
 from basu.scenarios.actions.action import Action
-from basu.scenarios.rehearsal import PaperStage
 from basu.scenarios.stage import Controls
+from basu.testing import PaperStage
 from fakes.paper import play, stage_with
 
 MEANT = Controls(0.5, 0.1, 0.2)

@@ -21,9 +21,9 @@ from basu.scenarios.actions import (
     Wait,
 )
 from basu.scenarios.paths import Path
-from basu.scenarios.rehearsal import PaperStage
 from basu.scenarios.stage import EGO, Door, Pose
 from basu.scenarios.triggers import EgoPasses
+from basu.testing import PaperStage
 from fakes.paper import play, somebody, stage_with
 
 

@@ -22,8 +22,8 @@ from basu.scenarios.actions import (
     Wait,
 )
 from basu.scenarios.paths import Path
-from basu.scenarios.rehearsal import PaperStage, careful, steady, waiting_at
 from basu.scenarios.stage import EGO, ActorSpec, Pose
+from basu.testing import PaperStage, careful, steady, waiting_at
 from fakes.paper import play, somebody, stage_with
 
 ROAD = Path.through([(0.0, 20.0), (150.0, 20.0)])  # beside the ego's, 20 m to its right

@@ -6,8 +6,8 @@ import pytest
 
 from basu.scenarios.actions import Either, Wait, WalkAlong
 from basu.scenarios.paths import Path
-from basu.scenarios.rehearsal import PaperStage, steady
 from basu.scenarios.stage import EGO
+from basu.testing import PaperStage, steady
 from fakes.paper import play, somebody, stage_with
 
 ACROSS = Path.through([(60.0, 6.0), (60.0, -6.0)])

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from basu.errors import UserError
-from basu.history.files import write_history
 from basu.outcome import Outcome, Status
+from basu.records.history.files import write_history
 from basu.scenarios.criteria import (
     Arrives,
     Gentle,

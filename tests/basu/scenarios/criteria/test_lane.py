@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from basu.history import History
+from basu.records.history import History
 from basu.scenarios.criteria import KeepsLane, Regains
 from fakes.drives import at, driven
 from fakes.played import played

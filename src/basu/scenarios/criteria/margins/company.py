@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.history.model import NEAR_M, OTHER
+from basu.records.history.model import NEAR_M, OTHER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import NDArray
 
-    from basu.history import History
+    from basu.records.history import History
     from basu.scenarios.criteria.criterion import Played
 
 LAST_ID = 2**32 - 1  # ids of things count down from here, where no simulator has come to yet

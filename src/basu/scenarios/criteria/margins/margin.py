@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from basu.errors import ScenarioError
-from basu.history.model import NEAR_M
+from basu.records.history.model import NEAR_M
 from basu.scenarios.criteria.criterion import Criterion
 from basu.scenarios.criteria.margins.company import company
 

@@ -1,0 +1,1 @@
+"""The agents that come with BASU, and the parts that they are made of."""

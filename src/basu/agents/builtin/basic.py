@@ -1,0 +1,82 @@
+"""The basic agent: follows the route smoothly, keeps the rules of the road, and stops for whoever is in its way.
+
+This file joins the official client to ``driving`` and ``rules``, which decide and know nothing of it. The agent uses no
+sensors and no clock: the same ticks give the same drive.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import carla
+
+from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.builtin.driving.driver import Driver
+from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
+from basu.agents.builtin.driving.task import make_task
+from basu.agents.builtin.perception import RADIUS_M, Lights, Perception, see_ego
+from basu.agents.builtin.vehicle_facts import SHUTTLE, read_facts
+from basu.errors import UserError
+from basu.routing import ControlKind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from basu.agents.builtin.driving.driver import Command
+    from basu.agents.builtin.vehicle_facts import VehicleFacts
+
+
+class BasicAgent(AutonomousAgent):
+    """A careful driver; from ``setup`` on, ``driver`` holds its plan and may be looked at."""
+
+    sight_m = RADIUS_M  # how far others are looked at
+    cruise_mps = math.inf  # never faster than this, whatever vehicle and limits allow
+    driver: Driver | None = None
+    facts: VehicleFacts | None = None
+
+    def setup(self) -> None:
+        """Look up the lights on the way; the vehicle is read at the first step, when it stands where it starts."""
+        if self.route is None:
+            raise UserError(f"{type(self).__name__} follows a route and was given none; name one with --routes")
+        self._perception = Perception(self.world, self.vehicle.id, self.sight_m)
+        lights = [c.landmark_id for c in self.route.controls if c.kind is ControlKind.TRAFFIC_LIGHT]
+        self._lights = Lights(self.world, lights)
+
+    def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
+        """Look, decide, act."""
+        del sensor_data
+        snapshot = self.world.get_snapshot()
+        own = snapshot.find(self.vehicle.id)
+        if own is None:
+            return carla.VehicleControl(brake=HOLD_BRAKE)  # not in the world before its first tick
+        if self.driver is None or self.facts is None:
+            self.driver, self.facts = self._get_in(own.get_transform())
+        ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
+        command = self.driver.step(ego, self._perception.others(snapshot, ego), self._lights.shows)
+        return _control(command, self.facts, ego.speed_mps)
+
+    def config(self) -> dict[str, str]:
+        """The shuttle on its round."""
+        return {
+            "routes": "routes/linden_leap.xml",
+            "sensors": "config/sensors.json",
+            "vehicle": SHUTTLE,
+            "weather": "ClearNoon",
+        }
+
+    def _get_in(self, pose: carla.Transform) -> tuple[Driver, VehicleFacts]:
+        """Read the vehicle and lay out the route for it."""
+        assert self.route is not None  # setup refuses
+        facts = read_facts(self.vehicle, pose)
+        task = make_task(self.route, facts.body, min(self.cruise_mps, facts.top_mps))
+        return Driver(task, facts.body, facts.model, self.time_step_s), facts
+
+
+def _control(command: Command, facts: VehicleFacts, speed_mps: float) -> carla.VehicleControl:
+    """The decision in CARLA's terms."""
+    return carla.VehicleControl(
+        throttle=command.throttle,
+        steer=facts.steering.command(command.steer_rad, speed_mps),
+        brake=command.brake,
+    )

@@ -1,0 +1,91 @@
+"""Makes room for a tailgater: over to a lane of the same direction on the right, along it for a while, and back.
+
+Only where such a lane is free and goes on, past no junction, line or service stop; and back only when nobody is beside
+or close behind in the lane that one came from.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from basu.agents.builtin.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
+from basu.agents.builtin.scene import Restriction, Urgency
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from basu.agents.builtin.driving.manner import Manner
+    from basu.agents.builtin.driving.path import Path, Place
+    from basu.agents.builtin.passing.detour import Detour
+    from basu.agents.builtin.passing.road import Road
+    from basu.agents.builtin.scene import Body, Ego, Other
+
+ALONG_M = 40.0  # driven in the other lane at least
+LONGER_M = 20.0  # by which that is drawn out while somebody is in the way back
+BEHIND_M, AHEAD_M = 20.0, 10.0  # nobody so near before and behind in the lane that one changes to
+DECIDES_M = 10.0  # before the way back begins it is seen whether it is clear
+LIKE_M = 0.3  # a lane that lies so much elsewhere is another lane
+SLOWEST_MPS = 3.0  # changes of lane are laid out for this speed at least
+
+
+class PullingOver:
+    """The state of making room; ``detour`` is what to drive instead of the path, None while one keeps to it."""
+
+    def __init__(self, path: Path, road: Road, body: Body, manner: Manner) -> None:
+        self.detour: Detour | None = None
+        self._path, self._road, self._body, self._manner = path, road, body, manner
+
+    def step(self, ego: Ego, place: Place, others: Sequence[Other], *, tailgated: bool) -> list[Restriction]:
+        """Begin, go on, or come back; ``place`` is beside the task's own path."""
+        if self.detour is None:
+            self.detour = self._plan(ego, place, others) if tailgated else None
+            return []
+        extent = self.detour.extent
+        if place.s_m - self._body.rear_m > extent.to_s_m:
+            self.detour = None
+        elif extent.until_s_m - DECIDES_M < place.s_m < extent.until_s_m:
+            if self._is_clear(place, others, 0.0, self.detour.offset_m / 2.0):
+                return []
+            drawn_out = extent._replace(
+                from_s_m=place.s_m - DECIDES_M,
+                aside_s_m=place.s_m - DECIDES_M / 2.0,
+                until_s_m=extent.until_s_m + LONGER_M,
+                to_s_m=extent.to_s_m + LONGER_M,
+            )
+            if not self._goes_on(drawn_out, self.detour.offset_m):
+                return [Restriction(extent.until_s_m - place.s_m, 0.0, Urgency.FIRM, "nobody lets us in")]
+            offset_m = self.detour.offset_m
+            self.detour = make_detour(self._path, drawn_out, offset_m, self._manner, self.detour.speed_mps, offset_m)
+        return []
+
+    def _plan(self, ego: Ego, place: Place, others: Sequence[Other]) -> Detour | None:
+        """The way over and back, None where there is none."""
+        offset_m = self._road.right_lane_m[place.near]
+        if offset_m <= 0.0:
+            return None
+        speed_mps = max(ego.speed_mps, SLOWEST_MPS)
+        usual_m = max(swing_m(offset_m, speed_mps, self._manner.lateral_accel_mps2), tightest_swing_m(offset_m))
+        aside_s_m = place.s_m + usual_m
+        extent = Extent(place.s_m, aside_s_m, aside_s_m + ALONG_M, aside_s_m + ALONG_M + usual_m)
+        if not self._goes_on(extent, offset_m) or not self._is_clear(place, others, offset_m, offset_m / 2.0):
+            return None
+        return make_detour(self._path, extent, offset_m, self._manner, self._road.limit_mps[place.near])
+
+    def _goes_on(self, extent: Extent, offset_m: float) -> bool:
+        """Whether the lane is there for so long, and nothing on the way needs our own."""
+        road, path = self._road, self._path
+        first, end = path.index_at(extent.aside_s_m), path.index_at(extent.until_s_m) + 1
+        beside = all(abs(there_m - offset_m) < LIKE_M for there_m in road.right_lane_m[first:end])
+        marks = any(extent.from_s_m < mark < extent.to_s_m for mark in (*road.lines_s_m, *road.stops_s_m))
+        ends = extent.to_s_m > path.end_s_m
+        return beside and not marks and not ends and not road.meets_junction(extent.from_s_m, extent.to_s_m)
+
+    def _is_clear(self, place: Place, others: Sequence[Other], lane_m: float, half_m: float) -> bool:
+        """Whether nobody is near in the lane whose middle lies ``lane_m`` to the right of ours."""
+        for other in others:
+            there = self._path.follow(other.x_m, other.y_m, place.near)
+            ahead_m = there.s_m - place.s_m
+            near = -BEHIND_M < ahead_m < self._body.front_m + other.half_length_m + AHEAD_M
+            if near and abs(there.lateral_m - lane_m) < half_m + other.half_width_m / 2.0:
+                return False
+        return True

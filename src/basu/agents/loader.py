@@ -1,0 +1,134 @@
+"""Finds an agent's class: by name among BASU's own, or in a Python file of BASU's kind or the leaderboard's."""
+
+from __future__ import annotations
+
+import difflib
+import importlib
+import inspect
+import traceback
+from pathlib import Path
+from typing import NamedTuple
+
+import carla
+
+from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.leaderboard.adapter import LeaderboardAgent, adapted
+from basu.agents.leaderboard.foreign import ENTRY_POINT, foreign_agent
+from basu.agents.leaderboard.modules import stand_in
+from basu.agents.time_limit import OverrunError, call_within
+from basu.errors import UserError
+from basu.utils.user_module import module_of
+
+BUILT_IN = {
+    "basic": "basu.agents.builtin.basic",
+    "behavioral": "basu.agents.builtin.behavioral",
+    "behavioral-cautious": "basu.agents.builtin.behavioral_cautious",
+    "behavioral-aggressive": "basu.agents.builtin.behavioral_aggressive",
+    "deviating": "basu.agents.builtin.deviating",
+    "forward": "basu.agents.builtin.forward",
+    "human": "basu.agents.builtin.human",
+    "incident": "basu.agents.builtin.incident",
+}
+
+LOAD_LIMIT_S = 120.0  # of wall time: what an agent imports may be large
+
+
+class LoadedAgent(NamedTuple):
+    """An agent's class, a short name for folders and tables, and the file it came from (None: BASU's own)."""
+
+    agent_class: type[AutonomousAgent]
+    name: str
+    file: Path | None
+
+
+def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
+    """The agent called ``wanted``: a name, ``file.py``, or ``file.py:ClassName`` where a file holds several.
+
+    ``agent_config`` is the text of ``--agent-config``: agents of the leaderboard and of ScenarioRunner take one, mostly
+    a file's name.
+
+    Raises:
+        UserError: there is none, the file does not load, or it holds no agent or more than one.
+    """
+    loaded = _find(wanted, agent_config)
+    if agent_config is not None and not issubclass(loaded.agent_class, LeaderboardAgent):
+        raise UserError(
+            f"the agent '{wanted}' takes no --agent-config: that is for agents of the leaderboard and of "
+            "ScenarioRunner; leave it away"
+        )
+    return loaded
+
+
+def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
+    """The agent by its name or from its file."""
+    if wanted in BUILT_IN:
+        module = importlib.import_module(BUILT_IN[wanted])
+        return LoadedAgent(_only(_agents_in(module.__dict__, module.__name__), wanted), wanted, None)
+    text, _, class_name = wanted.partition(":") if ".py:" in wanted else (wanted, "", "")
+    path = Path(text)
+    if path.suffix != ".py":
+        close = difflib.get_close_matches(wanted, BUILT_IN, 1)
+        hint = f"did you mean '{close[0]}'?" if close else f"there are {', '.join(BUILT_IN)}, or name a Python file"
+        raise UserError(f"there is no agent called '{wanted}'; {hint}")
+    if not path.is_file():
+        raise UserError(f"the agent's file {path} does not exist; check the name and the folder you are in")
+    namespace, module_name = _run_file(path)
+    agents = _agents_in(namespace, module_name)
+    if ENTRY_POINT in namespace or not agents:
+        foreign = foreign_agent(namespace, module_name, str(path), class_name or None)
+        if foreign is not None:
+            return LoadedAgent(adapted(foreign, agent_config), path.stem, path)
+    if class_name:
+        agents = [agent for agent in agents if agent.__name__ == class_name]
+    return LoadedAgent(_only(agents, str(path)), path.stem, path)
+
+
+def _run_file(path: Path) -> tuple[dict[str, object], str]:
+    """Execute an agent's file as a module that already knows ``carla`` and ``AutonomousAgent``.
+
+    The thesis prints its sample agent without import lines (figure 4.9); such a file is complete here.
+    """
+    stand_in()
+    name = f"basu_agent_{path.stem}"
+    module, loader = module_of(path, name)
+    module.__dict__.update(carla=carla, AutonomousAgent=AutonomousAgent)
+    try:
+        call_within(LOAD_LIMIT_S, lambda: loader.exec_module(module))
+    except OverrunError:
+        raise UserError(f"the agent's file {path} was not loaded within {LOAD_LIMIT_S:g} s") from None
+    except SyntaxError as error:
+        raise UserError(f"the agent's file {path} is no Python: line {error.lineno}: {error.msg}") from error
+    except (Exception, SystemExit) as error:
+        line = next(
+            (f.lineno for f in reversed(traceback.extract_tb(error.__traceback__)) if f.filename == module.__file__), 0
+        )
+        raise UserError(
+            f"the agent's file {path} does not load: line {line}: {type(error).__name__}: {error}"
+        ) from error
+    return module.__dict__, name
+
+
+def _agents_in(namespace: dict[str, object], module_name: str) -> list[type[AutonomousAgent]]:
+    """The agents that a module defines itself."""
+    return [
+        value
+        for value in namespace.values()
+        if isinstance(value, type) and issubclass(value, AutonomousAgent) and value.__module__ == module_name
+    ]
+
+
+def _only(agents: list[type[AutonomousAgent]], where: str) -> type[AutonomousAgent]:
+    """The one agent there is, complete."""
+    if not agents:
+        raise UserError(
+            f"{where} holds no subclass of AutonomousAgent, of BASU's, the leaderboard's or ScenarioRunner's; "
+            "see `examples/` for how an agent looks"
+        )
+    concrete = [agent for agent in agents if not inspect.isabstract(agent)]
+    if not concrete:
+        missing = ", ".join(sorted(agents[0].__abstractmethods__))
+        raise UserError(f"{agents[0].__name__} in {where} lacks {missing}; an agent has setup, run_step and config")
+    if len(concrete) > 1:
+        names = [agent.__name__ for agent in concrete]
+        raise UserError(f"{where} holds {len(names)} agents ({', '.join(names)}); name one as {where}:{names[0]}")
+    return concrete[0]

@@ -1,5 +1,0 @@
-"""BASU's agents as guests of the CARLA leaderboard and of ScenarioRunner, which load a file and call its class.
-
-That file is ``entry/basu_agent.py``; ``python -m basu.guest`` prints where it lies. The other direction, their agents
-in ``basu run``, is :mod:`basu.leaderboard`.
-"""

@@ -1,6 +1,0 @@
-"""What happened in a run, frame by frame: all that metrics may see."""
-
-from basu.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle
-from basu.history.recorder import Recorder
-
-__all__ = ["FRAME", "OTHER", "Collision", "Facts", "History", "LaneInvasion", "Recorder", "Vehicle"]

@@ -1,0 +1,92 @@
+"""The charts of a report on one axis of time: speed and limit, acceleration, jerk, distance to the lane's middle."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
+from basu.metrics.speeding import TOLERANCE_MPS
+from basu.output.report.markup import e
+from basu.output.report.plots.chart import Line, Mark, Shade, chart
+from basu.output.report.plots.signals import stretches
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from xml.etree.ElementTree import Element
+
+    from basu.output.report.findings import Finding
+    from basu.output.report.plots.signals import Signals
+    from basu.records.history import History
+
+# what standing volunteers could recover from (docs/passengers.md has the sources), both ways
+RECOVERABLE = (
+    (STEP_MPS2, f"{STEP_MPS2:g}: with a step"),
+    (-STEP_MPS2, ""),
+    (GRIP_MPS2, f"{GRIP_MPS2:g}: holding on"),
+    (-GRIP_MPS2, ""),
+)
+FELT_KINDS = {"harsh_stop", "phantom_stop", "near_miss"}
+
+
+def charts(history: History, felt: Signals, found: Sequence[Finding]) -> Element:
+    """All charts of a run."""
+    by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
+    return e(
+        "section",
+        e("h2", "Plots"),
+        _speed(felt, by_hand, _flags(f for f in found if f.factor is not None)),
+        chart(
+            felt.t_s,
+            [
+                Line("along, + forward", felt.along_mps2, "first"),
+                Line("across, + to the right", felt.across_mps2, "second"),
+            ],
+            title="Acceleration",
+            marks=_flags(f for f in found if f.kind in FELT_KINDS),
+            unit="m/s²",
+            id_="acceleration",
+            levels=RECOVERABLE,
+            shades=by_hand,
+            least_range=(-1.2, 1.2),
+        ),
+        chart(
+            felt.t_s,
+            [Line("along", felt.jerk_mps3, "first")],
+            title="Jerk",
+            unit="m/s³",
+            id_="jerk",
+            shades=by_hand,
+            least_range=(-1.2, 1.2),
+        ),
+        _offset(history, felt, by_hand),
+        e(
+            "p",
+            "Acceleration and jerk: at a standing passenger's place, filtered. Hatched: by hand; crossed: too fast.",
+            class_="note",
+        ),
+    )
+
+
+def _speed(felt: Signals, by_hand: Sequence[Shade], flags: Sequence[Mark]) -> Element:
+    """Speed against the posted limit, with the infractions where they happened."""
+    over = felt.speed_mps > np.where(np.isnan(felt.limit_mps), np.inf, felt.limit_mps + TOLERANCE_MPS)
+    shades = [*by_hand, *(Shade(begin_s, end_s, "over") for begin_s, end_s in stretches(over, felt.t_s))]
+    curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
+    return chart(felt.t_s, curves, title="Speed", unit="m/s", id_="speed", shades=shades, marks=flags)
+
+
+def _offset(history: History, felt: Signals, by_hand: Sequence[Shade]) -> Element:
+    """Distance to the lane's middle, figure 5.1 of the thesis; to the planned line where the record has no lanes."""
+    if np.isfinite(felt.offset_m).any():
+        title, values = "Distance to the lane's middle", felt.offset_m
+    else:
+        title, values = "Distance to the planned line", history.frames["lateral_m"].astype(np.float64)
+    curves = [Line("+ to the right", values, "first")]
+    return chart(felt.t_s, curves, title=title, unit="m", id_="offset", shades=by_hand, least_range=(-0.5, 0.5))
+
+
+def _flags(found: Iterable[Finding]) -> list[Mark]:
+    """Flags that open the evidence."""
+    return [Mark(f.t_s, f.label, f.title, f"#{f.anchor}", scored=f.factor is not None) for f in found]

@@ -1,0 +1,115 @@
+"""A case with one agent as a card: verdict, picture, phases, judgements with their evidence, tree, command."""
+
+from __future__ import annotations
+
+import re
+import shlex
+from typing import TYPE_CHECKING, Any
+
+from basu.output.report.markup import DASH, e, figure
+from basu.output.report.scenarios.page.phases import phase_line
+from basu.output.report.scenarios.page.tree_view import tree_view
+from basu.output.report.scenarios.pictures import case_drawing
+from basu.output.report.scenarios.verdicts import LOOKS
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from xml.etree.ElementTree import Element
+
+    from basu.output.report.streets import Line
+    from basu.records.history import History
+
+
+def card(
+    result: dict[str, Any],
+    history: History | None,
+    streets: Sequence[Line],
+    *,
+    picture: bool = True,
+) -> Element:
+    """The card, open; its place in a page is ``anchor_of``."""
+    verdict = result["verdict"]
+    article = e(
+        "article",
+        e("h4", e("span", result["agent"], class_="agent"), " ", verdict_mark(verdict)),
+        e("p", result["message"], class_="message"),
+        class_=f"case-card {LOOKS[verdict].style}",
+        id=anchor_of(result["id"], result["agent"]),
+        data_agent=result["agent"],
+        data_verdict=verdict,
+    )
+    if picture and history is not None and len(history.frames):
+        article.append(e("figure", case_drawing(result, history, streets), class_="picture"))
+    line = phase_line(result)
+    if line is not None:
+        article.append(line)
+    if result["judgements"]:
+        article.append(judgements(result["judgements"]))
+    if result["tree"] is not None:
+        article.append(e("details", e("summary", "Tree"), tree_view(result["tree"]), class_="folded"))
+    command = shlex.join(str(word) for word in result["command"])
+    article.append(e("details", e("summary", "Play it again"), e("pre", command), _where(result), class_="folded"))
+    return article
+
+
+def verdict_mark(verdict: str) -> Element:
+    """A verdict as a sign and a word."""
+    look = LOOKS[verdict]
+    return e("b", f"{look.sign} {look.word}", class_=f"verdict {look.style}")
+
+
+def anchor_of(case: str, agent: str) -> str:
+    """The name of a card in a page: what no address may hold is written as its number, so that all are told apart."""
+    return "case-" + re.sub(r"[^A-Za-z0-9_-]", lambda found: f".{ord(found[0]):x}.", f"{case}--{agent}")
+
+
+def judgements(found: Sequence[dict[str, Any]]) -> Element:
+    """What each criterion said; those that decide first."""
+    head = e("tr", *(e("th", text, scope="col") for text in ("", "criterion", "measured", "limit")))
+    ordered = sorted(found, key=lambda judgement: not judgement["deciding"])
+    return e("table", e("thead", head), *(_judgement(judgement) for judgement in ordered), class_="judgements")
+
+
+def _judgement(judgement: dict[str, Any]) -> Element:
+    """One of them: the figures, and below them the sentence."""
+    sign, style = {True: ("✓", "passed"), False: ("✗", "failed"), None: (DASH, "told")}[judgement["passed"]]
+    is_deciding = judgement["deciding"]
+    measured = "" if judgement["measured"] is None else f"{figure(judgement['measured'], 2)} {judgement['unit']}"
+    figures = e(
+        "tr",
+        e("td", sign, class_=f"outcome {style if is_deciding else 'told'}"),
+        e("th", judgement["criterion"], scope="row"),
+        e("td", measured),
+        e("td", judgement["limit"] if is_deciding else "told only"),
+    )
+    sentence = e("tr", e("td"), e("td", judgement["sentence"], colspan=3), class_="why")
+    return e("tbody", figures, sentence, class_=None if is_deciding else "told")
+
+
+def parameters(found: Sequence[dict[str, Any]]) -> Element | None:
+    """The values of a case, with what they are."""
+    if not found:
+        return None
+    pairs = [
+        e("div", e("dt", parameter["name"]), e("dd", _value(parameter), title=parameter["about"]))
+        for parameter in found
+    ]
+    return e("dl", *pairs, class_="parameters")
+
+
+def _value(parameter: dict[str, Any]) -> str:
+    value = parameter["value"]
+    text = value if isinstance(value, str) else f"{value:.4g}"
+    return f"{text} {parameter['unit']}".rstrip()
+
+
+def _where(result: dict[str, Any]) -> Element:
+    """What else has to be the same."""
+    terms = [
+        ("town", result["town"]),
+        ("vehicle", result["vehicle"]),
+        ("seed", str(result["seed"])),
+        ("from", result["scenarios_file"]),
+        ("simulated", f"{result['simulated_s']:.1f} s in {result['wall_s']:.1f} s"),
+    ]
+    return e("dl", *(e("div", e("dt", name), e("dd", text)) for name, text in terms))

@@ -1,0 +1,195 @@
+"""``matrix.html`` as a whole: one file that opens by double click, with or without its script."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.errors import UserError
+from basu.output.report.html.page import page
+from basu.output.report.markup import e, extended, html
+from basu.output.report.scenarios.page import matrix_table, tree_view
+from basu.output.report.scenarios.page.card import anchor_of, card, parameters, verdict_mark
+from basu.output.report.scenarios.page.records import read_case
+from basu.output.report.scenarios.page.shares_view import shares_view
+from basu.output.report.scenarios.page.style import card_style
+from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
+from basu.output.report.scenarios.sweep.study import studies
+from basu.output.report.scenarios.sweep.success_map import drawing
+from basu.output.report.scenarios.tally import blocks, counted
+from basu.output.report.scenarios.verdicts import LOOKS
+from basu.utils.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from xml.etree.ElementTree import Element
+
+    from basu.output.report.scenarios.page.records import CaseRecord
+
+PAGE_FILE = "matrix.html"
+HERE = Path(__file__).parent
+MOST_CARDS = 400  # in one page: those that were not passed first, then the narrowest
+MOST_BYTES = 8_000_000  # of cards; from there on they have no pictures
+PARAMETERS_SHOWN = 4  # beside a case's name
+
+
+class Cell(NamedTuple):
+    """A case with an agent."""
+
+    case: dict[str, Any]
+    agent: str
+
+
+def write_matrix_page(folder: Path, matrix: dict[str, Any]) -> None:
+    """Write ``matrix.html`` into the folder of a run, with what lies in the folders of its cases.
+
+    Raises:
+        UserError: the disk is full or the folder cannot be written.
+    """
+
+    def record(cell: Cell) -> CaseRecord | str:
+        at = cell.case["results"][cell.agent]["folder"]
+        try:
+            return read_case(folder / at) if at else "It left no folder."
+        except UserError as error:
+            return str(error)
+
+    write_bytes(folder / PAGE_FILE, matrix_page(matrix, record))
+
+
+def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | str]) -> bytes:
+    """The page; ``record`` finds what a case left, or says why there is nothing."""
+    cells = chosen(matrix)
+    carded = {anchor_of(cell.case["id"], cell.agent) for cell in cells}
+    cards = _cards(cells, record)
+    body = e("body", _head(matrix))
+    extended(body, [shares_view(matrix), *_sweeps(matrix)])
+    table = e("section", e("h2", "Matrix"), matrix_table.key(), matrix_table.matrix_table(matrix, carded))
+    extended(body, [table, _cases(matrix, cards)])
+    script = (HERE / "matrix.js").read_text(encoding="utf-8")
+    return page(f"Scenarios: {matrix['what']}", body, script=script, style=card_style())
+
+
+def chosen(matrix: dict[str, Any]) -> list[Cell]:
+    """Whose cards are in the page: all, or those that tell most."""
+    cells = [Cell(case, agent) for case in matrix["cases"] for agent in matrix["agents"] if agent in case["results"]]
+    if len(cells) <= MOST_CARDS:
+        return cells
+
+    def weight(cell: Cell) -> tuple[bool, float]:
+        result = cell.case["results"][cell.agent]
+        distance_m = result["margins"].get("distance_m")
+        return result["verdict"] == "SUCCESS", float("inf") if distance_m is None else distance_m
+
+    kept = {id(cell) for cell in sorted(cells, key=weight)[:MOST_CARDS]}
+    return [cell for cell in cells if id(cell) in kept]
+
+
+def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dict[str, list[Element]]:
+    """Cards by the case's id; those that were not passed have their pictures before the rest."""
+    made: dict[int, Element] = {}
+    size = 0
+    order = sorted(range(len(cells)), key=lambda n: cells[n].case["results"][cells[n].agent]["verdict"] == "SUCCESS")
+    for number in order:
+        cell = cells[number]
+        found = record(cell)
+        if isinstance(found, str):
+            made[number] = _bare(cell, found)
+        else:
+            made[number] = card(found.result, found.history, found.streets, picture=size < MOST_BYTES)
+        size += len(html(made[number]))
+    cards: dict[str, list[Element]] = {}
+    for number, cell in enumerate(cells):
+        cards.setdefault(cell.case["id"], []).append(made[number])
+    return cards
+
+
+def _bare(cell: Cell, why: str) -> Element:
+    """A card of a case of which no more is known than its line in the matrix."""
+    result = cell.case["results"][cell.agent]
+    return e(
+        "article",
+        e("h4", e("span", cell.agent, class_="agent"), " ", verdict_mark(result["verdict"])),
+        e("p", result["message"], class_="message"),
+        e("p", why, class_="note"),
+        class_=f"case-card {LOOKS[result['verdict']].style}",
+        id=anchor_of(cell.case["id"], cell.agent),
+        data_agent=cell.agent,
+        data_verdict=result["verdict"],
+    )
+
+
+def _head(matrix: dict[str, Any]) -> Element:
+    """What was driven, when and with what."""
+    drives = sum(len(case["results"]) for case in matrix["cases"])
+    versions = ", ".join(f"{name} {text}" for name, text in matrix["versions"].items())
+    minutes, seconds = divmod(round(matrix["wall_s"]), 60)
+    what = f"{counted(len(matrix['cases']), 'case')} with {', '.join(matrix['agents'])}: {counted(drives, 'drive')}"
+    told = f"{what} in {minutes} min {seconds} s, started {matrix['started']}; {versions}"
+    return e("header", e("h1", f"Scenarios: {matrix['what']}"), e("p", told))
+
+
+def _sweeps(matrix: dict[str, Any]) -> Iterator[Element]:
+    """A section for each scenario that was sampled, a map for each agent."""
+    found = studies(matrix)
+    for scenario in dict.fromkeys(study.scenario for study in found):
+        section = e("section", e("h2", f"Where failing begins: {scenario}"))
+        maps = e("div", class_="maps")
+        for study in found:
+            if study.scenario == scenario:
+                known = boundary_of(study)
+                told = e("ul", *(e("li", text[0].upper() + text[1:]) for text in sentences(known)))
+                maps.append(e("figure", e("figcaption", e("b", study.agent), told), drawing(known), class_="sweep"))
+        section.append(maps)
+        yield section
+
+
+def _cases(matrix: dict[str, Any], cards: dict[str, list[Element]]) -> Element:
+    """All cases by group and scenario, each to be opened."""
+    section = e("section", e("h2", "Cases"), _filters(matrix), tree_view.key(), id="cases")
+    for block in blocks(matrix):
+        group = e("section", e("h3", block.group), class_="of-group", data_group=block.group)
+        for row in block.rows:
+            shown = [case for case in row.cases if case["id"] in cards]
+            if shown:
+                group.append(e("p", e("b", row.scenario), f" {row.title}", class_="scenario-title"))
+            group.extend(_case(case, cards[case["id"]]) for case in shown)
+            if len(shown) < len(row.cases):
+                left = len(row.cases) - len(shown)
+                group.append(
+                    e("p", f"{left} more cases of it were passed with more room; matrix.json has them.", class_="note")
+                )
+        section.append(group)
+    return section
+
+
+def _case(case: dict[str, Any], cards: list[Element]) -> Element:
+    """A case with the cards of all agents, closed."""
+    signs = [
+        e("span", f"{LOOKS[result['verdict']].sign} {agent}", class_=f"chip {LOOKS[result['verdict']].style}")
+        for agent, result in case["results"].items()
+    ]
+    summary = e("summary", e("b", case["id"]), e("span", *signs, class_="chips"), e("small", case["place"]))
+    return e("details", summary, parameters(case["parameters"]), e("div", *cards, class_="side"), class_="case")
+
+
+def _filters(matrix: dict[str, Any]) -> Element:
+    """What the script shows and hides by; without it there is nothing here."""
+    verdicts = dict.fromkeys(result["verdict"] for case in matrix["cases"] for result in case["results"].values())
+    groups = dict.fromkeys(case["group"] for case in matrix["cases"])
+    return e(
+        "form",
+        _choice("group", "Group", {group: group for group in groups}),
+        _choice("verdict", "Verdict", {verdict: LOOKS[verdict].word for verdict in verdicts}),
+        _choice("agent", "Agent", {agent: agent for agent in matrix["agents"]}),
+        e("button", "Open all shown", type="button", id="open"),
+        e("output", id="shown"),
+        class_="filters",
+        hidden="hidden",
+    )
+
+
+def _choice(name: str, label: str, options: dict[str, str]) -> Element:
+    """One of them."""
+    shown = [e("option", "all", value=""), *(e("option", text, value=value) for value, text in options.items())]
+    return e("label", f"{label} ", e("select", *shown, id=f"by-{name}"))

@@ -1,0 +1,169 @@
+"""The plane of two parameters in pixels: axes with round numbers, places of cases, and where failures are common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from basu.output.report.markup import e, number
+from basu.output.report.plots.axis import ticks
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from xml.etree.ElementTree import Element
+
+    from numpy.typing import NDArray
+
+    from basu.output.report.scenarios.sweep.study import Axis
+
+LEFT_PX, TOP_PX, WIDTH_PX, HEIGHT_PX = 64.0, 12.0, 560.0, 360.0  # of the plot in the picture
+ROOM = 0.04  # of an axis, beyond its ends
+GOLDEN = 0.6180339887498949  # spreads cases of one option evenly, in any number
+SPREAD = 0.55  # of the room that an option has
+
+LETTER_PX = 6.6  # the width of one, on average
+
+Place = tuple[float, float]
+
+
+class Scale(NamedTuple):
+    """An axis in pixels from its low to its high end; choices stand in the middle of equal parts."""
+
+    axis: Axis
+    begin_px: float
+    end_px: float
+    room: float = ROOM
+
+    def at(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Values as pixels."""
+        if self.axis.options:
+            shares = (values + 0.5) / len(self.axis.options)
+        else:
+            shares = self.room + (1.0 - 2.0 * self.room) * self.axis.share(values)
+        placed: NDArray[np.float64] = self.begin_px + shares * (self.end_px - self.begin_px)
+        return placed
+
+    def inside(self, pixels: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Pixels as shares of the axis's reach; for a choice, of its options."""
+        shares = (pixels - self.begin_px) / (self.end_px - self.begin_px)
+        if self.axis.options:
+            count = len(self.axis.options)
+            return np.floor(np.clip(shares * count, 0.0, count - 1e-9)) / max(count - 1, 1)
+        back: NDArray[np.float64] = (shares - self.room) / (1.0 - 2.0 * self.room)
+        return back
+
+    def spread(self) -> NDArray[np.float64]:
+        """(N,) the places of all cases; those of one option beside each other."""
+        placed = self.at(self.axis.values)
+        if self.axis.options:
+            turn = (np.arange(len(placed)) * GOLDEN) % 1.0 - 0.5
+            placed = placed + turn * SPREAD * (self.end_px - self.begin_px) / len(self.axis.options)
+        return placed
+
+    def ticks(self) -> list[tuple[float, str]]:
+        """Where the axis is written on, and what."""
+        if self.axis.options:
+            numbers = np.arange(len(self.axis.options), dtype=np.float64)
+            room = abs(self.end_px - self.begin_px) / len(self.axis.options)
+            names = [shortened(name, int(room / LETTER_PX)) for name in self.axis.options]
+            return list(zip(self.at(numbers).tolist(), names, strict=True))
+        values = ticks(self.axis.low, self.axis.high, 6)
+        return [
+            (place, f"{value:.6g}") for place, value in zip(self.at(np.array(values)).tolist(), values, strict=True)
+        ]
+
+
+def shortened(name: str, letters: int) -> str:
+    """A name in so much room: its end is kept, which tells cases of one scenario apart."""
+    return name if len(name) <= letters else f"…{name[-max(letters - 1, 1) :]}"
+
+
+def scales(x: Axis, y: Axis) -> tuple[Scale, Scale]:
+    """Both axes of the map."""
+    return Scale(x, LEFT_PX, LEFT_PX + WIDTH_PX), Scale(y, TOP_PX + HEIGHT_PX, TOP_PX)
+
+
+def axes(x: Scale, y: Scale) -> list[Element]:
+    """Frame, grid and words."""
+    bottom, right = TOP_PX + HEIGHT_PX, LEFT_PX + WIDTH_PX
+    drawn = [e("rect", x=LEFT_PX, y=TOP_PX, width=WIDTH_PX, height=HEIGHT_PX, class_="paper")]
+    for place, text in x.ticks():
+        drawn.append(e("path", d=f"M{number(place, 1)} {TOP_PX}V{bottom}", class_="grid"))
+        drawn.append(e("text", text, x=number(place, 1), y=bottom + 16.0, text_anchor="middle", class_="small"))
+    for place, text in y.ticks():
+        drawn.append(e("path", d=f"M{LEFT_PX} {number(place, 1)}H{right}", class_="grid"))
+        drawn.append(e("text", text, x=LEFT_PX - 6.0, y=number(place + 4.0, 1), text_anchor="end", class_="small"))
+    middle = number(TOP_PX + HEIGHT_PX / 2.0, 1)
+    drawn.append(
+        e("text", title(x.axis), x=LEFT_PX + WIDTH_PX / 2.0, y=bottom + 34.0, text_anchor="middle", class_="strong")
+    )
+    turned = f"rotate(-90 16 {middle})"
+    drawn.append(e("text", title(y.axis), x=16, y=middle, text_anchor="middle", transform=turned, class_="strong"))
+    return drawn
+
+
+def title(axis: Axis) -> str:
+    """A parameter with its unit."""
+    return f"{axis.name}, {axis.unit}" if axis.unit else axis.name
+
+
+def region(share: NDArray[np.float64], level: float) -> tuple[str, str]:
+    """Paths of where a grid (R, C) over the plot is above a level: its area, and its edge within the plot.
+
+    Marching squares, Lorensen and Cline 1987 in the plane: each cell is cut by straight lines where its corners'
+    values, taken as linear along its sides, reach the level.
+    """
+    rows, columns = share.shape
+    step_x, step_y = WIDTH_PX / (columns - 1), HEIGHT_PX / (rows - 1)
+    above = share > level
+    area, edge = [], []
+    for row in range(rows - 1):
+        full = above[row, :-1] & above[row, 1:] & above[row + 1, :-1] & above[row + 1, 1:]
+        for first, last in _stretches(full):
+            corner = f"{number(LEFT_PX + first * step_x, 1)} {number(TOP_PX + row * step_y, 1)}"
+            across, down = number((last - first) * step_x, 1), number(step_y, 1)
+            area.append(f"M{corner}h{across}v{down}h-{across}z")
+        part = (above[row, :-1] | above[row, 1:] | above[row + 1, :-1] | above[row + 1, 1:]) & ~full
+        for column in np.flatnonzero(part).tolist():
+            corners = [(row, column), (row, column + 1), (row + 1, column + 1), (row + 1, column)]
+            values = [float(share[corner]) for corner in corners]
+            places = [(LEFT_PX + c * step_x, TOP_PX + r * step_y) for r, c in corners]
+            inside, cut = _cut(places, values, level)
+            area.append(f"M{_line(inside)}z")
+            edge += [f"M{_line(pair)}" for pair in cut]
+    return "".join(area), "".join(edge)
+
+
+def _cut(places: list[Place], values: list[float], level: float) -> tuple[list[Place], list[list[Place]]]:
+    """The part of a cell that is above the level, and the lines that part it from the rest."""
+    inside: list[Place] = []
+    crossings: list[Place] = []
+    for index in range(4):
+        (ax, ay), (bx, by), a, b = places[index], places[(index + 1) % 4], values[index], values[(index + 1) % 4]
+        if a > level:
+            inside.append(places[index])
+        if (a > level) != (b > level):
+            share = (level - a) / (b - a)
+            crossing = (ax + share * (bx - ax), ay + share * (by - ay))
+            inside.append(crossing)
+            crossings.append(crossing)
+    return inside, [crossings[index : index + 2] for index in range(0, len(crossings) - 1, 2)]
+
+
+def _stretches(flags: NDArray[np.bool_]) -> Iterator[tuple[int, int]]:
+    """Where flags are set without a gap, as (first, end)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8))).reshape(-1, 2)
+    yield from ((first, end) for first, end in edges.tolist())
+
+
+def _line(places: list[Place]) -> str:
+    return " ".join(f"{number(x, 1)} {number(y, 1)}" for x, y in places)
+
+
+def grid(x: Scale, y: Scale, columns: int, rows: int) -> NDArray[np.float64]:
+    """(rows * columns, 2) places all over the plot, as shares of both axes."""
+    across = x.inside(LEFT_PX + WIDTH_PX * np.arange(columns, dtype=np.float64) / (columns - 1))
+    down = y.inside(TOP_PX + HEIGHT_PX * np.arange(rows, dtype=np.float64) / (rows - 1))
+    placed_x, placed_y = np.meshgrid(across, down)
+    return np.column_stack([placed_x.ravel(), placed_y.ravel()])

@@ -1,0 +1,172 @@
+"""The success map: every case in the plane of the two parameters that matter most, and where failing begins."""
+
+from __future__ import annotations
+
+import functools
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import tostring
+
+import numpy as np
+
+from basu.output.report.markup import e, extended, number
+from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
+from basu.output.report.scenarios.sweep.neighbours import shares
+from basu.output.report.scenarios.sweep.plane import HEIGHT_PX, LEFT_PX, TOP_PX, WIDTH_PX, axes, grid, region, scales
+from basu.output.report.scenarios.sweep.strips import height_px, strips
+from basu.output.report.scenarios.sweep.study import Axis, studies
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from xml.etree.ElementTree import Element
+
+    from basu.output.report.scenarios.sweep.boundary import Boundary
+    from basu.output.report.scenarios.sweep.plane import Scale
+    from basu.output.report.scenarios.sweep.study import Study
+
+STYLE_FILE = Path(__file__).parent / "success_map.css"
+PICTURE_WIDTH_PX = 640.0
+COLUMNS, ROWS = 57, 37  # of the grid on which the share of failures is known
+HALF, SOME = 0.5, 0.2  # levels of it that are drawn
+MARK_PX = 4.2  # half of a case's mark
+LINE_PX, LINE_CHARACTERS = 16.0, 104
+
+
+@functools.lru_cache
+def map_style() -> str:
+    """The style that a page with such maps needs."""
+    return STYLE_FILE.read_text(encoding="utf-8")
+
+
+def sweep_map(matrix: dict[str, Any], agent: str | None = None, scenario: str | None = None) -> str:
+    """The map of one scenario and one agent as a file of its own, the first of each where none is named.
+
+    An empty text where no parameter varied.
+    """
+    asked = [s for s in studies(matrix) if agent in {None, s.agent} and scenario in {None, s.scenario}]
+    if not asked:
+        return ""
+    found = boundary_of(asked[0])
+    told = [line for text in sentences(found) for line in textwrap.wrap(text[0].upper() + text[1:], LINE_CHARACTERS)]
+    head_px = 30.0 + LINE_PX * len(told)
+    picture = drawing(found, head_px)
+    picture.set("xmlns", "http://www.w3.org/2000/svg")
+    picture.insert(0, e("style", map_style()))
+    picture.append(e("text", f"{asked[0].scenario} with {asked[0].agent}", x=8, y=20.0 - head_px, class_="strong"))
+    for row, line in enumerate(told):
+        picture.append(e("text", line, x=8, y=40.0 - head_px + LINE_PX * row, class_="small"))
+    return tostring(picture, encoding="unicode") + "\n"
+
+
+def drawing(found: Boundary, head_px: float = 0.0) -> Element:
+    """The map, its legend and the strips as a part of a page that has ``map_style()``."""
+    study = found.study
+    plot_px = TOP_PX + HEIGHT_PX + 44.0
+    whole_px = plot_px + 28.0 + height_px(len(study.axes))
+    view = " ".join(number(v, 1) for v in (0.0, -head_px, PICTURE_WIDTH_PX, whole_px + head_px))
+    picture = e("svg", e("title", _title(found)), class_="success-map", viewBox=view, role="img")
+    picture.append(e("rect", y=-head_px, width=PICTURE_WIDTH_PX, height=whole_px + head_px, class_="below"))
+    x, y = scales(*_axes(found))
+    extended(picture, axes(x, y))
+    tells = found.pair is not None and found.pair.tells
+    if tells:
+        extended(picture, _shaded(study, x, y))
+    extended(picture, _cases(study, x, y))
+    extended(picture, _legend(study, plot_px + 12.0, tells=tells))
+    return extended(picture, strips(found, plot_px + 34.0))
+
+
+def _title(found: Boundary) -> str:
+    """The map in a sentence, for who does not see it."""
+    study = found.study
+    return f"{study.scenario} with {study.agent}: " + " ".join(sentences(found))
+
+
+def _axes(found: Boundary) -> tuple[Axis, Axis]:
+    """What the map lies between: the pair that foretells best; where only one parameter varied, the least distance."""
+    if found.pair is not None:
+        return found.pair.x, found.pair.y
+    distance_m = np.nan_to_num(found.study.distance_m, nan=0.0)
+    return found.study.axes[0], Axis("least distance", "m", "", distance_m, ())
+
+
+def _shaded(study: Study, x: Scale, y: Scale) -> list[Element]:
+    """Where some and where most of the cases around fail, and the line between most and few."""
+    share = shares(study, x.axis, y.axis, grid(x, y, COLUMNS, ROWS)).reshape(ROWS, COLUMNS)
+    some, _ = region(share, SOME)
+    most, edge = region(share, HALF)
+    return [
+        e("path", d=some or None, class_="some"),
+        e("path", d=most or None, class_="most"),
+        e("path", d=edge or None, class_="boundary under"),
+        e("path", d=edge or None, class_="boundary"),
+    ]
+
+
+def _cases(study: Study, x: Scale, y: Scale) -> list[Element]:
+    """A mark a case; cases at one place as one mark with their count."""
+    placed = np.column_stack([x.spread(), y.spread()]).round(1)
+    places, which = np.unique(placed, axis=0, return_inverse=True)
+    drawn: list[Element] = []
+    for number_, (across, down) in enumerate(places.tolist()):
+        here = np.flatnonzero(which.reshape(-1) == number_)
+        if len(here) == 1:
+            case = int(here[0])
+            style = "broken" if study.broken[case] else "fail" if study.failed[case] else "pass"
+            drawn.append(mark(style, across, down, study.ids[case]))
+        else:
+            drawn += _together(across, down, int(study.failed[here].sum()), len(here))
+    return sorted(drawn, key=lambda element: element.get("class") != "pass")  # failures on top
+
+
+def mark(style: str, x: float, y: float, told: str | None = None) -> Element:
+    """One case: a hollow circle passes, a cross fails, a triangle broke down."""
+    title = None if told is None else e("title", told)
+    if style == "pass":
+        return e("circle", title, cx=number(x, 1), cy=number(y, 1), r=MARK_PX - 0.8, class_=style)
+    left, right, top, bottom = (number(v, 1) for v in (x - MARK_PX, x + MARK_PX, y - MARK_PX, y + MARK_PX))
+    if style == "fail":
+        return e("path", title, d=f"M{left} {top}L{right} {bottom}M{right} {top}L{left} {bottom}", class_=style)
+    return e("polygon", title, points=f"{number(x, 1)},{top} {right},{bottom} {left},{bottom}", class_=style)
+
+
+def _together(x: float, y: float, failed: int, count: int) -> list[Element]:
+    """Several cases at one place: a box filled from below by the share that failed, and the count."""
+    width, height = 34.0, 20.0
+    filled = height * failed / count
+    left, top = x - width / 2.0, y - height / 2.0
+    return [
+        e("rect", x=number(left, 1), y=number(top, 1), width=width, height=height, class_="together"),
+        e(
+            "rect",
+            x=number(left, 1),
+            y=number(top + height - filled, 1),
+            width=width,
+            height=number(filled, 1),
+            class_="fails",
+        ),
+        e("text", f"{failed}/{count}", x=number(x, 1), y=number(y + 4.0, 1), text_anchor="middle", class_="count halo"),
+    ]
+
+
+def _legend(study: Study, y: float, *, tells: bool) -> Sequence[Element]:
+    """What the marks mean."""
+    drawn: list[Element] = []
+    x = LEFT_PX
+    words = [("pass", "passed"), ("fail", "failed")]
+    if study.broken.any():
+        words.append(("broken", "agent fault"))
+    for style, text in words:
+        drawn += [mark(style, x + 5.0, y), e("text", text, x=x + 14.0, y=y + 4.0, class_="small")]
+        x += 30.0 + 6.4 * len(text)
+    if tells:
+        for style, text in (("most", "more than half of those around fail"), ("some", "more than a fifth")):
+            drawn.append(e("rect", x=x, y=y - 7.0, width=18, height=13, class_=f"{style} swatch"))
+            drawn.append(e("text", text, x=x + 24.0, y=y + 4.0, class_="small"))
+            x += 40.0 + 6.0 * len(text)
+    elif study.is_mixed:
+        drawn.append(
+            e("text", "no boundary can be told from these two", x=min(x, LEFT_PX + WIDTH_PX), y=y + 4.0, class_="small")
+        )
+    return drawn

@@ -1,0 +1,88 @@
+"""A matrix counted: for each group, scenario and agent how many cases were passed, and how narrowly."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.output.report.scenarios.verdicts import LOOKS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+CONTACT_M = 0.005  # less than that between two boxes is written as a contact
+
+
+class Tally(NamedTuple):
+    """Some results of one agent, counted; margins are the least of those that were passed."""
+
+    passed: int
+    judged: int  # with failures and the agent's own faults
+    agent_faults: int
+    unjudged: int  # for faults of others: simulator, set-up, benchmark, or a person who ended it
+    distance_m: float | None  # None where nothing was passed or nobody was near, so the others
+    ttc_s: float | None
+    pet_s: float | None
+
+    @property
+    def narrowest(self) -> str:
+        """The least distance in words; nothing where nobody was near."""
+        if self.distance_m is None:
+            return ""
+        return "contact" if self.distance_m < CONTACT_M else f"{self.distance_m:.2f} m"
+
+
+class Row(NamedTuple):
+    """A scenario with its cases."""
+
+    scenario: str
+    title: str
+    cases: list[dict[str, Any]]
+
+
+class Block(NamedTuple):
+    """A group with its scenarios."""
+
+    group: str
+    rows: list[Row]
+
+    @property
+    def cases(self) -> list[dict[str, Any]]:
+        """All cases of the group."""
+        return [case for row in self.rows for case in row.cases]
+
+
+def blocks(matrix: dict[str, Any]) -> list[Block]:
+    """The cases of a matrix by group and scenario, in the order in which they come."""
+    found: dict[str, dict[str, Row]] = {}
+    for case in matrix["cases"]:
+        rows = found.setdefault(case["group"], {})
+        row = rows.setdefault(case["scenario"], Row(case["scenario"], case["title"], []))
+        row.cases.append(case)
+    return [Block(group, list(rows.values())) for group, rows in found.items()]
+
+
+def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
+    """What one agent made of cases; those it has no result of are left out."""
+    results = [case["results"][agent] for case in cases if agent in case["results"]]
+    judged = [result for result in results if LOOKS[result["verdict"]].is_judged]
+    passed = [result for result in judged if result["verdict"] == "SUCCESS"]
+    return Tally(
+        passed=len(passed),
+        judged=len(judged),
+        agent_faults=sum(result["verdict"] == "AGENT_FAULT" for result in judged),
+        unjudged=len(results) - len(judged),
+        distance_m=_least(passed, "distance_m"),
+        ttc_s=_least(passed, "ttc_s"),
+        pet_s=_least(passed, "pet_s"),
+    )
+
+
+def _least(results: Sequence[dict[str, Any]], margin: str) -> float | None:
+    """The least of a margin, over those that have one."""
+    found = [result["margins"].get(margin) for result in results]
+    return min((value for value in found if value is not None), default=None)
+
+
+def counted(number: int, thing: str) -> str:
+    """So many of a thing: "1 case", "2 cases"."""
+    return f"{number} {thing}" if number == 1 else f"{number} {thing}s"

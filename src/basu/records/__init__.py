@@ -1,0 +1,1 @@
+"""Records of drives: BASU's own history, and CARLA's recorder files."""

@@ -1,0 +1,1 @@
+"""Runs: preparation, the drive, series, scenario cases, and the folder of each run."""

@@ -1,0 +1,143 @@
+"""What is to be run, as far as it can be known without a simulator: read whole before anything is started."""
+
+from __future__ import annotations
+
+import random
+import sys
+from dataclasses import dataclass, replace
+from pathlib import PurePath
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from basu.agents.loader import load_agent
+from basu.agents.sensor_file import read_sensors
+from basu.errors import UserError
+from basu.managers.agents_manager import AgentsManager
+from basu.output.hud.seat import person_for
+from basu.routing.route_file import RouteDescription, read_routes
+from basu.routing.subset import subset
+from basu.scenarios.on_way import scenarios_on
+from basu.simulator import weather_called
+from basu.utils.packaged import find
+
+if TYPE_CHECKING:
+    from basu.agents.config import AgentConfig
+    from basu.agents.loader import LoadedAgent
+    from basu.agents.sensor_file import SensorSpec
+    from basu.options import RunOptions
+    from basu.scenarios.cases import Playable
+
+
+class SensorSet(NamedTuple):
+    """The sensors of a run, and in words who gave them."""
+
+    specs: tuple[SensorSpec, ...]
+    source: str
+
+
+class Job(NamedTuple):
+    """One run of those that were asked for."""
+
+    number: int  # from 0
+    description: RouteDescription
+    label: str  # of the route in a folder's name
+    repetition: int  # from 0
+    seed: int
+    scenarios: tuple[Playable, ...] = ()  # on the way
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What is to be run."""
+
+    loaded: LoadedAgent
+    agents: AgentsManager  # for the first run; each further run makes its own
+    sensors: SensorSet
+    jobs: tuple[Job, ...]
+
+
+def prepare(options: RunOptions) -> Plan:
+    """Read everything that can be wrong before anything is started.
+
+    Raises:
+        UserError, AgentError: nothing can be started like this.
+    """
+    loaded = load_agent(options.agent, options.agent_config)
+    agents = new_agents(loaded, options, options.seed)
+    config = agents.config
+    weather_called(config.weather)
+    sensors = sensor_set(agents, loaded)
+    if config.sumo is not None:
+        print(
+            f"basu: warning: {loaded.name} asks for the SUMO network {config.sumo}; co-simulation follows in a later "
+            "version, the run goes on without it",
+            file=sys.stderr,
+        )
+    routes = _chosen(read_routes(find(config.routes, "route file", loaded.file)), config, options)
+    waiting = {route.id: _scenarios(route, options) for route in routes}
+    jobs = [
+        Job(
+            number,
+            description,
+            _label(description, len(routes)),
+            repetition,
+            options.seed + repetition,
+            waiting[description.id],
+        )
+        for number, (description, repetition) in enumerate(
+            (description, repetition) for description in routes for repetition in range(options.repetitions)
+        )
+    ]
+    return Plan(loaded, agents, sensors, tuple(jobs))
+
+
+def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Playable, ...]:
+    """The scenarios on the way of a route, unless they are to be left away."""
+    return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
+
+
+def new_agents(loaded: LoadedAgent, options: RunOptions, seed: int) -> AgentsManager:
+    """A fresh agent, with everything random in Python begun anew."""
+    random.seed(seed)
+    np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
+    person = person_for(options, loaded.agent_class)
+    agents = AgentsManager(loaded, step_limit_s=options.step_limit_s, routes=options.routes, person=person)
+    agents.config = replace(
+        agents.config,
+        weather=options.weather or agents.config.weather,
+        vehicle=options.vehicle or agents.config.vehicle,
+    )
+    return agents
+
+
+def _chosen(
+    routes: tuple[RouteDescription, ...], config: AgentConfig, options: RunOptions
+) -> tuple[RouteDescription, ...]:
+    """The routes of the file that were asked for."""
+    if options.routes_subset is not None:
+        return subset(routes, options.routes_subset)
+    if options.route_id is None:
+        return routes
+    chosen = tuple(route for route in routes if route.id == options.route_id)
+    if not chosen:
+        ids = ", ".join(route.id for route in routes)
+        raise UserError(f"{config.routes} has no route '{options.route_id}'; it has {ids}")
+    return chosen
+
+
+def sensor_set(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
+    """The sensors that the agent wants, by its own method or by a file."""
+    own = agents.own_sensors()
+    if own is not None:
+        return SensorSet(own, f"sensors() of {loaded.name}")
+    if agents.config.sensors is None:
+        return SensorSet((), "")
+    path = find(agents.config.sensors, "sensor file", loaded.file)
+    return SensorSet(read_sensors(path), f"sensor file {path}")
+
+
+def _label(description: RouteDescription, routes: int) -> str:
+    """What a route is called in a folder's name: its file, and its id where several are driven."""
+    stem = PurePath(description.source).stem
+    return stem if routes == 1 else f"{stem}-{description.id}"

@@ -1,0 +1,95 @@
+"""``basu run``: an agent, a simulator, one or more routes; each run driven, scored and left in a folder."""
+
+from __future__ import annotations
+
+from datetime import datetime, timezone
+from typing import TYPE_CHECKING
+
+from basu.errors import UserError
+from basu.outcome import Status
+from basu.output.report.folder import LATEST, plain, point_latest, publish, run_name
+from basu.running.one_run import Session, run_one
+from basu.running.preparation import new_agents, prepare
+from basu.running.series import conditions, open_series
+from basu.simulator import asking, check_towns, simulator_for
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from basu.metrics.score import Scoring
+    from basu.options import RunOptions
+    from basu.running.one_run import Finished
+    from basu.running.preparation import Job, Plan
+    from basu.running.series import Series
+
+BREAKING_OFF = frozenset({Status.INTERRUPTED, Status.SIMULATOR_FAILED})  # no further run would fare better
+
+
+def run(options: RunOptions, scoring: Scoring) -> int:
+    """Run everything that was asked for; the exit code is that of the worst outcome.
+
+    Raises:
+        UserError, AgentError: nothing can be started like this.
+        SimulatorError: there is no simulator to run in.
+    """
+    prepared = prepare(options)
+    series = _series(options, scoring, prepared)
+    jobs = [job for job in prepared.jobs if series is None or job.number not in series.done]
+    worst = 0 if series is None else series.worst()
+    try:
+        if jobs:
+            worst = max(worst, _run_all(options, scoring, prepared, series, jobs))
+    finally:
+        if series is not None:
+            print(series.table())
+            print(f"series folder     {series.folder}")
+    return worst
+
+
+def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | None:
+    """The series that all runs belong to, where one was asked for.
+
+    Raises:
+        UserError: it can be neither begun nor gone on with.
+    """
+    if options.series is None:
+        return None
+    name = plain(options.series)
+    if name == LATEST:
+        raise UserError(f"--series {options.series}: that name is kept for the newest run; choose another")
+    folder = options.output / name
+    given = conditions(options, scoring, prepared)
+    return open_series(folder, given, prepared.jobs, prepared.loaded.name, resume=options.resume)
+
+
+def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Series | None, jobs: list[Job]) -> int:
+    """Run one job after the other in one simulator."""
+    worst = 0
+    with simulator_for(options) as simulator:
+        with asking("naming its towns"):
+            check_towns(simulator.client, (job.description.town for job in jobs))
+        session = Session(options, scoring, prepared, simulator)
+        for nth, job in enumerate(jobs):
+            is_prepared = nth == 0 and job.seed == options.seed
+            agents = prepared.agents if is_prepared else new_agents(prepared.loaded, options, job.seed)
+            if series is not None:
+                print(f"run {job.number + 1} of {len(prepared.jobs)}")
+                done = run_one(session, agents, job, output=series.folder, name=series.name(job), fresh=nth > 0)
+                folder = series.publish(done.draft, job, done.document)
+            else:
+                name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
+                done = run_one(session, agents, job, output=options.output, name=name, fresh=nth > 0)
+                folder = publish(done.draft, name)
+            _told(done, folder, options.output)
+            worst = max(worst, done.outcome.status.fault.value)
+            if done.outcome.status in BREAKING_OFF:
+                break
+    return worst
+
+
+def _told(done: Finished, folder: Path, output: Path) -> None:
+    """Say where a run lies; raise what was wrong with us."""
+    point_latest(folder, output)
+    print(f"result folder     {folder}")
+    if done.bug is not None:
+        raise done.bug

@@ -1,0 +1,218 @@
+"""A series of runs in one folder that can be broken off anywhere and continued: nothing lost, nothing counted twice.
+
+``<output>/<name>/`` holds ``series.json`` and a folder for each run, called by the number of the run. A run's folder
+gets its name in one step when all is in it, then ``series.json`` is written anew. Whoever is killed in between has a
+folder that is not in the list: it is taken in when the series goes on. Drafts are thrown away, and what was
+interrupted, or failed for no fault of the agent's, is set aside and driven again.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from dataclasses import replace
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Any
+
+import basu
+from basu.errors import UserError
+from basu.metrics.scoring_json import scoring_to_json
+from basu.outcome import Fault, Status
+from basu.output.report.folder import DRAFTS, RESULT_FILE, plain, publish, write_json
+from basu.output.report.schema import SERIES_SCHEMA, read_document, read_result
+from basu.output.report.series import SERIES_SCHEMA_VERSION, row, series_table, totals
+from basu.utils.atomic import write_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from basu.metrics.score import Scoring
+    from basu.options import RunOptions
+    from basu.running.preparation import Job, Plan
+
+SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
+COUNTED = frozenset({Fault.NOBODY.name.lower(), Fault.AGENT.name.lower()})  # what ended otherwise says nothing of it
+
+
+class Series:
+    """The series in a folder. ``open_series`` makes one."""
+
+    def __init__(self, folder: Path, document: dict[str, Any], names: Mapping[int, str]) -> None:
+        """Take up a series; ``names`` are the folders of its runs by number."""
+        self.folder, self._document, self._names = folder, document, names
+
+    @property
+    def done(self) -> frozenset[int]:
+        """The numbers of the runs that count."""
+        return frozenset(each["number"] for each in self._document["runs"])
+
+    def name(self, job: Job) -> str:
+        """What the folder of a run is called."""
+        return self._names[job.number]
+
+    def publish(self, draft: Path, job: Job, document: Mapping[str, Any]) -> Path:
+        """Put a finished run in its place and count it; the folder.
+
+        Raises:
+            UserError: the disk does not let us.
+        """
+        if document["fault"] not in COUNTED:
+            folder = publish(draft, f"{self.name(job)}-{document['status']}")
+            self._document["set_aside"].append({"folder": folder.name, "status": document["status"]})
+        else:
+            folder = publish(draft, self.name(job))
+            if folder.name != self.name(job):
+                raise UserError(
+                    f"{folder.with_name(self.name(job))} is there already: somebody else drives the series "
+                    f"{self.folder.name} at the same time; this run is left in {folder.name} and not counted"
+                )
+            self._count(document, job.number, job.repetition)
+        self.write()
+        return folder
+
+    def take_in(self, jobs: tuple[Job, ...]) -> None:
+        """Count the runs that were finished and not yet listed, and throw drafts away."""
+        for draft in self.folder.glob(DRAFTS):
+            if draft.is_dir():
+                shutil.rmtree(draft)
+        for job in jobs:
+            folder = self.folder / self.name(job)
+            if job.number not in self.done and (folder / RESULT_FILE).exists():
+                self._count(read_result(folder), job.number, job.repetition)
+
+    def write(self) -> None:
+        """Write the list and the totals, at once or not at all.
+
+        Raises:
+            UserError: the disk does not let us.
+        """
+        self._document["totals"] = totals(self._document["runs"], self._document["planned"])
+        write_json(self.folder / SERIES_FILE, self._document)
+        write_bytes(self.folder / SERIES_TEXT, f"{self.table()}\n".encode())
+
+    def table(self) -> str:
+        """The totals as text."""
+        return series_table(self.folder.name, self._document)
+
+    def worst(self) -> int:
+        """The exit code of the worst run that counts."""
+        return max((Status(each["status"]).fault.value for each in self._document["runs"]), default=0)
+
+    def _count(self, document: Mapping[str, Any], number: int, repetition: int) -> None:
+        rows = self._document["runs"]
+        rows.append(row(document, number=number, repetition=repetition, folder=self._names[number]))
+        rows.sort(key=lambda each: each["number"])
+
+
+def conditions(options: RunOptions, scoring: Scoring, prepared: Plan) -> dict[str, Any]:
+    """All that the results of a series depend on, by the name it has for whoever types the command."""
+    config, agent_file, traffic = prepared.agents.config, prepared.loaded.file, options.traffic
+    routes = [replace(job.description, source="") for job in prepared.jobs if job.repetition == 0]
+    return {
+        "the agent": options.agent,
+        "the agent's file": None if agent_file is None else _digest(agent_file.read_bytes()),
+        "--agent-config": options.agent_config,
+        "the routes": [route.id for route in routes],
+        "what the routes say": _digest(repr(routes).encode()),
+        "the scenarios on the way": [
+            f"{waiting.case.name}: {waiting.scenario.__name__} {dict(waiting.values)} at {waiting.case.trigger}"
+            for job in prepared.jobs
+            if job.repetition == 0
+            for waiting in job.scenarios
+        ],
+        "--scenarios": [_digest(file.read_bytes()) for file in options.scenario_files],
+        "--repetitions": options.repetitions,
+        "--seed": options.seed,
+        "the vehicle": config.vehicle,
+        "the weather": options.weather or f"{config.weather}, where the route gives none",
+        "the sensors": _digest(repr(prepared.sensors.specs).encode()),
+        "--vehicles": traffic.vehicles,
+        "--walkers": traffic.walkers,
+        "--traffic-density": traffic.density_per_km,
+        "--record": options.record,
+        "--keys": options.keys,
+        "--step-limit": options.step_limit_s,
+        "whose simulator": "our own" if options.host is None else "at --host",
+        "the scoring": scoring_to_json(scoring),
+        "the version of basu": basu.__version__,
+        "the version of carla": version("carla"),
+    }
+
+
+def open_series(folder: Path, given: Mapping[str, Any], jobs: tuple[Job, ...], agent: str, *, resume: bool) -> Series:
+    """Begin the series in ``folder``, or go on with it; ``given`` is all that its results depend on, by name.
+
+    Raises:
+        UserError: there is a series already, or none to go on with, or one that was begun differently.
+    """
+    path = folder / SERIES_FILE
+    names = {job.number: _name(job, agent) for job in jobs}
+    if not resume:
+        if path.exists():
+            done = _read(path)["totals"]
+            raise UserError(
+                f"{folder} holds a series already, {done['done']} of {done['planned']} runs done; add --resume to go "
+                "on with it, or choose another --series"
+            )
+        document: dict[str, Any] = {
+            "schema_version": SERIES_SCHEMA_VERSION,
+            "options": dict(given),
+            "planned": len(jobs),
+            "runs": [],
+            "set_aside": [],
+        }
+        series = Series(folder, document, names)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise UserError(f"{folder} could not be made: {error.strerror}; name another --series") from error
+        series.write()
+        return series
+    if not path.exists():
+        raise UserError(f"there is no series in {folder} to go on with; run without --resume to begin it")
+    document = _read(path)
+    _compare(document["options"], given, folder)
+    series = Series(folder, document, names)
+    series.take_in(jobs)
+    series.write()
+    return series
+
+
+def _name(job: Job, agent: str) -> str:
+    """What the folder of a run is called: in the order of the runs, as long as there are less than ten thousand."""
+    return f"{job.number:04d}-{plain(agent)}-{plain(job.label)}-{job.repetition}"
+
+
+def _digest(data: bytes) -> str:
+    """Short for what is too long to be told."""
+    return f"sha256 {hashlib.sha256(data).hexdigest()[:16]}"
+
+
+def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) -> None:
+    """Refuse to go on with a series under other conditions.
+
+    Raises:
+        UserError: names what is different.
+    """
+    told = json.loads(json.dumps(now))  # as the file has it
+    changed = [
+        f"{name} was {before.get(name)!r} and is {told.get(name)!r}"
+        for name in sorted({*before, *told})
+        if before.get(name) != told.get(name)
+    ]
+    if changed:
+        raise UserError(
+            f"the series in {folder} was begun differently: {'; '.join(changed)}; give what it was begun with, or "
+            "begin another with --series"
+        )
+
+
+def _read(path: Path) -> dict[str, Any]:
+    """The document of a series.
+
+    Raises:
+        UserError: it is none.
+    """
+    return read_document(path, SERIES_SCHEMA)

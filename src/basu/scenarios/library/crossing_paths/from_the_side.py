@@ -1,0 +1,96 @@
+"""What those have in common in which somebody drives across the ego's way without giving way."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
+
+from basu.scenarios.actions import DriveAlong, Either, InTurn, ReachAtEgosArrival
+from basu.scenarios.criteria import Arrives, InTime, NoCollision
+from basu.scenarios.library.motorists import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
+from basu.scenarios.nhtsa import Group
+from basu.scenarios.paths import crossing
+from basu.scenarios.scenario import Scenario
+from basu.scenarios.stage import ActorSpec
+from basu.scenarios.triggers import EgoPasses, TimeToArrival
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from py_trees.behaviour import Behaviour
+
+    from basu.scenarios.criteria import Criterion
+    from basu.scenarios.paths import Crossing
+    from basu.scenarios.paths.crossings import Side
+    from basu.scenarios.paths.lanes import Turn
+
+OTHER = "other"
+SETTLED_S = 1.8  # before they meet, the other has its speed and keeps it, whatever the ego does
+NARROWLY = (0.75, 1.7)  # of its own speed: what it varies by to meet the ego, which may still speed up
+SHUTTLE_MPS = 6.0  # its pace, a little less than the agents keep
+LEAVES_M = 35.0  # of its way behind the junction, then it is out of sight
+
+
+def due(ego_s_m: float, seconds: float) -> Behaviour:
+    """The ego is so many seconds from a crossing, at its own speed or, where it slows down for it, at the shuttle's."""
+    return Either(
+        TimeToArrival(ego_s_m, seconds, "the crossing"),
+        EgoPasses(ego_s_m - SHUTTLE_MPS * seconds, f"{SHUTTLE_MPS * seconds:.0f} m before the crossing"),
+        name="ego is due at the crossing",
+    )
+
+
+class AcrossTheWay(Scenario):
+    """The base: one vehicle, on a way through the ego's next junction, there when the ego is.
+
+    Parameters that each has: ``kind``, ``speed``, ``notice``, ``lateness``.
+    """
+
+    group = Group.CROSSING_PATHS
+    timeout_s = 60.0
+    needs_m = 50.0
+    needs_junction = True
+    turn: Turn | None = None  # of the other; None: straight on where it can
+
+    @property
+    def side(self) -> Side:
+        """From where it comes."""
+        return cast("Side", self.choice("side"))
+
+    @cached_property
+    def crossing(self) -> Crossing:
+        """Its way, and where that meets the ego's."""
+        before_m = run_up_m(self.number("speed"), self.number("notice")) + 10.0
+        return crossing(self.place, self.side, self.turn, approach_m=before_m, leave_m=LEAVES_M)
+
+    def actors(self) -> Sequence[ActorSpec]:
+        """The other, waiting for its moment up its street."""
+        begin_m = self.crossing.meet_s_m - run_up_m(self.number("speed"), self.number("notice"))
+        return [ActorSpec(OTHER, BLUEPRINTS[self.choice("kind")], self.crossing.path.at(begin_m))]
+
+    def trigger(self) -> Behaviour:
+        """The ego is on its way to where they meet."""
+        return due(self.crossing.ego_s_m, self.number("notice"))
+
+    def conflict(self) -> Behaviour:
+        """It drives through, and the ego has to let it."""
+        speed_mps, way = self.number("speed"), self.crossing
+        low, high = NARROWLY
+        return InTurn(
+            ReachAtEgosArrival(
+                OTHER,
+                way.path,
+                way.meet_s_m,
+                way.ego_s_m,
+                self.number("lateness"),
+                low_mps=low * speed_mps,
+                high_mps=high * speed_mps,
+                settled_s=SETTLED_S,
+                accelerate_mps2=SETS_OFF_MPS2,
+            ),
+            DriveAlong(OTHER, way.path, speed_mps, at_end="vanish"),
+        )
+
+    def criteria(self) -> Sequence[Criterion]:
+        """Nobody is touched, and the ego gets on afterwards."""
+        return [NoCollision(), Arrives(), InTime()]

@@ -1,0 +1,151 @@
+"""Claims about others in the way, driven in the small world."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from basu.agents.builtin.scene import Kind, Other
+from driving_plant import (
+    DT_S,
+    SHUTTLE_BODY,
+    Log,
+    Plant,
+    bends,
+    body_at,
+    drive,
+    line,
+    make_behavioral,
+    make_driver,
+    make_route,
+)
+
+FRONT_M = SHUTTLE_BODY.front_m
+
+
+class Leader:
+    """A car ahead that follows a script of accelerations."""
+
+    def __init__(self, ahead_m: float, accel_mps2: Callable[[float], float], top_mps: float = 6.0) -> None:
+        self.x_m, self.speed_mps, self.time_s = ahead_m, 0.0, 0.0
+        self._accel_mps2, self._top_mps = accel_mps2, top_mps
+
+    def __call__(self, time_s: float) -> list[Other]:
+        while self.time_s < time_s - 1e-9:
+            self.speed_mps = min(max(0.0, self.speed_mps + self._accel_mps2(self.time_s) * DT_S), self._top_mps)
+            self.x_m += self.speed_mps * DT_S
+            self.time_s += DT_S
+        return [body_at(Kind.VEHICLE, self.x_m, 0.2, velocity_mps=(self.speed_mps, 0.0))]
+
+
+def least_gap_m(log: Log, others: Callable[[float], list[Other]]) -> float:
+    """The least distance from the front bumper to who is within the strip that the shuttle sweeps; inf if nobody."""
+    gaps = [np.inf]
+    for time_s, x_m in zip(log.time_s, log.x_m, strict=True):
+        gaps += [
+            other.x_m - other.half_length_m - (x_m + FRONT_M)
+            for other in others(time_s)
+            if abs(other.y_m) < 1.0 + other.half_width_m and other.x_m + other.half_length_m > x_m - SHUTTLE_BODY.rear_m
+        ]
+    return min(gaps)
+
+
+def on_a_street(others: Callable[[float], list[Other]], seconds: float = 50.0, length_m: float = 300.0) -> Log:
+    return drive(make_driver(make_route(line(length_m))), Plant(0.0, 0.0, 0.0), seconds, others)
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_what_stands_in_the_way_is_stopped_for_in_comfort(kind: Kind) -> None:
+    log = on_a_street(lambda _: [body_at(kind, 100.0, 0.5)])
+    assert log.speed_mps[-1] == 0.0
+    assert 1.5 < 100.0 - body_at(kind, 0.0, 0.0).half_length_m - (log.s_m[-1] + FRONT_M) < 2.5
+    assert np.abs(log.accel_mps2).max() <= 1.0
+
+
+def test_what_stands_beside_the_way_is_driven_past() -> None:
+    log = on_a_street(lambda _: [body_at(Kind.VEHICLE, 60.0, 2.4), body_at(Kind.WALKER, 80.0, -1.8, number=8)])
+    assert log.s_m[-1] > 200.0
+    assert log.speed_mps[(log.s_m > 50.0) & (log.s_m < 90.0)].min() > 6.5
+
+
+@pytest.mark.parametrize("braking_mps2", [1.0, 3.0, 6.0, 8.0])
+def test_a_leader_that_brakes_is_never_touched(braking_mps2: float) -> None:
+    script = lambda t: 1.0 if t < 20.0 else -braking_mps2  # noqa: E731 - the script is the test's parameter
+    log = on_a_street(Leader(15.0, script))
+    leader = Leader(15.0, script)
+    gaps = [leader(t)[0].x_m - 2.2 - (x + FRONT_M) for t, x in zip(log.time_s, log.x_m, strict=True)]
+    assert min(gaps) > 1.0
+    assert -log.accel_mps2.min() < 2.5
+
+
+def test_a_steady_leader_is_followed_at_a_steady_distance_of_about_two_seconds() -> None:
+    leader = Leader(15.0, lambda _: 1.0, top_mps=5.0)
+    log = on_a_street(leader, 45.0)
+    gap_m = leader(log.time_s[-1])[0].x_m - 2.2 - (log.x_m[-1] + FRONT_M)
+    assert log.speed_mps[-1] == pytest.approx(5.0, abs=0.1)
+    assert 1.5 < gap_m / 5.0 < 3.5
+
+
+def test_when_the_leader_goes_on_so_does_the_shuttle() -> None:
+    log = on_a_street(Leader(15.0, lambda t: 1.0 if t < 15.0 else -1.5 if t < 30.0 else 1.0), 60.0)
+    assert log.speed_mps[log.time_s > 25.0].min() < 0.02
+    assert log.speed_mps[-1] > 5.0
+
+
+@pytest.mark.parametrize("start_s", [6.0, 8.0, 9.0, 10.0, 11.0, 12.0])
+@pytest.mark.parametrize("walks_mps", [0.9, 1.4, 2.5])
+def test_whoever_crosses_on_foot_is_not_touched(start_s: float, walks_mps: float) -> None:
+    def walker(time_s: float) -> list[Other]:
+        walking = time_s >= start_s
+        y_m = -6.0 + walks_mps * max(0.0, time_s - start_s)
+        return [body_at(Kind.WALKER, 60.0, y_m, velocity_mps=(0.0, walks_mps if walking else 0.0))]
+
+    log = on_a_street(walker, 40.0)
+    assert least_gap_m(log, walker) > 0.3
+    assert log.s_m[-1] > 120.0  # and one goes on afterwards
+
+
+@pytest.mark.parametrize("ahead_m", [7.0, 8.5, 11.0, 15.0])
+def test_who_steps_out_is_braked_for_as_hard_as_it_takes(ahead_m: float) -> None:
+    # 6.7 m/s: within the drive model's limits 7 m are just enough to stop
+    driver, plant = make_driver(make_route(line(200.0))), Plant(40.0, 0.0, 0.0, 6.7)
+    at_m = 40.0 + FRONT_M + ahead_m
+    walker = lambda _: [body_at(Kind.WALKER, at_m, 1.0)]  # noqa: E731
+    log = drive(driver, plant, 6.0, walker)
+    assert log.speed_mps[-1] == 0.0
+    assert at_m - 0.2 - (log.x_m[-1] + FRONT_M) > 0.1
+    assert -log.accel_mps2.min() > 1.2
+
+
+def test_a_car_in_the_opposite_lane_of_a_bend_is_no_reason_to_brake() -> None:
+    route = make_route(bends((40.0, 0.0), (30.0, 1 / 25), (60.0, 0.0)))
+    free = drive(make_driver(route), Plant(0.0, 0.0, 0.0), 25.0)
+    oncoming = [body_at(Kind.VEHICLE, 47.0, -2.9, velocity_mps=(-6.0, -0.5), yaw_deg=185.0)]
+    met = drive(make_driver(route), Plant(0.0, 0.0, 0.0), 25.0, lambda t: oncoming if 8.0 < t < 10.0 else [])
+    assert met.s_m[-1] == pytest.approx(free.s_m[-1], abs=0.5)
+
+
+def test_whoever_is_behind_is_not_looked_at() -> None:
+    log = drive(
+        make_driver(make_route(line(300.0))), Plant(50.0, 0.0, 0.0), 20.0, lambda _: [body_at(Kind.VEHICLE, 44.0, 0.0)]
+    )
+    assert log.speed_mps[-1] > 6.5
+
+
+@pytest.mark.parametrize("brakes_at_s", [14.0, 15.0, 16.0])
+def test_who_comes_towards_a_behavioral_driver_in_its_lane_is_given_room_to_stop(brakes_at_s: float) -> None:
+    def wrong_way(time_s: float) -> list[Other]:
+        braked_s = min(max(0.0, time_s - brakes_at_s), 2.0)
+        x_m = 220.0 - 8.0 * min(time_s, brakes_at_s) - 8.0 * braked_s + 2.0 * braked_s**2
+        return [body_at(Kind.VEHICLE, x_m, -0.5, velocity_mps=(4.0 * braked_s - 8.0, 0.0), yaw_deg=180.0)]
+
+    driver = make_behavioral(make_route(line(300.0)), left_width_m=0.0)
+    log = drive(driver, Plant(0.0, 0.0, 0.0), 25.0, wrong_way)
+    assert log.speed_mps[-1] == 0.0
+    assert least_gap_m(log, wrong_way) > 1.0
+
+
+def test_who_cuts_the_corner_into_the_other_lane_is_not_braked_for() -> None:
+    cutting = lambda _: [body_at(Kind.VEHICLE, 110.0, -2.2, velocity_mps=(-10.4, -1.7), yaw_deg=189.0)]  # noqa: E731
+    log = drive(make_behavioral(make_route(line(300.0))), Plant(70.0, 0.0, 0.0, 6.7), 0.5, cutting)
+    assert log.speed_mps.min() > 6.4

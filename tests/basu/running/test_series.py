@@ -1,0 +1,150 @@
+"""Claims about a series: whatever it is broken off by, nothing is lost, nothing counted twice, nothing mixed."""
+
+import errno
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from basu.errors import UserError
+from basu.outcome import Status
+from basu.output.report.folder import make_draft, publish
+from basu.routing.route_file import RouteDescription
+from basu.running.preparation import Job
+from basu.running.series import Series, open_series
+from fakes.results import a_result
+
+ROUTE = RouteDescription(id="0", town="Linden", points=(), stops=(), source="r.xml")
+JOBS = tuple(Job(number, ROUTE, "r", number, number) for number in range(4))
+GIVEN = {"the agent": "basic", "--seed": 0, "the routes": ("0",)}
+
+
+def opened(folder: Path, *, resume: bool = False, given: dict[str, Any] | None = None) -> Series:
+    return open_series(folder, given or GIVEN, JOBS, "basic", resume=resume)
+
+
+def finished(series: Series, job: Job, status: Status = Status.COMPLETED) -> tuple[Path, dict[str, Any]]:
+    """A run that is written and not yet in its place."""
+    draft, document = make_draft(series.folder, series.name(job)), a_result(status)
+    (draft / "result.json").write_text(json.dumps(document))
+    return draft, document
+
+
+def run(series: Series, job: Job, status: Status = Status.COMPLETED) -> Path:
+    draft, document = finished(series, job, status)
+    return series.publish(draft, job, document)
+
+
+def listed(folder: Path) -> dict[str, Any]:
+    document: dict[str, Any] = json.loads((folder / "series.json").read_text())
+    return document
+
+
+def test_the_list_and_the_totals_are_whole_after_every_run(tmp_path: Path) -> None:
+    series = opened(tmp_path / "s")
+    assert listed(series.folder)["totals"]["done"] == 0
+    for job in JOBS:
+        folder = run(series, job)
+        document = listed(series.folder)
+        assert [each["folder"] for each in document["runs"]][-1] == folder.name
+        assert (document["totals"]["done"], document["totals"]["planned"]) == (job.number + 1, 4)
+    assert document["totals"]["infractions"]["collision_static"]["number"] == 4
+    assert document["totals"]["scores"]["driving"]["mean"] == pytest.approx(a_result()["scores"]["driving"])
+    assert document["totals"]["scores"]["driving"]["deviation"] == pytest.approx(0.0)
+    assert (series.folder / "series.txt").read_text().startswith("series s: 4 of 4 runs done")
+
+
+def test_a_series_goes_on_where_it_was_broken_off(tmp_path: Path) -> None:
+    run(opened(tmp_path), JOBS[0])
+    again = opened(tmp_path, resume=True)
+    assert again.done == {0}
+    run(again, JOBS[1])
+    assert opened(tmp_path, resume=True).done == {0, 1}
+
+
+def test_half_a_run_is_thrown_away(tmp_path: Path) -> None:
+    series = opened(tmp_path)
+    finished(series, JOBS[0])  # killed here
+    again = opened(tmp_path, resume=True)
+    assert again.done == frozenset()
+    assert list(tmp_path.glob(".*.part")) == []
+
+
+def test_a_finished_run_that_is_not_yet_listed_is_taken_in_once(tmp_path: Path) -> None:
+    series = opened(tmp_path)
+    draft, _ = finished(series, JOBS[2])
+    publish(draft, series.name(JOBS[2]))  # killed here
+    for _ in range(2):
+        assert opened(tmp_path, resume=True).done == {2}
+    assert listed(tmp_path)["totals"]["done"] == 1
+
+
+def test_a_full_disk_loses_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    series = opened(tmp_path)
+    run(series, JOBS[0])
+    draft, document = finished(series, JOBS[1])
+
+    def full(_descriptor: int) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", full)
+        with pytest.raises(UserError, match=r"series\.json .* could not be written: No space left on device"):
+            series.publish(draft, JOBS[1], document)
+    assert listed(tmp_path)["totals"]["done"] == 1  # the old list, whole
+    assert opened(tmp_path, resume=True).done == {0, 1}
+
+
+@pytest.mark.parametrize("status", [Status.INTERRUPTED, Status.SIMULATOR_FAILED, Status.SETUP_FAILED])
+def test_what_ended_for_no_fault_of_the_agents_is_set_aside_and_driven_again(tmp_path: Path, status: Status) -> None:
+    series = opened(tmp_path)
+    for _ in range(2):
+        run(series, JOBS[0], status)
+    again = opened(tmp_path, resume=True)
+    assert again.done == frozenset()
+    assert [each["status"] for each in listed(tmp_path)["set_aside"]] == [status.value, status.value]
+    run(again, JOBS[0])
+    assert listed(tmp_path)["totals"]["statuses"] == {"Completed": 1}
+
+
+@pytest.mark.parametrize("status", [Status.AGENT_CRASHED, Status.ROUTE_BLOCKED])
+def test_an_agent_that_failed_has_had_its_run(tmp_path: Path, status: Status) -> None:
+    run(opened(tmp_path), JOBS[0], status)
+    again = opened(tmp_path, resume=True)
+    assert again.done == {0}
+    assert again.worst() == 1
+
+
+def test_what_is_different_is_named_and_refused(tmp_path: Path) -> None:
+    opened(tmp_path)
+    with pytest.raises(UserError, match=r"begun differently: --seed was 0 and is 1; the agent was 'basic' and is 'x'"):
+        opened(tmp_path, resume=True, given=GIVEN | {"--seed": 1, "the agent": "x"})
+    opened(tmp_path, resume=True)
+
+
+def test_a_series_is_not_begun_over_another(tmp_path: Path) -> None:
+    run(opened(tmp_path), JOBS[0])
+    with pytest.raises(UserError, match="holds a series already, 1 of 4 runs done; add --resume"):
+        opened(tmp_path)
+
+
+def test_there_has_to_be_a_series_to_go_on_with(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"there is no series in .* run without --resume"):
+        opened(tmp_path / "nothing", resume=True)
+
+
+def test_two_who_drive_one_series_count_each_run_once(tmp_path: Path) -> None:
+    one, other = opened(tmp_path), opened(tmp_path, resume=True)
+    run(one, JOBS[0])
+    with pytest.raises(UserError, match="somebody else drives the series"):
+        run(other, JOBS[0])
+    assert opened(tmp_path, resume=True).done == {0}
+
+
+def test_a_damaged_list_gets_a_sentence(tmp_path: Path) -> None:
+    opened(tmp_path)
+    (tmp_path / "series.json").write_text('{"schema_version": 1, "runs": 7}')
+    with pytest.raises(UserError, match=r"series\.json: the document lacks 'options'"):
+        opened(tmp_path, resume=True)

@@ -1,0 +1,163 @@
+"""Claims about control loss and road departure, rehearsed at their places in Linden: what is done to the controls."""
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from py_trees.common import Status
+
+from basu.errors import ScenarioError
+from basu.scenarios.cases import open_library
+from basu.scenarios.paths import Path
+from basu.scenarios.scenario import Scenario
+from basu.scenarios.stage import Controls, Pose
+from basu.scenarios.tree import compose, set_on
+from basu.testing import Command, PaperStage, Rehearsal, paper_place, rehearse, steady
+
+Laid = Callable[..., Scenario]
+LIBRARY = open_library()
+KINDS = ("ControlLoss", "SlipperyStop", "CrossWind", "BendDeparture")
+STRAIGHT_AHEAD = Controls(0.5, 0.0, 0.0)
+
+
+def names(*kinds: str) -> list[str]:
+    return [case.name for case in LIBRARY.cases if case.type in kinds]
+
+
+def steered(scenario: Scenario, seed: int = 0, speed_mps: float = 6.0) -> list[tuple[float, float]]:
+    """How far along the route the ego was in each frame, and what its wheel was told while it meant straight ahead."""
+    stage = PaperStage(scenario.place, scenario.actors(), steady(speed_mps), seed=seed)
+    tree = compose(scenario)
+    set_on(tree, stage)
+    told = []
+    while tree.root.root.status != Status.SUCCESS and stage.time_s < scenario.timeout_s:
+        tree.root.tick()
+        told.append((stage.ego_s_m, stage.controls(STRAIGHT_AHEAD).steer))
+        stage.advance()
+    return told
+
+
+def frictions(played: Rehearsal) -> list[tuple[Pose, float, float]]:
+    return [command.details for command in played.commands if command.what == "friction"]  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_has_three_cases_or_more_on_the_route_and_off_it(kind: str) -> None:
+    found = [case.on_route for case in LIBRARY.cases if case.type == kind]
+    assert len(found) >= 3
+    assert set(found) == {True, False}
+
+
+@pytest.mark.parametrize("name", names(*KINDS))
+def test_who_keeps_its_course_passes_all_phases_with_its_controls_given_back(laid: Laid, name: str) -> None:
+    scenario = laid(name)
+    played = rehearse(scenario, steady(6.0))
+    assert list(played.phases_s) == ["setup", "trigger", "conflict", "resolution", "end"]
+    taken = [command.details for command in played.commands if command.what == "disturb"]
+    assert taken[0][1] is True
+    assert taken[-1][1] is False
+
+
+@pytest.mark.parametrize("name", names(*KINDS))
+def test_nothing_is_done_to_the_controls_before_the_place_nor_after_it(laid: Laid, name: str) -> None:
+    told = steered(laid(name))
+    off = [number for number, (_, steer) in enumerate(told) if steer != 0.0]
+    assert told[off[0]][0] > 15.0
+    assert off[-1] < len(told) - 20
+
+
+@pytest.mark.parametrize("name", names("ControlLoss"))
+def test_control_is_lost_to_both_sides_by_turns(laid: Laid, name: str) -> None:
+    scenario = laid(name, jitter="0")
+    sign = 1.0 if scenario.choice("side") == "right" else -1.0
+    told = steered(scenario)
+    firsts = [
+        next(steer for s_m, steer in told if s_m >= place_m and abs(steer) > 0.01) for place_m in scenario.places_m
+    ]
+    assert [math.copysign(1.0, steer) for steer in firsts] == [sign, -sign, sign]
+
+
+def test_wet_patches_lie_on_the_ego_way_where_its_controls_are_off(laid: Laid) -> None:
+    scenario = laid("control_loss_1", friction="0.2")
+    patches = frictions(rehearse(scenario, steady(6.0)))
+    assert [friction for _, _, friction in patches] == [0.2] * 3
+    way = Path.of_route(scenario.place.route)
+    for (pose, radius_m, _), place_m in zip(patches, scenario.places_m, strict=True):
+        near = way.nearest(pose.x_m, pose.y_m)
+        assert abs(near.right_m) < 0.1
+        assert near.s_m - radius_m == pytest.approx(place_m, abs=0.5)
+
+
+def test_a_bump_leaves_the_road_as_dry_as_it_is_and_the_rear_wheels_jolt_back(laid: Laid) -> None:
+    scenario = laid("control_loss_2", side="right", pull="0.3")
+    assert not frictions(rehearse(scenario, steady(6.0)))
+    jolt = [steer for s_m, steer in steered(scenario) if scenario.places_m[0] <= s_m < scenario.places_m[1]]
+    assert max(jolt) == pytest.approx(0.6, abs=0.05)
+    assert min(jolt) == pytest.approx(-0.3, abs=0.03)
+    assert jolt.index(max(jolt)) < jolt.index(min(jolt))
+
+
+def test_the_same_seed_jitters_alike_and_another_does_not(laid: Laid) -> None:
+    scenario = laid("control_loss_1")
+    assert steered(scenario, seed=4) == steered(laid("control_loss_1"), seed=4)
+    assert steered(scenario, seed=4) != steered(scenario, seed=5)
+
+
+@pytest.mark.parametrize("name", names("SlipperyStop", "BendDeparture"))
+def test_the_slippery_road_has_no_gaps_and_reaches_to_its_end(laid: Laid, name: str) -> None:
+    scenario = laid(name)
+    way = Path.of_route(scenario.place.route)
+    patches = frictions(rehearse(scenario, steady(6.0)))
+    reach_m = sorted((way.nearest(pose.x_m, pose.y_m).s_m, radius_m) for pose, radius_m, _ in patches)
+    for (before_m, radius_m), (after_m, _) in pairwise(reach_m):
+        assert after_m - before_m < 2.0 * radius_m
+    if type(scenario).__name__ == "SlipperyStop":
+        from_m, to_m = scenario.slippery_from_m, scenario.line_m
+    else:
+        from_m, to_m, _ = scenario.bend
+    assert reach_m[0][0] - reach_m[0][1] <= from_m + 0.5
+    assert reach_m[-1][0] + reach_m[-1][1] >= to_m - 0.5
+
+
+def test_the_pull_before_a_stop_line_ends_at_the_line(laid: Laid) -> None:
+    scenario = laid("slippery_stop_1", jitter="0")
+    off_m = [s_m for s_m, steer in steered(scenario) if steer != 0.0]
+    assert off_m[0] == pytest.approx(scenario.slippery_from_m, abs=0.5)
+    assert off_m[-1] == pytest.approx(scenario.line_m, abs=0.5)
+
+
+def test_a_route_without_a_stop_sign_or_a_bend_is_refused() -> None:
+    place = paper_place([(0, 0), (100, 0)])
+    for kind, lacks in (("SlipperyStop", "no stop sign"), ("BendDeparture", "no bend")):
+        scenario = next(s for s in LIBRARY.scenarios if s.__name__ == kind)
+        values = {parameter.name: parameter.default for parameter in scenario.parameters}
+        with pytest.raises(ScenarioError, match=lacks):
+            compose(scenario(place, values))
+
+
+@pytest.mark.parametrize(("gusts", "side"), [(1, "right"), (3, "left")])
+def test_as_many_gusts_come_as_are_asked_for_to_the_side_they_are(laid: Laid, gusts: int, side: str) -> None:
+    told = np.array([steer for _, steer in steered(laid("cross_wind_1", gusts=str(gusts), side=side, push="0.2"))])
+    blowing = np.abs(told) > 0.0
+    assert np.count_nonzero(np.diff(blowing.astype(int)) == 1) == gusts
+    assert set(np.sign(told[blowing])) == {1.0 if side == "right" else -1.0}
+
+
+@pytest.mark.parametrize("name", names("BendDeparture"))
+def test_the_pull_in_a_bend_is_towards_its_outside(laid: Laid, name: str) -> None:
+    scenario = laid(name)
+    begin_m, end_m, _ = scenario.bend
+    way = Path.of_route(scenario.place.route)
+    turned_rad = way.heading_rad(end_m + 2.0) - way.heading_rad(begin_m - 2.0)
+    assert abs(turned_rad) > math.radians(10.0)
+    pulled = [steer for _, steer in steered(scenario) if steer != 0.0]
+    assert set(np.sign(pulled)) == {-math.copysign(1.0, turned_rad)}
+
+
+def test_what_is_done_is_told_in_the_tree(laid: Laid) -> None:
+    played = rehearse(laid("control_loss_1"), steady(6.0))
+    lost = played.tree.phases["conflict"].children[0]
+    assert [node.name for node in lost.children[:2]] == ["controls jitter for 1.5 s", "ego passes place 2"]
+    assert isinstance(played.commands[0], Command)
