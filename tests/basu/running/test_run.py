@@ -17,7 +17,7 @@ from basu.cli import main
 from basu.records.history.files import read_history
 from servers import RunningServer, running_server
 
-SAMPLE = Path(__file__).parents[2] / "examples" / "forward_agent.py"
+SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
 AGENT = """
 import os, signal, time
 

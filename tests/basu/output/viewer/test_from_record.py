@@ -16,7 +16,7 @@ from fakes import recordings as made
 from fakes.drives import at, driven, hit, ramp, stop_sign, straight_route
 from fakes.rerun_files import read_rrd, timelines
 
-LINDEN = Path(__file__).parents[3] / "src" / "linden" / "data" / "Linden.xodr"
+LINDEN = Path(__file__).parents[4] / "src" / "linden" / "data" / "Linden.xodr"
 
 
 @pytest.fixture(autouse=True)

@@ -18,7 +18,7 @@ from basu.records.carla_log.sources import (
     source,
 )
 
-LINDEN = Path(__file__).parents[3] / "src" / "linden" / "data" / "Linden.xodr"
+LINDEN = Path(__file__).parents[4] / "src" / "linden" / "data" / "Linden.xodr"
 
 
 def test_a_runs_folder_has_its_log_map_and_result(tmp_path: Path) -> None:

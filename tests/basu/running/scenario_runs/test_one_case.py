@@ -12,7 +12,7 @@ from basu.scenarios.config.model import Case, GivenActor
 from basu.scenarios.stage import Pose
 from fakes.crossing_map import crossing
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 @pytest.fixture(name="town", scope="module")
