@@ -5,13 +5,15 @@ from __future__ import annotations
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
+from basu.episode import Towns
+from basu.episode.world import check_towns
 from basu.errors import UserError
 from basu.outcome import Status
 from basu.output.report.folder import LATEST, plain, point_latest, publish, run_name
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.running.series import conditions, open_series
-from basu.simulator import asking, check_towns, simulator_for
+from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -66,19 +68,19 @@ def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Seri
     """Run one job after the other in one simulator."""
     worst = 0
     with simulator_for(options) as simulator:
-        with asking("naming its towns"):
-            check_towns(simulator.client, (job.description.town for job in jobs))
-        session = Session(options, scoring, prepared, simulator)
+        towns = Towns(simulator)
+        check_towns(towns.names, (job.description.town for job in jobs))
+        session = Session(options, scoring, prepared, simulator, towns)
         for nth, job in enumerate(jobs):
             is_prepared = nth == 0 and job.seed == options.seed
             agents = prepared.agents if is_prepared else new_agents(prepared.loaded, options, job.seed)
             if series is not None:
                 print(f"run {job.number + 1} of {len(prepared.jobs)}")
-                done = run_one(session, agents, job, output=series.folder, name=series.name(job), fresh=nth > 0)
+                done = run_one(session, agents, job, output=series.folder, name=series.name(job))
                 folder = series.publish(done.draft, job, done.document)
             else:
                 name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
-                done = run_one(session, agents, job, output=options.output, name=name, fresh=nth > 0)
+                done = run_one(session, agents, job, output=options.output, name=name)
                 folder = publish(done.draft, name)
             _told(done, folder, options.output)
             worst = max(worst, done.outcome.status.fault.value)

@@ -6,12 +6,13 @@ import signal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.agents.loader import load_agent
+from basu.episode import Towns
 from basu.errors import BasuError
 from basu.outcome import Status
 from basu.output.report.folder import plain
-from basu.running.scenario_runs.one_case import Theatre, perform
+from basu.running.scenario_runs.one_case import CaseSession, play_case
 from basu.scenarios.cases import open_library
-from basu.simulator import asking, simulator_for, towns_of
+from basu.simulator import simulator_for
 from basu.utils import client_threads
 
 if TYPE_CHECKING:
@@ -63,15 +64,14 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterato
     library = open_library(options.all_files)
     agents = {agent: load_agent(agent) for agent in options.agents}
     with simulator_for(options.run_options(options.agents[0])) as simulator:
-        with asking("naming its towns"):
-            theatre = Theatre(options, simulator, towns_of(simulator.client))
+        session = CaseSession(options, simulator, Towns(simulator))
         for job in jobs:
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
-            performed = perform(theatre, loaded, playable, output / plain(loaded.name))
-            leaves = performed.outcome.status in LEAVING
-            yield Done(job.number, performed.document, str(performed.folder.relative_to(output)), leaves)
-            if performed.outcome.status is Status.INTERRUPTED:
+            played = play_case(session, loaded, playable, output / plain(loaded.name))
+            leaves = played.outcome.status in LEAVING
+            yield Done(job.number, played.document, str(played.folder.relative_to(output)), leaves)
+            if played.outcome.status is Status.INTERRUPTED:
                 raise KeyboardInterrupt
             if leaves:
                 return
