@@ -45,7 +45,7 @@ class Session:
     plan: Plan
     simulator: Simulator
     towns: Towns
-    shows_progress: bool = True
+    quiet: bool = False  # no progress bar and no table
 
 
 class Finished(NamedTuple):
@@ -74,7 +74,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
             log = str((episode.run.folder / LOG_FILE).resolve()) if session.simulator.own else f"{name}.log"
             recording.append(RecordingManager(log))
         return [
-            *([ProgressBar(live)] if session.shows_progress else []),
+            *([] if session.quiet else [ProgressBar(live)]),
             *recording,
             *onlookers_for(session.options, live),
             *viewer_for(session.options, live),
@@ -113,7 +113,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         log=recording[0].path if recording else None,
     )
     met = told(episode.playing, driven.history, driven.outcome)
-    document = leave(draft, driven, session.scoring, ground.town.lanes, config, met)
+    document = leave(draft, driven, session.scoring, ground.town.lanes, config, met, quiet=session.quiet)
     return Finished(driven.outcome, draft, document, driven.bug)
 
 

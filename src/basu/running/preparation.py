@@ -57,13 +57,13 @@ class Plan:
     jobs: tuple[Job, ...]
 
 
-def prepare(options: RunOptions) -> Plan:
-    """Read everything that can be wrong before anything is started.
+def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
+    """Read everything that can be wrong before anything is started; ``given`` is an agent's class that is loaded.
 
     Raises:
         UserError, AgentError: nothing can be started like this.
     """
-    loaded = load_agent(options.agent, options.agent_config)
+    loaded = given or load_agent(options.agent, options.agent_config)
     agents = new_agents(loaded, options, options.seed)
     config = agents.config
     weather_called(config.weather)

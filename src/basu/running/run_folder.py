@@ -131,8 +131,10 @@ def leave(
     lanes: LaneGraph,
     config: dict[str, Any],
     scenarios: Sequence[dict[str, Any]] = (),
+    *,
+    quiet: bool = False,
 ) -> dict[str, Any]:
-    """Write the folder of a run and show its table; the result. ``scenarios`` are those on the way."""
+    """Write the folder of a run and show its table unless ``quiet``; the result. ``scenarios`` are those on the way."""
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
     meta = {
@@ -155,7 +157,8 @@ def leave(
     if scenarios:
         document["scenarios"] = list(scenarios)
     text, lanes_m = table(document), lanes.streets()
-    print(text)
+    if not quiet:
+        print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
@@ -166,7 +169,7 @@ def leave(
     streets = [] if history is None else around(lanes_m, history)
     write_streets(folder, streets)
     write_report(folder, RunRecord(name=folder.name, config=config, result=document, history=history, streets=streets))
-    if config["recording"] is not None:
+    if config["recording"] is not None and not quiet:
         print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return document
 

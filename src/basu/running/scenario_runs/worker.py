@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import signal
+import sys
+from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.agents.loader import load_agent
@@ -16,14 +19,14 @@ from basu.simulator import simulator_for
 from basu.utils import client_threads
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
-    from multiprocessing.connection import Connection
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
+    from basu.agents.loader import LoadedAgent
     from basu.running.scenario_runs.options import ScenarioOptions
 
-LEAVING = frozenset({Status.SIMULATOR_FAILED, Status.AGENT_TIMED_OUT, Status.BENCHMARK_FAILED})
-"""After these a process is not to be trusted: its simulator is gone, or an agent still runs in it."""
+ENDING = frozenset({Status.SIMULATOR_FAILED, Status.AGENT_TIMED_OUT, Status.BENCHMARK_FAILED})
+"""After these a worker ends: its simulator is gone, or an agent's code still runs in its process."""
 
 
 class Job(NamedTuple):
@@ -40,11 +43,11 @@ class Done(NamedTuple):
     number: int
     document: dict[str, Any]
     folder: str  # below the run's
-    leaves: bool  # whether the worker ends now
+    ends_worker: bool  # whether the worker ends now
 
 
 class Ready(NamedTuple):
-    """A worker that has come into being; one that dies before has not died over a job."""
+    """A worker is ready; one that ends before has not died over a job."""
 
 
 class Refused(NamedTuple):
@@ -53,8 +56,15 @@ class Refused(NamedTuple):
     sentence: str
 
 
-def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterator[Done]:
-    """Play jobs in a simulator until there are no more, or it is better to begin with a fresh one; what came of each.
+def play(
+    options: ScenarioOptions,
+    output: Path,
+    jobs: Iterable[Job],
+    given: Mapping[str, LoadedAgent] | None = None,
+) -> Iterator[Done]:
+    """Play jobs in a simulator until there are none left, or a fresh process is needed; yield what came of each.
+
+    ``given`` are agents' classes that are loaded, by name.
 
     Raises:
         UserError: an agent or a case cannot be had.
@@ -62,24 +72,24 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterato
         KeyboardInterrupt: the user interrupted a case; what came of it has been yielded.
     """
     library = open_library(options.all_files)
-    agents = {agent: load_agent(agent) for agent in options.agents}
+    agents = given or {agent: load_agent(agent) for agent in options.agents}
     with simulator_for(options.run_options(options.agents[0])) as simulator:
         session = CaseSession(options, simulator, Towns(simulator))
         for job in jobs:
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
             played = play_case(session, loaded, playable, output / plain(loaded.name))
-            leaves = played.outcome.status in LEAVING
-            yield Done(job.number, played.document, str(played.folder.relative_to(output)), leaves)
+            ends = played.outcome.status in ENDING
+            yield Done(job.number, played.document, str(played.folder.relative_to(output)), ends)
             if played.outcome.status is Status.INTERRUPTED:
                 raise KeyboardInterrupt
-            if leaves:
+            if ends:
                 return
 
 
-def work(connection: Connection, options: ScenarioOptions, output: Path) -> None:
-    """The main function of a worker's process: takes jobs from a pipe and answers through it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for whoever started us, who ends us
+def work(connection: Connection) -> None:
+    """Play the jobs that come through a pipe, and answer through it; the options come first."""
+    options, output = connection.recv()
 
     def jobs() -> Iterable[Job]:
         while (job := connection.recv()) is not None:
@@ -91,7 +101,12 @@ def work(connection: Connection, options: ScenarioOptions, output: Path) -> None
             connection.send(done)
     except BasuError as error:
         connection.send(Refused(str(error)))
-    except EOFError:
-        pass  # whoever started us is gone
+
+
+def main() -> None:
+    """Work at the pipe whose descriptor is the first argument."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the command, which ends its workers
+    with contextlib.suppress(EOFError, BrokenPipeError):  # the command has ended
+        work(Connection(int(sys.argv[1])))
     if client_threads.is_held():
         client_threads.leave(0)
