@@ -120,6 +120,10 @@ class MetricsManager(BaseManager):
         self._take_events()
         return self._recorder.history(self._facts())
 
+    def others(self, frame: Frame) -> list[tuple[float, ...]]:
+        """Rows of ``history.OTHER`` for a frame, recorded or not yet, the nearest road user first."""
+        return self._neighbours.near(frame)
+
     def contacts_since(self, tick: int) -> tuple[Collision, ...]:
         """The messages of the collision sensor from a tick on; asked for the latest ones, it costs next to nothing."""
         self._take_events()
