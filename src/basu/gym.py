@@ -115,8 +115,8 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         self.observation_space = _observation_space()
         self._resources = contextlib.ExitStack()
         simulator: Simulator = self._resources.enter_context(simulator_for(options))
-        self._episode = Episode(simulator, self._spec, towns=Towns(simulator))
-        self._resources.callback(self._episode.close)
+        self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
+        self._resources.callback(self.episode.close)
         weakref.finalize(self, self._resources.close)  # also where close() is forgotten
         self._s_m = 0.0
         self._infractions = 0
@@ -134,8 +134,8 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         """
         super().reset(seed=seed)
         drawn = seed if seed is not None else int(self.np_random.integers(2**31))
-        seen = self._episode.reset(drawn)
-        self._preview = _Preview(self._episode)
+        seen = self.episode.reset(drawn)
+        self._preview = _Preview(self.episode)
         self._s_m, self._infractions = seen.progress.s_m, 0
         return self._preview.of(seen), {"route_s_m": seen.progress.s_m, "infractions": ()}
 
@@ -149,15 +149,15 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         """
         pedals, steer = (float(value) for value in action)
         control = carla.VehicleControl(throttle=max(0.0, pedals), brake=max(0.0, -pedals), steer=steer)
-        done = self._episode.step(control)
+        done = self.episode.step(control)
         if done.outcome is None and done.ending is not None:  # the vehicle has arrived: its last frame is recorded
-            done = self._episode.step(control)
+            done = self.episode.step(control)
         return self._answer(done)
 
     def _answer(self, done: Step) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
         """Observation, reward, terminated, truncated, info."""
         seen, outcome = done.observation, done.outcome
-        found = self._episode.metrics.infractions_so_far()
+        found = self.episode.metrics.infractions_so_far()
         new, self._infractions = found[self._infractions :], len(found)
         reward = self._worth(seen.progress.s_m - self._s_m, len(new), outcome)
         self._s_m = seen.progress.s_m
@@ -186,7 +186,7 @@ class _Preview:
     """Turns frames of one episode into observations."""
 
     def __init__(self, episode: Episode) -> None:
-        self._episode = episode
+        self.episode = episode
         route = episode.run.route
         self._s_m, self._xy_m = route.s_m, route.points_m[:, :2]
         self._yaw_rad = np.unwrap(route.yaw_rad)
@@ -202,7 +202,7 @@ class _Preview:
         ahead = np.column_stack([np.interp(s_m, self._s_m, self._xy_m[:, axis]) for axis in (0, 1)])
         heading = math.remainder(ego.yaw_rad - float(np.interp(seen.progress.s_m, self._s_m, self._yaw_rad)), math.tau)
         forward_mps2 = ego.acceleration_x_mps2 * cos + ego.acceleration_y_mps2 * sin
-        limit_mps = self._episode.run.vehicle.get_speed_limit() / 3.6
+        limit_mps = self.episode.run.vehicle.get_speed_limit() / 3.6
         state = (
             ego.speed_mps,
             forward_mps2,
@@ -221,7 +221,7 @@ class _Preview:
     def _others(self, seen: Observation, to_vehicle: NDArray[np.float64]) -> NDArray[np.float64]:
         """(8, 6) the nearest road users."""
         ego, table = seen.frame.ego, np.zeros((OTHERS, 6))
-        rows = self._episode.metrics.others(seen.frame)[:OTHERS]
+        rows = self.episode.metrics.others(seen.frame)[:OTHERS]
         if rows:
             given = np.array([row[2:] for row in rows])  # x, y, z, yaw, velocity x, y
             turned = np.remainder(given[:, 3] - ego.yaw_rad + math.pi, math.tau) - math.pi
