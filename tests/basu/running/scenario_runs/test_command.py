@@ -82,7 +82,7 @@ def test_a_case_that_goes_well_leaves_its_verdict_and_a_clean_world(
     assert result["actors"] == [{"id": result["actors"][0]["id"], "role": "walker", "type": "walker.pedestrian.0001"}]
     assert 0.3 < result["margins"]["distance_m"] < 22.0
     left = sorted(path.name for path in (tmp_path / "latest" / "basic" / "goes_well").iterdir())
-    assert left == ["history.parquet", "picture.svg", "result.json", "route.json", "streets.json"]
+    assert left == ["config.json", "history.parquet", "picture.svg", "result.json", "route.json", "streets.json"]
     assert matrix(tmp_path)["cases"][0]["results"]["basic"]["folder"] == "basic/goes_well"
     assert "Crosser" in capsys.readouterr().out
     moving = [
