@@ -53,6 +53,10 @@ class Assessment(NamedTuple):
     completed: Finding
     exercised: Finding
 
+    def document(self) -> dict[str, dict[str, bool | str | None]]:
+        """The answers as plain values."""
+        return {name: finding._asdict() for name, finding in self._asdict().items()}
+
 
 class NearMiss(NamedTuple):
     """The worst moment with one party."""

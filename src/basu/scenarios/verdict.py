@@ -9,6 +9,8 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING, NamedTuple
 
+from basu.metrics.collisions import beginnings
+from basu.metrics.responsibility import responsibility
 from basu.outcome import Fault, Outcome, Status
 from basu.scenarios.criteria.going import arrival_tick
 from basu.scenarios.criteria.told import margins_of, told_always
@@ -60,6 +62,17 @@ ELSEWHERE = {
 }
 
 
+class Collision(NamedTuple):
+    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.responsibility`)."""
+
+    t_s: float
+    other: str  # a role, a thing's name or a blueprint id
+    speed_mps: float  # of the ego in the frame before
+    at_fault: bool
+    kind: str
+    sentence: str
+
+
 class Judged(NamedTuple):
     """A case with its verdict."""
 
@@ -69,6 +82,7 @@ class Judged(NamedTuple):
     margins: dict[str, float | None]  # how narrowly: distance_m, ttc_s, pet_s
     outcome: Outcome  # of the run
     assessment: Assessment | None  # None where nothing was recorded
+    collisions: tuple[Collision, ...] = ()
 
     @property
     def fault(self) -> Fault:
@@ -104,7 +118,27 @@ def judge(
         or _never_triggered(played, triggered=triggered)
         or _of_driving(assessment, judgements[: len(criteria)])
     )
-    return Judged(verdict, message, judgements, margins_of(judgements), outcome, assessment)
+    return Judged(verdict, message, judgements, margins_of(judgements), outcome, assessment, _collisions(played))
+
+
+def _collisions(played: Played) -> tuple[Collision, ...]:
+    """Every contact of the drive, with the responsibility for it."""
+    history = played.history
+    speed_mps, t_s = history.speed_mps(), history.frames["t_s"]
+    found = []
+    for event in beginnings(history, {}):
+        said = responsibility(history, event)
+        found.append(
+            Collision(
+                t_s=float(t_s[event.tick]),
+                other=played.roles.get(event.other_id, event.other_type),
+                speed_mps=float(speed_mps[max(0, event.tick - 1)]),
+                at_fault=said.at_fault,
+                kind=said.kind.value,
+                sentence=said.sentence,
+            )
+        )
+    return tuple(found)
 
 
 def _fault(outcome: Outcome) -> tuple[Verdict, str] | None:
