@@ -60,6 +60,7 @@ class Simulation:
         self.recorder.stop()
         self.replayer.forget()
         self.episode = Episode(world_map, first_frame=self.frame)
+        self.seeing.leave(self.episode)
         self.delta_s = self.settings.fixed_delta_seconds or 0.0
         self.episode.observe()
 

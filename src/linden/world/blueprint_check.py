@@ -12,6 +12,7 @@ REFUSED = "Spawn failed because of invalid actor description"
 
 _QUOTED = 80  # characters of a value that a sentence quotes
 
+
 class Bounds(NamedTuple):
     """Least and greatest value that an attribute can take, both included."""
 
