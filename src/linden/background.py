@@ -7,9 +7,13 @@ wait for, and for ever where the signal came in the moment in which one was star
 from collections.abc import Callable
 from concurrent.futures import Future
 from threading import Event, Thread, local
-from typing import TypeVar
+from typing import TypeAlias, TypeVar
 
 Made = TypeVar("Made")
+
+
+Unwanted: TypeAlias = Event
+"""Set where what is being made is not wanted any more."""
 
 
 class NotWantedError(Exception):
@@ -19,7 +23,7 @@ class NotWantedError(Exception):
 _here = local()  # .unwanted: the Event by which the work of this thread is given up
 
 
-def in_background(work: Callable[[], Made], unwanted: Event | None = None) -> "Future[Made]":
+def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) -> "Future[Made]":
     """Return what will have been made by a thread of its own, which may wait for others.
 
     ``unwanted`` gives it up: the work ends with a NotWantedError at its next :func:`checkpoint`.
