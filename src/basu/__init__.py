@@ -3,12 +3,6 @@
 from __future__ import annotations
 
 import importlib
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from basu.agents.autonomous_agent import AutonomousAgent
-    from basu.api import close_simulator, load, open_simulator, run, run_scenarios
-    from basu.metrics.score import Scoring
 
 __version__ = "0.1.0"
 __all__ = ["AutonomousAgent", "Scoring", "close_simulator", "load", "open_simulator", "run", "run_scenarios"]

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import atexit
 import contextlib
-import dataclasses
-import difflib
 import inspect
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -19,7 +17,7 @@ from basu.agents.loader import LoadedAgent
 from basu.episode import Towns
 from basu.errors import UserError
 from basu.metrics.score import Scoring
-from basu.options import RunOptions, Traffic
+from basu.options import RunOptions
 from basu.outcome import Status
 from basu.results import RunResult, ScenarioResults, load
 from basu.running.one_run import Session
@@ -27,7 +25,8 @@ from basu.running.preparation import prepare
 from basu.running.runner import runs
 from basu.running.scenario_runs.command import play_matrix
 from basu.running.scenario_runs.options import ScenarioOptions
-from basu.scenarios.sampling import Grid, Sweep
+from basu.settings.option import Layer
+from basu.settings.resolve import resolve
 from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
@@ -105,7 +104,7 @@ def run(
     simulator: OpenSimulator | None = None,
     scoring: Scoring | None = None,
     progress: bool = False,
-    **options: Any,  # noqa: ANN401 - one of RunOptions' fields each, checked below
+    **options: Any,  # noqa: ANN401 - a field of RunOptions each
 ) -> RunResult | list[RunResult]:
     """Drive an agent along a route and score the drive, as ``basu run`` does.
 
@@ -137,19 +136,21 @@ def run(
     """
     scoring = Scoring() if scoring is None else scoring
     given = _given(agent)
-    wanted = _options(
-        RunOptions,
-        agent=given.name if given is not None else str(agent),
-        routes=None if routes is None else str(routes),
-        route_id=route_id,
-        seed=seed,
-        repetitions=repetitions,
-        traffic=Traffic(vehicles, walkers, traffic_density),
-        weather=weather,
-        vehicle=vehicle,
-        output=Path(output),
+    values = {
+        "agent": given.name if given is not None else str(agent),
+        "routes": None if routes is None else str(routes),
+        "route_id": route_id,
+        "seed": seed,
+        "repetitions": repetitions,
+        "vehicles": vehicles,
+        "walkers": walkers,
+        "traffic_density": traffic_density,
+        "weather": weather,
+        "vehicle": vehicle,
+        "output": Path(output),
         **options,
-    )
+    }
+    wanted = resolve(RunOptions, [Layer(values)])
     if wanted.series is not None or wanted.resume:
         raise UserError("run() keeps no series; give repetitions=N, or use `basu run --series`")
     prepared = prepare(wanted, given)
@@ -180,10 +181,10 @@ def run_scenarios(
     fixed: Mapping[str, object] | None = None,
     seed: int = 0,
     vehicle: str | None = None,
-    workers: int = 2,
+    workers: int | None = None,
     output: str | Path = "scenario-runs",
     progress: bool = False,
-    **options: Any,  # noqa: ANN401 - one of ScenarioOptions' fields each, checked below
+    **options: Any,  # noqa: ANN401 - a field of ScenarioOptions each
 ) -> ScenarioResults:
     """Play cases with agents, as ``basu scenario run`` does.
 
@@ -196,7 +197,7 @@ def run_scenarios(
         fixed: parameters that are set, by name; the command line's ``--set``.
         seed: of the samples, or of chance in the drives where there is no sweep.
         vehicle: the blueprint to drive; by default the case's.
-        workers: simulators beside each other.
+        workers: simulators that run at the same time; by default one a processor.
         output: the parent of the folder.
         progress: whether to show a progress bar.
         options: any other option of the command line by its name, such as ``timeout_s=60.0``.
@@ -208,41 +209,24 @@ def run_scenarios(
     """
     agents = [agent] if isinstance(agent, str | Path | type | AutonomousAgent) else list(agent)
     given = _all_given(agents)
-    if sweep is not None and grid is not None:
-        raise UserError("sweep and grid exclude each other; give one of them")
-    design = None if sweep is None else Sweep(sweep, seed)
-    wanted = _options(
-        ScenarioOptions,
-        what=(what,) if isinstance(what, str) else tuple(what),
-        agents=tuple(str(each) for each in agents) if given is None else tuple(given),
-        design=design if grid is None else Grid(grid),
-        vary=tuple(vary),
-        fixed=tuple((name, str(value)) for name, value in (fixed or {}).items()),
-        seed=0 if sweep is not None else seed,  # as on the command line
-        vehicle=vehicle,
-        workers=workers,
-        output=Path(output),
+    values = {
+        "what": (what,) if isinstance(what, str) else tuple(what),
+        "agents": tuple(str(each) for each in agents) if given is None else tuple(given),
+        "sweep": sweep,
+        "grid": grid,
+        "vary": tuple(vary),
+        "fixed": tuple((name, str(value)) for name, value in (fixed or {}).items()),
+        "seed": seed,
+        "vehicle": vehicle,
+        "output": Path(output),
+        **({} if workers is None else {"workers": workers}),
         **options,
-    )
+    }
+    wanted = resolve(ScenarioOptions, [Layer(values)])
     played = play_matrix(wanted, given, quiet=not progress)
     if played.matrix is None:
         raise KeyboardInterrupt
     return ScenarioResults(played.folder)
-
-
-def _options(kind: type[Any], **values: Any) -> Any:  # noqa: ANN401 - of either kind of options
-    """The options of a kind.
-
-    Raises:
-        UserError: one of them means nothing.
-    """
-    known = [each.name for each in dataclasses.fields(kind)]
-    for name in values:
-        if name not in known:
-            close = difflib.get_close_matches(name, known, 1)
-            hint = f"did you mean '{close[0]}'?" if close else f"there are {', '.join(known)}"
-            raise UserError(f"there is no option '{name}'; {hint}")
-    return kind(**values)
 
 
 def _given(agent: Agent) -> LoadedAgent | None:

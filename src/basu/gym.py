@@ -24,7 +24,7 @@ import contextlib
 import math
 import weakref
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import carla
 import numpy as np
@@ -75,7 +75,7 @@ class Reward:
 class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.float32]"]):
     """One vehicle on a route of Linden, or in one case of a scenario. The module's docstring has shapes and units."""
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "render_fps": round(1.0 / STEP_S)}
+    metadata: dict[str, Any] = {"render_modes": [], "render_fps": round(1.0 / STEP_S)}  # noqa: RUF012 - as the base has it
 
     def __init__(
         self,
@@ -112,7 +112,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
                 routes, route_id, vehicle, Traffic(vehicles, walkers), weather, timeout_s, with_scenarios=with_scenarios
             )
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
-        self.observation_space = _observation_space()
+        self.observation_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Dict(_boxes())
         self._resources = contextlib.ExitStack()
         simulator: Simulator = self._resources.enter_context(simulator_for(options))
         self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
@@ -191,7 +191,7 @@ class _Preview:
         self._s_m, self._xy_m = route.s_m, route.points_m[:, :2]
         self._yaw_rad = np.unwrap(route.yaw_rad)
         self._ahead_m = PREVIEW_M * np.arange(1, PREVIEW_POINTS + 1)
-        self._space = _observation_space()
+        self._boxes = _boxes()
 
     def of(self, seen: Observation) -> dict[str, NDArray[np.float32]]:
         """The observation of a frame."""
@@ -216,7 +216,7 @@ class _Preview:
             "route": (ahead - (ego.x_m, ego.y_m)) @ to_vehicle,
             "others": self._others(seen, to_vehicle),
         }
-        return {name: _clipped(values, self._space[name]) for name, values in found.items()}
+        return {name: _clipped(values, self._boxes[name]) for name, values in found.items()}
 
     def _others(self, seen: Observation, to_vehicle: NDArray[np.float64]) -> NDArray[np.float64]:
         """(8, 6) the nearest road users."""
@@ -236,18 +236,16 @@ def _clipped(values: NDArray[np.float64], box: gymnasium.spaces.Box) -> NDArray[
     return clipped
 
 
-def _observation_space() -> gymnasium.spaces.Dict:
+def _boxes() -> dict[str, gymnasium.spaces.Box]:
     """The boxes that the module's docstring describes."""
     turn, far = math.pi + 1e-3, FARTHEST_M
     ego = [FASTEST_MPS, HARDEST_MPS2, FASTEST_TURN_RADPS, far, turn, FASTEST_MPS]
     other = [1.0, far, far, turn, FASTEST_MPS, FASTEST_MPS]
-    return gymnasium.spaces.Dict(
-        {
-            "ego": _symmetric(np.array(ego)),
-            "route": _symmetric(np.full((PREVIEW_POINTS, 2), far)),
-            "others": _symmetric(np.tile(other, (OTHERS, 1))),
-        }
-    )
+    return {
+        "ego": _symmetric(np.array(ego)),
+        "route": _symmetric(np.full((PREVIEW_POINTS, 2), far)),
+        "others": _symmetric(np.tile(other, (OTHERS, 1))),
+    }
 
 
 def _symmetric(high: NDArray[np.float64]) -> gymnasium.spaces.Box:

@@ -150,7 +150,7 @@ def test_a_script_without_a_main_guard_may_use_several_workers(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
-        pytest.param(lambda: basu.run("basic", routs="x.xml"), "no option 'routs'; did you mean 'routes'", id="option"),
+        pytest.param(lambda: basu.run("basic", routs="x.xml"), "routs means nothing; did you mean", id="option"),
         pytest.param(lambda: basu.run(3), "3 is no agent; give a name, a file, or a subclass", id="agent"),
         pytest.param(lambda: basu.run("basic", series="a"), "keeps no series; give repetitions=N", id="series"),
         pytest.param(lambda: basu.run_scenarios(sweep=3, grid=3), "exclude each other", id="designs"),

@@ -277,7 +277,7 @@ class Episode:
         with contextlib.suppress(RuntimeError):  # the simulator is gone
             self._record()
         if isinstance(error, KeyboardInterrupt):
-            outcome = Outcome(Status.INTERRUPTED, "interrupted by the user")
+            outcome = Outcome(Status.INTERRUPTED, str(error) or "interrupted by the user")
         elif isinstance(error, AgentError):
             self.agent_error = error
             outcome = _agents_end(error, self._simulator.why_gone())

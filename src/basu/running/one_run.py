@@ -20,7 +20,7 @@ from basu.output.report.folder import make_draft
 from basu.output.viewer.onlooker import viewer_for
 from basu.records.carla_log.sources import LOG_FILE
 from basu.running.drive import drive
-from basu.running.run_folder import OWN_ROUTE, leave, run_config
+from basu.running.run_folder import OWN_ROUTE, run_config, write_run_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -113,7 +113,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         log=recording[0].path if recording else None,
     )
     met = told(episode.playing, driven.history, driven.outcome)
-    document = leave(draft, driven, session.scoring, ground.town.lanes, config, met, quiet=session.quiet)
+    document = write_run_folder(draft, driven, session.scoring, ground.town.lanes, config, met, quiet=session.quiet)
     return Finished(driven.outcome, draft, document, driven.bug)
 
 

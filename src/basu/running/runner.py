@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,7 @@ from basu.episode import Towns
 from basu.episode.world import check_towns
 from basu.errors import UserError
 from basu.outcome import Status
-from basu.output.report.folder import LATEST, plain, point_latest, publish, run_name
+from basu.output.report.folder import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.running.series import conditions, open_series
@@ -72,6 +73,7 @@ def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Seri
         session = Session(options, scoring, prepared, simulator, Towns(simulator))
         for done, folder in runs(session, jobs, series):
             print(f"result folder     {folder}")
+            print(f"to repeat         basu run --config {shlex.quote(str(folder / CONFIG_FILE))}")
             if done.bug is not None:
                 raise done.bug
             worst = max(worst, done.outcome.status.fault.value)

@@ -12,13 +12,13 @@ from basu.episode import Episode, case_spec
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.managers.sensors_manager import SensorsManager
 from basu.outcome import Outcome, Status
-from basu.output.report.folder import RESULT_FILE, make_draft, plain, publish, write_json
+from basu.output.report.folder import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
 from basu.output.report.scenarios.pictures import PICTURE_FILE, case_picture
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
 from basu.running.drive import drive
 from basu.running.preparation import SensorSet, new_agents, sensor_set
-from basu.running.scenario_runs.document import document_of
+from basu.running.scenario_runs.document import case_config, document_of
 from basu.scenarios.verdict import judge
 from basu.utils.atomic import write_bytes
 
@@ -94,6 +94,7 @@ def play_case(session: CaseSession, loaded: LoadedAgent, playable: Playable, out
             playable, loaded, attempt.playing, judged, options, history=history, wall_s=time.perf_counter() - began_s
         )
         write_json(draft / RESULT_FILE, document)
+        write_json(draft / CONFIG_FILE, case_config(playable, options, loaded))
         if history is not None:
             write_history(draft, history)
             streets = around(attempt.streets_m, history)
@@ -116,7 +117,7 @@ def _attempt(session: CaseSession, loaded: LoadedAgent, playable: Playable, fold
     """Drive it, or find out why that is not possible."""
     options, episode = session.options, None
     try:
-        agents = new_agents(loaded, options.run_options(loaded.name), options.seed)
+        agents = new_agents(loaded, options.run_options(loaded.name), options.drive_seed)
         sensors = _sensors(agents, loaded)
         check_town(playable.case, session.towns.names)
         spec = case_spec(playable, vehicle=options.vehicle, timeout_s=options.timeout_s)
@@ -129,7 +130,7 @@ def _attempt(session: CaseSession, loaded: LoadedAgent, playable: Playable, fold
             participants=[agents],
             folder=folder,
         )
-        episode.prepare(options.seed)
+        episode.prepare(options.drive_seed)
         driven = drive(episode, agents)
     except UserError as error:
         return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), _streets(episode))
