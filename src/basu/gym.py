@@ -112,7 +112,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
                 routes, route_id, vehicle, Traffic(vehicles, walkers), weather, timeout_s, with_scenarios=with_scenarios
             )
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
-        self.observation_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Dict(_boxes())
+        self.observation_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Dict({**_boxes()})
         self._resources = contextlib.ExitStack()
         simulator: Simulator = self._resources.enter_context(simulator_for(options))
         self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
