@@ -119,9 +119,21 @@ def _add(group: argparse._ArgumentGroup, field: Field) -> None:
         shown["metavar"] = metavar
     if not option.positional:
         group.add_argument(field.flag, dest=TYPED + field.name, **form.arguments(), **shown)
+        if field.type is bool and option.repeats:
+            undo = f"undo {field.flag} of a --config"
+            const = option.inverted
+            group.add_argument(
+                _opposite(field.flag), dest=TYPED + field.name, action="store_const", const=const, help=undo
+            )
         return
     more = form.arguments() or {"nargs": "?"}
     group.add_argument(TYPED + field.name, **more, **shown)
     if option.flag is not None:
         same = "the same, in ScenarioRunner's way"
         group.add_argument(option.flag, dest=f"{TYPED}{field.name}_flag", metavar=metavar, help=same)
+
+
+def _opposite(flag: str) -> str:
+    """The flag that undoes a flag."""
+    word = flag.removeprefix("--")
+    return f"--with-{word.removeprefix('no-')}" if word.startswith("no-") else f"--no-{word}"
