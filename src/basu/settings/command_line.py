@@ -13,6 +13,7 @@ from basu.settings.option import Field, Settings, bounds, fields_of, suggestion
 
 TYPED = "typed__"  # begins the names of options in the namespace
 UNKNOWN = re.compile(r"unrecognized arguments: (.*)")
+CHOICE = re.compile(r"argument (\S+): invalid choice: '(.*)' \(choose from (.*)\)")
 
 
 class Parser(argparse.ArgumentParser):
@@ -40,8 +41,12 @@ class Parser(argparse.ArgumentParser):
             SystemExit: with status 2.
         """
         unknown = UNKNOWN.match(message)
+        choice = CHOICE.match(message)
         if unknown is not None:
             message = f"'{unknown[1]}' is one word too many"
+        elif choice is not None:
+            known = [word.strip(" '") for word in choice[3].split(",")]
+            message = f"{choice[1]} is '{choice[2]}', which means nothing; {suggestion(choice[2], known)}"
         self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` lists all options\n")
 
 
