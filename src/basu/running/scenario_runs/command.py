@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import sys
 import time
@@ -60,6 +61,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
     played = play_matrix(options)
     if played.matrix is not None:
         _show(played.folder, played.matrix)
+        print(f"repeat  basu scenario run --config {shlex.quote(str(played.folder / CONFIG_FILE))}")
     return played.code
 
 
