@@ -24,6 +24,7 @@ from basu.metrics.stretches import chords, path_m, total_m
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from basu.metrics.infraction import Evidence
     from basu.records.history import History
 
 BEYOND_M = 0.5  # ALLOWED_OUT_DISTANCE of leaderboard 2.0 and 2.1; 1.0 has 1.3
@@ -84,6 +85,19 @@ def wrong_way(history: History) -> Share:
         lambda _first, _end: "against the direction of its lane",
         forgiven_m=FORGIVEN_M,
     )
+
+
+def off_road(history: History) -> tuple[Evidence, ...]:
+    """One event for each stretch off the road or on the pavement; a wrong lane may be needed to pass something."""
+    where = wheres(history)
+    beside = [list(Where).index(way) for way in (Where.OFF_ROAD, Where.SIDEWALK)]
+    share = share_of(
+        history,
+        np.isin(where, beside),
+        Incident.OUTSIDE_LANES,
+        lambda first, end: WORDS[list(Where)[int(np.bincount(where[first:end]).argmax())]],
+    )
+    return share.events
 
 
 def wheres(history: History) -> NDArray[np.int64]:
