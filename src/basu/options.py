@@ -45,6 +45,7 @@ class RunOptions:
     traffic: Traffic = NOBODY
     with_scenarios: bool = True  # meet those that the route file has on the way
     scenario_files: tuple[Path, ...] = ()  # Python files with scenarios of one's own
+    metric_files: tuple[Path, ...] = ()  # Python files with metrics of one's own
     record: bool = False
     viewer: bool = False  # stream the run to Rerun's viewer, and keep it
     output: Path = Path("runs")

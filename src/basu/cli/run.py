@@ -8,7 +8,7 @@ from pathlib import Path
 
 from basu.cli.driving import add_simulator, check_positive, terminated_as_interrupted
 from basu.cli.hud import add_hud, hud_options
-from basu.cli.scoring import add_scoring, adjusted
+from basu.cli.scoring import add_metrics, add_scoring, adjusted
 from basu.errors import UserError
 from basu.metrics.score import Scoring
 from basu.options import RunOptions, Traffic
@@ -56,6 +56,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         run.add_argument(f"--{name}", action="store_true", help=f"not in this version: {why}")
     add_hud(run)
     add_scoring(run)
+    add_metrics(run)
     run.set_defaults(command=run_agent)
 
 
@@ -150,6 +151,7 @@ def _options(arguments: argparse.Namespace) -> RunOptions:
         traffic=_traffic(arguments),
         with_scenarios=not arguments.no_scenarios,
         scenario_files=tuple(arguments.scenarios),
+        metric_files=tuple(arguments.metrics),
         record=arguments.record,
         viewer=arguments.viewer,
         output=arguments.output,
@@ -170,6 +172,9 @@ def run_agent(arguments: argparse.Namespace) -> int:
     if options.viewer:
         require()
     scoring = adjusted(Scoring(), arguments)
+    from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
+
+    user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
     from basu.running.runner import run  # noqa: PLC0415 - brings in the client and the plots, which `--help` does not need
 
     with terminated_as_interrupted():

@@ -15,6 +15,18 @@ from basu.metrics.score import Scoring
 from basu.metrics.scoring_json import read_scoring_file, scoring_from_json
 
 
+def add_metrics(command: argparse.ArgumentParser) -> None:
+    """The option for metrics of the user's own."""
+    command.add_argument(
+        "--metrics",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE.py",
+        help="metrics of your own, reported beside BASU's or scored with them; may be given several times",
+    )
+
+
 def add_scoring(command: argparse.ArgumentParser) -> None:
     """What is adjustable in the score."""
     kinds = ", ".join(kind.value for kind in Infraction)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import basu
+from basu.metrics.result import judge
 from basu.metrics.score import Scoring
 from basu.metrics.scoring_json import scoring_to_json
 from basu.options import STEP_S
@@ -18,7 +19,6 @@ from basu.output.report.console import table
 from basu.output.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, write_json
 from basu.output.report.html.page import write_report
 from basu.output.report.reading import RunRecord
-from basu.output.report.result import result
 from basu.output.report.streets import around, write_streets
 from basu.records.carla_log.sources import LOG_FILE
 from basu.records.history.files import write_history
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from basu.agents.config import AgentConfig
     from basu.agents.loader import LoadedAgent
+    from basu.metrics.registry import Metric
     from basu.options import RunOptions
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
@@ -106,6 +107,7 @@ def command(options: RunOptions, scoring: Scoring, description: RouteDescription
             values.append((option, number))
     words = [word for option, value in values if value is not None for word in (option, str(value))]
     words += [word for file in options.scenario_files for word in ("--scenarios", str(file))]
+    words += [word for file in options.metric_files for word in ("--metrics", str(file))]
     words += [] if options.with_scenarios else ["--no-scenarios"]
     return ["basu", "run", options.agent, *words, *(["--record"] if options.record else [])]
 
@@ -131,8 +133,12 @@ def leave(
     lanes: LaneGraph,
     config: dict[str, Any],
     scenarios: Sequence[dict[str, Any]] = (),
+    own: Sequence[Metric] = (),
 ) -> dict[str, Any]:
-    """Write the folder of a run and show its table; the result. ``scenarios`` are those on the way."""
+    """Write the folder of a run and show its table; the result.
+
+    ``scenarios`` are those on the way, ``own`` are users' metrics.
+    """
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
     meta = {
@@ -151,10 +157,9 @@ def leave(
         "town": config["town"],
         "versions": config["versions"],
     }
-    document = result(driven.outcome, history, scoring, meta)
-    if scenarios:
-        document["scenarios"] = list(scenarios)
-    text, lanes_m = table(document), lanes.streets()
+    result = judge(driven.outcome, history, scoring, meta, own=own, scenarios=scenarios)
+    document = result.document()
+    text, lanes_m = table(result), lanes.streets()
     print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
@@ -165,7 +170,7 @@ def leave(
         picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
     streets = [] if history is None else around(lanes_m, history)
     write_streets(folder, streets)
-    write_report(folder, RunRecord(name=folder.name, config=config, result=document, history=history, streets=streets))
+    write_report(folder, RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets))
     if config["recording"] is not None:
         print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return document

@@ -1,4 +1,4 @@
-"""The comfort score: what a ride was like for its standing passengers, 0 (bad) to 1 (good). No part of the driving score.
+"""The comfort score: a ride as its standing passengers found it, 0 (bad) to 1 (good). No part of the driving score.
 
 It is a convention of this project, made of figures that are each defined by a source; the weights are adjustable.
 Harm goes before comfort: a ride falls into the first of these levels that holds, and no comfort lifts it out.
@@ -19,7 +19,7 @@ The parts, each in 0 .. 1:
                   weight with it, where the route has no stops
     collisions    0 for any contact, else 1; it has no weight, because a contact alone decides
 
-Below 0.6 the parts do not count. So the braking that avoids a harm never costs more than the harm: `docs/passengers.md`.
+Below 0.6 the parts do not count, so the braking that avoids a harm never costs more than the harm itself.
 """
 
 from __future__ import annotations

@@ -6,10 +6,10 @@ import jsonschema
 import pytest
 
 from basu.errors import UserError
-from basu.metrics.passengers.as_json import passengers_to_json
 from basu.metrics.passengers.balance import balance
 from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_score, weights_from
 from basu.metrics.passengers.felt import felt
+from basu.metrics.passengers.metric import passengers_to_json
 from basu.metrics.passengers.verdict import Judged, judge
 from basu.metrics.score import Scoring, score
 from basu.output.report.schema import RESULT_SCHEMA, read_schema

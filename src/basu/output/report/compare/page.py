@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from basu.output.report.compare.table import HEADS, remarks, rows, shared_bounds
+from basu.output.report.compare.table import heads, remarks, rows, shared_bounds
 from basu.output.report.html.page import REPORT_FILE, page
 from basu.output.report.markup import e, extended, figure
 from basu.output.report.plots import marks
@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path, more: Sequence[Element] = ()) -> bytes:
     """The page, to lie in the folder ``beside``; ``more`` stands below the table."""
-    found = rows(runs)
+    compared = rows(runs)
     shared = shared_bounds(runs)
-    body = e("body", e("header", e("h1", "Comparison"), e("p", ", ".join(row.agent for row in found))))
+    body = e("body", e("header", e("h1", "Comparison"), e("p", ", ".join(row.agent for row in compared))))
     extended(body, [e("p", remark) for remark in remarks(runs)])
-    body.append(_table(found, folders, beside))
+    body.append(_table(compared, folders, beside))
     extended(body, more)
     pictures = e("div", class_="side-by-side")
-    for run, row in zip(runs, found, strict=True):
+    for run, row in zip(runs, compared, strict=True):
         pictures.append(_picture(run, row, shared))
     legend = e("p", class_="legends")
     for style, words in (("planned", "planned path"), ("driven", "driven path")):
@@ -46,15 +46,15 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
 
 def _table(found: Sequence[Row], folders: Sequence[Path], beside: Path) -> Element:
     """As table 5.1; each agent's name opens its report."""
-    body = e("tbody")
+    body, named = e("tbody"), heads(found)
     for row, folder in zip(found, folders, strict=True):
-        cells = row.cells()
+        cells = [row.cell(head) for head in named]
         report = folder / REPORT_FILE
         name: Element | str = cells[0]
         if report.exists():
             name = e("a", cells[0], href=_address(report, beside))
         body.append(e("tr", e("th", name, scope="row"), *(e("td", cell) for cell in cells[1:])))
-    head = e("thead", e("tr", *(e("th", head, scope="col") for head in HEADS)))
+    head = e("thead", e("tr", *(e("th", head, scope="col") for head in named)))
     return e("section", e("h2", "Scores"), e("div", e("table", head, body), class_="wide"))
 
 
@@ -72,8 +72,8 @@ def _picture(run: RunRecord, row: Row, shared: Bounds | None) -> Element:
     curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
     bounds = shared or bounds_of(run.history)
     places = [
-        (marks.symbol(infraction["kind"], str(number)), infraction["x_m"], infraction["y_m"])
-        for number, infraction in enumerate(run.result["infractions"], start=1)
+        (marks.symbol(found.kind.value, str(number)), found.x_m, found.y_m)
+        for number, found in enumerate(run.result.infractions, start=1)
     ]
     return e(
         "figure",

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.output.report.findings import findings
+from basu.output.report.events import events
 from basu.output.report.html import figures
 from basu.output.report.html.evidence import evidence
 from basu.output.report.html.plots import charts
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.findings import Finding
+    from basu.output.report.events import Event
     from basu.output.report.plots.signals import Signals
     from basu.output.report.reading import RunRecord
     from basu.records.history import History
@@ -51,13 +51,13 @@ def write_report(folder: Path, run: RunRecord) -> None:
 
 def report(run: RunRecord) -> bytes:
     """The report of a run as a page."""
-    document = run.result
+    result, document = run.result, run.result.document()
     body = e("body", _head_of(run))
     history = run.history
     if history is None:
         extended(body, [score_card(document), _again(run)])
         return page(f"{run.agent}: {document['status']}", body)
-    felt, found = signals(history), findings(document)
+    felt, found = signals(history), events(result)
     extended(
         body,
         [
@@ -99,13 +99,13 @@ def page(title: str, body: Element, script: str = "", style: str = "") -> bytes:
 
 def _head_of(run: RunRecord) -> Element:
     """Who drove what, and how it ended."""
-    meta, document = run.result["meta"], run.result
+    meta, document = run.result.meta, run.result.document()
     where = f"route {meta['route']} of {meta['town']}, {meta['vehicle']}, {meta['weather']}, seed {meta['seed']}"
     ended = e("p", e("b", document["status"], class_=f"status {document['fault']}"), f" {document['message']}")
     return e("header", e("h1", run.agent), e("p", f"{where}; started {meta['started']}"), ended)
 
 
-def _map(run: RunRecord, history: History, found: Sequence[Finding]) -> Element:
+def _map(run: RunRecord, history: History, found: Sequence[Event]) -> Element:
     """The map, its legend, and the one control of the page: the moment that all plots show."""
     legend = e("p", class_="legends")
     for style, words in (("planned", "planned path"), ("driven", "driven path")):
