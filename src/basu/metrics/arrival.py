@@ -22,20 +22,21 @@ AT_REST_MPS = 0.1
 
 
 def has_arrived(left_m: float, speed_mps: float, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> bool:
-    """Whether a vehicle with ``left_m`` of its route ahead has arrived; the slacks widen the first limit and the rest."""
+    """Whether a vehicle with ``left_m`` of its route ahead has arrived; the slacks widen the end and the rest."""
     return left_m <= AT_END_M + slack_m or (left_m <= PARKED_M and speed_mps < AT_REST_MPS + slack_mps)
 
 
-def arrivals(history: History) -> NDArray[np.bool_]:
-    """(T,) the frames in which the vehicle has arrived."""
+def arrivals(history: History, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> NDArray[np.bool_]:
+    """(T,) the frames in which the vehicle has arrived, as `has_arrived` has it."""
     left_m = history.facts.route.length_m - history.frames["route_s_m"]
-    there: NDArray[np.bool_] = (left_m <= AT_END_M) | ((left_m <= PARKED_M) & (history.speed_mps() < AT_REST_MPS))
+    at_rest = history.speed_mps() < AT_REST_MPS + slack_mps
+    there: NDArray[np.bool_] = (left_m <= AT_END_M + slack_m) | ((left_m <= PARKED_M) & at_rest)
     return there
 
 
-def arrival_tick(history: History) -> int | None:
+def arrival_tick(history: History, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> int | None:
     """The first frame in which the vehicle has arrived; None where it never has."""
-    there = arrivals(history)
+    there = arrivals(history, slack_m=slack_m, slack_mps=slack_mps)
     return int(np.argmax(there)) if there.any() else None
 
 

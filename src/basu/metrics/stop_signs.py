@@ -1,8 +1,8 @@
 """Stop signs: did the vehicle come to rest before the line, and how slow did it get?
 
 A driver has stopped when its speed fell below 0.1 m/s (the CARLA leaderboard's threshold) while the front bumper was in
-the approach zone: from 6 m before the line, a car's length and a half, to 1 m beyond it, an overhang that the
-leaderboard's trigger volumes forgive as well. The sign is passed, and judged, when the vehicle's middle crosses the
+the approach zone: from 3 m before the line, as near as a service stop is served, to 1 m beyond it, an overhang that the
+leaderboard's trigger volumes forgive as well. A wider zone would not notice a line that is 4 m from its place. The sign is passed, and judged, when the vehicle's middle crosses the
 line. Signs that the run did not get to are not judged; nor are those passed more than 4 m beside the route, where the
 sign is not the vehicle's.
 """
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from basu.routing import Control
 
 AT_REST_MPS = 0.1
-ZONE_BEFORE_M, ZONE_BEYOND_M = 6.0, 1.0
+ZONE_BEFORE_M, ZONE_BEYOND_M = 3.0, 1.0
 BESIDE_M = 4.0
 
 
