@@ -7,56 +7,39 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.output.report.markup import DASH, TIMES, e, figure, number, words
+from basu.output.report.markup import DASH, TIMES, e, figure, number
 from basu.output.report.plots import marks
 from basu.output.report.plots.chart import Line, Mark, chart
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
+from basu.output.report.templates import render
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
+    from markupsafe import Markup
+
     from basu.output.report.events import Event
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
-PICTURED = 60  # findings that have pictures; a drive with more of them is told in words from there on
+PICTURED = 60  # events that have pictures; a drive with more of them is told in words from there on
 CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
 AROUND_S = 8.0  # of speed, before and after
 UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others whose size is not recorded
 
 
-def evidence(history: History, felt: Signals, found: Sequence[Event]) -> list[Element]:
+def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
     """The infractions, and what is not scored, each one to be opened and linked to."""
-    scored = e("section", e("h2", "Infractions"), id="infractions")
-    rest = e("section", e("h2", "Seen, not scored"), id="events")
-    so_far = 1.0
+    scored, rest, so_far = [], [], 1.0
     for order, event in enumerate(found):
         so_far *= 1.0 if event.factor is None else event.factor
-        pictures = None
-        if order < PICTURED:
-            pictures = e("div", close_up(history, event), _speed(felt, event), class_="pictures")
-        (rest if event.factor is None else scored).append(_one(event, pictures, so_far))
-    for section in (scored, rest):
-        if len(section) == 1:
-            section.append(e("p", "None."))
-    return [scored, rest]
-
-
-def _one(event: Event, pictures: Element | None, so_far: float) -> Element:
-    """One of them, closed at first."""
-    symbol = marks.symbol(event.kind, event.label, scored=event.factor is not None)
-    return e(
-        "details",
-        e("summary", symbol, e("b", words(event.kind)), f" at {event.t_s:.1f} s"),
-        e("p", event.detail),
-        pictures,
-        _facts(event, so_far),
-        class_="evidence",
-        id=event.anchor,
-        data_t=event.t_s,
-    )
+        pictures = [close_up(history, event), _speed(felt, event)] if order < PICTURED else []
+        symbol = marks.symbol(event.kind, event.label, scored=event.factor is not None)
+        (rest if event.factor is None else scored).append((event, symbol, pictures, _facts(event, so_far)))
+    sections = [("Infractions", "infractions", scored), ("Seen, not scored", "events", rest)]
+    return render("html/templates/evidence.j2", sections=sections)
 
 
 def close_up(history: History, event: Event) -> Element:
@@ -116,9 +99,9 @@ def _speed(felt: Signals, event: Event) -> Element:
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 
-def _facts(event: Event, so_far: float) -> Element:
-    """The figures in a line of terms."""
-    terms = [
+def _facts(event: Event, so_far: float) -> list[tuple[str, str]]:
+    """The figures, each with its name."""
+    return [
         ("time", f"{event.t_s:.2f} s, tick {event.tick}"),
         ("speed", DASH if event.speed_mps is None else f"{event.speed_mps:.2f} m/s"),
         ("along the route", f"{event.route_s_m:.1f} m"),
@@ -126,11 +109,10 @@ def _facts(event: Event, so_far: float) -> Element:
         ("other party", event.other or "none"),
         ("costs", _cost(event.factor, so_far)),
     ]
-    return e("dl", *(e("div", e("dt", name), e("dd", text)) for name, text in terms))
 
 
 def _cost(factor: float | None, so_far: float) -> str:
-    """What a event does to the score."""
+    """What an event does to the score."""
     if factor is None:
         return "nothing in the driving score"
     return f"{TIMES} {factor:g}; infraction score so far {figure(so_far)}"
