@@ -2,9 +2,9 @@
 
 A driver has stopped when its speed fell below 0.1 m/s (the CARLA leaderboard's threshold) while the front bumper was in
 the approach zone: from 3 m before the line, as near as a service stop is served, to 1 m beyond it, an overhang that the
-leaderboard's trigger volumes forgive as well. A wider zone would not notice a line that is 4 m from its place. The sign is passed, and judged, when the vehicle's middle crosses the
-line. Signs that the run did not get to are not judged; nor are those passed more than 4 m beside the route, where the
-sign is not the vehicle's.
+leaderboard's trigger volumes forgive as well. A wider zone would not notice a line that is 4 m from its place. The sign
+is passed, and judged, when the vehicle's middle crosses the line. Signs that the run did not get to are not judged; nor
+are those passed more than 4 m beside the route, where the sign is not the vehicle's.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ def actor(key: int, type_id: str, x_m: float, *, z_m: float = 0.0, yaw_deg: floa
         type_id=type_id,
         bounding_box=box,
         get_transform=lambda: pose,
-        get_velocity=lambda: carla.Vector3D(),
+        get_velocity=carla.Vector3D,
     )
 
 

@@ -117,7 +117,7 @@ def test_an_installed_package_offers_them_by_entry_point(monkeypatch: pytest.Mon
         ),
         ("class A(Metric):\n    name = title = 'a'", "A cannot be made"),
         (
-            "class A(Metric):\n    name = title = 'a'\n    penalties = {'a': 2}\n    def compute(self, drive): return 1",
+            "class A(Metric):\n    name = title = 'a'\n    penalties = {'a': 2}\n    compute = len",
             "the penalty of a is 2; it is a factor and must lie in 0..1",
         ),
     ],

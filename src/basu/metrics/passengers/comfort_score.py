@@ -24,7 +24,6 @@ Below 0.6 the parts do not count, so the braking that avoids a harm never costs 
 
 from __future__ import annotations
 
-import difflib
 import math
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, NamedTuple
@@ -32,6 +31,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.errors import UserError
+from basu.settings.option import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -57,7 +57,7 @@ class Harm(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ComfortWeights:
+class ComfortWeights(Settings):
     """How much each part counts; they need not sum to 1, only their proportions matter."""
 
     balance: float = 0.3
@@ -66,34 +66,21 @@ class ComfortWeights:
     near_misses: float = 0.2
     service: float = 0.1  # with 0, stops that were passed are no breach either
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
+        """Check that something counts.
+
+        Raises:
+            UserError: a weight is negative, or all are 0.
+        """
         for name, weight in self.named().items():
             if not (math.isfinite(weight) and weight >= 0.0):
-                raise UserError(f"the comfort weight of {name} is {weight}; it must be a number that is not negative")
+                raise UserError(f"the comfort weight of {name} is {weight}; it must be 0 or more")
         if sum(self.named().values()) == 0.0:
             raise UserError("all comfort weights are 0; at least one must be positive")
 
     def named(self) -> dict[str, float]:
         """The weights by name."""
         return {field.name: float(getattr(self, field.name)) for field in fields(self)}
-
-
-def weights_from(given: Mapping[str, float], source: str) -> ComfortWeights:
-    """Weights with some changed by name.
-
-    Raises:
-        UserError: a name that there is not, or a weight that is none; the sentence begins with ``source``.
-    """
-    names = [field.name for field in fields(ComfortWeights)]
-    for name in given:
-        if name not in names:
-            close = difflib.get_close_matches(str(name), names, 1)
-            hint = f"did you mean '{close[0]}'?" if close else f"there are {', '.join(names)}"
-            raise UserError(f"{source}: '{name}' is no part of the comfort score; {hint}")
-    try:
-        return ComfortWeights(**given)
-    except UserError as error:
-        raise UserError(f"{source}: {error}") from None
 
 
 def parts(

@@ -32,7 +32,9 @@ UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others whose size is not reco
 
 def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
     """The infractions, and what is not scored, each one to be opened and linked to."""
-    scored, rest, so_far = [], [], 1.0
+    scored: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
+    rest: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
+    so_far = 1.0
     for order, event in enumerate(found):
         so_far *= 1.0 if event.factor is None else event.factor
         pictures = [close_up(history, event), _speed(felt, event)] if order < PICTURED else []
