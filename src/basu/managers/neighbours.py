@@ -41,6 +41,11 @@ class Neighbours:
                 found.append((away_m, actor_id, actor))
         return [self._row(frame.tick, actor_id, actor) for _, actor_id, actor in sorted(found)[:NEAREST]]
 
+    def counts(self) -> tuple[int, int]:
+        """Return how many other vehicles and how many walkers the world has, as of the last look."""
+        walkers = sum(actor.type_id.startswith("walker.") for actor in self._actors.values())
+        return len(self._actors) - walkers, walkers
+
     def _look_again(self, count: int) -> None:
         """Take the moving actors out of the world's list; costs no call to the server unless somebody is new."""
         self._count = count
