@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.output.hud.canvas import BLACK, BLUE, GREEN, GREY, RED, WHITE, YELLOW
-from basu.output.hud.readings import compass_point
+from basu.output.hud.readings import compass_point, degrees
 
 if TYPE_CHECKING:
     from basu.output.hud.canvas import Canvas, Colour
@@ -119,7 +119,7 @@ class Panel:
         self._row("Heading", f"{shown.heading_deg:.0f}° {compass_point(shown.heading_deg)}")
         x_m, y_m, z_m = shown.at_m
         self._row("Location", f"{x_m:.1f}, {y_m:.1f}, {z_m:.1f} m")
-        self._row("GNSS", f"{shown.fix.latitude_deg:.6f}° N, {shown.fix.longitude_deg:.6f}° E")
+        self._row("GNSS", ", ".join(degrees(shown.fix, 6)))
         force, spin = shown.inertial
         self._row("Accelerometer", f"{signed(force)} m/s²")
         self._row("Gyroscope", f"{signed(spin)} °/s")
@@ -152,7 +152,9 @@ class Panel:
         """Simulated and wall time, and how fast both go."""
         self._row("Simulated, wall time", f"{clock(shown.simulated_s)}, {clock(shown.wall_s)}")
         rates = shown.rates
-        self._row("Server, window", f"{rates.ticks_per_s:.0f}, {rates.pictures_per_s:.0f} fps ({rates.real_time:.1f}x)")
+        self._row(
+            "Server, window", f"{rates.ticks_per_s:.0f}, {rates.pictures_per_s:.0f} fps ({times(rates.real_time)})"
+        )
         self._gap()
 
     def _nearby(self, shown: Readings) -> None:
@@ -167,6 +169,11 @@ def driver_word(shown: Readings) -> tuple[str, Colour]:
     if shown.manual:
         return "MANUAL", YELLOW
     return ("AUTOPILOT", BLUE) if shown.autopilot else ("AGENT", GREEN)
+
+
+def times(factor: float) -> str:
+    """A factor with two figures or so."""
+    return f"{factor:.2f}x" if factor < 1.0 else f"{factor:.1f}x"
 
 
 def clock(seconds: float) -> str:

@@ -36,6 +36,14 @@ class Fix(NamedTuple):
     altitude_m: float
 
 
+def degrees(fix: Fix, places: int) -> tuple[str, str]:
+    """Return latitude and longitude with their half of the Earth."""
+    return tuple(  # type: ignore[return-value]  # two
+        f"{abs(value):.{places}f}° {halves[value < 0.0]}"
+        for value, halves in ((fix.latitude_deg, "NS"), (fix.longitude_deg, "EW"))
+    )
+
+
 class Inertial(NamedTuple):
     """IMU, in the vehicle's axes: x ahead, y to the right, z up."""
 

@@ -9,7 +9,7 @@ import carla
 import numpy as np
 
 from basu.output.hud.canvas import GREEN, GREY, WHITE, YELLOW
-from basu.output.hud.readings import compass_point, fix_of
+from basu.output.hud.readings import compass_point, degrees, fix_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -74,11 +74,8 @@ def readings(carla_map: carla.Map, measured: Any) -> list[tuple[str, str]]:  # n
     """Return what a sensor measured as pairs of a name and a value with its unit."""
     if isinstance(measured, carla.GnssMeasurement):
         fix = fix_of(carla_map, measured, measured.transform.location)
-        return [
-            ("Latitude", f"{fix.latitude_deg:.7f}° N"),
-            ("Longitude", f"{fix.longitude_deg:.7f}° E"),
-            ("Altitude", f"{fix.altitude_m:.2f} m"),
-        ]
+        latitude, longitude = degrees(fix, 7)
+        return [("Latitude", latitude), ("Longitude", longitude), ("Altitude", f"{fix.altitude_m:.2f} m")]
     if isinstance(measured, carla.IMUMeasurement):
         force, spin, heading_deg = measured.accelerometer, measured.gyroscope, math.degrees(measured.compass)
         return [
@@ -153,7 +150,7 @@ def _draw_points(canvas: Canvas, left: float, points: tuple[NDArray[np.float64],
     scale = 0.5 * height / reach_m
     for ring_m in RINGS_M:
         canvas.circle((middle[0], middle[1]), scale * ring_m, (60, 64, 70), border=1)
-        canvas.text((middle[0] + 4, middle[1] - scale * ring_m + 2), f"{ring_m:.0f} m", GREY)
+        canvas.text((middle[0] + scale * ring_m - 4, middle[1] + 2), f"{ring_m:.0f} m", GREY, align=1.0)
     pixels = np.column_stack([middle[0] + scale * places_m[:, 1], middle[1] - scale * places_m[:, 0]])
     canvas.points(pixels, colours, left)
     canvas.polygon(middle + np.array([[0.0, -7.0], [5.0, 6.0], [-5.0, 6.0]]), GREEN)

@@ -69,7 +69,7 @@ def test_the_panel_says_what_there_is() -> None:
         "47 km/h",
         "REVERSE  HAND BRAKE  R",
         "44° NE",
-        "39.990000° N, -82.970000° E",
+        "39.990000° N, 82.970000° W",
         "Linden, leap",
         "ClearSunset",
         "3 cameras, lidar, GNSS, IMU, col…",
