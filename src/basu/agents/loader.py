@@ -25,6 +25,9 @@ BUILT_IN = {
     "behavioral": "basu.agents.builtin.behavioral",
     "behavioral-cautious": "basu.agents.builtin.behavioral_cautious",
     "behavioral-aggressive": "basu.agents.builtin.behavioral_aggressive",
+    "blind": "basu.agents.builtin.controls:BlindAgent",
+    "creeper": "basu.agents.builtin.controls:CreeperAgent",
+    "standing": "basu.agents.builtin.controls:StandingAgent",
     "deviating": "basu.agents.builtin.deviating",
     "forward": "basu.agents.builtin.forward",
     "human": "basu.agents.builtin.human",
@@ -66,8 +69,10 @@ def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
     """The agent by its name or from its file."""
     name, _, knowledge = wanted.partition(":")
     if name in BUILT_IN:
-        module = importlib.import_module(BUILT_IN[name])
-        return _with_knowledge(_only(_agents_in(module.__dict__, module.__name__), name), name, knowledge)
+        module_name, _, class_name = BUILT_IN[name].partition(":")
+        agents = _agents_in(vars(importlib.import_module(module_name)), module_name)
+        agent = _only([a for a in agents if class_name in {"", a.__name__}], name)
+        return _with_knowledge(agent, name, knowledge)
     text, _, class_name = wanted.partition(":") if ".py:" in wanted else (wanted, "", "")
     path = Path(text)
     if path.suffix != ".py":
@@ -91,11 +96,11 @@ def _with_knowledge(agent: type[AutonomousAgent], name: str, knowledge: str) -> 
     """A built-in agent as it is, or the variant that knows all other actors (``basic:full``)."""
     if not knowledge:
         return LoadedAgent(agent, name, None)
-    if not hasattr(agent, "knowledge"):
+    if getattr(agent, "knowledge", Knowledge.NONE) is Knowledge.NONE:
         raise UserError(f"the agent '{name}' looks at no other actors; leave ':{knowledge}' out")
-    if knowledge not in [value.value for value in Knowledge]:
+    if knowledge != Knowledge.FULL.value:
         raise UserError(f"there is no agent '{name}:{knowledge}'; there are '{name}' and '{name}:full'")
-    variant = type(agent.__name__, (agent,), {"knowledge": Knowledge(knowledge), "__module__": agent.__module__})
+    variant = type(agent.__name__, (agent,), {"knowledge": Knowledge.FULL, "__module__": agent.__module__})
     return LoadedAgent(variant, f"{name}-{knowledge}", None)
 
 

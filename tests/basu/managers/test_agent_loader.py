@@ -37,7 +37,7 @@ def test_the_thesis_sample_is_loaded_as_it_stands_there() -> None:
     assert agent.get_initial_route_locations() is None
 
 
-@pytest.mark.parametrize("name", ["basic", "forward"])
+@pytest.mark.parametrize("name", ["basic", "forward", "blind", "creeper", "standing"])
 def test_the_built_in_agents_are_found_by_name(name: str) -> None:
     loaded = load_agent(name)
     assert issubclass(loaded.agent_class, AutonomousAgent)
@@ -56,6 +56,7 @@ def test_a_built_in_agent_knows_whom_it_sees_or_everyone() -> None:
     [
         ("basic:all", "there is no agent 'basic:all'; there are 'basic' and 'basic:full'"),
         ("forward:full", "the agent 'forward' looks at no other actors; leave ':full' out"),
+        ("blind:full", "the agent 'blind' looks at no other actors; leave ':full' out"),
     ],
 )
 def test_knowledge_that_there_is_not_is_refused(wanted: str, sentence: str) -> None:

@@ -35,6 +35,7 @@ class Knowledge(enum.Enum):
 
     SEEN = "seen"  # those in line of sight, and those seen a moment ago
     FULL = "full"  # all, as the simulator has them
+    NONE = "none"  # nobody: the control drivers'
 
 
 class Sight:
@@ -56,7 +57,7 @@ class Sight:
             world: with the vehicle in it.
             vehicle: on whose roof the sensors sit.
             radius_m: nobody farther along x or y than this is looked for.
-            knowledge: ``FULL`` leaves the filter out.
+            knowledge: ``FULL`` leaves the filter out; ``NONE`` sees nobody.
         """
         self._world, self._own_id, self._radius_m, self._knowledge = world, vehicle.id, radius_m, knowledge
         self._census = Census(world, vehicle.id, radius_m)
@@ -77,8 +78,8 @@ class Sight:
         """
         snapshot = self._world.get_snapshot() if snapshot is None else snapshot
         own = snapshot.find(self._own_id)
-        if own is None:
-            return []  # before the vehicle's first tick
+        if own is None or self._knowledge is Knowledge.NONE:
+            return []  # None: before the vehicle's first tick
         pose = own.get_transform()
         found = self._census.near(snapshot, pose.location.x, pose.location.y)
         if self._knowledge is Knowledge.FULL:
