@@ -66,6 +66,11 @@ class Neighbours:
         chosen = [*sorted(moving)[:NEAREST], *sorted(things)[:NEAREST]]
         return [self._row(frame.tick, actor_id, actor) for _, actor_id, actor in chosen]
 
+    def counts(self) -> tuple[int, int]:
+        """Return how many other vehicles and how many walkers the world has, as of the last look."""
+        walkers = sum(actor.type_id.startswith("walker.") for actor in self._actors.values())
+        return len(self._actors) - walkers, walkers
+
     def _look_again(self, count: int) -> None:
         """Take vehicles, walkers and things out of the world's list; only new actors cost a call to the server."""
         self._count = count
