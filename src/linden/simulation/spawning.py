@@ -172,6 +172,7 @@ def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
     record = episode.actors.remove(actor_id, announce=announce)
     if record.slot != NO_BODY:
         episode.bodies.remove(record.slot)
+        episode.forget_contacts(record.slot)
     episode.instruments.pop(actor_id, None)
     episode.eyes.pop(actor_id, None)
     episode.doors.forget(actor_id)
