@@ -143,7 +143,10 @@ def _first_touching(episode: Episode, box: BoundingBox, pose: Transform) -> str 
 
 
 def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
-    """Take an actor and everything attached to it out of the episode; ``announce`` where no client asked for it.
+    """Take an actor out of the episode; ``announce`` where no client asked for it.
+
+    What is attached to it stays where it is, attached to nothing: ``UActorDispatcher::DestroyActor`` of CARLA destroys
+    an actor and its controller, and Unreal detaches the rest. Programs destroy their sensors themselves.
 
     Raises:
         Refusal: there is none of that id, or it belongs to the map.
@@ -153,22 +156,8 @@ def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
         raise Refusal(f"unable to destroy actor: not found (no actor has id {actor_id})")
     if record.kind in _OF_THE_MAP or actor_id == episode.spectator_id:
         raise Refusal(f"unable to destroy actor: {record.description.id} (actor {actor_id}) belongs to the map")
-    for child_id in _attached(episode, actor_id):
-        _remove(episode, child_id, announce=True)
-    _remove(episode, actor_id, announce=announce)
-
-
-def _attached(episode: Episode, actor_id: int) -> list[int]:
-    """Return all that is attached to an actor, or to what is, whatever comes last on a chain of any length first."""
-    found, to_visit = [], [actor_id]
-    while to_visit:
-        children = [child.id for child in episode.actors.children(to_visit.pop())]
-        found += children
-        to_visit += children
-    return found[::-1]
-
-
-def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
+    for child in episode.actors.children(actor_id):
+        episode.actors.detach(child.id)
     record = episode.actors.remove(actor_id, announce=announce)
     if record.slot != NO_BODY:
         episode.bodies.remove(record.slot)

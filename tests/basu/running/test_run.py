@@ -152,6 +152,7 @@ def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path
     # raised in the agent's own thread: what is sent to a process may reach any thread, and Python a few steps later
     code, result = run(doing(tmp_path, f"signal.raise_signal(signal.{name})"))
     assert (code, result["status"]) == (130, "Interrupted")
+    assert result["message"] == {"SIGINT": "interrupted by the user", "SIGTERM": "terminated by SIGTERM"}[name]
     assert result["scores"] is not None
 
 

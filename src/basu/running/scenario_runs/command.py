@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import sys
 import time
@@ -13,10 +14,10 @@ from tqdm import tqdm
 from basu.agents.loader import load_agent
 from basu.errors import UserError
 from basu.outcome import Fault
-from basu.output.report.folder import DRAFTS, make_draft, plain, point_latest, publish, write_json
+from basu.output.report.folder import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.page.records import MATRIX_FILE
 from basu.running.scenario_runs.crew import Crew, Lost
-from basu.running.scenario_runs.document import lost
+from basu.running.scenario_runs.document import lost, run_config
 from basu.running.scenario_runs.leave import leave
 from basu.running.scenario_runs.matrix import matrix_of
 from basu.running.scenario_runs.worker import Job, play
@@ -48,6 +49,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
     agents = _loaded(options.agents)
     names = [agent.name for agent in agents]
     folder = _folder(options, began)
+    write_json(folder / CONFIG_FILE, run_config(options, agents))
     jobs = [
         Job(number, agent, playable.case.name)
         for number, (playable, agent) in enumerate((each, agent) for each in playables for agent in options.agents)
@@ -71,6 +73,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
             matrix = matrix_of(options, names, playables, documents, began, wall_s)
             write_json(folder / MATRIX_FILE, matrix)
             leave(folder, matrix, options.junit)
+            print(f"repeat  basu scenario run --config {shlex.quote(str(folder / CONFIG_FILE))}")
     return Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
 
 
@@ -88,11 +91,15 @@ def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
 
 def worst(documents: Iterator[dict[str, Any]]) -> int:
     """The exit code of what went worst: a simulator that failed before a set-up, before an agent."""
-    codes = {
-        Fault.AGENT.value if document["verdict"] == "FAILURE" else Fault[document["fault"].upper()].value
-        for document in documents
-    }
-    return max(codes, default=Fault.SETUP.value)
+    return max({_exit_code(document) for document in documents}, default=Fault.SETUP.value)
+
+
+def _exit_code(document: dict[str, Any]) -> int:
+    """The agent's for a failure, and where nothing was exercised and the drive was not completed either."""
+    absent = document["verdict"] == "NOT_EXERCISED" and document["assessment"]["completed"]["holds"] is False
+    if document["verdict"] == "FAILURE" or absent:
+        return Fault.AGENT.value
+    return int(Fault[document["fault"].upper()].value)
 
 
 def _loaded(typed: Sequence[str]) -> list[LoadedAgent]:

@@ -38,7 +38,7 @@ class Meeter(AutonomousAgent):
 """
 STRIKER = """
 import pygame
-from basu.agents.{module} import {base}
+from basu.agents.builtin.{module} import {base}
 
 KEYS = {keys!r}
 

@@ -250,7 +250,7 @@ def test_ids_are_in_snake_case(name: str, told: str) -> None:
 
 
 def test_all_is_bounded_by_what_is_packaged(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, mine: Path) -> None:
-    monkeypatch.setattr(library, "INSTANCES", tmp_path / "nothing")
+    monkeypatch.setattr(library, "LIBRARY", tmp_path / "nothing")
     assert names("all", mine) == ["tree_1", "tree_2", "rock_1"]
 
 
