@@ -68,8 +68,8 @@ class Neighbours:
 
     def counts(self) -> tuple[int, int]:
         """Return how many other vehicles and how many walkers the world has, as of the last look."""
-        walkers = sum(actor.type_id.startswith("walker.") for actor in self._actors.values())
-        return len(self._actors) - walkers, walkers
+        kinds = [shape.type_id.partition(".")[0] for shape in self._shapes.values()]
+        return kinds.count("vehicle"), kinds.count("walker")
 
     def _look_again(self, count: int) -> None:
         """Take vehicles, walkers and things out of the world's list; only new actors cost a call to the server."""
