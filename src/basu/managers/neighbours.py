@@ -66,6 +66,11 @@ class Neighbours:
         chosen = [*sorted(moving)[:NEAREST], *sorted(things)[:NEAREST]]
         return [self._row(frame.tick, actor_id, actor) for _, actor_id, actor in chosen]
 
+    def counts(self) -> tuple[int, int]:
+        """Return how many other vehicles and how many walkers the world has, as of the last look."""
+        kinds = [shape.type_id.partition(".")[0] for shape in self._shapes.values()]
+        return kinds.count("vehicle"), kinds.count("walker")
+
     def _look_again(self, count: int) -> None:
         """Take vehicles, walkers and things out of the world's list; only new actors cost a call to the server."""
         self._count = count

@@ -52,6 +52,16 @@ def test_other_rules_are_told_of() -> None:
     assert "different penalties or weights" in remark
 
 
+def test_the_command_writes_nothing_unless_a_folder_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    one, other = (written(tmp_path / name, record(crashing(), agent=name)) for name in ("one", "other"))
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["compare", str(one), str(other)]) == 0
+    assert sorted(tmp_path.rglob("*")) == before
+    assert "no files were written; `-o DIR` writes compare.html and compare.png there" in capsys.readouterr().out
+
+
 def test_the_command_writes_page_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     one = written(tmp_path / "one", record(crashing(), agent="<b>one</b>"))
     other = written(tmp_path / "the other", record(driven(at(8.0, 25.0)), agent="other"))
