@@ -9,9 +9,9 @@ import pytest
 from basu.cli import main
 from basu.cli.scenario import add_list_options, list_scenarios
 from basu.errors import ScenarioError
+from basu.scenarios.characteristics import Characteristics
 
 CLASSES = """
-from basu.scenarios.characteristics import Characteristics
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.scenario import Scenario
