@@ -108,7 +108,13 @@ class RunOptions(Settings):
     ] = None
     with_scenarios: Annotated[
         bool,
-        Option(help="leave out the scenarios of the route file", group=ROUTES, flag="--no-scenarios", inverted=True),
+        Option(
+            help="leave out the scenarios of the route file",
+            group=ROUTES,
+            flag="--no-scenarios",
+            inverted=True,
+            default_text="drive with them",
+        ),
     ] = True
     scenario_files: Annotated[
         tuple[Path, ...],

@@ -56,7 +56,7 @@ class Scoring(Settings):
     speeding_tolerance_mps: Annotated[
         float,
         Option(
-            help="speeding begins so far above the posted limit",
+            help="excess over the posted limit at which speeding begins",
             group=SCORING,
             flag="--speeding-tolerance",
             metavar="M/S",
@@ -67,7 +67,7 @@ class Scoring(Settings):
     route_deviation_m: Annotated[
         float,
         Option(
-            help="the vehicle is outside the plan so far from the planned line",
+            help="distance from the planned line at which the vehicle is outside the plan",
             group=SCORING,
             flag="--route-deviation",
             metavar="M",
@@ -97,7 +97,7 @@ class Scoring(Settings):
     harsh_stop_mps2: Annotated[
         float,
         Option(
-            help="braking that standing passengers feel as so strong is a harsh stop",
+            help="braking as strong as this, felt by standing passengers, is a harsh stop",
             group=SCORING,
             flag="--harsh-stop",
             metavar="M/S2",

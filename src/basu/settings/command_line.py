@@ -107,7 +107,7 @@ def default_text(field: Field) -> str:
         return field.option.default_text
     if field.default is None or isinstance(field.default, bool) or field.default == ():
         return ""
-    return form_of(field).text(field.default)
+    return re.sub(r"(\d)\.0\b", r"\1", form_of(field).text(field.default))
 
 
 def _add(group: argparse._ArgumentGroup, field: Field) -> None:
