@@ -17,14 +17,17 @@ from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Criterion, Judgement, Played, Thing
 from basu.scenarios.criteria.going import Arrives, InTime, Reaches, ReachesPoint
 from basu.scenarios.criteria.lane import KeepsLane, Regains
-from basu.scenarios.criteria.margins.headway import KeepsHeadway
-from basu.scenarios.criteria.margins.least_distance import LeastDistance
-from basu.scenarios.criteria.margins.least_ttc import LeastTtc
-from basu.scenarios.criteria.margins.pet import Pet
 from basu.scenarios.criteria.signals import HeedsRedLights, HeedsStopSigns
 from basu.scenarios.criteria.speed import KeepsSpeed, MinimumSpeed
 from basu.scenarios.criteria.stopping import StoppedFor
-from basu.scenarios.criteria.told import margins_of, told_always
+from basu.scenarios.criteria.surrogate_measures import (
+    KeepsHeadway,
+    LeastDistance,
+    LeastTtc,
+    Pet,
+    margins_of,
+    reported_always,
+)
 
 __all__ = [
     "Arrives",
@@ -49,5 +52,5 @@ __all__ = [
     "StoppedFor",
     "Thing",
     "margins_of",
-    "told_always",
+    "reported_always",
 ]
