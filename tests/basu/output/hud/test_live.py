@@ -123,6 +123,33 @@ def test_escape_ends_the_run_and_all_is_written(run: Runner, tmp_path: Path) -> 
     assert shot.read_bytes().startswith(b"\x89PNG")
 
 
+def test_n_shows_the_agents_sensors_and_tab_the_map(run: Runner, tmp_path: Path) -> None:
+    sensors = tmp_path / "sensors.json"
+    sensors.write_text(
+        json.dumps(
+            [
+                {"type": "sensor.lidar.ray_cast", "id": "TOP", "z": 2.0, "points_per_second": 100000, "channels": 16},
+                {"type": "sensor.other.gnss", "id": "GPS"},
+            ]
+        )
+    )
+    shots: dict[str, bytes] = {}
+    for name, strikes in (("map", 0), ("lidar", 1), ("gnss", 2), ("map again", 3)):
+        shot = tmp_path / f"{name}.png"
+        keys = {5: [(DOWN, "n")] * strikes, 12: [(DOWN, "F12")], 13: [(DOWN, "ESCAPE")]}
+        agent = striker(tmp_path, keys, end=20, human=False)
+        agent.write_text(
+            agent.read_text().replace(
+                '"vehicle.tesla.model3"}', f'"vehicle.tesla.model3", "sensors": {str(sensors)!r}}}'
+            )
+        )
+        run(agent, "--hud", "map", "--hud-screenshot", str(shot))
+        window = pygame.image.load(str(shot))
+        shots[name] = pygame.image.tobytes(window.subsurface((260, 40, 690, 400)), "RGB")
+    assert len({shots["map"], shots["lidar"], shots["gnss"]}) == 3
+    assert shots["map again"] == shots["map"]
+
+
 def test_what_a_person_drives_can_be_recorded_and_played(run: Runner, tmp_path: Path) -> None:
     keys = {1: [(DOWN, "w")], 10: [(DOWN, "a")], 16: [(UP, "a")], 24: [(UP, "w"), (DOWN, "SPACE")], 28: [(UP, "SPACE")]}
     agent = striker(tmp_path, {**keys, 30: [(DOWN, "p")]}, end=34, human=True)

@@ -1,6 +1,6 @@
 """Claims about lane invasions: events are counted, corners are not, and the score does not know."""
 
-from basu.metrics.lane_invasion import lane_invasions
+from basu.metrics.reported import lane_invasions
 from basu.metrics.score import Scoring, score
 from basu.records.history import LaneInvasion
 from fakes.drives import at, driven
