@@ -10,8 +10,8 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
 - ``ego`` (6,): speed; acceleration forward, m/s²; yaw rate, clockwise; offset from the route, positive to the right;
   heading less the route's; posted limit, 0 where there is none.
 - ``route`` (10, 2): x, y of the route's points 5, 10, ..., 50 m ahead; the last point again behind its end.
-- ``others`` (8, 6): the nearest vehicles and walkers within 60 m, nearest first: 1 for a road user, x, y, heading less
-  ours, velocity x, y. Rows of zeros where there are fewer.
+- ``others`` (8, 6): the nearest vehicles, walkers and things on the road within 60 m, nearest first: 1, x, y, heading
+  less ours, velocity x, y. Rows of zeros where there are fewer.
 
 The values are clipped to the boxes' bounds. Reward: see ``Reward``. ``terminated`` on arrival, on leaving the route, on
 standing still for too long, and at a scenario's end; ``truncated`` when the simulated time is used up. ``info`` has
@@ -221,12 +221,14 @@ class _Preview:
     def _others(self, seen: Observation, to_vehicle: NDArray[np.float64]) -> NDArray[np.float64]:
         """(8, 6) the nearest road users."""
         ego, table = seen.frame.ego, np.zeros((OTHERS, 6))
-        rows = self.episode.metrics.others(seen.frame)[:OTHERS]
+        rows = self.episode.metrics.others(seen.frame)
         if rows:
             given = np.array([row[2:] for row in rows])  # x, y, z, yaw, velocity x, y
+            away_m = np.hypot(given[:, 0] - ego.x_m, given[:, 1] - ego.y_m)
+            given = given[np.argsort(away_m, kind="stable")[:OTHERS]]
             turned = np.remainder(given[:, 3] - ego.yaw_rad + math.pi, math.tau) - math.pi
             place = (given[:, :2] - (ego.x_m, ego.y_m)) @ to_vehicle
-            table[: len(rows)] = np.column_stack([np.ones(len(rows)), place, turned, given[:, 4:6] @ to_vehicle])
+            table[: len(given)] = np.column_stack([np.ones(len(given)), place, turned, given[:, 4:6] @ to_vehicle])
         return table
 
 

@@ -14,9 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
-from basu.metrics.infraction import Evidence, Infraction
-from basu.metrics.score import Scores
-from basu.outcome import Outcome, Status
+from basu.outcome import Status
 from basu.output.report.folder import RESULT_FILE
 from basu.output.report.reading import RunRecord, read_run
 from basu.output.report.scenarios.console import matrix_text
@@ -27,10 +25,14 @@ from basu.records.history.files import HISTORY_FILE, read_history
 from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     import pandas as pd
 
+    from basu.metrics.infraction import Evidence
+    from basu.metrics.result import Result
+    from basu.metrics.score import Scores
+    from basu.outcome import Outcome
     from basu.records.history import History
 
 SERIES_FILE = "series.json"
@@ -74,9 +76,14 @@ class RunResult:
         return f"<{self.agent} on {self.route}: {self.outcome.status.value}, {driving}>"
 
     @property
-    def document(self) -> dict[str, Any]:
-        """``result.json`` as it stands in the folder; docs/result.md describes it."""
+    def result(self) -> Result:
+        """The judgement as one object, with the value of every metric; docs/result.md describes it."""
         return self._record.result
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """The result as plain values, as ``result.json`` has them."""
+        return self.result.document()
 
     @property
     def config(self) -> dict[str, Any]:
@@ -91,12 +98,12 @@ class RunResult:
     @property
     def route(self) -> str:
         """The route's id."""
-        return str(self.document["meta"]["route"])
+        return str(self.result.meta["route"])
 
     @property
     def outcome(self) -> Outcome:
         """The status with a sentence about it; ``outcome.status.fault`` is the party at fault."""
-        return Outcome(Status(self.document["status"]), str(self.document["message"]))
+        return self.result.outcome
 
     @property
     def completed(self) -> bool:
@@ -106,17 +113,17 @@ class RunResult:
     @property
     def scores(self) -> Scores | None:
         """The thesis's scores in 0 (bad) to 1 (good); None where nothing was driven."""
-        found = self.document["scores"]
-        return None if found is None else Scores(**{name: found[name] for name in Scores._fields})
+        return self.result.scores
 
     @property
     def infractions(self) -> tuple[Evidence, ...]:
-        """Every infraction with its time, place, speed and other party."""
-        names = Evidence.__dataclass_fields__
-        return tuple(
-            Evidence(**{**{key: found[key] for key in names if key in found}, "kind": Infraction(found["kind"])})
-            for found in self.document["infractions"]
-        )
+        """Every infraction with its time, place, speed, other party, and a collision's responsibility."""
+        return self.result.infractions
+
+    @property
+    def metrics(self) -> Mapping[str, Any]:
+        """The value of every metric by name, users' metrics among them."""
+        return {**self.result.metrics, **{name: own.value for name, own in self.result.own.items()}}
 
     @property
     def history(self) -> History:
@@ -145,7 +152,7 @@ class RunResult:
         rows = [(name.replace("_", " "), f"{value:.3f}") for name, value in scores.items()]
         rows += [(f"{found.t_s:.1f} s", f"{found.kind.value}: {found.detail}") for found in self.infractions]
         title = html.escape(f"{self.agent} on {self.route}: {self.outcome.status.value}")
-        meta = self.document["meta"]
+        meta = self.result.meta
         sentence = f"{self.outcome.message}; seed {meta['seed']}, {meta['simulated_s']:.1f} s simulated"
         parts = [f"<h4>{title}</h4>", f"<p>{html.escape(sentence)}</p>", _html_table(rows)]
         if self._record.history is not None:
@@ -241,7 +248,7 @@ class ScenarioResults:
         try:
             import pandas as pd  # noqa: PLC0415 - an extra
         except ImportError:
-            raise UserError("to_pandas() needs pandas; install it with `pip install linden[notebook]`") from None
+            raise UserError("to_pandas() needs pandas; install it with `pip install linden[tables]`") from None
         rows = [
             {
                 "id": case.id,

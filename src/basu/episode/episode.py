@@ -220,10 +220,13 @@ class Episode:
 
     # -- the drive
 
-    def step(self, control: carla.VehicleControl, *, manual: bool = False) -> Step:
+    def step(
+        self, control: carla.VehicleControl, *, requested: carla.VehicleControl | None = None, manual: bool = False
+    ) -> Step:
         """Record the current frame with its control, apply the control, and let the simulator make the next frame.
 
-        ``manual`` says that a person gave the control. The outcome belongs to the frame that was just recorded.
+        ``manual`` says that a person gave the control; ``requested`` is then the agent's own. The outcome belongs to the
+        frame that was just recorded.
 
         Raises:
             UserError, SimulatorError: the drive cannot go on; ``fail`` says what that means for its outcome.
@@ -234,6 +237,7 @@ class Episode:
             raise UserError("this episode does not wait for a control; call reset() first")
         frame = observation.frame
         self._driver.control, self._driver.manual = control, manual
+        self._driver.requested = control if requested is None else requested
         self._record()
         managers.routes.change_weather(frame)
         for observer in managers.observers:
@@ -246,7 +250,9 @@ class Episode:
         # into its own time-out meanwhile, and that ends the whole process.
         if self._simulator.ended():
             raise SimulatorError("the simulator ended")
-        run.vehicle.apply_control(ground.scenarios.through(control))
+        applied = ground.scenarios.through(control)
+        managers.metrics.applied(applied)
+        run.vehicle.apply_control(applied)
         return Step(self._observe(frame), None, managers.routes.outcome)
 
     def _observe(self, before: Frame | None) -> Observation:

@@ -101,9 +101,13 @@ def ego_in(snapshot: carla.ActorSnapshot) -> Ego:
 
 @dataclass(slots=True)
 class Driver:
-    """What drives: the last control, and whether a person gave it. Before the first control, the brake is on."""
+    """What drives: the last control, the agent's own answer, and whether a person gave the control.
+
+    Before the first control, the brake is on.
+    """
 
     control: carla.VehicleControl = field(default_factory=lambda: carla.VehicleControl(brake=1.0))
+    requested: carla.VehicleControl = field(default_factory=lambda: carla.VehicleControl(brake=1.0))
     manual: bool = False
     person: Person | None = None
 

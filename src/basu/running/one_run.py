@@ -14,7 +14,8 @@ from basu.episode.world import weather_called
 from basu.managers.recording_manager import RecordingManager
 from basu.managers.route_scenarios import told
 from basu.managers.sensors_manager import SensorsManager
-from basu.output.hud.seat import onlookers_for
+from basu.metrics.registry import user_metrics
+from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
 from basu.output.report.folder import make_draft
 from basu.output.viewer.onlooker import viewer_for
@@ -113,7 +114,10 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         log=recording[0].path if recording else None,
     )
     met = told(episode.playing, driven.history, driven.outcome)
-    document = write_run_folder(draft, driven, session.scoring, ground.town.lanes, config, met, quiet=session.quiet)
+    own = user_metrics(session.options.metric_files)
+    document = write_run_folder(
+        draft, driven, session.scoring, ground.town.lanes, config, met, own, quiet=session.quiet
+    )
     return Finished(driven.outcome, draft, document, driven.bug)
 
 
