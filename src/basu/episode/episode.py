@@ -225,8 +225,8 @@ class Episode:
     ) -> Step:
         """Record the current frame with its control, apply the control, and let the simulator make the next frame.
 
-        ``manual`` says that a person gave the control; ``requested`` is then the agent's own. The outcome belongs to the
-        frame that was just recorded.
+        ``manual`` says that a person gave the control; ``requested`` is then the agent's own. The outcome belongs to
+        the frame that was just recorded.
 
         Raises:
             UserError, SimulatorError: the drive cannot go on; ``fail`` says what that means for its outcome.
