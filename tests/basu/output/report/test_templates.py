@@ -1,4 +1,4 @@
-"""Claims about the environment of page templates: text is escaped, a missing name is an error, nothing slips through."""
+"""Claims about the environment of page templates: text is escaped, and a missing name is an error."""
 
 import jinja2
 import pytest
