@@ -19,15 +19,15 @@ from basu.scenarios.criteria import (
     NoCollision,
     Played,
     Thing,
-    told_always,
+    reported_always,
 )
-from basu.scenarios.criteria.again import judgements_in, played_in
+from basu.scenarios.criteria.records import judgements_in, played_in
 from fakes.drives import hit
 from fakes.played import played
 from fakes.rides import braked, eastward, moving, ride
 
 CRITERIA = [NoCollision(), Arrives(), InTime(6.0), KeepsLane(), KeepsSpeed(), HeedsStopSigns(), Gentle()]
-CRITERIA += [LeastDistance(0.5, to="child"), *told_always()]
+CRITERIA += [LeastDistance(0.5, to="child"), *reported_always()]
 
 
 def driven_case() -> Played:

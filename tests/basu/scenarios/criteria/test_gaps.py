@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 from shapely import Polygon, affinity
 
-from basu.scenarios.criteria.margins.gap import gap_m
+from basu.scenarios.criteria.surrogate_measures import gap_m
 
 BOX = st.tuples(
     st.floats(-20.0, 20.0), st.floats(-20.0, 20.0), st.floats(-7.0, 7.0), st.floats(0.05, 6.0), st.floats(0.05, 3.0)
