@@ -22,9 +22,9 @@ from basu.utils.user_module import module_of
 
 BUILT_IN = {
     "basic": "basu.agents.builtin.basic",
-    "behavioral": "basu.agents.builtin.behavioral",
-    "behavioral-cautious": "basu.agents.builtin.behavioral_cautious",
-    "behavioral-aggressive": "basu.agents.builtin.behavioral_aggressive",
+    "behavioral": "basu.agents.builtin.behavioral:BehavioralAgent",
+    "behavioral-cautious": "basu.agents.builtin.behavioral:CautiousAgent",
+    "behavioral-aggressive": "basu.agents.builtin.behavioral:AggressiveAgent",
     "blind": "basu.agents.builtin.controls:BlindAgent",
     "creeper": "basu.agents.builtin.controls:CreeperAgent",
     "standing": "basu.agents.builtin.controls:StandingAgent",

@@ -80,7 +80,8 @@ def score_run(arguments: argparse.Namespace) -> int:
     history = read_history(folder)
     scoring = scoring_of(arguments, scoring_of_run(folder / CONFIG_FILE))
     outcome = Outcome(Status(kept["status"]), kept["message"]) if kept else Outcome(Status.COMPLETED, "scored again")
-    result = judge(outcome, history, scoring, own=user_metrics(arguments.metrics))
+    meta, scenarios = (kept.get("meta"), kept.get("scenarios", ())) if kept else (None, ())
+    result = judge(outcome, history, scoring, meta, own=user_metrics(arguments.metrics), scenarios=scenarios)
     document = result.document()
     if kept is not None and kept["scoring"] == scoring_to_json(scoring) and kept["scores"] != document["scores"]:
         print(

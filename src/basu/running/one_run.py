@@ -17,7 +17,7 @@ from basu.managers.sensors_manager import SensorsManager
 from basu.managers.traffic_manager import TrafficManager
 from basu.metrics.registry import user_metrics
 from basu.options import STEP_S
-from basu.output.hud.seat import onlookers_for
+from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
 from basu.output.report.folder import make_draft
 from basu.output.viewer.onlooker import viewer_for

@@ -6,7 +6,7 @@ Harm goes before comfort: a ride falls into the first of these levels that holds
     0             the vehicle touched somebody or something
     0 .. 0.2      the ride did not arrive: 0.2 times the share of the route, times 0.6 for each near miss
     0.2 .. 0.4    near misses: 0.2 + 0.2 x 0.6 ** (n - 1)
-    0.4 .. 0.6    breaches, which are rules broken and stops passed: 0.4 + 0.2 x 0.8 ** n
+    0.4 .. 0.6    breaches, which are rules broken, stops passed and phantom stops: 0.4 + 0.2 x 0.8 ** n
     0.6 .. 1      none of these: 0.6 + 0.4 times the weighted mean of the parts
 
 The parts, each in 0 .. 1:
@@ -54,6 +54,7 @@ class Harm(NamedTuple):
     near_misses: int = 0
     rules_broken: int = 0  # red lights and stop signs run, speeding, driving beside the road
     stops_passed: int = 0  # service stops that were not served
+    phantom_stops: int = 0  # harsh stops without a cause
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,10 +62,10 @@ class ComfortWeights(Settings):
     """How much each part counts; they need not sum to 1, only their proportions matter."""
 
     balance: float = 0.3
-    harsh_stops: float = 0.3
+    harsh_stops: float = 0.3  # with 0, phantom stops are no breach
     vibration: float = 0.1
     near_misses: float = 0.2
-    service: float = 0.1  # with 0, stops that were passed are no breach either
+    service: float = 0.1  # with 0, stops that were passed are no breach
 
     def check(self) -> None:
         """Check that something counts.
@@ -102,7 +103,8 @@ def parts(
 
 def comfort_score(measured: Mapping[str, float], weights: ComfortWeights, harm: Harm) -> float | None:
     """The score; None for a ride without harm in which only parts without weight could be measured."""
-    breaches = harm.rules_broken + (harm.stops_passed if weights.service > 0.0 else 0)
+    passed = harm.stops_passed if weights.service > 0.0 else 0
+    breaches = harm.rules_broken + passed + (harm.phantom_stops if weights.harsh_stops > 0.0 else 0)
     if harm.contacts:
         return 0.0
     if harm.completion < 1.0:

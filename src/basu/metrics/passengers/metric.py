@@ -135,6 +135,7 @@ class Passengers(Metric):
             near_misses=integer(low=0),
             rules_broken=integer(low=0),
             stops_passed=integer(low=0),
+            phantom_stops=integer(low=0),
         ),
         place=_PLACE,
         thresholds=_THRESHOLDS,

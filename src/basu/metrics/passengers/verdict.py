@@ -81,14 +81,16 @@ def judge(
     stops = tuple((stop, cause(history, stop)) for stop in harsh_stops(sensed, harsh_mps2))
     parties, visits = near_misses(history), service(history)
     contacts, breaches = collisions(history), _breaches(history, tolerance_mps)
+    phantom = [why.kind is Kind.NOTHING for _, why in stops]
     harm = Harm(
         contacts=len(contacts),
         completion=1.0 if ended_early else completion(history),
         near_misses=sum(party.is_near_miss for party in parties),
         rules_broken=len(breaches),
         stops_passed=sum(not visit.served for visit in visits),
+        phantom_stops=sum(phantom),
     )
-    measured = parts(upright, [why.kind is Kind.NOTHING for _, why in stops], shaken, harm, visits)
+    measured = parts(upright, phantom, shaken, harm, visits)
     return Judged(
         place=place,
         harsh_mps2=harsh_mps2,

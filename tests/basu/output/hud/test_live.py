@@ -106,9 +106,9 @@ def test_p_takes_over_from_any_agent_and_gives_back(run: Runner, tmp_path: Path)
     _, result, history = run(striker(tmp_path, keys, end=30, human=False), "--hud", "map")
     manual = history.frames["manual"]
     assert np.flatnonzero(manual).tolist() == list(range(10, 20))
-    assert (history.frames["throttle"][10:19] == 0.0).all()
-    assert history.frames["brake"][12] > 0.5
-    assert history.frames["throttle"][25] == pytest.approx(0.9)
+    assert (history.frames["applied_throttle"][10:19] == 0.0).all()
+    assert history.frames["applied_brake"][12] > 0.5
+    assert history.frames["applied_throttle"][25] == pytest.approx(0.9)
     assert result["disengagements"]["number"] == 1
 
 
@@ -158,8 +158,8 @@ def test_what_a_person_drives_can_be_recorded_and_played(run: Runner, tmp_path: 
     _, _, played = run(agent, "--keys", str(session))
     assert live.frames.tobytes() == played.frames.tobytes()
     assert live.frames["manual"].tolist() == [1] * 30 + [0] * 5
-    assert live.frames["hand_brake"][24:28].all()
-    assert live.frames["steer"].min() == pytest.approx(-0.15)
+    assert live.frames["applied_hand_brake"][24:28].all()
+    assert live.frames["applied_steer"].min() == pytest.approx(-0.15)
     assert driven["meta"]["wall_s"] > 1.3, "with a person, time passes as it does"
 
 

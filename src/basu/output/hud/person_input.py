@@ -1,4 +1,4 @@
-"""The seat before the window: who sits in it, and the sessions of keys that are played and recorded there."""
+"""The person's input in a run: devices or a recorded session of keys, and the window that belongs to it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 def person_for(options: RunOptions, agent_class: type[AutonomousAgent]) -> Person | None:
-    """Whoever sits before this run's window, or plays keys; None where an agent drives unwatched.
+    """Return the person at this run's window or recorded keys; None where an agent drives unwatched.
 
     Raises:
         UserError: no window can be opened, or there is no such session.
@@ -44,7 +44,7 @@ def person_for(options: RunOptions, agent_class: type[AutonomousAgent]) -> Perso
     elif devices is not None:
         source = devices
     elif options.record_keys is not None:
-        raise UserError("--record-keys records what a person does, and nobody sits there; add --hud")
+        raise UserError("--record-keys records what a person does, and there is no window; add --hud")
     else:
         return None
     return Person(
@@ -56,7 +56,7 @@ def person_for(options: RunOptions, agent_class: type[AutonomousAgent]) -> Perso
 
 
 def onlookers_for(options: RunOptions, live: Live) -> list[BaseManager]:
-    """Those who look on at a run with this person and window."""
+    """Return the managers of the window and of the recorded keys."""
     person = live.agents.person
     if person is None:
         return []

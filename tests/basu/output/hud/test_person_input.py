@@ -15,7 +15,7 @@ from basu.cli import main
 from basu.errors import SimulatorError, UserError
 from basu.options import RunOptions
 from basu.output.hud.camera import ChaseCamera
-from basu.output.hud.seat import KeysManager, person_for
+from basu.output.hud.person_input import KeysManager, person_for
 
 SESSION = "data/human_session.json"
 
@@ -54,7 +54,7 @@ def test_under_an_agent_a_session_begins_with_the_agent() -> None:
 
 
 def test_recording_needs_somebody_who_does_something() -> None:
-    with pytest.raises(UserError, match="nobody sits there; add --hud"):
+    with pytest.raises(UserError, match="there is no window; add --hud"):
         person_for(RunOptions(record_keys=Path("keys.json")), BasicAgent)
 
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from basu.agents.builtin.deviation import FARTHEST_M, LEAVES_M, Thing, aim_rad, choose
+from basu.agents.builtin.deviating import FARTHEST_M, LEAVES_M, Thing, aim_rad, choose
 from basu.agents.builtin.driving.driver import Command
 from basu.agents.builtin.driving.path import make_path
 from basu.agents.builtin.scene import Ego
