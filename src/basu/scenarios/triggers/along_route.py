@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from basu.scenarios.triggers.trigger import Trigger
+from basu.scenarios.triggers.motion import Trigger
 
 if TYPE_CHECKING:
     from basu.scenarios.paths import Path
