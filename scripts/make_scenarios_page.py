@@ -21,7 +21,18 @@ from basu.scenarios.nhtsa import Group, stands_for
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "scenarios.md"
 EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
-BASES = {"Trigger", "Action", "Puppet", "Criterion", "Judgement", "Played", "Thing", "reported_always", "margins_of"}
+BASES = {
+    "Trigger",
+    "Action",
+    "Puppet",
+    "Aspect",
+    "Criterion",
+    "Judgement",
+    "Played",
+    "Thing",
+    "reported_always",
+    "margins_of",
+}
 
 
 def main() -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import sys
 import time
@@ -73,6 +74,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
             matrix = matrix_of(options, names, playables, documents, began, wall_s)
             write_json(folder / MATRIX_FILE, matrix)
             leave(folder, matrix, options.junit)
+            print(f"repeat  basu scenario run --config {shlex.quote(str(folder / CONFIG_FILE))}")
     return Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.options import STEP_S
 from basu.outcome import Outcome, Status
-from basu.running.scenario_runs.options import ScenarioOptions
+from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured
 from basu.scenarios.drawing import tree_of
 from basu.scenarios.verdict import judge
@@ -99,17 +99,9 @@ def command_of(options: ScenarioOptions) -> list[str]:
 
 def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> ScenarioOptions:
     """Return the options that play one case of a run alone; its id holds sample and parameters."""
-    return replace(
-        options,
-        what=(playable.case.name,),
-        files=options.all_files,
-        agents=(agent,),
-        sweep=None,
-        grid=None,
-        vary=(),
-        fixed=(),
-        seed=options.drive_seed,
-    )
+    chosen = {field.name: field.default for field in fields_of(ScenarioOptions) if field.option.group == CASES}
+    found = {"what": (playable.case.name,), "files": options.all_files, "agents": (agent,), "seed": options.drive_seed}
+    return replace(options, **{**chosen, **found})
 
 
 def case_config(playable: Playable, options: ScenarioOptions, loaded: LoadedAgent) -> dict[str, Any]:

@@ -7,14 +7,14 @@ A scenario names them in ``criteria``::
     def criteria(self):
         return [NoCollision(), LeastDistance(0.5, to="child"), Arrives(), InTime()]
 
-Each takes ``deciding=False`` to tell without weighing. One of your own is a class with a ``name`` and a method
-``judge`` (see `Criterion`). Least distance, time to collision and post-encroachment time are told of every case,
-whether its scenario names them or not.
+Each takes ``deciding=False`` to report without weighing. One of your own is a class with a ``name`` and a method
+``judge`` (see `Criterion`). No collision, no near miss, least distance, time to collision and post-encroachment time
+are judged of every case, whether its scenario names them or not.
 """
 
 from basu.scenarios.criteria.comfort import Gentle
 from basu.scenarios.criteria.contact import NoCollision
-from basu.scenarios.criteria.criterion import Criterion, Judgement, Played, Thing
+from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played, Thing
 from basu.scenarios.criteria.going import Arrives, InTime, Reaches, ReachesPoint
 from basu.scenarios.criteria.lane import KeepsLane, Regains
 from basu.scenarios.criteria.signals import HeedsRedLights, HeedsStopSigns
@@ -31,6 +31,7 @@ from basu.scenarios.criteria.surrogate_measures import (
 
 __all__ = [
     "Arrives",
+    "Aspect",
     "Criterion",
     "Gentle",
     "HeedsRedLights",

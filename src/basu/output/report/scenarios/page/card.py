@@ -109,7 +109,7 @@ def _judgement(judgement: dict[str, Any]) -> Element:
         e("td", sign, class_=f"outcome {style if is_deciding else 'told'}"),
         e("th", judgement["criterion"], scope="row"),
         e("td", measured),
-        e("td", judgement["limit"] if is_deciding else "told only"),
+        e("td", judgement["limit"] if is_deciding else "reported only"),
     )
     sentence = e("tr", e("td"), e("td", judgement["sentence"], colspan=3), class_="why")
     return e("tbody", figures, sentence, class_=None if is_deciding else "told")
