@@ -51,6 +51,8 @@ class RunOptions:
     series: str | None = None  # the folder in `output` that holds all runs and their totals
     resume: bool = False
     step_limit_s: float = 10.0  # wall time that one step of the agent may take
+    in_process: bool = False  # drive the agent in the benchmark's own process, for debuggers
+    agent_memory_gb: float | None = None  # what the agent's process may use; None: as much as there is
     debug: bool = False
     hud: str | None = None  # one of HUD_VIEWS: with a window
     hud_size: tuple[int, int] = (960, 540)  # of the window, in pixels

@@ -59,7 +59,8 @@ class AutonomousAgent(ABC):
     time_step_s: float
     server_address: tuple[str, int]
     manual: bool = False
-    tells_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
+    driven_by_person: bool = False  # whether a person drives at first, before a window; the human agent
+    gives_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
 
     def bind(
         self,

@@ -23,6 +23,35 @@ def add_simulator(parser: argparse.ArgumentParser, otherwise: str) -> None:
     )
 
 
+def add_agent_process(parser: argparse.ArgumentParser) -> None:
+    """Where the agent's code runs, and what it may use."""
+    parser.add_argument(
+        "--in-process",
+        action="store_true",
+        help="drive the agent in BASU's own process, for debuggers: an agent that dies there ends everything",
+    )
+    parser.add_argument(
+        "--agent-memory",
+        type=float,
+        metavar="GB",
+        help="memory that the agent's process may use before the run ends as the agent's failure (default: no limit)",
+    )
+
+
+def agent_process_of(arguments: argparse.Namespace) -> tuple[bool, float | None]:
+    """What was said about the agent's process: whether there is none, and its memory in GB.
+
+    Raises:
+        UserError: the two contradict each other, or the memory is not above zero.
+    """
+    in_process, memory_gb = arguments.in_process, arguments.agent_memory
+    if memory_gb is not None and not memory_gb > 0.0:
+        raise UserError(f"--agent-memory is {memory_gb:g} GB; it must be positive")
+    if in_process and memory_gb is not None:
+        raise UserError("--agent-memory limits the agent's own process, and --in-process gives it none; choose one")
+    return in_process, memory_gb
+
+
 def check_positive(arguments: argparse.Namespace, *names: str) -> None:
     """Whether options in seconds can be meant.
 

@@ -6,7 +6,13 @@ import argparse
 import math
 from pathlib import Path
 
-from basu.cli.driving import add_simulator, check_positive, terminated_as_interrupted
+from basu.cli.driving import (
+    add_agent_process,
+    add_simulator,
+    agent_process_of,
+    check_positive,
+    terminated_as_interrupted,
+)
 from basu.cli.hud import add_hud, hud_options
 from basu.cli.scoring import add_scoring, adjusted
 from basu.errors import UserError
@@ -51,6 +57,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         metavar="S",
         help="wall time for one step of the agent (default: %(default)s)",
     )
+    add_agent_process(run)
     run.add_argument("--debug", action="store_true", help="show the traceback of an agent that fails")
     for name, why in LATER.items():
         run.add_argument(f"--{name}", action="store_true", help=f"not in this version: {why}")
@@ -134,6 +141,7 @@ def _options(arguments: argparse.Namespace) -> RunOptions:
     if arguments.resume and arguments.series is None:
         raise UserError("--resume goes on with a series; name it with --series, as when it was begun")
     check_positive(arguments, "timeout", "step_limit")
+    in_process, agent_memory_gb = agent_process_of(arguments)
     return RunOptions(
         agent=arguments.agent or arguments.agent_option or "basic",
         agent_config=arguments.agent_config,
@@ -156,6 +164,8 @@ def _options(arguments: argparse.Namespace) -> RunOptions:
         series=arguments.series,
         resume=arguments.resume,
         step_limit_s=arguments.step_limit,
+        in_process=in_process,
+        agent_memory_gb=agent_memory_gb,
         debug=arguments.debug,
         **hud_options(arguments)._asdict(),
     )

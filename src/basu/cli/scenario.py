@@ -7,7 +7,13 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from basu.cli.driving import add_simulator, check_positive, terminated_as_interrupted
+from basu.cli.driving import (
+    add_agent_process,
+    add_simulator,
+    agent_process_of,
+    check_positive,
+    terminated_as_interrupted,
+)
 from basu.cli.scenario_list import add_list_options, list_scenarios
 from basu.errors import UserError
 from basu.outcome import EXIT_CODES
@@ -63,6 +69,7 @@ def _add_run(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     add_simulator(run, "start our own")
     run.add_argument("--workers", type=int, metavar="N", help="simulators beside each other (default: one a processor)")
     run.add_argument("--step-limit", type=float, default=10.0, metavar="S", help="wall time for one step of the agent")
+    add_agent_process(run)
     run.add_argument("--output", type=Path, default=Path("scenario-runs"), metavar="DIR", help="(default: %(default)s)")
     run.add_argument("--junit", type=Path, metavar="FILE", help="write the JUnit XML there as well")
     run.add_argument("--debug", action="store_true", help="show the traceback of an agent that fails")
@@ -102,6 +109,7 @@ def _options(arguments: argparse.Namespace) -> ScenarioOptions:
     from basu.scenarios.sampling import Grid, Sweep  # noqa: PLC0415 - likewise
 
     check_positive(arguments, "timeout", "step_limit")
+    in_process, agent_memory_gb = agent_process_of(arguments)
     workers = arguments.workers if arguments.workers is not None else len(os.sched_getaffinity(0))
     if workers < 1:
         raise UserError(f"--workers is {workers}; it must be at least 1")
@@ -122,6 +130,8 @@ def _options(arguments: argparse.Namespace) -> ScenarioOptions:
         seed=0 if isinstance(design, Sweep) else arguments.seed,  # of chance in the drives, which an id does not hold
         workers=workers,
         step_limit_s=arguments.step_limit,
+        in_process=in_process,
+        agent_memory_gb=agent_memory_gb,
         output=arguments.output,
         junit=arguments.junit,
         debug=arguments.debug,

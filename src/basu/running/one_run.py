@@ -184,7 +184,8 @@ def _driven(
             server_address=simulator.address,
             weather=() if options.weather is not None else ground.description.weather,
         )
-        sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors)
+        watched = options.hud is not None or options.viewer or agents.person is not None
+        sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors, listener=agents, is_watched=watched)
         return drive(
             this_run,
             agents,

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from basu.agents.config import AgentConfig
     from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import AgentInProcess
     from basu.options import RunOptions
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
@@ -43,7 +44,7 @@ ROUTE_WEATHER = "of the route file"
 def run_config(
     options: RunOptions,
     scoring: Scoring,
-    loaded: LoadedAgent,
+    loaded: LoadedAgent | AgentInProcess,
     wishes: AgentConfig,
     description: RouteDescription,
     *,
@@ -57,7 +58,7 @@ def run_config(
     return {
         "started": started.isoformat(timespec="seconds"),
         "command": command(options, scoring, description, seed),
-        "agent": {"name": loaded.name, "class": loaded.agent_class.__name__, "file": options.agent},
+        "agent": {"name": loaded.name, "class": loaded.class_name, "file": options.agent},
         "agent_config": asdict(wishes),
         "route": description.id,
         "town": description.town,

@@ -11,6 +11,7 @@ from basu.scenarios.verdict import judge
 
 if TYPE_CHECKING:
     from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import AgentInProcess
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
     from basu.running.scenario_runs.options import ScenarioOptions
@@ -22,7 +23,7 @@ SCHEMA_VERSION = 1
 
 def document_of(
     playable: Playable,
-    loaded: LoadedAgent,
+    loaded: LoadedAgent | AgentInProcess,
     playing: Playing | None,
     judged: Judged,
     options: ScenarioOptions,
@@ -58,7 +59,9 @@ def document_of(
     }
 
 
-def lost(playable: Playable, loaded: LoadedAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
+def lost(
+    playable: Playable, loaded: LoadedAgent | AgentInProcess, sentence: str, options: ScenarioOptions
+) -> dict[str, Any]:
     """The document of a case whose process died: nothing is known of it."""
     judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
     return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)

@@ -30,6 +30,8 @@ class ScenarioOptions:
     seed: int = 0
     workers: int = 2
     step_limit_s: float = 10.0
+    in_process: bool = False
+    agent_memory_gb: float | None = None
     output: Path = Path("scenario-runs")
     junit: Path | None = None
     debug: bool = False
@@ -50,5 +52,7 @@ class ScenarioOptions:
             vehicle=self.vehicle,
             output=self.output,
             step_limit_s=self.step_limit_s,
+            in_process=self.in_process,
+            agent_memory_gb=self.agent_memory_gb,
             debug=self.debug,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.agents.loader import load_agent
+from basu.agents.process.remote_agent import find_agent
 from basu.errors import BasuError
 from basu.outcome import Status
 from basu.output.report.folder import plain
@@ -61,7 +61,10 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterato
         KeyboardInterrupt: the user interrupted a case; what came of it has been yielded.
     """
     library = open_library(options.all_files)
-    agents = {agent: load_agent(agent) for agent in options.agents}
+    agents = {
+        agent: find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb)
+        for agent in options.agents
+    }
     with simulator_for(options.run_options(options.agents[0])) as simulator:
         with asking("naming its towns"):
             theatre = Theatre(options, simulator, towns_of(simulator.client))
