@@ -31,8 +31,20 @@ PAIR = 2
 class AgentCalls:
     """An agent in this process. :class:`basu.agents.process.remote_agent.RemoteAgent` has the same methods."""
 
-    def __init__(self, agent_class: type[AutonomousAgent], step_limit_s: float, *, is_ours: bool = True) -> None:
-        """Make the agent. ``is_ours``: it is one of BASU's own, so a ``UserError`` in its ``setup`` is true."""
+    def __init__(
+        self,
+        agent_class: type[AutonomousAgent],
+        step_limit_s: float,
+        *,
+        is_ours: bool = True,
+        failures: tuple[type[BaseException], ...] = (Exception, SystemExit),
+    ) -> None:
+        """Make the agent.
+
+        ``is_ours``: it is one of BASU's own, so a ``UserError`` in its ``setup`` is true. ``failures`` are the
+        exceptions that count as the agent's; a ``KeyboardInterrupt`` is the user's where Ctrl-C reaches this process.
+        """
+        self._failures = failures
         self._step_limit_s = step_limit_s
         self._setup_limit_s = max(SETUP_LIMIT_S, step_limit_s)
         self._is_ours = is_ours
@@ -147,7 +159,7 @@ class AgentCalls:
             raise timed_out(method, self.name, limit_s) from None
         except (AgentError, UserError):
             raise  # it has its sentence
-        except (Exception, SystemExit) as error:
+        except self._failures as error:
             raise self._crashed(method, error) from error
 
     def _crashed(self, method: str, error: BaseException) -> AgentCrashedError:

@@ -51,8 +51,8 @@ class Memory(NamedTuple):
     limit_gb: float
 
     def excess(self, pid: int) -> str | None:
-        """Half a sentence where the process and its descendants use more; None otherwise."""
-        used_gb = sum(map(_resident_bytes, _family(pid))) / GB
+        """Half a sentence where the process and all others of its group use more; None otherwise."""
+        used_gb = sum(map(_resident_bytes, _group(pid))) / GB
         if used_gb <= self.limit_gb:
             return None
         return f"it used {used_gb:.2f} GB of memory, more than its limit of {self.limit_gb:g} GB"
@@ -77,6 +77,7 @@ class AgentProcess:
         self._life = _life_of(self._process.pid)
         self._channel = BenchmarksEnd(ours, self._life)
         self._memory = memory
+        self._look_again_s = 0.0
         self._number = 0
         self._is_pending = False
         self._own_kill = False
@@ -168,8 +169,9 @@ class AgentProcess:
         Raises:
             Death: it did.
         """
-        if self._memory is None or self._process.poll() is not None:
+        if self._memory is None or time.monotonic() < self._look_again_s or self._process.poll() is not None:
             return
+        self._look_again_s = time.monotonic() + POLL_S
         excess = self._memory.excess(self._process.pid)
         if excess is not None:
             self.kill()
@@ -219,13 +221,14 @@ def _life_of(pid: int) -> int | None:
         return None
 
 
-def _family(pid: int) -> list[int]:
-    """A process and its descendants."""
-    found = [pid]
-    for each in found:
-        with contextlib.suppress(OSError):
-            for children in Path(f"/proc/{each}/task").glob("*/children"):
-                found.extend(map(int, children.read_text().split()))
+def _group(leader: int) -> list[int]:
+    """The processes of a group: an agent's process leads one, and what it starts belongs to it."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError, IndexError):
+            # the name of the program stands in brackets and may hold anything; state, parent and group follow
+            if int(stat.read_text().rpartition(")")[2].split()[2]) == leader:
+                found.append(int(stat.parent.name))
     return found
 
 

@@ -72,7 +72,7 @@ class Child:
         self._begin = begin
         self._loaded: tuple[tuple[str, str | None], LoadedAgent] | None = None
         self._calls: AgentCalls | None = None
-        self._client: tuple[tuple[str, int], carla.Client] | None = None
+        self._address: tuple[str, int] | None = None
         self._maps: dict[str, carla.Map] = {}
         self._world: Any = None
         self._timeout_s = 0.0
@@ -101,7 +101,9 @@ class Child:
         if loaded.file is not None:
             self._loaded = None  # the next agent's module begins anew: no run depends on those before it
         self._seed(wanted.seed)
-        self._calls = AgentCalls(loaded.agent_class, wanted.step_limit_s, is_ours=loaded.file is None)
+        self._calls = AgentCalls(
+            loaded.agent_class, wanted.step_limit_s, is_ours=loaded.file is None, failures=(BaseException,)
+        )
         config = self._calls.config()
         return {
             "name": self._calls.name,
@@ -195,11 +197,11 @@ class Child:
         np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
 
     def _connected(self, place: Place) -> carla.Client:
-        """The client of this process, kept as long as the simulator is the same."""
-        if self._client is None or self._client[0] != place.address:
-            self._client = (place.address, carla.Client(*place.address))
+        """A new client, for each run: one that another client's reload found connected keeps the actors of before."""
+        if self._address != place.address:
+            self._address = place.address
             self._maps.clear()
-        client = self._client[1]
+        client = carla.Client(*place.address)
         client.set_timeout(place.timeout_s)
         return client
 

@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
     from basu.running.scenario_runs.options import ScenarioOptions
 
-LEAVING = frozenset({Status.SIMULATOR_FAILED, Status.AGENT_TIMED_OUT, Status.BENCHMARK_FAILED})
-"""After these a process is not to be trusted: its simulator is gone, or an agent still runs in it."""
+LEAVING = frozenset({Status.SIMULATOR_FAILED, Status.BENCHMARK_FAILED})
+"""After these a process is not to be trusted: its simulator is gone, or something of ours is wrong."""
+LEAVING_IN_PROCESS = LEAVING | {Status.AGENT_TIMED_OUT}  # the agent may still run in it
 
 
 class Job(NamedTuple):
@@ -72,7 +73,7 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterato
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
             performed = perform(theatre, loaded, playable, output / plain(loaded.name))
-            leaves = performed.outcome.status in LEAVING
+            leaves = performed.outcome.status in (LEAVING_IN_PROCESS if options.in_process else LEAVING)
             yield Done(job.number, performed.document, str(performed.folder.relative_to(output)), leaves)
             if performed.outcome.status is Status.INTERRUPTED:
                 raise KeyboardInterrupt
