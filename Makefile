@@ -35,6 +35,7 @@ docs:  ## the generated pages
 	$(BIN)/python scripts/observe_client.py
 	$(BIN)/python scripts/make_supported.py
 	$(BIN)/python scripts/make_scenarios_page.py
+	$(BIN)/python scripts/make_options_tables.py
 
 clean:
 	rm -rf .venv build src/*.egg-info .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache

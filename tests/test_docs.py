@@ -16,6 +16,17 @@ def test_the_supported_page_is_what_the_code_says() -> None:
     assert done.returncode == 0, done.stderr
 
 
+def test_the_tables_of_options_are_what_the_code_says() -> None:
+    done = subprocess.run(
+        [sys.executable, "scripts/make_options_tables.py", "--check"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+
+
 @pytest.mark.parametrize(
     "command",
     [

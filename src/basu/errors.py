@@ -42,3 +42,11 @@ class AgentInvalidControlError(AgentError):
 
 class SimulatorError(BasuError):
     """The simulator does not answer, went away, or could not be started."""
+
+
+class Terminated(KeyboardInterrupt):
+    """SIGTERM: the run ends as by Ctrl-C, and says what ended it."""
+
+    def __init__(self) -> None:
+        """Say what ended the run."""
+        super().__init__("terminated by SIGTERM")

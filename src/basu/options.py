@@ -1,13 +1,74 @@
-"""What ``basu run`` was asked for."""
+"""The options of a run, each declared once: its type, default, bounds and meaning."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Annotated, Literal, NamedTuple
+
+from basu.errors import UserError
+from basu.settings.option import Option, Settings
 
 STEP_S = 0.05  # simulated time from tick to tick: 20 Hz
 HUD_VIEWS = ("camera", "map")
+
+WINDOWS = (640, 480), (7680, 4320)  # pixels; the panel and the help page need the smallest
+PICTURES = (64, 48), (3840, 2160)  # of the HUD's camera
+
+SIMULATOR, FOLDERS, ROUTES, CONDITIONS = "simulator", "run folders", "routes and scenarios", "conditions"
+AGENT, WINDOW = "agent", "window, viewer and keys"
+
+# Options that several commands share.
+Host = Annotated[
+    str | None,
+    Option(
+        help="a running simulator", group=SIMULATOR, metavar="HOST", default_text="start one and end it", repeats=False
+    ),
+]
+Port = Annotated[int, Option(help="port of --host", group=SIMULATOR, metavar="N", least=1, most=65_535, repeats=False)]
+Timeout = Annotated[
+    float,
+    Option(
+        help="time to wait for the simulator's answer",
+        group=SIMULATOR,
+        flag="--timeout",
+        metavar="S",
+        unit="s",
+        above=0.0,
+        repeats=False,
+    ),
+]
+Vehicle = Annotated[
+    str | None,
+    Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the agent says"),
+]
+StepLimit = Annotated[
+    float,
+    Option(
+        help="wall time for one step of the agent", group=AGENT, flag="--step-limit", metavar="S", unit="s", above=0.0
+    ),
+]
+InProcess = Annotated[
+    bool,
+    Option(
+        help="drive the agent in BASU's own process, for debuggers; an agent that dies there ends everything",
+        group=AGENT,
+        repeats=False,
+    ),
+]
+AgentMemory = Annotated[
+    float | None,
+    Option(
+        help="memory that the agent's process may use; more is the agent's failure",
+        group=AGENT,
+        flag="--agent-memory",
+        metavar="GB",
+        unit="GB",
+        above=0.0,
+        default_text="no limit",
+    ),
+]
+Debug = Annotated[bool, Option(help="show the traceback of an agent that fails", group=AGENT, repeats=False)]
 
 
 class Traffic(NamedTuple):
@@ -27,36 +88,214 @@ NOBODY = Traffic()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunOptions:
-    """The options of one ``basu run``, parsed."""
+class RunOptions(Settings):
+    """The options of ``basu run`` without the scoring, which is a model of its own."""
 
-    agent: str = "basic"
-    agent_config: str | None = None  # for agents of the leaderboard and of ScenarioRunner
-    host: str | None = None  # None: start a simulator of our own
-    port: int = 2000
-    timeout_s: float = 20.0
-    routes: str | None = None  # None: as the agent's config says
-    route_id: str | None = None  # None: every route of the file
-    routes_subset: str | None = None  # `0-3,7`, likewise
-    repetitions: int = 1
-    seed: int = 0  # of the first repetition; each further one has the next
-    weather: str | None = None  # None: as the route file or else the agent's config says
-    vehicle: str | None = None  # None: as the agent's config says
-    traffic: Traffic = NOBODY
-    with_scenarios: bool = True  # meet those that the route file has on the way
-    scenario_files: tuple[Path, ...] = ()  # Python files with scenarios of one's own
-    record: bool = False
-    viewer: bool = False  # stream the run to Rerun's viewer, and keep it
-    output: Path = Path("runs")
-    series: str | None = None  # the folder in `output` that holds all runs and their totals
-    resume: bool = False
-    step_limit_s: float = 10.0  # wall time that one step of the agent may take
-    in_process: bool = False  # drive the agent in the benchmark's own process, for debuggers
-    agent_memory_gb: float | None = None  # what the agent's process may use; None: as much as there is
-    debug: bool = False
-    hud: str | None = None  # one of HUD_VIEWS: with a window
-    hud_size: tuple[int, int] = (960, 540)  # of the window, in pixels
-    hud_camera: tuple[int, int] = (480, 270)  # of its camera, likewise
-    hud_screenshot: Path | None = None
-    keys: str | None = None  # a session of keys to play
-    record_keys: Path | None = None
+    agent: Annotated[
+        str,
+        Option(
+            help="a name (`basu list`), FILE.py, or FILE.py:Class",
+            group=AGENT,
+            positional=True,
+            flag="--agent",
+            metavar="AGENT",
+            is_file=True,
+        ),
+    ] = "basic"
+    agent_config: Annotated[
+        str | None,
+        Option(
+            help="text for the setup of an agent of the leaderboard or ScenarioRunner, mostly a file's name",
+            group=AGENT,
+            metavar="FILE",
+            is_file=True,
+        ),
+    ] = None
+    step_limit_s: StepLimit = 10.0
+    in_process: InProcess = False
+    agent_memory_gb: AgentMemory = None
+    debug: Debug = False
+
+    routes: Annotated[
+        str | None,
+        Option(help="route XML", group=ROUTES, metavar="FILE", default_text="as the agent says", is_file=True),
+    ] = None
+    route_id: Annotated[
+        str | None,
+        Option(help="only this route of the file", group=ROUTES, metavar="ID", default_text="all", rival="route"),
+    ] = None
+    routes_subset: Annotated[
+        str | None,
+        Option(help="only these routes of the file, such as 0-3,7", group=ROUTES, metavar="LIST", rival="route"),
+    ] = None
+    with_scenarios: Annotated[
+        bool,
+        Option(
+            help="leave out the scenarios of the route file",
+            group=ROUTES,
+            flag="--no-scenarios",
+            inverted=True,
+            default_text="drive with them",
+        ),
+    ] = True
+    scenario_files: Annotated[
+        tuple[Path, ...],
+        Option(
+            help="classes for the scenarios of the route file; may be given several times",
+            group=ROUTES,
+            flag="--scenarios",
+            metavar="FILE.py",
+            is_file=True,
+        ),
+    ] = ()
+    repetitions: Annotated[int, Option(help="runs of each route", group=ROUTES, metavar="N", least=1)] = 1
+    seed: Annotated[
+        int,
+        Option(
+            help="seed of everything random in the first repetition; each further one has the next",
+            group=CONDITIONS,
+            metavar="N",
+        ),
+    ] = 0
+    weather: Annotated[
+        str | None,
+        Option(
+            help="one of CARLA's presets",
+            group=CONDITIONS,
+            metavar="NAME",
+            default_text="as the route or the agent says",
+        ),
+    ] = None
+    vehicle: Vehicle = None
+    vehicles: Annotated[
+        int,
+        Option(
+            help="other vehicles, driven by the Traffic Manager",
+            group=CONDITIONS,
+            metavar="N",
+            least=0,
+            rival="traffic",
+        ),
+    ] = 0
+    traffic_density: Annotated[
+        float | None,
+        Option(
+            help="other vehicles on a km of driving lane within 300 m of the route",
+            group=CONDITIONS,
+            metavar="N",
+            unit="1/km",
+            least=0.0,
+            rival="traffic",
+        ),
+    ] = None
+    walkers: Annotated[
+        int, Option(help="walkers on the pavements near the route", group=CONDITIONS, metavar="N", least=0)
+    ] = 0
+
+    host: Host = None
+    port: Port = 2000
+    timeout_s: Timeout = 20.0
+
+    record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
+    output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
+        Path("runs")
+    )
+    series: Annotated[
+        str | None,
+        Option(
+            help="keep all runs in a folder of this name, with their totals in series.json",
+            group=FOLDERS,
+            metavar="NAME",
+            repeats=False,
+        ),
+    ] = None
+    resume: Annotated[bool, Option(help="continue an interrupted --series", group=FOLDERS, repeats=False)] = False
+
+    viewer: Annotated[
+        bool,
+        Option(help="stream the run to Rerun's viewer and keep it as run.rrd", group=WINDOW, repeats=False),
+    ] = False
+    hud: Annotated[
+        Literal["camera", "map"] | None,
+        Option(
+            help="show a window; P takes over control; without a view: camera",
+            group=WINDOW,
+            bare="camera",
+            advice="an agent is named before --hud, as in `basu run basic --hud`",
+            repeats=False,
+        ),
+    ] = None
+    hud_size: Annotated[
+        tuple[int, int],
+        Option(help="size of the window", group=WINDOW, metavar="WxH", unit="pixels", style="size", repeats=False),
+    ] = (960, 540)
+    hud_camera: Annotated[
+        tuple[int, int],
+        Option(
+            help="size of the pictures of the HUD's camera, which take most of the time",
+            group=WINDOW,
+            metavar="WxH",
+            unit="pixels",
+            style="size",
+            repeats=False,
+        ),
+    ] = (480, 270)
+    hud_screenshot: Annotated[
+        Path | None,
+        Option(help="PNG of the window, written at the end and by F12", group=WINDOW, metavar="FILE", repeats=False),
+    ] = None
+    keys: Annotated[
+        str | None,
+        Option(
+            help="play a recorded session of keys, such as data/human_session.json",
+            group=WINDOW,
+            metavar="FILE",
+            is_file=True,
+        ),
+    ] = None
+    record_keys: Annotated[
+        Path | None,
+        Option(
+            help="write the keys that a person presses to a session file", group=WINDOW, metavar="FILE", repeats=False
+        ),
+    ] = None
+
+    @property
+    def traffic(self) -> Traffic:
+        """The other road users of the run."""
+        return Traffic(self.vehicles, self.walkers, self.traffic_density)
+
+    def check(self) -> None:
+        """Check what concerns several options.
+
+        Raises:
+            UserError: they contradict each other.
+        """
+        if self.resume and self.series is None:
+            raise UserError("--resume continues a series; name it with --series, as when it was begun")
+        if self.hud_screenshot is not None and self.hud is None:
+            raise UserError("--hud-screenshot takes a picture of the window; add --hud")
+        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
+        _check_size("--hud-size", self.hud_size, WINDOWS)
+        _check_size("--hud-camera", self.hud_camera, PICTURES)
+
+
+def check_agent_process(*, in_process: bool, memory_gb: float | None) -> None:
+    """Check what was said of the agent's process.
+
+    Raises:
+        UserError: there is to be none, and its memory is to be limited.
+    """
+    if in_process and memory_gb is not None:
+        raise UserError("--agent-memory limits the agent's own process, and --in-process gives it none; choose one")
+
+
+def _check_size(flag: str, size: tuple[int, int], allowed: tuple[tuple[int, int], tuple[int, int]]) -> None:
+    """Check that a size lies within the smallest and the largest.
+
+    Raises:
+        UserError: it does not.
+    """
+    (width, height), (least, most) = size, allowed
+    if not (least[0] <= width <= most[0] and least[1] <= height <= most[1]):
+        raise UserError(f"{flag} {width}x{height}: it may be from {least[0]}x{least[1]} to {most[0]}x{most[1]} pixels")

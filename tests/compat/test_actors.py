@@ -1,5 +1,6 @@
 """Actors through the official client: spawning, refusing, attaching, moving, destroying, batches."""
 
+import queue
 import time
 
 import carla
@@ -75,12 +76,33 @@ def test_a_sensor_on_a_spring_arm_looks_at_its_vehicle(client, world, blueprints
     assert world.get_actor(answers[0].actor_id).get_transform().rotation.pitch == pytest.approx(0.0, abs=1.0)
 
 
-def test_destroying_a_vehicle_takes_its_sensors_along(world, blueprints, car) -> None:
-    sensor = world.spawn_actor(blueprints.find("sensor.other.gnss"), carla.Transform(), attach_to=car)
+def test_destroying_a_vehicle_leaves_its_sensors_where_they_are(world, blueprints, car) -> None:
+    """As ``UActorDispatcher::DestroyActor``: it destroys an actor and its controller; Unreal detaches the rest."""
+    sensors = [
+        world.spawn_actor(
+            blueprints.find(f"sensor.other.{kind}"), carla.Transform(carla.Location(z=2.0)), attach_to=car
+        )
+        for kind in ("gnss", "imu", "collision", "obstacle")
+    ]
+    cone = world.spawn_actor(
+        blueprints.find("static.prop.trafficcone01"), carla.Transform(carla.Location(x=1.0)), attach_to=sensors[0]
+    )
+    heard = queue.Queue()
+    for sensor in sensors:
+        sensor.listen(lambda data, kind=sensor.type_id: heard.put((data.frame, kind)))
     world.tick()
+    before = {actor.id: actor.get_transform() for actor in (*sensors, cone)}
     assert car.destroy()
-    world.tick()
-    assert not sensor.is_alive
+    frame = [world.tick() for _ in range(3)][-1]
+    for actor in (*sensors, cone):
+        assert actor.is_alive
+        assert actor.get_transform() == before[actor.id]
+    measured = set()
+    while {(frame, "sensor.other.gnss"), (frame, "sensor.other.imu")} - measured:
+        measured.add(heard.get(timeout=5.0))
+    assert world.get_actor(cone.id).parent.id == sensors[0].id
+    for actor in (cone, *sensors):
+        assert actor.destroy()
     world.tick()
     assert {car.id, sensor.id}.isdisjoint(actor.id for actor in world.get_actors())
 

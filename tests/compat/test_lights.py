@@ -71,11 +71,18 @@ def test_every_light_of_a_group_has_a_pole_of_its_own(lights) -> None:
 
 def test_one_stops_before_the_line_on_the_lanes_that_the_light_is_for(world, lights) -> None:
     for light in lights:
-        (landmark,) = world.get_map().get_all_landmarks_from_id(light.get_opendrive_id())
+        listed = world.get_map().get_all_landmarks_from_id(light.get_opendrive_id())
+        behind = {way.road_id for place in light.get_stop_waypoints() for way in place.next(12.0)}
+        (landmark,) = (each for each in listed if each.road_id not in behind)
+        # as in CARLA's towns, each way behind the line refers to the light
+        assert behind == {each.road_id for each in listed} - {landmark.road_id}
         stops, affected = light.get_stop_waypoints(), light.get_affected_lane_waypoints()
         lanes = {lane for first, last in landmark.get_lane_validities() for lane in range(first, last + 1)}
         assert {(place.road_id, place.lane_id) for place in stops} == {(landmark.road_id, lane) for lane in lanes}
-        assert {(place.road_id, place.lane_id) for place in affected} == {(landmark.road_id, lane) for lane in lanes}
+        assert {(place.road_id, place.lane_id) for place in affected} == {
+            *((landmark.road_id, lane) for lane in lanes),
+            *((road_id, -1) for road_id in behind),
+        }
         assert all(2.0 < abs(place.s - landmark.s) < 4.0 for place in stops)
 
 

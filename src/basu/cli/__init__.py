@@ -1,33 +1,54 @@
-"""The command ``basu``: one module a command, each with ``add(commands)``."""
+"""The command ``basu``. A command's module is imported when the command is typed."""
 
 from __future__ import annotations
 
-import argparse
+import importlib
 import os
 import sys
 import traceback
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import basu
-from basu.cli import compare, experiment, list_, metrics, replay, report, run, scenario, score
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.outcome import EXIT_CODES, Fault
+from basu.settings.command_line import Parser
+from basu.settings.option import suggestion
 from basu.utils import client_threads
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Sequence
 
-COMMANDS = (run, scenario, score, report, compare, experiment, metrics, replay, list_)
+
+class Command(NamedTuple):
+    """A command, and the module of this package that has it: ``add_NAME(parser)`` there adds its arguments."""
+
+    module: str
+    help: str
+
+
+COMMANDS = {
+    "run": Command("run", "drive a route and score the drive"),
+    "scenario": Command("scenario", "list, play and draw traffic scenarios"),
+    "score": Command("results", "score a run again, from its folder alone"),
+    "report": Command("results", "write report.html of a run again, from its folder alone"),
+    "compare": Command("results", "put runs side by side"),
+    "experiment": Command("run", "drive the thesis's test runs again"),
+    "metrics": Command("recordings", "run a metric of your own on a recording"),
+    "replay": Command("recordings", "play a run again"),
+    "list": Command("results", "show the agents and routes that come with BASU"),
+}
 
 UNREAD = 141  # 128 + SIGPIPE, as shells have it
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; what a person can mend is one sentence and an exit code."""
+    words = sys.argv[1:] if argv is None else list(argv)
     try:
-        code = _run(parser().parse_args(argv))
+        code = _run(words)
         sys.stdout.flush()
-    except BrokenPipeError:  # who reads our output has seen enough, such as `head`
+    except BrokenPipeError:  # the reader of our output has seen enough, such as `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = UNREAD
     if client_threads.is_held():
@@ -35,9 +56,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     return code
 
 
-def _run(arguments: argparse.Namespace) -> int:
+def _run(words: Sequence[str]) -> int:
     """The command's exit code, whatever becomes of it."""
     try:
+        arguments = parser(words).parse_args(words)
         code: int = arguments.command(arguments)
     except UserError as error:
         return _say(error, Fault.SETUP)
@@ -45,23 +67,32 @@ def _run(arguments: argparse.Namespace) -> int:
         return _say(error, Fault.AGENT)
     except SimulatorError as error:
         return _say(error, Fault.SIMULATOR)
-    except KeyboardInterrupt:
-        return _say("interrupted", Fault.USER)
+    except KeyboardInterrupt as interruption:
+        return _say(str(interruption) or "interrupted", Fault.USER)
     except BrokenPipeError:
-        raise  # nobody reads what we say
-    except Exception:  # noqa: BLE001 - a bug of ours: told in full, with an exit status that is nobody else's
+        raise  # nothing reads our output
+    except Exception:  # noqa: BLE001 - a bug of ours: shown in full, with an exit status of its own
         traceback.print_exc()
         return Fault.BENCHMARK.value
     return code
 
 
-def parser() -> argparse.ArgumentParser:
-    """The whole command line."""
-    whole = argparse.ArgumentParser(prog="basu", description=basu.__doc__, epilog=EXIT_CODES)
+def parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    """The command line, with the arguments of the command that ``words`` begin with.
+
+    Raises:
+        UserError: there is no such command.
+    """
+    whole = Parser(prog="basu", description=basu.__doc__, epilog=EXIT_CODES)
     whole.add_argument("--version", action="version", version=f"basu {basu.__version__}")
     commands = whole.add_subparsers(title="commands", required=True, metavar="COMMAND")
-    for command in COMMANDS:
-        command.add(commands)
+    typed = next((word for word in words if not word.startswith("-")), None)
+    if typed is not None and typed not in COMMANDS:
+        raise UserError(f"there is no command '{typed}'; {suggestion(typed, COMMANDS)}")
+    for name, command in COMMANDS.items():
+        one = commands.add_parser(name, help=command.help)
+        if name == typed:
+            getattr(importlib.import_module(f"basu.cli.{command.module}"), f"add_{name}")(one)
     return whole
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from basu.agents.config import AgentConfig
     from basu.agents.manual.person import Person
-    from basu.agents.process.remote_agent import AgentInProcess
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sensor_streams import SpawnedSensor
     from basu.managers.base_manager import Frame, Run
@@ -29,7 +29,7 @@ class AgentsManager(BaseManager):
 
     def __init__(
         self,
-        loaded: LoadedAgent | AgentInProcess,
+        loaded: FoundAgent,
         *,
         step_limit_s: float,
         routes: str | None,

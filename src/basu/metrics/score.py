@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 from basu.errors import UserError
 from basu.metrics.collisions import collisions
@@ -17,43 +18,115 @@ from basu.metrics.red_lights import red_lights
 from basu.metrics.route_deviation import THRESHOLD_M
 from basu.metrics.speeding import TOLERANCE_MPS, speeding
 from basu.metrics.stop_signs import stop_signs
+from basu.settings.option import Option, Settings
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     from basu.records.history import History
 
+SCORING = "scoring"  # the group of these options on help pages
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Scoring:
-    """What each infraction costs, how much each part weighs, and what is tolerated: adjustable, the thesis's values."""
+class Scoring(Settings):
+    """The adjustable part of a judgement; the defaults are the thesis's values."""
 
-    penalties: Mapping[Infraction, float] = field(default_factory=lambda: dict(DEFAULT_PENALTIES))
-    infraction_weight: float = 0.8
-    path_following_weight: float = 0.2
-    speeding_tolerance_mps: float = TOLERANCE_MPS  # above the posted limit
-    route_deviation_m: float = THRESHOLD_M  # from the planned line; farther out is outside the plan
-    comfort_weights: ComfortWeights = field(default_factory=ComfortWeights)  # of the passengers' own score, not of this
-    standing_place: Place = STANDING  # where in the vehicle the passengers stand who judge the ride
-    harsh_stop_mps2: float = HARSH_MPS2  # felt by them, from which on a braking is a harsh stop
+    penalties: Annotated[
+        Mapping[Infraction, float],
+        Option(
+            help="the factor of each infraction of a kind; may be given several times",
+            group=SCORING,
+            flag="--penalty",
+            metavar="KIND=FACTOR",
+            least=0.0,
+            most=1.0,
+        ),
+    ] = field(default_factory=lambda: dict(DEFAULT_PENALTIES))
+    infraction_weight: Annotated[
+        float,
+        Option(
+            help="weight of the infraction score; path following has the rest",
+            group=SCORING,
+            metavar="W",
+            least=0.0,
+            most=1.0,
+        ),
+    ] = 0.8
+    speeding_tolerance_mps: Annotated[
+        float,
+        Option(
+            help="excess over the posted limit at which speeding begins",
+            group=SCORING,
+            flag="--speeding-tolerance",
+            metavar="M/S",
+            unit="m/s",
+            least=0.0,
+        ),
+    ] = TOLERANCE_MPS
+    route_deviation_m: Annotated[
+        float,
+        Option(
+            help="distance from the planned line at which the vehicle is outside the plan",
+            group=SCORING,
+            flag="--route-deviation",
+            metavar="M",
+            unit="m",
+            least=0.0,
+        ),
+    ] = THRESHOLD_M
+    comfort_weights: Annotated[
+        ComfortWeights,
+        Option(
+            help="weight of a part of the passengers' comfort score; may be given several times",
+            group=SCORING,
+            flag="--comfort-weight",
+            metavar="NAME=W",
+            least=0.0,
+        ),
+    ] = field(default_factory=ComfortWeights)
+    standing_place: Annotated[
+        Place,
+        Option(
+            help="where passengers stand: forward, right and up from the vehicle's origin",
+            group=SCORING,
+            metavar="F,R,U",
+            unit="m",
+        ),
+    ] = STANDING
+    harsh_stop_mps2: Annotated[
+        float,
+        Option(
+            help="braking as strong as this, felt by standing passengers, is a harsh stop",
+            group=SCORING,
+            flag="--harsh-stop",
+            metavar="M/S2",
+            unit="m/s²",
+            least=0.0,
+        ),
+    ] = HARSH_MPS2
 
-    def __post_init__(self) -> None:
-        total = self.infraction_weight + self.path_following_weight
-        if not math.isclose(total, 1.0, abs_tol=1e-9) or min(self.infraction_weight, self.path_following_weight) < 0.0:
+    @property
+    def path_following_weight(self) -> float:
+        """The rest that the weight of infractions leaves, without the last digits of its arithmetic."""
+        return round(1.0 - self.infraction_weight, 12)
+
+    @classmethod
+    def completed(cls, values: Mapping[str, Any], source: str) -> dict[str, Any]:
+        """The values of a file, which may give either weight or both."""
+        given = dict(values)
+        path = given.pop("path_following_weight", None)
+        if path is None:
+            return given
+        if isinstance(path, bool) or not isinstance(path, int | float):
+            raise UserError(f"{source}: path_following_weight is {path!r}; it must be a number")
+        weight = given.setdefault("infraction_weight", round(1.0 - path, 12))
+        if isinstance(weight, int | float) and not math.isclose(weight + path, 1.0, abs_tol=1e-9):
             raise UserError(
-                f"the weights {self.infraction_weight} (infractions) and {self.path_following_weight} (path following) "
-                f"sum to {total:g}; they must be non-negative and sum to 1"
+                f"{source}: the weights {weight} (infractions) and {path} (path following) sum to {weight + path:g}; "
+                "they must be non-negative and sum to 1"
             )
-        for kind, penalty in self.penalties.items():
-            if not 0.0 <= penalty <= 1.0:
-                raise UserError(f"the penalty of {kind.value} is {penalty}; it is a factor and must lie in 0..1")
-        for name, value in (
-            ("speeding_tolerance_mps", self.speeding_tolerance_mps),
-            ("route_deviation_m", self.route_deviation_m),
-            ("harsh_stop_mps2", self.harsh_stop_mps2),
-        ):
-            if not 0.0 <= value < math.inf:
-                raise UserError(f"{name} is {value}; it must be a number that is not negative")
+        return given
 
 
 class Scores(NamedTuple):

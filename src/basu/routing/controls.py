@@ -19,6 +19,7 @@ KIND_OF_TYPE = {
     "205": ControlKind.YIELD_SIGN,
     **{str(code): ControlKind.TRAFFIC_LIGHT for code in (1000001, 1000002, *range(1000007, 1000021))},
 }
+SAME_LINE_M = 40.0  # a light and a reference to it on the connecting road behind its line lie within this
 PASS_SLACK_M = 3.0  # a line this near beyond the end of a stretch on its road still belongs to it
 
 
@@ -62,7 +63,19 @@ def controls_on(
                     yaw_rad=float(yaw_rad[at]),
                 )
             )
-    return tuple(sorted(found, key=lambda control: (control.s_m, control.landmark_id)))
+    return _lines(sorted(found, key=lambda control: (control.s_m, control.landmark_id)))
+
+
+def _lines(found: list[Control]) -> tuple[Control, ...]:
+    """Controls without references on connecting roads to a signal whose own line lies a few metres before them."""
+    kept: list[Control] = []
+    for control in found:
+        again = any(
+            control.landmark_id == other.landmark_id and control.s_m - other.s_m < SAME_LINE_M for other in kept[-4:]
+        )
+        if not again:
+            kept.append(control)
+    return tuple(kept)
 
 
 def _nearest(landmark: carla.Landmark, lane: int, stretch_m: NDArray[np.float64]) -> int | None:

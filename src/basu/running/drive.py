@@ -83,8 +83,8 @@ def drive(
             manager.setup(run)
         began_s = time.perf_counter()
         outcome = _until_over(run, live, scenarios, onlookers, ended)
-    except KeyboardInterrupt:
-        outcome = Outcome(Status.INTERRUPTED, "interrupted by the user")
+    except KeyboardInterrupt as interruption:
+        outcome = Outcome(Status.INTERRUPTED, str(interruption) or "interrupted by the user")
     except AgentError as error:
         agent_error = error
         outcome = _agents_end(error, why_gone())

@@ -23,7 +23,7 @@ from basu.output.viewer.onlooker import viewer_for
 from basu.records.carla_log.sources import LOG_FILE
 from basu.routing import lane_graph, plan
 from basu.running.drive import drive
-from basu.running.run_folder import OWN_ROUTE, leave, run_config
+from basu.running.run_folder import OWN_ROUTE, run_config, write_run_folder
 from basu.simulator import asking, ticked_by_us, weather_called, world_of
 from basu.vehicle import vehicle_at_start
 
@@ -118,7 +118,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         log=None if recording is None else recording.path,
     )
     met = told(ground.scenarios.playing, driven.history, driven.outcome)
-    document = leave(draft, driven, session.scoring, ground.lanes, config, met)
+    document = write_run_folder(draft, driven, session.scoring, ground.lanes, config, met)
     return Finished(driven.outcome, draft, document, driven.bug)
 
 

@@ -23,8 +23,7 @@ from basu.utils.packaged import find
 
 if TYPE_CHECKING:
     from basu.agents.config import AgentConfig
-    from basu.agents.loader import LoadedAgent
-    from basu.agents.process.remote_agent import AgentInProcess
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.options import RunOptions
     from basu.scenarios.cases import Playable
@@ -52,7 +51,7 @@ class Job(NamedTuple):
 class Plan:
     """What is to be run."""
 
-    loaded: LoadedAgent | AgentInProcess
+    loaded: FoundAgent
     agents: AgentsManager  # for the first run; each further run makes its own
     sensors: SensorSet
     jobs: tuple[Job, ...]
@@ -100,7 +99,7 @@ def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Play
     return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
 
 
-def new_agents(loaded: LoadedAgent | AgentInProcess, options: RunOptions, seed: int) -> AgentsManager:
+def new_agents(loaded: FoundAgent, options: RunOptions, seed: int) -> AgentsManager:
     """A fresh agent, with everything random in Python begun anew."""
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
@@ -129,7 +128,7 @@ def _chosen(
     return chosen
 
 
-def sensor_set(agents: AgentsManager, loaded: LoadedAgent | AgentInProcess) -> SensorSet:
+def sensor_set(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
     """The sensors that the agent wants, by its own method or by a file."""
     own = agents.own_sensors()
     if own is not None:

@@ -1,18 +1,11 @@
-"""What a run leaves behind: its config, result, record and picture in its folder, and the table on the console."""
+"""Writes the folder of a run: config, result, record, picture and report; prints the table."""
 
 from __future__ import annotations
 
-import platform
-from dataclasses import asdict
-from importlib.metadata import version
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-import basu
-from basu.metrics.score import Scoring
-from basu.metrics.scoring_json import scoring_to_json
-from basu.options import STEP_S
+from basu.options import STEP_S, RunOptions
 from basu.output.report import picture
 from basu.output.report.console import table
 from basu.output.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, write_json
@@ -22,17 +15,20 @@ from basu.output.report.result import result
 from basu.output.report.streets import around, write_streets
 from basu.records.carla_log.sources import LOG_FILE
 from basu.records.history.files import write_history
+from basu.settings.command_line import words_of
+from basu.settings.document import RUN, config_document
+from basu.settings.option import fields_of
 from basu.utils.atomic import write_bytes
+from basu.utils.packaged import places
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from datetime import datetime
     from pathlib import Path
 
     from basu.agents.config import AgentConfig
-    from basu.agents.loader import LoadedAgent
-    from basu.agents.process.remote_agent import AgentInProcess
-    from basu.options import RunOptions
+    from basu.agents.process.remote_agent import FoundAgent
+    from basu.metrics.score import Scoring
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
     from basu.running.drive import Driven
@@ -44,7 +40,7 @@ ROUTE_WEATHER = "of the route file"
 def run_config(
     options: RunOptions,
     scoring: Scoring,
-    loaded: LoadedAgent | AgentInProcess,
+    loaded: FoundAgent,
     wishes: AgentConfig,
     description: RouteDescription,
     *,
@@ -54,10 +50,11 @@ def run_config(
     traffic: Mapping[str, int],
     log: str | None,
 ) -> dict[str, Any]:
-    """What is needed to run it again."""
+    """Return ``config.json``: the options that repeat this one run, and what they came to."""
+    again = options_again(options, description, seed)
     return {
+        **config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description)),
         "started": started.isoformat(timespec="seconds"),
-        "command": command(options, scoring, description, seed),
         "agent": {"name": loaded.name, "class": loaded.class_name, "file": options.agent},
         "agent_config": asdict(wishes),
         "route": description.id,
@@ -67,57 +64,63 @@ def run_config(
         "traffic": {**traffic, "density_per_km": options.traffic.density_per_km},
         "recording": _recording(options, log, own_simulator=own_simulator),
         "step_s": STEP_S,
-        "step_limit_s": options.step_limit_s,
         "own_simulator": own_simulator,
-        "scoring": scoring_to_json(scoring),
-        "versions": {
-            "basu": basu.__version__,
-            "carla": version("carla"),
-            "numpy": np.__version__,
-            "python": platform.python_version(),
-        },
+        "notes": _notes(options, loaded),
     }
 
 
-def command(options: RunOptions, scoring: Scoring, description: RouteDescription, seed: int) -> list[str]:
-    """The command that does this run again."""
-    usual, traffic = Scoring(), options.traffic
-    changed = [
-        f"{kind.value}={factor}" for kind, factor in scoring.penalties.items() if factor != usual.penalties[kind]
-    ]
-    values: list[tuple[str, object]] = [
-        ("--agent-config", options.agent_config),
-        ("--routes", options.routes),
-        ("--route-id", description.id.removesuffix(OWN_ROUTE)),
-        ("--seed", seed),
-        ("--weather", options.weather),
-        ("--vehicle", options.vehicle),
-        ("--keys", options.keys),
-        ("--vehicles", traffic.vehicles or None),
-        ("--walkers", traffic.walkers or None),
-        ("--traffic-density", traffic.density_per_km),
-        *(("--penalty", text) for text in changed),
-    ]
-    for option, number, usually in (
-        ("--infraction-weight", scoring.infraction_weight, usual.infraction_weight),
-        ("--speeding-tolerance", scoring.speeding_tolerance_mps, usual.speeding_tolerance_mps),
-        ("--route-deviation", scoring.route_deviation_m, usual.route_deviation_m),
-    ):
-        if number != usually:
-            values.append((option, number))
-    words = [word for option, value in values if value is not None for word in (option, str(value))]
-    words += [word for file in options.scenario_files for word in ("--scenarios", str(file))]
-    words += [] if options.with_scenarios else ["--no-scenarios"]
-    return ["basu", "run", options.agent, *words, *(["--record"] if options.record else [])]
+def options_again(options: RunOptions, description: RouteDescription, seed: int) -> RunOptions:
+    """Return the options that repeat one run of those that ``options`` asked for.
+
+    Keys that a person pressed and that were recorded become the keys to play.
+    """
+    keys = options.keys if options.record_keys is None else str(options.record_keys)
+    return replace(
+        options,
+        route_id=description.id.removesuffix(OWN_ROUTE),
+        routes_subset=None,
+        repetitions=1,
+        seed=seed,
+        keys=keys,
+    )
+
+
+def command(options: RunOptions, scoring: Scoring) -> list[str]:
+    """Return the command line of a run: the options that differ from their defaults, but none of the session."""
+    session = [field.name for field in fields_of(RunOptions) if not field.option.repeats]
+    return ["basu", "run", *words_of(options, but=session), *words_of(scoring)]
+
+
+def _files(
+    options: RunOptions, loaded: FoundAgent, wishes: AgentConfig, description: RouteDescription
+) -> Iterator[Path]:
+    """Yield the files that decide over the run's outcome."""
+    if loaded.file is not None:
+        yield loaded.file
+    names = (description.source, wishes.sensors, options.agent_config, options.keys, *options.scenario_files)
+    for name in names:
+        found = (
+            next((place / name for place in places(loaded.file) if (place / name).is_file()), None) if name else None
+        )
+        if found is not None:
+            yield found
+
+
+def _notes(options: RunOptions, loaded: FoundAgent) -> list[str]:
+    """Return what keeps a run from being repeated, in sentences."""
+    by_hand = options.hud is not None or loaded.is_human
+    if by_hand and options.keys is None and options.record_keys is None:
+        return ["a person could drive, and the keys were not recorded; --record-keys FILE makes such a run repeatable"]
+    return []
 
 
 def weather_name(options: RunOptions, wishes: AgentConfig, description: RouteDescription) -> str:
-    """What the weather of a run is called: a preset, or that the route file gives it."""
+    """Return the name of a run's weather: a preset, or that the route file gives it."""
     return ROUTE_WEATHER if options.weather is None and description.weather else wishes.weather
 
 
 def _recording(options: RunOptions, log: str | None, *, own_simulator: bool) -> dict[str, str] | None:
-    """Where CARLA's log lies: in the run's folder, or where somebody else's simulator keeps it."""
+    """Return the place of CARLA's log: the run's folder, or the disk of a simulator that is not ours."""
     if log is None:
         return None
     if own_simulator:
@@ -125,7 +128,7 @@ def _recording(options: RunOptions, log: str | None, *, own_simulator: bool) -> 
     return {"file": log, "where": f"disk of the simulator at {options.host}:{options.port}"}
 
 
-def leave(
+def write_run_folder(
     folder: Path,
     driven: Driven,
     scoring: Scoring,
@@ -133,7 +136,7 @@ def leave(
     config: dict[str, Any],
     scenarios: Sequence[dict[str, Any]] = (),
 ) -> dict[str, Any]:
-    """Write the folder of a run and show its table; the result. ``scenarios`` are those on the way."""
+    """Write the folder of a run, print its table and return the result; ``scenarios`` are those on the route."""
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
     meta = {
@@ -173,5 +176,5 @@ def leave(
 
 
 def _heading(config: dict[str, Any]) -> str:
-    """What a run was, in a line."""
+    """Return agent, route and town in a line."""
     return f"{config['agent']['name']} on route {config['route']} of {config['town']}"

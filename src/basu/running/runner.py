@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import shlex
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
 from basu.errors import UserError
 from basu.outcome import Status
-from basu.output.report.folder import LATEST, plain, point_latest, publish, run_name
+from basu.output.report.folder import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.running.series import conditions, open_series
@@ -91,5 +92,6 @@ def _told(done: Finished, folder: Path, output: Path) -> None:
     """Say where a run lies; raise what was wrong with us."""
     point_latest(folder, output)
     print(f"result folder     {folder}")
+    print(f"to repeat         basu run --config {shlex.quote(str(folder / CONFIG_FILE))}")
     if done.bug is not None:
         raise done.bug

@@ -77,7 +77,7 @@ def attach(
 
 @method("destroy_actor")
 def destroy_actor(context: Context, actor_id: U32) -> bool:
-    """Take an actor, and what is attached to it, out of the world."""
+    """Take an actor out of the world; what is attached to it stays where it is, attached to nothing."""
     context.simulation.destroy(actor_id)
     return True
 

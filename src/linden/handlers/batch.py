@@ -12,9 +12,11 @@ from linden.handlers.context import Context
 from linden.handlers.registry import method, told
 from linden.simulation.arms import hung
 from linden.values.enums import AttachmentType
+from linden.values.space import Rotation, Transform, Vector3D
 from linden.values.vehicles import VehicleControl
 from linden.wire import commands as cmd
-from linden.wire.plain import Controls
+from linden.wire.plain import Controls, Transforms
+from linden.world.actors import NO_BODY
 
 Answer: TypeAlias = tuple[Any, ...]
 """``((1, actor id),)`` or ``((0, (message,)),)``: CARLA's Response of an actor id."""
@@ -55,6 +57,8 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
         run: list[Any] = list(group)
         if kind is Controls:
             answers += [answer for controls in run for answer in _drive(context, controls)]
+        elif kind is Transforms:
+            answers += [answer for transforms in run for answer in _place(context, transforms)]
         elif kind is cmd.ApplyVehicleControl and len(run) >= WORTH_AN_ARRAY:
             answers += _drive(context, Controls(*zip(*run, strict=True)))
         elif kind is cmd.ApplyWalkerState and len(run) >= WORTH_AN_ARRAY:
@@ -82,6 +86,20 @@ def _drive(context: Context, controls: Controls) -> list[Answer]:
         fields = np.fromiter(chain.from_iterable(chosen), np.float64, len(slots) * len(VehicleControl._fields))
         episode.bodies.set_controls(np.array(slots), fields.reshape(len(slots), -1))
     return answers
+
+
+def _place(context: Context, transforms: Transforms) -> list[Answer]:
+    """Put many actors somewhere at once; each by itself where one comes twice, has no body or is not there."""
+    episode = context.simulation.episode
+    records = [episode.actors.find(actor_id) for actor_id in transforms.actor_ids]
+    slots = [NO_BODY if record is None else record.slot for record in records]
+    if NO_BODY in slots or len(set(slots)) < len(slots):
+        return [
+            _answer(context, cmd.ApplyTransform(actor_id, Transform(Vector3D(*place[:3]), Rotation(*place[3:]))))
+            for actor_id, place in zip(*transforms, strict=True)
+        ]
+    episode.place_bodies(np.array(slots), np.array(transforms.transforms))
+    return [cmd.done(actor_id) for actor_id in transforms.actor_ids]
 
 
 def _lead(context: Context, states: list[Any]) -> list[Answer]:

@@ -8,7 +8,16 @@ from typing import NamedTuple
 from linden.errors import UserError
 from linden.mapping import controls, junctions, roads, roundabouts
 from linden.mapping.curves import Point, length, pose_at, seen_from
-from linden.mapping.document import Controller, Document, JunctionRecord, Link, Object, RoadRecord, Signal
+from linden.mapping.document import (
+    Controller,
+    Document,
+    JunctionRecord,
+    Link,
+    Object,
+    RoadRecord,
+    Signal,
+    SignalReference,
+)
 from linden.mapping.facts import Control, Facts, Intersection, read
 from linden.mapping.network import End, Leg, Network, nearest_road
 from linden.mapping.network import build as build_network
@@ -155,6 +164,8 @@ class _Assembly:
             self.corners.append(record)
             connections.append(junctions.connection(record))
         ranks = self._add_controls(legs, rules, found, walked=not crossings.isdisjoint(nodes))
+        if Control.SIGNAL in rules:
+            self._refer_to_lights(turns)
         if is_roundabout or len(legs) == 1:
             self._add_island(legs[0], centre, found)
             self.corners.append(roundabouts.island(next(self.way_ids), centre, height_m))
@@ -196,6 +207,13 @@ class _Assembly:
                     controls.signal(next(self.signal_ids), kind, leg, road_m, confidence, crosswalk=crosswalk)
                 )
         return ranks
+
+    def _refer_to_lights(self, turns: tuple[junctions.Turn, ...]) -> None:
+        """Let each connecting road of the last junction refer to the light before it, as those of CARLA's towns do."""
+        for number, turn in enumerate(turns, start=len(self.ways) - len(turns)):
+            way = self.ways[number]
+            reference = SignalReference(self._light_of(turn.come), (-1, -1))
+            self.ways[number] = way._replace(record=way.record._replace(references=(reference,)))
 
     def _add_controllers(self, legs: tuple[Leg, ...]) -> tuple[int, ...]:
         """Return the ids of the controllers of a junction with lights: one for each approach.

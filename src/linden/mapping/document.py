@@ -81,6 +81,13 @@ class Signal(NamedTuple):
     unit: str | None = None
 
 
+class SignalReference(NamedTuple):
+    """A light that stands on another road and governs all lanes of this one from its begin on."""
+
+    signal: int
+    lanes: tuple[int, int]
+
+
 class Object(NamedTuple):
     """A painted or built thing beside or on a road; the outline is in its own frame (u along the road, v left)."""
 
@@ -111,6 +118,7 @@ class RoadRecord(NamedTuple):
     centre: Mark
     signals: tuple[Signal, ...] = ()
     objects: tuple[Object, ...] = ()
+    references: tuple[SignalReference, ...] = ()
     notes: tuple[tuple[str, str], ...] = ()
 
 

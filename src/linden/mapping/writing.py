@@ -15,6 +15,7 @@ from linden.mapping.document import (
     Object,
     RoadRecord,
     Signal,
+    SignalReference,
 )
 
 
@@ -95,10 +96,12 @@ def _add_road(root: etree._Element, road: RoadRecord) -> None:
         parent = _add(element, "objects")
         for thing in road.objects:
             _add_object(parent, thing)
-    if road.signals:
+    if road.signals or road.references:
         parent = _add(element, "signals")
         for signal in road.signals:
             _add_signal(parent, signal)
+        for reference in road.references:
+            _add_reference(parent, reference)
     _add_notes(element, road.notes)
 
 
@@ -131,16 +134,16 @@ def _add_lanes(parent: etree._Element, road: RoadRecord) -> None:
     if road.left:
         side = _add(section, "left")
         for lane in reversed(road.left):
-            _add_lane(side, lane)
+            _add_lane(side, lane, road.speed_mph)
     centre = _add(_add(section, "center"), "lane", id=0, type="none", level="false")
     _add_mark(centre, road.centre)
     if road.right:
         side = _add(section, "right")
         for lane in road.right:
-            _add_lane(side, lane)
+            _add_lane(side, lane, road.speed_mph)
 
 
-def _add_lane(parent: etree._Element, lane: LaneRecord) -> None:
+def _add_lane(parent: etree._Element, lane: LaneRecord, speed_mph: float | None) -> None:
     element = _add(parent, "lane", id=lane.id, type=lane.kind, level="false")
     link = _add(element, "link")
     if lane.predecessor is not None:
@@ -150,6 +153,8 @@ def _add_lane(parent: etree._Element, lane: LaneRecord) -> None:
     for cubic in lane.widths:
         _add(element, "width", **_cubic(cubic, "sOffset"))
     _add_mark(element, lane.mark)
+    if lane.kind == "driving" and speed_mph is not None:  # SUMO's netconvert reads no speed of a road
+        _add(element, "speed", sOffset=0, max=_fixed(speed_mph, 3), unit="mph")
     if lane.height_m:
         _add(element, "height", sOffset=0, inner=_metres(lane.height_m), outer=_metres(lane.height_m))
 
@@ -219,6 +224,11 @@ def _add_signal(parent: etree._Element, signal: Signal) -> None:
     )
     _add(element, "validity", fromLane=signal.lanes[0], toLane=signal.lanes[1])
     _add_notes(element, (("confidence", signal.confidence),))
+
+
+def _add_reference(parent: etree._Element, reference: SignalReference) -> None:
+    element = _add(parent, "signalReference", s=0, t=0, id=reference.signal, orientation="+")
+    _add(element, "validity", fromLane=reference.lanes[0], toLane=reference.lanes[1])
 
 
 def _add_junction(root: etree._Element, junction: JunctionRecord) -> None:

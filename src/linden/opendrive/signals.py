@@ -69,14 +69,41 @@ _Reference = tuple[int, float, tuple[Validity, ...]]
 
 
 def _references(opendrive: OpenDrive) -> dict[str, list[_Reference]]:
-    """Map a signal's id to the places it speaks at: (index of the road, s, lanes)."""
+    """Map a signal's id to the places it speaks at: (index of the road, s, lanes).
+
+    A signal that stands before a junction and speaks to the lanes there has its line there. References to it on the
+    connecting roads behind that line tell other programs which ways it governs, and make no second line.
+    """
     references: dict[str, list[_Reference]] = defaultdict(list)
+    stands_on: dict[str, Road] = {}
     for index, road in enumerate(opendrive.roads):
         for signal in road.signals:
             references[signal.id].append((index, signal.s_m, validities_of(road, signal)))
+            if _speaks(road, signal):
+                stands_on[signal.id] = road
+    for index, road in enumerate(opendrive.roads):
         for reference in road.signal_references:
-            references[reference.signal_id].append((index, reference.s_m, validities_of(road, reference)))
+            before = stands_on.get(reference.signal_id)
+            if before is None or before.is_in_junction or not _comes_from(road, before):
+                references[reference.signal_id].append((index, reference.s_m, validities_of(road, reference)))
     return references
+
+
+def _speaks(road: Road, signal: Signal) -> bool:
+    """Return whether a signal speaks to a driving lane of the road that it stands on."""
+    return any(
+        lane.type is LaneType.DRIVING and lane.id != 0 and min(validity) <= lane.id <= max(validity)
+        for lane in road.section_at(signal.s_m).lanes
+        for validity in validities_of(road, signal)
+    )
+
+
+def _comes_from(road: Road, before: Road) -> bool:
+    """Return whether a connecting road begins or ends at another road."""
+    return road.is_in_junction and any(
+        link is not None and (link.is_junction, link.id) == (False, before.id)
+        for link in (road.predecessor, road.successor)
+    )
 
 
 def validities_of(road: Road, signal: Signal | SignalReference) -> tuple[Validity, ...]:

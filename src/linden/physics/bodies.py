@@ -113,6 +113,19 @@ class Bodies(Cockpits):
         s["tumbling"][slot] = False
         self.wake(slot)
 
+    def set_poses(self, slots: NDArray[np.integer], poses: NDArray[np.float64]) -> None:
+        """Put many actors somewhere as ``set_pose`` does: (K,) slots, each once; (K, 6) m, then degrees."""
+        s = self.state
+        s["position"][slots] = np.clip(np.nan_to_num(poses[:, :3]), -_FARTHEST_M, _FARTHEST_M)
+        turn_deg = np.fmod(np.where(np.isfinite(poses[:, 3:]), poses[:, 3:], 0.0), 360.0)
+        s["rotation"][slots] = np.radians(turn_deg - 360.0 * (turn_deg > 180.0) + 360.0 * (turn_deg < -180.0))
+        s["footing"][slots] = 0.0
+        s["velocity"][slots, 2] -= s["heave_mps"][slots]
+        s["heave_mps"][slots] = 0.0
+        s["tilt_radps"][slots] = 0.0
+        s["tumbling"][slots] = False
+        s["resting"][slots] = False
+
     def set_simulate(self, slot: int, *, simulate: bool) -> None:
         """Switch the physics of one body; without it the body stays where it is put, and others collide with it.
 

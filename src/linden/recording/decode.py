@@ -146,11 +146,14 @@ def _records(packet: Packet, layout: "np.dtype[np.void]") -> Records:
 
 
 def _undisputed(packet: Packet) -> PacketId:
-    """Return what packet 21, 22 or 23 holds; releases number doors, wheels and bikers in different orders.
+    """Return what packet 21, 22 or 23 holds; versions number doors, wheels and bikers in different orders.
 
-    A door takes 6 bytes, a biker 12, a vehicle's wheels 8 and 9 more for each wheel: the size tells them apart.
+    A door takes 6 bytes, a biker 12, a vehicle's wheels 8 and 9 more for each wheel: the size tells them apart. An
+    empty list has no size to tell by and is taken as CARLA 0.9.16 numbers it.
     """
     (count,) = Cursor(packet).unpack(_COUNT)
+    if count == 0:
+        return PacketId(packet.id)
     size = len(packet.content) - _COUNT.size
     for kind in (PacketId.DOORS, PacketId.BIKERS):
         if size == count * layouts.RECORDS[kind].itemsize:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from itertools import chain
 
 from linden.recording.layouts import FRAME_START, MAGIC, VERSION, PacketId
-from linden.recording.packets import ActorAdded, PhysicsRecord, Records
+from linden.recording.packets import ActorAdded, PhysicsRecord, Records, WheelTurns
 from linden.values.actors import AttributeValue
 from linden.values.vehicles import VehiclePhysicsControl
 
@@ -15,6 +15,7 @@ _HEAD = struct.Struct("<BI")
 _COUNT = struct.Struct("<H")
 _LONG_COUNT = struct.Struct("<I")
 _ADDED_HEAD = struct.Struct("<IB6fI")
+_WHEELS_HEAD = struct.Struct("<II")
 _PHYSICS_HEAD = struct.Struct("<I5f?4f3f")
 _LONGEST_TEXT = 0xFFFF
 
@@ -71,6 +72,12 @@ def _added(actor: ActorAdded) -> bytes:
 
 def _attribute(attribute: AttributeValue) -> bytes:
     return bytes([attribute.type]) + text(attribute.id) + text(attribute.value)
+
+
+def wheels(found: Sequence[WheelTurns]) -> bytes:
+    """Return the packet of the wheels of vehicles: for each, its id, a u32 count and as many ``layouts.WHEEL``."""
+    each = (_WHEELS_HEAD.pack(one.id, len(one.wheels)) + one.wheels.tobytes() for one in found)
+    return packet(PacketId.WHEELS, _COUNT.pack(len(found)) + b"".join(each))
 
 
 def physics(found: Sequence[PhysicsRecord]) -> bytes:

@@ -17,7 +17,10 @@ SCENERY = 0xFFFFFFFF
 
 
 class PacketId(IntEnum):
-    """What a packet holds. From 21 on the releases disagree; ``decode`` tells them apart by their sizes."""
+    """What a packet holds, as the tree of CARLA 0.9.16 numbers it (``CarlaRecorder.h``).
+
+    An earlier version numbers 21 to 23 as doors, wheels, bikers; ``decode`` tells them apart by their sizes.
+    """
 
     FRAME_START = 0
     FRAME_END = 1
@@ -40,9 +43,9 @@ class PacketId(IntEnum):
     FRAME_COUNTER = 18
     BONES = 19
     VISUAL_TIME = 20
-    DOORS = 21
-    WHEELS = 22
-    BIKERS = 23
+    WHEELS = 21
+    BIKERS = 22
+    DOORS = 23
     WEATHER = 24
     LOCATION_ULPS = 240
     """Linden's own; CARLA skips it, as any id it does not know."""

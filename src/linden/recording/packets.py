@@ -139,6 +139,16 @@ class Frame:
         return self._records(PacketId.SCENE_LIGHTS)
 
     @property
+    def doors(self) -> Records:
+        """Doors that were opened or closed, in the first frame all open ones: ``layouts.DOOR``."""
+        return self._records(PacketId.DOORS)
+
+    @property
+    def wheels(self) -> tuple[WheelTurns, ...]:
+        """Steering angle and rotation of the wheels of each vehicle."""
+        return tuple(self.packets.get(PacketId.WHEELS, ()))
+
+    @property
     def kinematics(self) -> Records:
         """Velocities (additional data): ``layouts.KINEMATICS``, m/s and degrees/s."""
         return self._records(PacketId.KINEMATICS)

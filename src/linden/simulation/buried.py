@@ -5,6 +5,7 @@ unless their physics is switched off; here there is ground everywhere, and it wo
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linden.ground import Ground
 from linden.physics.bodies import Bodies
@@ -34,6 +35,14 @@ class Buried:
         elif slot in self._withheld:
             self._withheld.discard(slot)
             self._bodies.set_simulate(slot, simulate=True)
+
+    def settle_all(self, slots: NDArray[np.integer]) -> None:
+        """Look where many bodies were put."""
+        places_m = self._bodies.position[slots]
+        heights_m, _ = self._ground.surfaces_under(places_m)
+        deep = places_m[:, 2] < heights_m - DEEP_M
+        for slot in slots[deep | np.isin(slots, list(self._withheld))].tolist():
+            self.settle(slot)
 
     def simulate(self, slot: int, *, wanted: bool) -> None:
         """Switch a body's physics; one that is buried gets it when it is put up."""

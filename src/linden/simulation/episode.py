@@ -196,6 +196,11 @@ class Episode:
             self.bodies.set_pose(record.slot, pose)
             self.buried.settle(record.slot)
 
+    def place_bodies(self, slots: NDArray[np.integer], poses: NDArray[np.float64]) -> None:
+        """Put many bodies somewhere in the world: (K,) slots, each once, and (K, 6) x, y, z in m, pitch, yaw, roll."""
+        self.bodies.set_poses(slots, poses)
+        self.buried.settle_all(slots)
+
     # -- what the snapshot shows ---------------------------------------------------------------------------------
 
     def observe(self) -> None:

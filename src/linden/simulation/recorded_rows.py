@@ -1,15 +1,16 @@
 """Rows of the snapshot as records of a recording, column by column. Layouts: ``linden.recording.layouts``."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.recording import layouts
+from linden.recording.packets import WheelTurns
 from linden.simulation.episode import Episode
 from linden.values.snapshot import TRAFFIC_LIGHT_ROW, VEHICLE_ROW, WALKER_ROW
-from linden.world.actors import ActorRecord
+from linden.world.actors import NO_BODY, ActorRecord
 from linden.world.blueprints import Kind
 
 Rows = NDArray[Any]
@@ -99,6 +100,33 @@ def kinematics(rows: Rows, of: Indices) -> NDArray[np.void]:
 def lamps(records: Sequence[ActorRecord]) -> NDArray[np.void]:
     """Return which lamps of vehicles are lit."""
     return np.array([(record.id, record.light_state) for record in records], layouts.VEHICLE_LIGHT)
+
+
+def wheels(episode: Episode, records: Sequence[ActorRecord]) -> list[WheelTurns]:
+    """Return steering angle and rotation of every wheel of the vehicles that have a body, as the client reads them."""
+    bodies = episode.bodies
+    steer_deg, turn_deg = np.degrees(bodies.wheel_steer), -np.degrees(bodies.wheel_turned)
+    found = []
+    for record in records:
+        if record.slot == NO_BODY:
+            continue
+        count = int(bodies.specs["wheel_count"][record.slot])
+        turns = np.empty(count, layouts.WHEEL)
+        turns["wheel"] = np.arange(count)
+        turns["steer_deg"] = steer_deg[record.slot, :count]
+        turns["turn_deg"] = turn_deg[record.slot, :count]
+        found.append(WheelTurns(record.id, turns))
+    return found
+
+
+def doors(before: Mapping[int, frozenset[int]], after: Mapping[int, frozenset[int]]) -> NDArray[np.void]:
+    """Return the doors that stand otherwise than before, by actor id and door."""
+    moved = [
+        (actor_id, door, door in after.get(actor_id, frozenset()))
+        for actor_id in sorted({*before, *after})
+        for door in sorted(before.get(actor_id, frozenset()) ^ after.get(actor_id, frozenset()))
+    ]
+    return np.array(moved, layouts.DOOR)
 
 
 def _copied(rows: Rows, of: Indices, layout: "np.dtype[np.void]", fields: Sequence[str]) -> NDArray[np.void]:

@@ -113,6 +113,7 @@ class _Tape:
         self._lamps: dict[int, LightState] | None = None
         self._light_times: NDArray[np.void] | None = None
         self._collisions = 0
+        self._open_doors: dict[int, frozenset[int]] = {}
 
     def before_step(self, episode: Episode) -> None:
         if episode.actors.version == self._seen_version:
@@ -146,6 +147,7 @@ class _Tape:
         yield encode.records(PacketId.REMOVED, np.array(gone, layouts.REMOVED))
         yield encode.records(PacketId.PARENTS, _parents(come))
         yield encode.records(PacketId.COLLISIONS, self._contacts(episode))
+        yield encode.records(PacketId.DOORS, self._swung_doors(episode))
         yield encode.records(PacketId.POSITIONS, positions)
         yield encode.records(PacketId.LIGHT_STATES, rows_of.light_states(rows, self._columns.lights))
         yield encode.records(PacketId.VEHICLES, rows_of.vehicles(rows, self._columns.vehicles))
@@ -153,6 +155,8 @@ class _Tape:
         yield encode.records(PacketId.VEHICLE_LIGHTS, rows_of.lamps(self._columns.vehicle_records))
         if len(lamps := self._changed_lamps(episode)):
             yield encode.records(PacketId.SCENE_LIGHTS, lamps)
+        if wheels := rows_of.wheels(episode, self._columns.vehicle_records):
+            yield encode.wheels(wheels)
         if self._additional_data:
             yield from self._additional(episode, come)
         yield encode.packet(PacketId.LOCATION_ULPS, len(ulps).to_bytes(2, "little") + ulps.tobytes())
@@ -164,6 +168,12 @@ class _Tape:
             return recorded_lamps.records([])
         self._lamps = {lamp.id: lamp for lamp in episode.surroundings.lamp_states()}
         return recorded_lamps.records([lamp for lamp in self._lamps.values() if (known or {}).get(lamp.id) != lamp])
+
+    def _swung_doors(self, episode: Episode) -> NDArray[np.void]:
+        """Return the doors that were opened or closed since the last frame; in the first, all that are open."""
+        before = {actor_id: doors for actor_id, doors in self._open_doors.items() if actor_id in episode.actors}
+        self._open_doors = dict(episode.doors.open)
+        return rows_of.doors(before, self._open_doors)
 
     def _contacts(self, episode: Episode) -> NDArray[np.void]:
         if not len(episode.contacts):

@@ -1,12 +1,15 @@
 """Puts the world as a frame of a recording has it: places, controls, lamps, traffic lights, by whole columns."""
 
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.errors import Refusal
 from linden.geometry import relative
-from linden.recording.packets import Frame, Records
+from linden.recording.packets import Frame, Records, WheelTurns
 from linden.simulation.replay_cast import Cast
 from linden.simulation.replay_moment import Places, within
 from linden.values.enums import TrafficLightState
@@ -63,6 +66,7 @@ class Stage:
     def show(self, frame: Frame) -> None:
         """Let everybody do what they did in a frame."""
         self._drive(frame.vehicles)
+        self._turn_wheels(frame.wheels)
         self._walk(frame.walkers)
         self._move(frame.kinematics)
         self._light(frame.light_states)
@@ -81,6 +85,26 @@ class Stage:
         bodies.hand_brake[slots] = driven["hand_brake"] != 0
         bodies.gear[slots] = bodies.gear_command[slots] = np.clip(driven["gear"], -1, bodies.specs["gear_count"][slots])
         bodies.reverse[slots], bodies.manual_gear_shift[slots] = driven["gear"] < 0, False
+
+    def _turn_wheels(self, wheels: Sequence[WheelTurns]) -> None:
+        """Let the wheels of vehicles point and have rolled as recorded."""
+        found = self._players("wheels", np.array([one.id for one in wheels], np.uint32), Kind.VEHICLE)
+        bodies = self._simulation.episode.bodies
+        for row, slot in zip(found.rows.tolist(), found.slots.tolist(), strict=True):
+            count = int(bodies.specs["wheel_count"][slot])
+            for wheel in wheels[row].wheels:
+                if wheel["wheel"] < count:
+                    bodies.point_wheel(slot, int(wheel["wheel"]), float(within(wheel["steer_deg"], 360.0)))
+                    bodies.roll_wheel(slot, int(wheel["wheel"]), float(within(wheel["turn_deg"], 360.0)))
+
+    def swing_doors(self, doors: Records) -> None:
+        """Open and close the doors that were opened or closed in a frame; a door that the vehicle lacks is skipped."""
+        episode, of = self._simulation.episode, self._cast.of
+        for recorded_id, door, opens in doors.tolist():
+            record = episode.actors.find(of.get(recorded_id, 0))
+            if record is not None and record.kind is Kind.VEHICLE:
+                with suppress(Refusal):
+                    episode.doors.swing(record, door, opens=bool(opens))
 
     def _walk(self, walkers: Records) -> None:
         found = self._players("walkers", walkers["id"], Kind.WALKER)

@@ -170,6 +170,7 @@ class _Run:
             self._cast.enter(actor, parent_of.get(actor.id, 0))
         for (actor_id,) in frame.removed.tolist():
             self._cast.leave(actor_id)
+        self._stage.swing_doors(frame.doors)
         lamps = recorded_lamps.states(frame.scene_lights)
         if unknown := self._simulation.episode.surroundings.lamps.update(lamps):
             log.info("replay: the map lacks %d of the lamps that were switched", len(unknown))

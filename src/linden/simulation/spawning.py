@@ -143,7 +143,10 @@ def _first_touching(episode: Episode, box: BoundingBox, pose: Transform) -> str 
 
 
 def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
-    """Take an actor and everything attached to it out of the episode; ``announce`` where no client asked for it.
+    """Take an actor out of the episode; ``announce`` where no client asked for it.
+
+    What is attached to it stays where it is, attached to nothing: ``UActorDispatcher::DestroyActor`` of CARLA destroys
+    an actor and its controller, and Unreal detaches the rest. Programs destroy their sensors themselves.
 
     Raises:
         Refusal: there is none of that id, or it belongs to the map.
@@ -158,7 +161,7 @@ def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
 
 def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
     for child in episode.actors.children(actor_id):
-        _remove(episode, child.id, announce=True)
+        episode.actors.detach(child.id)
     record = episode.actors.remove(actor_id, announce=announce)
     if record.slot != NO_BODY:
         episode.bodies.remove(record.slot)

@@ -4,6 +4,7 @@ On the wire a command is ``[[index, body]]``: a struct of one member around the 
 that of the template's name in the official client's own symbols (which has ApplyLocation before ConsoleCommand).
 """
 
+from collections.abc import Callable
 from itertools import groupby
 from typing import Annotated, Any, NamedTuple, TypeAlias, cast
 
@@ -13,7 +14,7 @@ from linden.values.vehicles import AckermannControl, VehiclePhysicsControl
 from linden.values.walkers import WalkerControl
 from linden.wire.controls import ClientControl
 from linden.wire.decode import U8, U32, DecodedBy, Decoder, WireTypeError, got, struct_decoder
-from linden.wire.plain import WORTH_COLUMNS, Controls, plain_controls
+from linden.wire.plain import WORTH_COLUMNS, Controls, Transforms, plain_controls, plain_transforms
 
 JUST_SPAWNED = 0
 """The actor id that a command in ``do_after`` gives for the actor which its SpawnActor makes."""
@@ -242,20 +243,21 @@ def decode_commands(raw: object, *, before: int = 0) -> tuple[Command, ...]:
     return tuple(commands)
 
 
-def decode_batch(raw: object) -> "tuple[Command | Controls, ...]":
-    """Return the commands of a batch; what it has of many controls in a row is one of its members.
+def decode_batch(raw: object) -> "tuple[Command | Controls | Transforms, ...]":
+    """Return the commands of a batch; many controls or transforms in a row are one of its members.
 
     Raises:
         WireTypeError: the first that does not fit, with its place in the batch.
     """
     if type(raw) is not list:
         return decode_commands(raw)
-    members: list[Command | Controls] = []
+    members: list[Command | Controls | Transforms] = []
     before = 0
     for index, stretch in groupby(raw, _index):
         items = list(stretch)
-        controls = plain_controls(items) if index == _CONTROL and len(items) >= WORTH_COLUMNS else None
-        members += [controls] if controls else decode_commands(items, before=before)
+        plain = _PLAIN.get(index) if len(items) >= WORTH_COLUMNS else None
+        columns = plain(items) if plain else None
+        members += [columns] if columns else decode_commands(items, before=before)
         before += len(items)
     return tuple(members)
 
@@ -281,7 +283,11 @@ def _decode_command(item: Any) -> Command:  # noqa: ANN401 - whatever msgpack fo
         raise error.inside(f" ({COMMANDS[index].__name__})") from None
 
 
-_CONTROL = COMMANDS.index(ApplyVehicleControl)
+_PLAIN: dict[int | None, Callable[[list[Any]], Controls | Transforms | None]] = {
+    COMMANDS.index(ApplyVehicleControl): plain_controls,
+    COMMANDS.index(ApplyTransform): plain_transforms,
+}
+"""Commands, by index, of which many in a row are read column by column."""
 _DECODERS: tuple[Decoder, ...] = tuple(struct_decoder(command) for command in COMMANDS)
 
 
@@ -295,5 +301,5 @@ def failed(message: str) -> tuple[Any, ...]:
     return ((0, (message,)),)
 
 
-Batch = Annotated[tuple[Command | Controls, ...], DecodedBy(decode_batch)]
+Batch = Annotated[tuple[Command | Controls | Transforms, ...], DecodedBy(decode_batch)]
 """The annotation of a handler's argument that is a batch."""

@@ -163,6 +163,20 @@ class ActorTable:
         """Return the actors attached to this one, oldest first."""
         return list(self._children.get(actor_id, {}).values())
 
+    def detach(self, actor_id: int) -> None:
+        """Let an actor follow its parent no more; it stays where the last step or call put it."""
+        record = self._records[actor_id]
+        self._drop_child(record)
+        record.parent_id = 0
+        self.parent_row[self._row_of[actor_id]] = -1
+        self.version += 1
+
+    def _drop_child(self, record: ActorRecord) -> None:
+        siblings = self._children.get(record.parent_id, {})
+        siblings.pop(record.id, None)
+        if not siblings:
+            self._children.pop(record.parent_id, None)
+
     def remove(self, actor_id: int, *, announce: bool) -> ActorRecord:
         """Take an actor out; ``announce`` leaves its row, marked as killed, in the next frame's snapshot.
 
@@ -171,10 +185,7 @@ class ActorTable:
         record = self._records.pop(actor_id)
         if record.slot != NO_BODY:
             del self._by_slot[record.slot]
-        siblings = self._children.get(record.parent_id, {})
-        siblings.pop(actor_id, None)
-        if not siblings:
-            self._children.pop(record.parent_id, None)
+        self._drop_child(record)
         row = self._row_of[actor_id]
         self.rows["actor_state"][row] = ActorState.PENDING_KILL
         self.slot[row] = NO_BODY

@@ -18,7 +18,6 @@ from basu.managers.base_manager import Run
 from basu.routing.route_file import RoutePoint
 from fakes.drives import straight_route
 
-
 FRAME: Any = SimpleNamespace(tick=0, server_frame=3)
 
 

@@ -72,18 +72,19 @@ def test_the_tolerance_for_speeding_is_adjustable() -> None:
 
 @pytest.mark.parametrize("name", ["speeding_tolerance_mps", "route_deviation_m"])
 def test_a_negative_tolerance_is_refused(name: str) -> None:
-    with pytest.raises(UserError, match=f"{name} is -1.0; it must be a number that is not negative"):
+    with pytest.raises(UserError, match=f"{name} is -1.0; it must be 0 or more"):
         Scoring(**{name: -1.0})
 
 
-def test_weights_that_do_not_sum_to_one_are_refused() -> None:
-    with pytest.raises(UserError, match="must be non-negative and sum to 1"):
-        Scoring(infraction_weight=0.8, path_following_weight=0.3)
+def test_path_following_weighs_what_infractions_leave() -> None:
+    assert Scoring(infraction_weight=0.7).path_following_weight == 0.3
+    with pytest.raises(UserError, match=r"infraction_weight is 1.5; it must be in 0\.\.1"):
+        Scoring(infraction_weight=1.5)
 
 
 @pytest.mark.parametrize("penalty", [-0.1, 1.5])
 def test_a_penalty_that_is_no_factor_is_refused(penalty: float) -> None:
-    with pytest.raises(UserError, match="penalty of speeding"):
+    with pytest.raises(UserError, match=r"penalties.speeding is .*; it must be in 0\.\.1"):
         Scoring(penalties={**DEFAULT_PENALTIES, Infraction.SPEEDING: penalty})
 
 

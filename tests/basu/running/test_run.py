@@ -194,6 +194,7 @@ def test_the_agents_process_changes_nothing_of_the_drive(tmp_path: Path, simulat
 def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path, name: str) -> None:
     code, result = run(doing(tmp_path, f"os.kill(os.getppid(), signal.{name})"))
     assert (code, result["status"]) == (130, "Interrupted")
+    assert result["message"] == {"SIGINT": "interrupted by the user", "SIGTERM": "terminated by SIGTERM"}[name]
     assert result["scores"] is not None
 
 

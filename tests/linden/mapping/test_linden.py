@@ -14,6 +14,7 @@ from typing import Any
 import carla
 import networkx as nx
 import pytest
+from lxml import etree
 
 from linden.geometry import from_opendrive
 from linden.mapping.build import Built
@@ -55,7 +56,7 @@ def test_libcarla_reads_the_map_without_a_word() -> None:
 
 def test_libcarla_counts_what_was_built(town: Any, linden_built: Built) -> None:
     kinds = Counter(signal.kind for road in linden_built.document.roads for signal in road.signals)
-    assert {kind: len(town.get_all_landmarks_of_type(kind)) for kind in kinds} == kinds
+    assert {kind: len({mark.id for mark in town.get_all_landmarks_of_type(kind)}) for kind in kinds} == kinds
     assert kinds.keys() == {"206", "205", "1000001"}
     things = Counter(thing.kind for road in linden_built.document.roads for thing in road.objects)
     corners = town.get_crosswalks()
@@ -66,13 +67,35 @@ def test_libcarla_counts_what_was_built(town: Any, linden_built: Built) -> None:
 
 
 def test_signs_stand_where_they_were_put(town: Any, linden_built: Built) -> None:
-    lanes = {str(s.id): (road.id, s.lanes) for road in linden_built.document.roads for s in road.signals}
+    lanes = {(str(s.id), road.id): s.lanes for road in linden_built.document.roads for s in road.signals}
+    behind = {(str(r.signal), road.id): r.lanes for road in linden_built.document.roads for r in road.references}
+    assert len(behind) > 50
+    seen = set()
     for landmark in town.get_all_landmarks():
-        road, (first, last) = lanes[landmark.id]
-        assert landmark.road_id == road
-        assert landmark.get_lane_validities() == [(first, last)]
+        seen.add((landmark.id, landmark.road_id))
+        assert landmark.get_lane_validities() == [(lanes | behind)[landmark.id, landmark.road_id]]
         beside = town.get_waypoint(landmark.transform.location, lane_type=carla.LaneType.Driving)
         assert 1.0 < beside.transform.location.distance(landmark.transform.location) < 8.0
+    assert seen == (lanes | behind).keys()
+
+
+def test_every_way_behind_a_light_refers_to_it(linden_built: Built) -> None:
+    lights = {s.id: road.id for road in linden_built.document.roads for s in road.signals if s.dynamic}
+    ways = {c.connecting: c.incoming for j in linden_built.document.junctions if j.controllers for c in j.connections}
+    driven = {road.id for road in linden_built.document.roads if any(lane.kind == "driving" for lane in road.right)}
+    referring = {road.id: lights[r.signal] for road in linden_built.document.roads for r in road.references}
+    assert referring == {way: come for way, come in ways.items() if way in driven}
+
+
+def test_every_driving_lane_has_the_speed_of_its_road(linden_built: Built) -> None:
+    root = etree.fromstring(text(linden_built.document))
+    limited = [road for road in root.iter("road") if road.find("type/speed") is not None]
+    assert len(limited) > 1000
+    for road in limited:
+        of_lanes = {speed.get("max") for speed in road.iterfind("lanes/laneSection//lane[@type='driving']/speed")}
+        driving = road.findall("lanes/laneSection//lane[@type='driving']")
+        assert of_lanes == ({road.find("type/speed").get("max")} if driving else set())
+        assert all(lane.find("speed") is not None for lane in driving)
 
 
 def test_every_driving_lane_can_be_reached_from_every_other(town: Any) -> None:

@@ -25,7 +25,7 @@ def test_a_small_map_is_counted_by_hand() -> None:
 )
 def test_libcarla_counts_the_same(text: str) -> None:
     theirs, ours = carla.Map("test", text), count(parse(text))
-    landmarks = [mark.type for mark in theirs.get_all_landmarks()]
+    landmarks = list({mark.id: mark.type for mark in theirs.get_all_landmarks()}.values())  # references repeat an id
     assert ours.topology == len(theirs.get_topology())
     assert ours.signals == len(landmarks)
     assert ours.stop_signs == landmarks.count("206")

@@ -114,6 +114,15 @@ def test_doors_wheels_and_bikers_are_told_apart_under_whichever_number(
     assert actor_id == 9
 
 
+def test_empty_lists_of_wheels_bikers_and_doors_stand_beside_each_other(tmp_path: Path) -> None:
+    empty = [made.packet(number, b"\0\0") for number in (21, 22, 23)]
+    with Recording(made.write(tmp_path, made.header(), made.frame(1, 0.0, *empty))) as recording:
+        (frame,) = recording.frames()
+    assert list(frame.packets) == [PacketId.WHEELS, PacketId.BIKERS, PacketId.DOORS]
+    assert frame.wheels == ()
+    assert len(frame.doors) == 0
+
+
 FRAME = made.frame(1, 0.0, made.positions((9, 1, 2, 3, 4, 5, 6)))
 HEADER = len(made.header())
 DAMAGES = {

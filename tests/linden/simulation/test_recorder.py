@@ -100,7 +100,7 @@ def test_who_comes_and_goes_is_told_in_the_frame_after(drive: Drive, tmp_path: P
     _, came, went, after = read(tmp_path / "drive.log")
     assert [actor.id for actor in came.added] == [third.id]
     assert came.added[0].location_cm == pytest.approx(np.array(drive.along(30.0, 0.0).location) * 100.0, rel=1e-6)
-    assert ids(went.removed) == [drive.hero.id, drive.imu.id]
+    assert ids(went.removed) == [drive.hero.id]  # its IMU stays, attached to nothing
     assert not after.added
     assert not len(after.removed)
     assert drive.hero.id not in ids(after.positions)

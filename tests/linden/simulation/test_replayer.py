@@ -10,6 +10,7 @@ from linden.geometry import compose
 from linden.recording.errors import RecordingError
 from linden.recording.read import Recording
 from linden.simulation import Simulation
+from linden.simulation.doors import Door
 from linden.simulation.replayer import Plan
 from linden.values.enums import TrafficLightState
 from linden.values.snapshot import TRAFFIC_LIGHT_ROW, VEHICLE_ROW
@@ -97,6 +98,31 @@ def test_our_own_recording_is_replayed_to_the_last_bit(recorded: Recorded) -> No
         simulation.step(STEP_S)
         assert told(simulation, *recorded.ids) == recorded.shown[n], f"frame {n}"
         assert light(simulation) == recorded.light[n], f"frame {n}"
+
+
+def test_wheels_and_doors_stand_as_recorded(world_map: LoadedMap, tmp_path: Path) -> None:
+    drive = Drive(world_map)
+    bodies = drive.simulation.episode.bodies
+    hero = spawned(drive.simulation, "vehicle.lincoln.mkz_2020", drive.along(40.0, 0.0))  # its doors move
+    drive.record(tmp_path / "drive.log")
+    shown = []
+    for n in range(10):
+        if n in (3, 6):
+            drive.simulation.episode.doors.swing(hero, Door.REAR_LEFT, opens=n == 3)
+        drive.simulation.episode.bodies.steer[hero.slot] = 0.1 * n
+        drive.step(1)
+        angles = [(bodies.wheel_steer_deg(hero.slot, k), bodies.wheel_pitch_deg(hero.slot, k)) for k in range(4)]
+        shown.append((angles, drive.simulation.episode.doors.open.get(hero.id)))
+    drive.simulation.recorder.stop()
+    assert max(abs(steer_deg) for steer_deg, _ in shown[-2][0]) > 1.0
+    simulation = Simulation(world_map)
+    start(simulation, tmp_path / "drive.log")
+    for angles, doors in shown[:-1]:  # with the last the replay ends, and physics has the wheels again
+        simulation.step(STEP_S)
+        replayed, slot = simulation.episode.bodies, simulation.episode.actors.get(hero.id).slot
+        found = [(replayed.wheel_steer_deg(slot, k), replayed.wheel_pitch_deg(slot, k)) for k in range(4)]
+        np.testing.assert_allclose(found, angles, atol=1e-4)  # degrees, held as 32-bit floats
+        assert simulation.episode.doors.open.get(hero.id) == doors
 
 
 def test_who_came_comes_under_the_same_id_and_who_went_goes(recorded: Recorded) -> None:

@@ -9,12 +9,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linden.values.space import Rotation, Transform, Vector3D
 from linden.values.vehicles import VehicleControl
-from linden.wire.commands import COMMANDS, ApplyVehicleControl, Command, DestroyActor, decode_batch, decode_commands
+from linden.wire.commands import (
+    COMMANDS,
+    ApplyTransform,
+    ApplyVehicleControl,
+    Command,
+    DestroyActor,
+    decode_batch,
+    decode_commands,
+)
 from linden.wire.decode import WireTypeError
-from linden.wire.plain import WORTH_COLUMNS, Controls, plain_controls
+from linden.wire.plain import WORTH_COLUMNS, Controls, Transforms, plain_controls, plain_transforms
 
-CONTROL, DESTROY = COMMANDS.index(ApplyVehicleControl), COMMANDS.index(DestroyActor)
+CONTROL, DESTROY, TRANSFORM = (COMMANDS.index(kind) for kind in (ApplyVehicleControl, DestroyActor, ApplyTransform))
+PLACE = [[1.0, -2.0, 3.0], [0.0, 90.0, 0.5]]
 PLAIN = [0.4, -0.1, 0.0, False, False, False, 1]
 
 
@@ -22,11 +32,20 @@ def control(actor_id: Any, fields: Any = PLAIN) -> list[Any]:
     return [[CONTROL, [actor_id, fields]]]
 
 
-def one_by_one(members: tuple[Command | Controls, ...]) -> list[Command]:
+def transform(actor_id: Any, place: Any = PLACE) -> list[Any]:
+    return [[TRANSFORM, [actor_id, place]]]
+
+
+def one_by_one(members: tuple[Command | Controls | Transforms, ...]) -> list[Command]:
     found: list[Command] = []
     for member in members:
         if isinstance(member, Controls):
             found += [ApplyVehicleControl(i, VehicleControl(*fields)) for i, fields in zip(*member, strict=True)]
+        elif isinstance(member, Transforms):
+            found += [
+                ApplyTransform(i, Transform(Vector3D(*place[:3]), Rotation(*place[3:])))
+                for i, place in zip(*member, strict=True)
+            ]
         else:
             found.append(member)
     return found
@@ -37,6 +56,20 @@ def test_controls_in_a_row_become_one_member_and_the_rest_of_the_batch_stays() -
     members = decode_batch([first, *(control(i) for i in range(20)), last])
     assert [type(member) for member in members] == [DestroyActor, Controls, DestroyActor]
     assert members[1] == Controls(tuple(range(20)), (PLAIN,) * 20)
+
+
+def test_transforms_in_a_row_become_one_member() -> None:
+    members = decode_batch([*(transform(i) for i in range(20)), control(1)])
+    assert [type(member) for member in members] == [Transforms, ApplyVehicleControl]
+    assert members[0] == Transforms(tuple(range(20)), ((1.0, -2.0, 3.0, 0.0, 90.0, 0.5),) * 20)
+
+
+@pytest.mark.parametrize(
+    "place",
+    [[[math.nan, 0.0, 0.0], PLACE[1]], [[1, 0.0, 0.0], PLACE[1]], [{1.0: 0, 2.0: 0, 3.0: 0}, PLACE[1]], [PLACE[0]], 5],
+)
+def test_an_unusual_transform_is_left_to_the_long_way(place: Any) -> None:
+    assert plain_transforms([*(transform(i) for i in range(10)), transform(3, place)]) is None
 
 
 def test_few_controls_are_decoded_one_by_one() -> None:
@@ -77,13 +110,15 @@ FIELDS = st.one_of(st.just(PLAIN), st.lists(ANYTHING, max_size=9), ANYTHING)
 ITEMS = st.one_of(
     st.builds(control, st.integers(0, 5), st.just(PLAIN)),
     st.builds(control, ANYTHING, FIELDS),
+    st.builds(transform, st.integers(0, 5), st.just(PLACE)),
+    st.builds(transform, ANYTHING, st.one_of(st.just(PLACE), st.lists(st.lists(ANYTHING, max_size=4), max_size=3))),
     st.builds(lambda number: [[DESTROY, [number]]], st.integers(0, 5)),
     st.lists(st.lists(ANYTHING, max_size=3), max_size=2),
     ANYTHING,
 )
 
 
-def told(decode: Callable[[Any], tuple[Command | Controls, ...]], raw: Any) -> str:
+def told(decode: Callable[[Any], tuple[Command | Controls | Transforms, ...]], raw: Any) -> str:
     """What a decoder makes of a batch: its commands, or its error."""
     try:
         return repr(one_by_one(decode(raw)))
@@ -91,7 +126,12 @@ def told(decode: Callable[[Any], tuple[Command | Controls, ...]], raw: Any) -> s
         return str(error)
 
 
-@given(st.lists(st.builds(control, st.integers(0, 9), st.just(PLAIN)), max_size=12), st.lists(ITEMS, max_size=4))
+ROWS = st.sampled_from([control, transform]).flatmap(
+    lambda build: st.lists(st.builds(build, st.integers(0, 9)), max_size=12)
+)
+
+
+@given(ROWS, st.lists(ITEMS, max_size=4))
 def test_both_ways_find_the_same_commands_or_the_same_error(usual: list[Any], more: list[Any]) -> None:
     raw = msgpack.unpackb(msgpack.packb([*usual, *more]))
     assert told(decode_batch, raw) == told(decode_commands, raw)

@@ -85,6 +85,31 @@ def test_nobody_pedals_faster_than_thirty(drive: dict[str, dict[str, float]]) ->
     assert all(18.0 < 3.6 * speed_mps < 30.0 for speed_mps in bicycles)
 
 
+def test_a_bicycle_rolls_as_long_as_the_literature_says() -> None:
+    """Against dv/dt = -(0.5 rho CdA v^2 / m + g Crr), from 10 m/s.
+
+    CdA 0.4 to 0.7 m2 (racing to upright), Crr 0.004 to 0.008 (road to city tyres): Wilson, Bicycling Science, 3rd ed.,
+    tables 5.1 and 6.1.
+    """
+    fleet = Fleet()
+    fleet.drive(1.0, VehicleControl(gear=1))
+    for name, slot in fleet.slots.items():
+        if base_type(name) == "bicycle":
+            fleet.bodies.set_target_velocity(slot, Vector3D(10.0, 0.0, 0.0))
+    fleet.drive(5.0, VehicleControl(gear=1))
+    for name, speed_mps in fleet.speeds_mps().items():
+        if base_type(name) == "bicycle":
+            assert coasted_mps(0.7, 0.008) - 0.3 < speed_mps < coasted_mps(0.4, 0.004) + 0.3, name
+
+
+def coasted_mps(cda_m2: float, crr: float) -> float:
+    """The speed after 5 s of coasting from 10 m/s with 80 kg, by small steps."""
+    speed_mps = 10.0
+    for _ in range(5000):
+        speed_mps -= 0.001 * (0.5 * 1.2 * cda_m2 * speed_mps**2 / 80.0 + 9.81 * crr)
+    return speed_mps
+
+
 def test_no_gearbox_hunts_at_a_steady_throttle() -> None:
     fleet = Fleet()
     changes = dict.fromkeys(fleet.slots, 0)

@@ -62,12 +62,14 @@ class AgentInProcess(NamedTuple):
         return kept
 
 
+FoundAgent = LoadedAgent | AgentInProcess
+
 _kept: dict[tuple[str, Memory | None], AgentProcess] = {}
 
 
 def find_agent(
     wanted: str, agent_config: str | None = None, *, in_process: bool = False, memory_gb: float | None = None
-) -> LoadedAgent | AgentInProcess:
+) -> FoundAgent:
     """The agent called ``wanted``, as ``load_agent`` finds it, loaded in a process of its own or in this one.
 
     ``memory_gb`` limits what its process uses, in GB.

@@ -12,7 +12,6 @@ It is a convention of this project, made of figures that are each defined by a s
 
 from __future__ import annotations
 
-import difflib
 import math
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.errors import UserError
+from basu.settings.option import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,7 +35,7 @@ SMOOTH_MPS2, ROUGH_MPS2 = 0.315, 1.25
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ComfortWeights:
+class ComfortWeights(Settings):
     """How much each part counts; they need not sum to 1, only their proportions matter."""
 
     balance: float = 0.3
@@ -44,34 +44,21 @@ class ComfortWeights:
     near_misses: float = 0.2
     service: float = 0.1
 
-    def __post_init__(self) -> None:
+    def check(self) -> None:
+        """Check that something counts.
+
+        Raises:
+            UserError: a weight is negative, or all are 0.
+        """
         for name, weight in self.named().items():
             if not (math.isfinite(weight) and weight >= 0.0):
-                raise UserError(f"the comfort weight of {name} is {weight}; it must be a number that is not negative")
+                raise UserError(f"the comfort weight of {name} is {weight}; it must be 0 or more")
         if sum(self.named().values()) == 0.0:
             raise UserError("all comfort weights are 0; at least one must be positive")
 
     def named(self) -> dict[str, float]:
         """The weights by name."""
         return {field.name: float(getattr(self, field.name)) for field in fields(self)}
-
-
-def weights_from(given: Mapping[str, float], source: str) -> ComfortWeights:
-    """Weights with some changed by name.
-
-    Raises:
-        UserError: a name that there is not, or a weight that is none; the sentence begins with ``source``.
-    """
-    names = [field.name for field in fields(ComfortWeights)]
-    for name in given:
-        if name not in names:
-            close = difflib.get_close_matches(str(name), names, 1)
-            hint = f"did you mean '{close[0]}'?" if close else f"there are {', '.join(names)}"
-            raise UserError(f"{source}: '{name}' is no part of the comfort score; {hint}")
-    try:
-        return ComfortWeights(**given)
-    except UserError as error:
-        raise UserError(f"{source}: {error}") from None
 
 
 def parts(

@@ -10,7 +10,7 @@ from basu.metrics.score import Scoring, driving_score, infraction_score
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-SCORING = Scoring(infraction_weight=0.8, path_following_weight=0.2)  # the weights below the table
+SCORING = Scoring(infraction_weight=0.8)  # the weights below the table
 # "running a stop sign was not considered in the driving score for this tests" (section 5.5); no light is on the route
 NOT_COUNTED = frozenset({Infraction.STOP_SIGN, Infraction.RED_LIGHT})
 ROUNDING = 0.005  # the table has two digits, the driving score three

@@ -13,10 +13,10 @@ from tqdm import tqdm
 from basu.agents.process.remote_agent import find_agent
 from basu.errors import UserError
 from basu.outcome import Fault
-from basu.output.report.folder import DRAFTS, make_draft, plain, point_latest, publish, write_json
+from basu.output.report.folder import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.page.records import MATRIX_FILE
 from basu.running.scenario_runs.crew import Crew, Lost
-from basu.running.scenario_runs.document import lost
+from basu.running.scenario_runs.document import lost, run_config
 from basu.running.scenario_runs.leave import leave
 from basu.running.scenario_runs.matrix import matrix_of
 from basu.running.scenario_runs.worker import Job, play
@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from basu.agents.loader import LoadedAgent
-    from basu.agents.process.remote_agent import AgentInProcess
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.running.scenario_runs.worker import Done
     from basu.scenarios.cases import Playable
@@ -49,6 +48,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
     agents = _loaded(options)
     names = [agent.name for agent in agents]
     folder = _folder(options, began)
+    write_json(folder / CONFIG_FILE, run_config(options, agents))
     jobs = [
         Job(number, agent, playable.case.name)
         for number, (playable, agent) in enumerate((each, agent) for each in playables for agent in options.agents)
@@ -96,7 +96,7 @@ def worst(documents: Iterator[dict[str, Any]]) -> int:
     return max(codes, default=Fault.SETUP.value)
 
 
-def _loaded(options: ScenarioOptions) -> list[LoadedAgent | AgentInProcess]:
+def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
     """The agents, loaded before anything begins, so that a wrong one is told at once.
 
     Raises:

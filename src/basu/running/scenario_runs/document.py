@@ -1,20 +1,26 @@
-"""``result.json`` of a case: verdict, evidence, phases and tree as plain values."""
+"""The documents of a case: its result as plain values, and the config that plays it again."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from basu.options import STEP_S
 from basu.outcome import Outcome, Status
+from basu.running.scenario_runs.options import ScenarioOptions
 from basu.scenarios.drawing import tree_of
 from basu.scenarios.verdict import judge
+from basu.settings.command_line import words_of
+from basu.settings.document import SCENARIO_RUN, config_document
+from basu.settings.option import fields_of
 
 if TYPE_CHECKING:
-    from basu.agents.loader import LoadedAgent
-    from basu.agents.process.remote_agent import AgentInProcess
+    from collections.abc import Sequence
+
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
-    from basu.running.scenario_runs.options import ScenarioOptions
     from basu.scenarios.cases import Playable
     from basu.scenarios.verdict import Judged
 
@@ -23,7 +29,7 @@ SCHEMA_VERSION = 1
 
 def document_of(
     playable: Playable,
-    loaded: LoadedAgent | AgentInProcess,
+    loaded: FoundAgent,
     playing: Playing | None,
     judged: Judged,
     options: ScenarioOptions,
@@ -38,7 +44,7 @@ def document_of(
         **about(playable),
         "agent": loaded.name,
         "vehicle": options.vehicle or case.ego.model,
-        "seed": options.seed,
+        "seed": options.drive_seed,
         "town": case.town,
         "verdict": judged.verdict.value,
         "fault": judged.fault.name.lower(),
@@ -52,16 +58,14 @@ def document_of(
         "actors": [] if playing is None else playing.actors(),
         "things": [] if playing is None else [thing._asdict() for thing in playing.things],
         "scenarios_file": case.source,
-        "command": command(playable, options, loaded.name if loaded.file is None else str(loaded.file)),
+        "command": command(playable, options, typed_name(options, loaded)),
         "simulated_s": 0.0 if history is None else round(len(history.frames) * STEP_S, 3),
         "wall_s": round(wall_s, 3),
         "timeout_s": scenario.timeout_s,
     }
 
 
-def lost(
-    playable: Playable, loaded: LoadedAgent | AgentInProcess, sentence: str, options: ScenarioOptions
-) -> dict[str, Any]:
+def lost(playable: Playable, loaded: FoundAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
     """The document of a case whose process died: nothing is known of it."""
     judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
     return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)
@@ -73,15 +77,47 @@ def about(playable: Playable) -> dict[str, Any]:
 
 
 def command(playable: Playable, options: ScenarioOptions, agent: str) -> list[str]:
-    """The command that plays this case alone again."""
-    words = ["basu", "scenario", "run", playable.case.name, "--agent", agent]
-    for file in options.all_files:
-        words += ["--scenarios", str(file)]
-    for option, value, usual in (
-        ("--vehicle", options.vehicle, None),
-        ("--seed", options.seed, 0),
-        ("--step-limit", options.step_limit_s, 10.0),
-    ):
-        if value != usual:
-            words += [option, str(value)]
-    return words
+    """Return the command line that plays this case alone again."""
+    return command_of(options_again(playable, options, agent))
+
+
+def command_of(options: ScenarioOptions) -> list[str]:
+    """Return the command line of ``options``: each that differs from its default, but none of the session."""
+    session = [field.name for field in fields_of(ScenarioOptions) if not field.option.repeats]
+    return ["basu", "scenario", "run", *words_of(options, but=session)]
+
+
+def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> ScenarioOptions:
+    """Return the options that play one case of a run alone; its id holds sample and parameters."""
+    return replace(
+        options,
+        what=(playable.case.name,),
+        files=options.all_files,
+        agents=(agent,),
+        sweep=None,
+        grid=None,
+        vary=(),
+        fixed=(),
+        seed=options.drive_seed,
+    )
+
+
+def case_config(playable: Playable, options: ScenarioOptions, loaded: FoundAgent) -> dict[str, Any]:
+    """Return ``config.json`` of a case, which plays it alone again."""
+    return run_config(options_again(playable, options, typed_name(options, loaded)), [loaded])
+
+
+def run_config(options: ScenarioOptions, agents: Sequence[FoundAgent]) -> dict[str, Any]:
+    """Return ``config.json`` of a run of scenarios."""
+    pairs = [(file, file.with_suffix(".xml" if file.suffix == ".py" else ".py")) for file in options.all_files]
+    files = [*(agent.file for agent in agents if agent.file is not None), *(file for pair in pairs for file in pair)]
+    there = [file for file in files if file.is_file()]
+    return config_document(SCENARIO_RUN, options, None, command_of(options), there)
+
+
+def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
+    """Return an agent's name as it was typed, with the class where its file has several."""
+    file = loaded.file
+    if file is None:
+        return loaded.name
+    return next((each for each in options.agents if Path(f"{each.partition('.py')[0]}.py") == file), str(file))

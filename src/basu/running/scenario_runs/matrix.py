@@ -48,7 +48,7 @@ def matrix_of(
         "what": " ".join(options.what),
         "agents": list(agents),
         "vehicle": options.vehicle,
-        "seed": options.seed,
+        "seed": options.drive_seed,
         "sweep": _design(options),
         "wall_s": round(wall_s, 1),
         "workers": options.workers,

@@ -20,7 +20,7 @@ from basu.managers.traffic_manager import TrafficManager
 from basu.metrics.score import Scoring
 from basu.options import NOBODY, STEP_S
 from basu.outcome import Outcome, Status
-from basu.output.report.folder import RESULT_FILE, make_draft, plain, publish, write_json
+from basu.output.report.folder import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
 from basu.output.report.scenarios.pictures import PICTURE_FILE, case_picture
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
@@ -28,7 +28,7 @@ from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription, RoutePoint
 from basu.running.drive import drive
 from basu.running.preparation import SensorSet, new_agents, sensor_set
-from basu.running.scenario_runs.document import document_of
+from basu.running.scenario_runs.document import case_config, document_of
 from basu.scenarios.paths.lanes import followed, waypoint_at
 from basu.scenarios.verdict import judge
 from basu.simulator import asking, ticked_by_us, world_of
@@ -41,8 +41,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.agents.loader import LoadedAgent
-    from basu.agents.process.remote_agent import AgentInProcess
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
@@ -132,7 +131,7 @@ class _Attempt(NamedTuple):
     town: Town | None
 
 
-def perform(theatre: Theatre, loaded: LoadedAgent | AgentInProcess, playable: Playable, output: Path) -> Performed:
+def perform(theatre: Theatre, loaded: FoundAgent, playable: Playable, output: Path) -> Performed:
     """Play a case and write its folder below ``output``; whatever goes wrong becomes its verdict."""
     began_s = time.perf_counter()
     case, options = playable.case, theatre.options
@@ -145,6 +144,7 @@ def perform(theatre: Theatre, loaded: LoadedAgent | AgentInProcess, playable: Pl
             playable, loaded, attempt.playing, judged, options, history=history, wall_s=time.perf_counter() - began_s
         )
         write_json(draft / RESULT_FILE, document)
+        write_json(draft / CONFIG_FILE, case_config(playable, options, loaded))
         if history is not None:
             write_history(draft, history)
             streets = [] if attempt.town is None else around(attempt.town.streets_m, history)
@@ -163,11 +163,11 @@ def _judged(attempt: _Attempt, history: History | None) -> Judged:
     return attempt.playing.judged(history, attempt.outcome)
 
 
-def _attempt(theatre: Theatre, loaded: LoadedAgent | AgentInProcess, playable: Playable, draft: Path) -> _Attempt:
+def _attempt(theatre: Theatre, loaded: FoundAgent, playable: Playable, draft: Path) -> _Attempt:
     """Drive it, or know why not."""
     town = None
     try:
-        agents = new_agents(loaded, theatre.options.run_options(loaded.name), theatre.options.seed)
+        agents = new_agents(loaded, theatre.options.run_options(loaded.name), theatre.options.drive_seed)
         sensors = _sensors(agents, loaded)
         world = theatre.fresh_world(playable)
         town = theatre.town(playable.case.town, world)
@@ -185,7 +185,7 @@ def _attempt(theatre: Theatre, loaded: LoadedAgent | AgentInProcess, playable: P
     return _Attempt(driven, next(iter(scenes.playing), None), driven.outcome, town)
 
 
-def _sensors(agents: AgentsManager, loaded: LoadedAgent | AgentInProcess) -> SensorSet:
+def _sensors(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
     """What the agent senses with; those of our own read no sensors, theirs are for who looks on, as nobody does here.
 
     Raises:
@@ -223,7 +223,7 @@ def _driven(
             route=route,
             config=agents.config,
             step_s=STEP_S,
-            seed=options.seed,
+            seed=options.drive_seed,
             timeout_s=options.timeout_s,
             folder=folder,
             server_address=simulator.address,

@@ -1,54 +1,174 @@
-"""What ``basu scenario run`` was asked for."""
+"""The options of ``basu scenario run``, each declared once."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
-from basu.options import RunOptions
-from basu.scenarios.cases import files_among
+from basu.errors import UserError
+from basu.options import (
+    AGENT,
+    CONDITIONS,
+    FOLDERS,
+    AgentMemory,
+    Debug,
+    Host,
+    InProcess,
+    Port,
+    RunOptions,
+    StepLimit,
+    Timeout,
+    check_agent_process,
+)
+from basu.settings.option import Option, Settings
 
 if TYPE_CHECKING:
     from basu.scenarios.sampling import Design
 
+CASES = "cases"
+
+
+def processors() -> int:
+    """The number of processors that this process may use."""
+    return len(os.sched_getaffinity(0))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ScenarioOptions:
-    """The options of one ``basu scenario run``, parsed."""
+class ScenarioOptions(Settings):
+    """The options of one ``basu scenario run``."""
 
-    what: tuple[str, ...] = ("all",)  # groups, types, cases, files
-    files: tuple[Path, ...] = ()  # Python or XML files with scenarios of one's own
-    agents: tuple[str, ...] = ("basic",)
-    design: Design | None = None  # how parameters are sampled; None: each case as it is given
-    vary: tuple[str, ...] = ()  # the parameters that a design changes; none: all
-    fixed: tuple[tuple[str, str], ...] = ()  # parameters that are set, by name
-    host: str | None = None
-    port: int = 2000
-    timeout_s: float = 20.0
-    vehicle: str | None = None  # None: as the case says
-    seed: int = 0
-    workers: int = 2
-    step_limit_s: float = 10.0
-    in_process: bool = False
-    agent_memory_gb: float | None = None
-    output: Path = Path("scenario-runs")
-    junit: Path | None = None
-    debug: bool = False
+    what: Annotated[
+        tuple[str, ...],
+        Option(
+            help="all, a group, a scenario, a case's id, or a FILE.xml with cases",
+            group=CASES,
+            positional=True,
+            metavar="WHAT",
+            is_file=True,
+        ),
+    ] = ("all",)
+    files: Annotated[
+        tuple[Path, ...],
+        Option(
+            help="classes (FILE.py) or cases (FILE.xml) of your own; each brings the other of its name",
+            group=CASES,
+            flag="--scenarios",
+            metavar="FILE",
+            is_file=True,
+        ),
+    ] = ()
+    sweep: Annotated[
+        int | None,
+        Option(help="play N samples of each case (Latin hypercube)", group=CASES, metavar="N", rival="design"),
+    ] = None
+    grid: Annotated[
+        int | None,
+        Option(help="play each case with K values of every number", group=CASES, metavar="K", rival="design"),
+    ] = None
+    vary: Annotated[
+        tuple[str, ...],
+        Option(help="the parameters to sample", group=CASES, metavar="NAME[,NAME]", style="commas", default_text="all"),
+    ] = ()
+    fixed: Annotated[
+        tuple[tuple[str, str], ...],
+        Option(
+            help="set a parameter; may be given several times",
+            group=CASES,
+            flag="--set",
+            metavar="NAME=VALUE",
+            style="pairs",
+        ),
+    ] = ()
+    agents: Annotated[
+        tuple[str, ...],
+        Option(
+            help="a name (`basu list`), FILE.py, or FILE.py:Class; may be given several times",
+            group=AGENT,
+            flag="--agent",
+            metavar="AGENT",
+            default_text="basic",
+            is_file=True,
+        ),
+    ] = ("basic",)
+    step_limit_s: StepLimit = 10.0
+    in_process: InProcess = False
+    agent_memory_gb: AgentMemory = None
+    debug: Debug = False
+    seed: Annotated[
+        int,
+        Option(
+            help="seed of the samples; without --sweep, of everything random in the drives",
+            group=CONDITIONS,
+            metavar="N",
+        ),
+    ] = 0
+    vehicle: Annotated[
+        str | None,
+        Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the case says"),
+    ] = None
+    host: Host = None
+    port: Port = 2000
+    timeout_s: Timeout = 20.0
+    workers: Annotated[
+        int,
+        Option(
+            help="simulators that run at the same time",
+            group="simulator",
+            metavar="N",
+            least=1,
+            default_text="one a processor",
+            repeats=False,
+        ),
+    ] = field(default_factory=processors)
+    output: Annotated[Path, Option(help="parent of the folders", group=FOLDERS, metavar="DIR", repeats=False)] = Path(
+        "scenario-runs"
+    )
+    junit: Annotated[
+        Path | None, Option(help="write the JUnit XML there as well", group=FOLDERS, metavar="FILE", repeats=False)
+    ] = None
+
+    def check(self) -> None:
+        """Check what concerns several options.
+
+        Raises:
+            UserError: there is nothing to play, or no agent.
+        """
+        for name in ("what", "agents"):
+            if not getattr(self, name):
+                raise UserError(f"{name} is empty; it must name at least one")
+        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
+
+    @property
+    def design(self) -> Design | None:
+        """How parameters are sampled; None: each case as it is given."""
+        from basu.scenarios.sampling import Grid, Sweep  # noqa: PLC0415 - the scenarios, which `--help` does not need
+
+        if self.grid is not None:
+            return Grid(self.grid)
+        return None if self.sweep is None else Sweep(self.sweep, self.seed)
+
+    @property
+    def drive_seed(self) -> int:
+        """The seed of what is random in the drives: 0 for samples, whose ids hold no other."""
+        return 0 if self.sweep is not None else self.seed
 
     @property
     def all_files(self) -> tuple[Path, ...]:
         """The user's files: those named with --scenarios and those among what is to be played."""
+        from basu.scenarios.cases import files_among  # noqa: PLC0415 - as above
+
         return (*self.files, *(Path(word) for word in files_among(self.what)))
 
     def run_options(self, agent: str) -> RunOptions:
-        """What a run with one of the agents needs of it."""
+        """The options of a run with one of the agents."""
         return RunOptions(
             agent=agent,
             host=self.host,
             port=self.port,
             timeout_s=self.timeout_s,
-            seed=self.seed,
+            seed=self.drive_seed,
             vehicle=self.vehicle,
             output=self.output,
             step_limit_s=self.step_limit_s,

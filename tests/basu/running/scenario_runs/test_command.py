@@ -86,7 +86,7 @@ def test_a_case_that_goes_well_leaves_its_verdict_and_a_clean_world(
     assert result["actors"] == [{"id": result["actors"][0]["id"], "role": "walker", "type": "walker.pedestrian.0001"}]
     assert 0.3 < result["margins"]["distance_m"] < 22.0
     left = sorted(path.name for path in (tmp_path / "latest" / "basic" / "goes_well").iterdir())
-    assert left == ["history.parquet", "picture.svg", "result.json", "route.json", "streets.json"]
+    assert left == ["config.json", "history.parquet", "picture.svg", "result.json", "route.json", "streets.json"]
     assert matrix(tmp_path)["cases"][0]["results"]["basic"]["folder"] == "basic/goes_well"
     assert "Crosser" in capsys.readouterr().out
     moving = [
@@ -141,6 +141,42 @@ def test_the_same_case_again_is_the_same_byte_by_byte(simulator: RunningServer, 
         result = json.loads((folder / "result.json").read_text(encoding="utf-8")) | {"wall_s": 0.0}
         left.append((result, *((folder / file).read_bytes() for file in ("history.parquet", "picture.svg"))))
     assert left[0] == left[1]
+
+
+def drives(output: Path) -> dict[str, tuple[bytes, dict[str, Any], dict[str, Any]]]:
+    """The bytes of each drive of the newest run, its result and its config, without wall times."""
+    found = {}
+    for path in (output / "latest").glob("*/*/result.json"):
+        result = json.loads(path.read_text(encoding="utf-8")) | {"wall_s": 0.0}
+        config = json.loads(path.with_name("config.json").read_text(encoding="utf-8")) | {"session": None}
+        found[result["id"]] = (path.with_name("history.parquet").read_bytes(), result, config)
+    return found
+
+
+@pytest.mark.slow
+def test_config_and_command_repeat_a_sweep_and_each_of_its_cases(
+    simulator: RunningServer, files: Path, tmp_path: Path
+) -> None:
+    agent = tmp_path / "bad.py"
+    agent.write_text(AGENTS, encoding="utf-8")
+    words = ("goes_well", "--scenarios", files, "--agent", f"{agent}:Raises", "--sweep", 2, "--seed", 7)
+    run(simulator, tmp_path / "one", *words, "--step-limit", 2, "--vehicle", "vehicle.tesla.model3")
+    wanted = drives(tmp_path / "one")
+    assert len(wanted) == 2
+    run(simulator, tmp_path / "two", "--config", tmp_path / "one" / "latest")
+    assert drives(tmp_path / "two") == wanted
+    name, alone = sorted(wanted.items())[1]
+    assert name.startswith("goes_well:sweep-2-7-")
+    assert alone[1]["command"] == alone[2]["command"]
+    run(simulator, tmp_path / "three", *alone[1]["command"][3:])
+    assert drives(tmp_path / "three") == {name: alone}
+    config = next(
+        path
+        for path in (tmp_path / "one" / "latest").glob("*/*/config.json")
+        if json.loads(path.read_text())["command"] == alone[1]["command"]
+    )
+    run(simulator, tmp_path / "four", "--config", config)
+    assert drives(tmp_path / "four") == {name: alone}
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from pathlib import Path
     from xml.etree.ElementTree import Element
 
+    from basu.output.report.reading import RunRecord
+
 PAGE_FILE, PICTURE_FILE = "compare.html", "compare.png"
 
 
@@ -32,4 +34,17 @@ def compare(folders: Sequence[Path], output: Path, more: Sequence[Element] = ())
         raise UserError(f"{output} could not be made: {error.strerror}; name another place with --output") from error
     write_bytes(output / PAGE_FILE, comparison(runs, folders, output, more))
     picture.draw(output / PICTURE_FILE, runs)
-    return "\n".join([text(rows(runs)), *remarks(runs), str(output / PAGE_FILE), str(output / PICTURE_FILE)])
+    return "\n".join([_table(runs), str(output / PAGE_FILE), str(output / PICTURE_FILE)])
+
+
+def compared(folders: Sequence[Path]) -> str:
+    """The table of a comparison with its remarks; nothing is written.
+
+    Raises:
+        UserError: a folder is no run's.
+    """
+    return _table([read_run(folder) for folder in folders])
+
+
+def _table(runs: Sequence[RunRecord]) -> str:
+    return "\n".join([text(rows(runs)), *remarks(runs)])

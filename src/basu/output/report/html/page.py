@@ -136,7 +136,7 @@ def _again(run: RunRecord) -> Element:
     """What is needed to drive it once more."""
     section = e("section", e("h2", "Configuration"))
     if "command" in run.config:
-        section.append(e("p", "To repeat this run:"))
+        section.append(e("p", "To repeat this run: ", e("code", "basu run --config config.json"), " in its folder, or"))
         section.append(e("pre", shlex.join(str(word) for word in run.config["command"])))
     rest = {key: value for key, value in run.config.items() if key != "command"}
     section.append(e("div", figures.table(figures.rows(rest)), class_="columns"))

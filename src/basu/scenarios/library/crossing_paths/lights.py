@@ -27,9 +27,12 @@ def green_for_ego(place: Place) -> Together:
         raise ScenarioError("no traffic light lies ahead on the ego's route; the case belongs before one")
     own = ahead[0]
     theirs = sorted(
-        landmark.id
-        for landmark in place.carla_map.get_all_landmarks_of_type(LIGHT)
-        if landmark.id != own.landmark_id and _away_m(landmark.transform.location, own.x_m, own.y_m) < ONE_JUNCTION_M
+        {  # a light is listed once more for each connecting road that refers to it
+            landmark.id
+            for landmark in place.carla_map.get_all_landmarks_of_type(LIGHT)
+            if landmark.id != own.landmark_id
+            and _away_m(landmark.transform.location, own.x_m, own.y_m) < ONE_JUNCTION_M
+        }
     )
     lights = [SetLight(own.landmark_id, "Green"), *(SetLight(landmark_id, "Red") for landmark_id in theirs)]
     return Together(*lights, name="green for the ego")

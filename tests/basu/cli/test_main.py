@@ -10,7 +10,7 @@ from basu.records.history import LaneInvasion
 from basu.records.history.files import write_history
 from fakes.drives import at, driven, hit
 
-SAMPLE = str(Path(__file__).parents[2] / "examples" / "forward_agent.py")
+SAMPLE = str(Path(__file__).parents[3] / "examples" / "forward_agent.py")
 
 
 def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
@@ -31,17 +31,18 @@ def test_an_option_of_a_later_version_is_refused_before_anything_starts(
     ("arguments", "sentence"),
     [
         (["run", "basik"], "did you mean 'basic'"),
-        (["run", "basic", "--agent", "forward"], "two agents are named"),
-        (["run", "basic", "--repetitions", "0"], "--repetitions is 0; it must be at least 1"),
-        (["run", "basic", "--step-limit", "0"], "--step-limit is 0.0 s; it must be positive"),
-        (["run", "basic", "--penalty", "singing=0.5"], "--penalty singing=0.5: write KIND=FACTOR"),
-        (["run", "basic", "--penalty", "speeding=2"], "the penalty of speeding is 2.0"),
-        (["run", "basic", "--infraction-weight", "1.5"], "must be non-negative and sum to 1"),
+        (["rum"], "there is no command 'rum'; did you mean 'run'?"),
+        (["run", "basic", "--agent", "forward"], "two values are given for --agent, basic and forward; give one"),
+        (["run", "basic", "--repetitions", "0"], "--repetitions is 0; it must be 1 or more"),
+        (["run", "basic", "--step-limit", "0"], "--step-limit is 0 s; it must be above 0"),
+        (["run", "basic", "--penalty", "singing=0.5"], "--penalty has no 'singing'; there are collision_pedestrian"),
+        (["run", "basic", "--penalty", "speeding=2"], "--penalty speeding is 2; it must be in 0..1"),
+        (["run", "basic", "--infraction-weight", "1.5"], "--infraction-weight is 1.5; it must be in 0..1"),
         (["run", "basic", "--routes", "none.xml"], "route file 'none.xml' was not found"),
         (["run", "basic", "--routes", "routes/linden_short.xml", "--route-id", "9"], "has no route '9'"),
         (["run", "basic", "--routes", "routes/linden_short.xml", "--routes-subset", "1,7"], "has no '7'; it has 1"),
         (["run", "basic", "--weather", "Sunny"], "there is no weather called 'Sunny'; there are"),
-        (["run", "basic", "--resume"], "--resume goes on with a series; name it with --series"),
+        (["run", "basic", "--resume"], "--resume continues a series; name it with --series"),
         (["run", "basic", "--series", "latest"], "that name is kept for the newest run"),
         (["run", "basic", "--walkers", "-2"], "--walkers is -2; it must be 0 or more"),
         (["score", "nowhere"], "nowhere is no folder"),

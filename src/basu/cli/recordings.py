@@ -1,25 +1,53 @@
-"""``basu replay``: plays a run again, in Rerun's viewer or on a simulator."""
+"""``basu metrics`` and ``basu replay``: question a recording, or play it again."""
 
 from __future__ import annotations
 
 import argparse
 import sys
+import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from basu.cli.driving import add_simulator, check_positive
-from basu.cli.scoring import read_scoring
+from basu.cli.run import SIMULATOR, options_of
 from basu.errors import UserError
+from basu.options import RunOptions
+from basu.settings.command_line import add_options
 
 if TYPE_CHECKING:
     from basu.records.carla_log import Log
+    from basu.records.carla_log.sources import Source
 
 RRD_FILE = "replay.rrd"
 
 
-def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """The command ``replay``."""
-    replay = commands.add_parser("replay", help="play a run again", description=replay_run.__doc__)
+def add_metrics(metrics: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu metrics``."""
+    metrics.description = ask_recording.__doc__
+    metrics.add_argument(
+        "recording", type=Path, metavar="RUN", help="a run's folder (of --record), or a recorder file of CARLA's (.log)"
+    )
+    metrics.add_argument(
+        "--metric",
+        required=True,
+        metavar="FILE.py",
+        help="a class that is a BasicMetric, as for ScenarioRunner; FILE.py:Class where the file has several",
+    )
+    metrics.add_argument(
+        "--map", type=Path, metavar="FILE.xodr", help="the map the recording lies in (default: the run's)"
+    )
+    metrics.add_argument(
+        "--criteria", type=Path, metavar="FILE.json", help="handed to the metric (default: the run's infractions)"
+    )
+    metrics.add_argument(
+        "--plot", type=Path, metavar="FILE.png", help="keep what the metric draws with matplotlib (further: FILE-2.png)"
+    )
+    metrics.add_argument("--debug", action="store_true", help="show the traceback of a metric that fails")
+    metrics.set_defaults(command=ask_recording)
+
+
+def add_replay(replay: argparse.ArgumentParser) -> None:
+    """Add the arguments of ``basu replay``."""
+    replay.description = replay_run.__doc__
     replay.add_argument(
         "recording", type=Path, metavar="RUN", help="a run's folder, or a recorder file of CARLA's (.log)"
     )
@@ -33,18 +61,56 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help=f"where --viewer keeps it (default: {RRD_FILE} in the run's folder)",
     )
     replay.add_argument("--map", type=Path, metavar="FILE.xodr", help="to draw with --viewer (default: the run's)")
-    add_simulator(replay, "start one, end it afterwards")
+    add_options(replay, RunOptions, only=SIMULATOR)
     replay.add_argument(
         "--speed", type=float, default=1.0, metavar="X", help="times real time, 0 for unbraked (default: %(default)s)"
     )
     replay.set_defaults(command=replay_run)
 
 
+def ask_recording(arguments: argparse.Namespace) -> int:
+    """Run a metric on a recording alone; no simulator is asked."""
+    from basu.records.carla_log import read_log  # noqa: PLC0415 - brings in the client, which `--help` does not need
+    from basu.records.carla_log.metric_file import run_metric  # noqa: PLC0415 - likewise
+    from basu.records.carla_log.metrics_log import MetricsLog  # noqa: PLC0415 - likewise
+    from basu.records.carla_log.pictures import drawn, off_screen  # noqa: PLC0415 - likewise, and matplotlib
+    from basu.records.carla_log.sources import source  # noqa: PLC0415 - likewise
+
+    where = source(arguments.recording, arguments.map)
+    log = read_log(where.log)
+    if log.problem is not None:
+        print(f"basu: warning: {log.problem}", file=sys.stderr)
+    off_screen(arguments.plot)
+    criteria = _criteria(where, arguments.criteria)
+    try:
+        run_metric(arguments.metric, _map(where, log.map_name), MetricsLog(log), criteria)
+    except UserError as error:
+        if arguments.debug and error.__cause__ is not None:
+            traceback.print_exception(error.__cause__)
+        raise
+    for line in drawn(arguments.plot):
+        print(line)
+    return 0
+
+
+def _map(where: Source, name: str) -> Any:  # noqa: ANN401 - a carla.Map, or what stands for one
+    from basu.records.carla_log.sources import AbsentMap, read_map  # noqa: PLC0415 - as above
+
+    return AbsentMap(name) if where.map is None else read_map(where.map, name)
+
+
+def _criteria(where: Source, given: Path | None) -> dict[str, Any] | None:
+    from basu.records.carla_log.sources import criteria_of, read_criteria  # noqa: PLC0415 - as above
+
+    if given is not None:
+        return read_criteria(given)
+    return None if where.result is None else criteria_of(where.result)
+
+
 def replay_run(arguments: argparse.Namespace) -> int:
     """Play a run again: on a simulator, where any client can watch it, or with --viewer in Rerun's, without one."""
     if not arguments.speed >= 0.0:
         raise UserError(f"--speed is {arguments.speed}; it is a factor, or 0")
-    check_positive(arguments, "timeout")
     recording: Path = arguments.recording
     if not arguments.viewer:
         return _on_simulator(arguments)
@@ -56,15 +122,17 @@ def replay_run(arguments: argparse.Namespace) -> int:
 
 def _run_in_viewer(arguments: argparse.Namespace, folder: Path) -> int:
     """A run's folder, from its history."""
+    from basu.metrics.score import Scoring  # noqa: PLC0415 - as above
+    from basu.metrics.scoring_json import scoring_of_run  # noqa: PLC0415 - as above
     from basu.output.report.folder import CONFIG_FILE  # noqa: PLC0415 - as above
     from basu.output.viewer.from_record import show_run  # noqa: PLC0415 - as above
     from basu.output.viewer.stream import has_screen  # noqa: PLC0415 - as above
+    from basu.settings.resolve import resolve  # noqa: PLC0415 - as above
 
     rrd = arguments.save or folder / RRD_FILE
+    scoring = resolve(Scoring, [scoring_of_run(folder / CONFIG_FILE)])
     with _bar() as bar:
-        said = show_run(
-            folder, arguments.map, rrd, read_scoring(folder / CONFIG_FILE), screen=has_screen(), on_tick=bar.update
-        )
+        said = show_run(folder, arguments.map, rrd, scoring, screen=has_screen(), on_tick=bar.update)
     print(f"viewer            {rrd} ({said}); `rerun {rrd}` opens it")
     return 0
 
@@ -91,7 +159,8 @@ def _on_simulator(arguments: argparse.Namespace) -> int:
     if arguments.save is not None or arguments.map is not None:
         raise UserError("--save and --map belong to --viewer; add it, or leave them out")
     log, _ = _log(arguments)
-    where = Where(arguments.host, arguments.port, arguments.timeout)
+    options = options_of(arguments)
+    where = Where(options.host, options.port, options.timeout_s)
     with _bar(log.frames) as bar:
 
         def ready(address: str) -> None:

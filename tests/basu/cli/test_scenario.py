@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from basu.cli.scenario_list import add_list_options, list_scenarios
+from basu.cli.scenario import add_list_options, list_scenarios
 from basu.errors import ScenarioError
 
 CLASSES = """

@@ -1,0 +1,127 @@
+"""The command line of a settings model: arguments for argparse, what was typed, and the words that say the same."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Iterable
+from typing import Any, NoReturn
+
+from basu.errors import UserError
+from basu.settings.forms import choices, form_of
+from basu.settings.option import Field, Settings, bounds, fields_of, suggestion
+
+TYPED = "typed__"  # begins the names of options in the namespace
+UNKNOWN = re.compile(r"unrecognized arguments: (.*)")
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that knows no abbreviations and suggests an option for one that does not exist."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:  # noqa: ANN401 - as argparse has them
+        """Make the parser; see argparse."""
+        super().__init__(*args, **{"allow_abbrev": False, **kwargs})
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # noqa: ANN401 - as argparse has it
+        """Parse; an option that does not exist is an error here, where the command's options are known."""
+        found, rest = super().parse_known_args(args, namespace)
+        unknown = [word for word in rest if word.startswith("-")]
+        if unknown:
+            name = unknown[0].partition("=")[0]
+            flags = [flag for action in self._actions for flag in action.option_strings if flag.startswith("--")]
+            hint = suggestion(name, flags, or_all=False)
+            self.error(f"there is no option {name}" + (f"; {hint}" if hint else ""))
+        return found, rest
+
+    def error(self, message: str) -> NoReturn:
+        """End with a sentence, not with the list of all options.
+
+        Raises:
+            SystemExit: with status 2.
+        """
+        unknown = UNKNOWN.match(message)
+        if unknown is not None:
+            message = f"'{unknown[1]}' is one word too many"
+        self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` lists all options\n")
+
+
+def add_options(parser: argparse.ArgumentParser, model: type[Settings], only: Iterable[str] | None = None) -> None:
+    """Add a model's options to a parser, in their groups; ``only`` names the fields that are wanted."""
+    wanted = None if only is None else set(only)
+    groups: dict[str, argparse._ArgumentGroup] = {}
+    for field in fields_of(model):
+        if wanted is None or field.name in wanted:
+            group = field.option.group
+            if group not in groups:
+                groups[group] = next((g for g in parser._action_groups if g.title == group), None) or (  # noqa: SLF001
+                    parser.add_argument_group(group)
+                )
+            _add(groups[group], field)
+
+
+def typed(model: type[Settings], arguments: argparse.Namespace) -> dict[str, Any]:
+    """The options of a model that were typed, as JSON values by field name.
+
+    Raises:
+        UserError: a text that the option cannot be.
+    """
+    found: dict[str, Any] = {}
+    for field in fields_of(model):
+        given = getattr(arguments, TYPED + field.name, None)
+        again = getattr(arguments, TYPED + field.name + "_flag", None)
+        if given and again:
+            raise UserError(f"two values are given for {field.flag}, {given} and {again}; give one")
+        value = again if given is None or given == [] else given
+        if value is not None and value != []:
+            found[field.name] = form_of(field).read(value)
+    return found
+
+
+def words_of(settings: Settings, but: Iterable[str] = ()) -> list[str]:
+    """The words of a command line that make ``settings``, without the fields in ``but``; defaults are not said."""
+    unsaid = set(but)
+    positional: list[str] = []
+    flags: list[str] = []
+    for field in fields_of(type(settings)):
+        if field.name not in unsaid:
+            value = getattr(settings, field.name)
+            if field.option.positional:
+                positional += form_of(field).words(value, None)
+            else:
+                flags += form_of(field).words(value, field.default)
+    return [*positional, *flags]
+
+
+def described(field: Field) -> str:
+    """The help of an option: meaning, bounds, default."""
+    option = field.option
+    notes = ", ".join(note for note in (option.unit and f"in {option.unit}", bounds(option)) if note)
+    usual = default_text(field)
+    text = f"{option.help}, {notes}" if notes else option.help
+    return f"{text} (default: {usual})" if usual else text
+
+
+def default_text(field: Field) -> str:
+    """An option's default in words; empty where it says nothing."""
+    if field.option.default_text is not None:
+        return field.option.default_text
+    if field.default is None or isinstance(field.default, bool) or field.default == ():
+        return ""
+    return re.sub(r"(\d)\.0\b", r"\1", form_of(field).text(field.default))
+
+
+def _add(group: argparse._ArgumentGroup, field: Field) -> None:
+    """One option."""
+    form, option = form_of(field), field.option
+    shown: dict[str, Any] = {"help": described(field).replace("%", "%%"), "default": None}
+    metavar = option.metavar or ("|".join(map(str, choices(field.type))) or None)
+    if metavar is not None:
+        shown["metavar"] = metavar
+    if not option.positional:
+        group.add_argument(field.flag, dest=TYPED + field.name, **form.arguments(), **shown)
+        return
+    more = form.arguments() or {"nargs": "?"}
+    group.add_argument(TYPED + field.name, **more, **shown)
+    if option.flag is not None:
+        same = "the same, in ScenarioRunner's way"
+        group.add_argument(option.flag, dest=f"{TYPED}{field.name}_flag", metavar=metavar, help=same)

@@ -1,0 +1,185 @@
+"""The declaration of an option: what one field of a settings model is called, means and may be.
+
+A settings model is a frozen dataclass that inherits from ``Settings``. A field with an ``Option`` in its annotation is
+an option; its type, default and bounds hold for the command line, for JSON and for Python alike.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import enum
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, NamedTuple, get_args, get_origin, get_type_hints
+
+from basu.errors import UserError
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Option:
+    """What an option means. Numbers inside a mapping or a group of numbers have its bounds as well."""
+
+    help: str
+    group: str = "options"  # of the help page
+    flag: str | None = None  # on the command line; None: from the field's name
+    positional: bool = False  # may be given without its flag
+    metavar: str | None = None
+    unit: str = ""
+    least: float = -math.inf
+    most: float = math.inf
+    above: float = -math.inf  # as `least`, but not itself allowed
+    default_text: str | None = None  # shown instead of the default
+    style: str | None = None  # how a value is written as text, where its type does not say it: a key of forms.STYLES
+    bare: str | None = None  # the value of a flag that is given without one
+    inverted: bool = False  # the flag sets False, as in --no-scenarios
+    advice: str = ""  # ends a complaint about a value of the wrong type
+    rival: str | None = None  # options of one rivalry exclude each other
+    is_file: bool = False  # its values name files, maybe with ":Class" behind them
+    repeats: bool = True  # it belongs to what repeats a run; False: where and how long it is run, and what is shown
+
+
+class Field(NamedTuple):
+    """An option of a model with its name, type and default."""
+
+    name: str
+    type: Any  # without the Option
+    default: Any
+    option: Option
+
+    @property
+    def flag(self) -> str:
+        """The option on the command line."""
+        return self.option.flag or f"--{self.name.replace('_', '-')}"
+
+
+class OptionError(UserError):
+    """A value that an option cannot have. ``name`` is the field's, with ``.key`` for a value inside a mapping."""
+
+    def __init__(self, name: str, value: object, must: str) -> None:
+        """Say what the value must be."""
+        super().__init__(f"{name} is {value!r}; it must be {must}")
+        self.name, self.value, self.must = name, value, must
+
+
+class Settings:
+    """Base of settings models: every instance, however it was made, keeps the bounds of its options."""
+
+    __slots__ = ()
+    __pydantic_config__: ClassVar[Mapping[str, object]] = {"extra": "forbid", "allow_inf_nan": False}
+
+    def __post_init__(self) -> None:
+        """Check the bounds, then what the model itself demands."""
+        for field in fields_of(type(self)):
+            for name, value in _numbers(field.name, getattr(self, field.name)):
+                if not _within(value, field.option):
+                    raise OptionError(name, value, bounds(field.option))
+        self.check()
+
+    def check(self) -> None:
+        """Raise UserError where options contradict each other."""
+
+    @classmethod
+    def completed(cls, values: Mapping[str, Any], source: str) -> dict[str, Any]:
+        """Given values as the fields have them; ``source`` begins a complaint."""
+        _ = source
+        return dict(values)
+
+
+class Layer(NamedTuple):
+    """Values by field name as JSON has them, and where they were given."""
+
+    values: Mapping[str, Any]
+    source: str = ""  # begins a complaint: a file's path; empty for Python
+    section: str = ""  # of the file
+    typed: bool = False  # on the command line: a complaint names the flag
+
+    def name(self, model: type, path: str) -> str:
+        """What this layer calls an option, or a value inside one."""
+        field, _, key = path.partition(".")
+        if self.typed:
+            flag = next((each.flag for each in fields_of(model) if each.name == field), field)
+            return f"{flag} {key}".strip()
+        key = ".".join(each for each in (self.section, path) if each)
+        return f"{self.source}: {key}" if self.source else key
+
+
+_FIELDS: dict[type, tuple[Field, ...]] = {}
+
+
+def fields_of(model: type) -> tuple[Field, ...]:
+    """The options of a settings model, in the order of declaration."""
+    if model not in _FIELDS:
+        _FIELDS[model] = _read_fields(model)
+    return _FIELDS[model]
+
+
+def _read_fields(model: type) -> tuple[Field, ...]:
+    hints = get_type_hints(model, include_extras=True)
+    found = []
+    for field in dataclasses.fields(model):
+        hint = hints[field.name]
+        if get_origin(hint) is Annotated:
+            kind, *more = get_args(hint)
+            options = [each for each in more if isinstance(each, Option)]
+            if options:
+                found.append(Field(field.name, kind, _default(field), options[0]))
+    return tuple(found)
+
+
+def _default(field: dataclasses.Field[Any]) -> Any:  # noqa: ANN401 - of the field's type
+    if field.default_factory is not dataclasses.MISSING:
+        return field.default_factory()
+    return field.default
+
+
+def to_json(value: Any) -> Any:  # noqa: ANN401 - values of any option
+    """A model or a value of one as JSON has it."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {field.name: to_json(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, tuple) and hasattr(value, "_asdict"):
+        return to_json(value._asdict())
+    if isinstance(value, enum.Enum | Path):
+        return value.value if isinstance(value, enum.Enum) else str(value)
+    if isinstance(value, Mapping):
+        return {to_json(key): to_json(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [to_json(each) for each in value]
+    return value
+
+
+def suggestion(word: str, known: Iterable[str], *, or_all: bool = True) -> str:
+    """A hint for a word that means nothing: the nearest that does, or all of them."""
+    names = [str(name) for name in known]
+    close = difflib.get_close_matches(word, names, 1)
+    if close:
+        return f"did you mean '{close[0]}'?"
+    return f"there are {', '.join(names)}" if or_all else ""
+
+
+def bounds(option: Option) -> str:
+    """What a number must be, in words; empty where it may be any."""
+    if option.least > -math.inf and option.most < math.inf:
+        return f"in {option.least:g}..{option.most:g}"
+    if option.above > -math.inf:
+        return f"above {option.above:g}"
+    if option.least > -math.inf:
+        return f"{option.least:g} or more"
+    return f"{option.most:g} or less" if option.most < math.inf else ""
+
+
+def _within(value: float, option: Option) -> bool:
+    return math.isfinite(value) and option.least <= value <= option.most and value > option.above
+
+
+def _numbers(name: str, value: Any) -> list[tuple[str, float]]:  # noqa: ANN401 - values of any option
+    """The numbers of an option's value with their names."""
+    if isinstance(value, bool):
+        return []
+    if isinstance(value, int | float):
+        return [(name, value)]
+    plain = to_json(value)
+    if isinstance(plain, dict):
+        return [(f"{name}.{key}", each) for key, each in plain.items() if isinstance(each, int | float)]
+    return []

@@ -1,0 +1,153 @@
+"""Claims about settings as words: every model comes back from the command line and from the file that it makes."""
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, get_args, get_origin
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from basu.cli import parser
+from basu.errors import UserError
+from basu.metrics.score import Scoring
+from basu.options import RunOptions
+from basu.running.scenario_runs.options import ScenarioOptions
+from basu.settings.command_line import typed, words_of
+from basu.settings.forms import choices
+from basu.settings.option import Field, Layer, Settings, fields_of, to_json
+from basu.settings.resolve import resolve
+
+MODELS = (RunOptions, Scoring, ScenarioOptions)
+COMMAND: dict[type, list[str]] = {RunOptions: ["run"], Scoring: ["run"], ScenarioOptions: ["scenario", "run"]}
+ANY = st.text(st.characters(exclude_categories=("C",)), min_size=1, max_size=12).filter(
+    lambda text: str(Path(text)) == text
+)
+NAMES = st.text(st.characters(exclude_categories=("C",), exclude_characters=",=-"), min_size=1, max_size=12)
+PIXELS = {"hud_size": st.tuples(st.integers(640, 7680), st.integers(480, 4320))}
+PIXELS["hud_camera"] = st.tuples(st.integers(64, 3840), st.integers(48, 2160))
+
+
+def values_of(field: Field) -> st.SearchStrategy[Any]:
+    """Any value that an option may have, as JSON has it."""
+    option, kind = field.option, field.type
+    if field.name in PIXELS:
+        return PIXELS[field.name].map(list)
+    if option.style == "pairs":
+        return st.lists(st.tuples(NAMES, ANY).map(list), max_size=3)
+    if get_origin(kind) is tuple:
+        entries = NAMES.filter(lambda text: str(Path(text)) == text) if option.positional or option.style else ANY
+        return st.lists(entries, min_size=1 if field.default else 0, max_size=3)
+    numbers = st.floats(
+        max(option.least, option.above, -1e9), min(option.most, 1e9), exclude_min=option.above > option.least
+    )
+    if get_origin(kind) is Mapping or dataclasses.is_dataclass(kind) or hasattr(kind, "_fields"):
+        shape = dict.fromkeys(to_json(field.default), numbers)
+        return st.fixed_dictionaries(shape).filter(lambda numbers: sum(map(abs, numbers.values())) > 0.0)
+    kinds = set(get_args(kind)) or {kind}
+    if bool in kinds:
+        return st.booleans()
+    if float in kinds:
+        found: st.SearchStrategy[Any] = numbers
+    elif int in kinds:
+        found = st.integers(int(max(option.least, -1e9)), int(min(option.most, 1e9)))
+    else:
+        found = st.sampled_from(choices(kind)) if choices(kind) else ANY
+    return found | st.none() if type(None) in kinds else found
+
+
+@st.composite
+def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
+    """A model with random values that do not contradict each other."""
+    given = {field.name: draw(values_of(field)) for field in fields_of(model)}
+    rivals: set[str | None] = set()
+    for field in fields_of(model):
+        if field.option.rival is not None and given[field.name] != field.default:
+            if field.option.rival in rivals:
+                del given[field.name]
+            rivals.add(field.option.rival)
+    if given.get("series") is None:
+        given.pop("resume", None)
+    if given.get("hud") is None:
+        given.pop("hud_screenshot", None)
+    return resolve(model, [Layer(given)])
+
+
+def heard(model: type[Settings], words: list[str]) -> Settings:
+    """What the real command line makes of words."""
+    whole = [*COMMAND[model], *words]
+    return resolve(model, [Layer(typed(model, parser(whole).parse_args(whole)), typed=True)])
+
+
+@pytest.mark.parametrize("model", MODELS)
+@given(data=st.data())
+def test_the_words_of_a_model_make_the_same_model(model: type[Settings], data: st.DataObject) -> None:
+    chosen = data.draw(settings(model))
+    assert heard(model, words_of(chosen)) == chosen
+
+
+@pytest.mark.parametrize("model", MODELS)
+@given(data=st.data())
+def test_the_json_of_a_model_makes_the_same_model(model: type[Settings], data: st.DataObject) -> None:
+    chosen = data.draw(settings(model))
+    assert resolve(model, [Layer(json.loads(json.dumps(to_json(chosen))), "a file")]) == chosen
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_usual_needs_no_words_beside_its_subject(model: type[Settings]) -> None:
+    subject = {RunOptions: ["basic"], Scoring: [], ScenarioOptions: ["all"]}[model]
+    assert words_of(model()) == subject
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_every_option_stands_on_the_help_page_with_its_meaning(
+    model: type[Settings], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "400")
+    words = [*COMMAND[model], "--help"]
+    with pytest.raises(SystemExit):
+        parser(words).parse_args(words)
+    page = capsys.readouterr().out
+    for field in fields_of(model):
+        assert field.option.help in page, field.name
+        assert field.option.positional or f"{field.flag}" in page, field.name
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["run", "--sead", "3"], "basu run: there is no option --sead; did you mean '--seed'?"),
+        (["run", "--stepp-limit=3"], "there is no option --stepp-limit; did you mean '--step-limit'?"),
+        (["run", "--step", "3"], "there is no option --step"),
+        (["scenario", "run", "all", "--agents", "x"], "there is no option --agents; did you mean '--agent'?"),
+        (["score", "x", "--harsh-stops", "3"], "there is no option --harsh-stops; did you mean '--harsh-stop'?"),
+        (["run", "basic", "forward"], "'forward' is one word too many"),
+    ],
+)
+def test_an_unknown_option_gets_a_suggestion(
+    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        parser(words).parse_args(words)
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert sentence in said
+    assert len(said.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--seed", "x"], "--seed is 'x'; it must be a whole number"),
+        (["--seed", "1.5"], "--seed is '1.5'; it must be a whole number"),
+        (["--timeout", "nan"], "--timeout is nan; it must be a finite number"),
+        (["--vehicles", "3", "--traffic-density", "2"], "--vehicles and --traffic-density exclude each other"),
+        (["--route-id", "3", "--routes-subset", "2"], "--route-id and --routes-subset exclude each other"),
+        (["--port", "70000"], "--port is 70000; it must be in 1..65535"),
+    ],
+)
+def test_a_value_that_an_option_cannot_have_is_named_with_its_flag(words: list[str], sentence: str) -> None:
+    with pytest.raises(UserError, match=f"^{sentence}"):
+        heard(RunOptions, words)
