@@ -11,6 +11,7 @@ from basu.agents.calls import AgentCalls
 from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import RemoteAgent
 from basu.managers.base_manager import BaseManager
+from basu.managers.conduct import Conduct
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -49,6 +50,8 @@ class AgentsManager(BaseManager):
             self._agent = AgentCalls(loaded.agent_class, step_limit_s, is_ours=loaded.file is None)
         else:
             self._agent = RemoteAgent(loaded, step_limit_s, seed)
+        self._conduct = Conduct(self._agent.name)
+        self._is_watched = isinstance(self._agent, RemoteAgent)
         config = self._agent.config()
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
         self.control = carla.VehicleControl(brake=1.0)
@@ -99,7 +102,10 @@ class AgentsManager(BaseManager):
             "server_address": run.server_address,
         }
         self._step_s = run.step_s
+        if self._is_watched:
+            self._conduct.begin(run)
         self._agent.setup(binding, run.timeout_s)
+        self._conduct.set_up()
 
     def perceive(self, sensor_data: dict[str, tuple[int, Any]]) -> None:
         """Lay what the sensors measured before the agent for its next step."""
@@ -107,7 +113,9 @@ class AgentsManager(BaseManager):
 
     def tick(self, frame: Frame) -> None:
         """Ask for a control, and the person whether it counts."""
+        self._conduct.before(frame)
         self.control = self._agent.step(frame.server_frame, self._sensor_data)
+        self._conduct.after(frame)
         if self.person is not None:
             by_hand = self.person.step(frame.tick, self._step_s, self.control)
             self._by_hand = by_hand is not None

@@ -182,6 +182,7 @@ def _driven(
             timeout_s=options.timeout_s,
             folder=folder,
             server_address=simulator.address,
+            own_simulator=simulator.own,
             weather=() if options.weather is not None else ground.description.weather,
         )
         watched = options.hud is not None or options.viewer or agents.person is not None

@@ -227,6 +227,7 @@ def _driven(
             timeout_s=options.timeout_s,
             folder=folder,
             server_address=simulator.address,
+            own_simulator=simulator.own,
         )
         return drive(
             run,
