@@ -146,8 +146,30 @@ def test_a_colour_picture_shows_a_bright_sky_above_a_darker_street(rig: Rig) -> 
     assert green > 60
 
 
+@pytest.mark.parametrize(
+    ("sensor", "attribute", "value", "sentence"),
+    [
+        ("sensor.lidar.ray_cast", "channels", "2000000000", "expected at most 4096"),
+        ("sensor.lidar.ray_cast_semantic", "points_per_second", "2000000000", "expected at most 20000000"),
+        ("sensor.other.radar", "points_per_second", "2000000000", "expected at most 20000000"),
+        ("sensor.camera.dvs", "positive_threshold", "1e-30", "expected at least 0.01"),
+    ],
+)
+def test_a_sensor_that_would_take_all_memory_is_refused(
+    world: carla.World, sensor: str, attribute: str, value: str, sentence: str
+) -> None:
+    blueprint = world.get_blueprint_library().find(sensor)
+    blueprint.set_attribute(attribute, value)
+    with pytest.raises(RuntimeError, match=sentence):
+        world.spawn_actor(blueprint, carla.Transform())
+
+
 def test_a_picture_without_pixels_is_refused(world: carla.World) -> None:
     blueprint = world.get_blueprint_library().find("sensor.camera.rgb")
     blueprint.set_attribute("image_size_x", "9000")
     with pytest.raises(RuntimeError, match="a picture of 9000 x 600 pixels cannot be made"):
+        world.spawn_actor(blueprint, carla.Transform())
+    for axis in "xy":
+        blueprint.set_attribute(f"image_size_{axis}", "8192")
+    with pytest.raises(RuntimeError, match="it has at most 16777216 pixels"):
         world.spawn_actor(blueprint, carla.Transform())

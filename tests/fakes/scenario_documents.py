@@ -11,7 +11,7 @@ import numpy as np
 from basu.output.report.streets import Line
 from basu.records.history import FRAME, Collision, Facts, History, Recorder
 from basu.records.history.model import NO_LIGHT
-from basu.scenarios.shares import results_from, standing, standing_to_json
+from basu.scenarios.shares import crash_shares, results_from, shares_to_json
 from fakes.drives import STEP_S, VEHICLE, straight_route
 
 WALKER = 47
@@ -31,6 +31,7 @@ VERDICT_FAULTS = {
     "SUCCESS": "nobody",
     "FAILURE": "nobody",
     "AGENT_FAULT": "agent",
+    "NOT_EXERCISED": "nobody",
     "SIMULATOR_FAULT": "simulator",
     "SETUP_FAULT": "setup",
     "BENCHMARK_FAULT": "benchmark",
@@ -82,7 +83,7 @@ def crossing(*, brakes: bool = True, seconds: float = 12.0) -> History:
 def case_result(**changes: Any) -> dict[str, Any]:
     """The result of one case; ``changes`` replace its entries."""
     document: dict[str, Any] = {
-        "schema_version": 1,
+        "schema_version": 2,
         "id": "pedestrian_crossing_1",
         "scenario": "PedestrianCrossing",
         "title": "Somebody walks across the street.",
@@ -102,6 +103,8 @@ def case_result(**changes: Any) -> dict[str, Any]:
         "fault": "nobody",
         "status": "Completed",
         "message": "The walker was let by, 1.2 m at the least, and the end of the route was reached.",
+        "assessment": assessment("SUCCESS"),
+        "collisions": [],
         "phases_s": {"setup": 0.0, "trigger": 0.0, "conflict": 4.0, "resolution": 9.0, "end": 11.5},
         "judgements": [
             judgement("no collision", True, sentence="Nobody was touched."),
@@ -132,6 +135,29 @@ def case_result(**changes: Any) -> dict[str, Any]:
     return {**document, **changes}
 
 
+def assessment(verdict: str) -> dict[str, Any] | None:
+    """The policy's answers that lead to a verdict; None for a fault."""
+    if verdict not in {"SUCCESS", "FAILURE", "NOT_EXERCISED"}:
+        return None
+    return {
+        "safe": {"holds": verdict != "FAILURE", "sentence": "no collision, no near miss"},
+        "completed": {"holds": verdict == "SUCCESS", "sentence": "arrives, in time"},
+        "exercised": {"holds": verdict != "NOT_EXERCISED", "sentence": "the ego would have met walker"},
+    }
+
+
+def collision() -> dict[str, Any]:
+    """A contact with the walker."""
+    return {
+        "t_s": 8.0,
+        "other": "walker",
+        "speed_mps": 6.0,
+        "at_fault": True,
+        "kind": "front",
+        "sentence": "at fault: the ego's front met the other at 6.00 m/s",
+    }
+
+
 def failed(**changes: Any) -> dict[str, Any]:
     """The result of a case in which the walker was hit."""
     hit = judgement(
@@ -147,6 +173,8 @@ def failed(**changes: Any) -> dict[str, Any]:
         **{
             "verdict": "FAILURE",
             "message": "Hit the walker at 8.0 s at 6.0 m/s.",
+            "assessment": assessment("FAILURE"),
+            "collisions": [collision()],
             "judgements": [hit],
             "margins": {"distance_m": 0.0, "ttc_s": 0.0, "pet_s": None},
             "phases_s": {"setup": 0.0, "trigger": 0.0, "conflict": 4.0},
@@ -208,7 +236,7 @@ def matrix(agents: Sequence[str] = ("basic", "behavioral", "forward"), instances
 def matrix_of(cases: Sequence[dict[str, Any]], agents: Sequence[str], **changes: Any) -> dict[str, Any]:
     """The document of a run with these cases."""
     return {
-        "schema_version": 1,
+        "schema_version": 2,
         "started": "2026-11-22T03:00:00+00:00",
         "what": "all",
         "agents": list(agents),
@@ -227,7 +255,7 @@ def matrix_of(cases: Sequence[dict[str, Any]], agents: Sequence[str], **changes:
 def shares(cases: Sequence[dict[str, Any]], agent: str) -> dict[str, Any]:
     """What the results of one agent stand for, as `basu.scenarios.shares` writes it."""
     documents = [{**case, **case["results"][agent]} for case in cases if agent in case["results"]]
-    plain: dict[str, Any] = json.loads(json.dumps(standing_to_json(standing(results_from(documents)))))
+    plain: dict[str, Any] = json.loads(json.dumps(shares_to_json(crash_shares(results_from(documents)))))
     return plain
 
 
@@ -260,6 +288,8 @@ def told(verdict: str, id_: str, agent: str, distance_m: float) -> dict[str, Any
         "fault": VERDICT_FAULTS[verdict],
         "status": "Completed",
         "message": "Hit the walker at 8.0 s at 6.0 m/s." if is_hit else f"As {verdict} has it.",
+        "assessment": assessment(verdict),
+        "collisions": [collision()] if is_hit else [],
         "margins": {"distance_m": 0.0 if is_hit else distance_m, "ttc_s": 0.0 if is_hit else 1.9, "pet_s": None},
         "simulated_s": 12.0,
         "wall_s": 0.9,

@@ -1,5 +1,6 @@
 """The least world a server can serve: it counts frames. For tests of what is around the simulation."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from linden.errors import Refusal
@@ -11,7 +12,10 @@ EMPTY_MAP = '<?xml version="1.0"?><OpenDRIVE/>'
 
 
 class FakeEpisode:
-    """Stands for its own surroundings, which have no layers."""
+    """Stands for its own surroundings, which have no layers, and its own map; nobody is in it."""
+
+    map = None
+    eyes: tuple[int, ...] = ()
 
     @property
     def surroundings(self) -> "FakeEpisode":
@@ -26,11 +30,10 @@ class FakeSeeing:
 
     def __init__(self, *, is_there: bool = True) -> None:
         self.is_there = is_there
-        self.waits_s: list[float] = []
+        self.when_built: Callable[[], None] = lambda: None
 
     def wait(self, at_most_s: float) -> bool:
-        if at_most_s > 0.0:
-            self.waits_s.append(at_most_s)
+        assert at_most_s == 0.0
         return self.is_there
 
 
@@ -54,6 +57,12 @@ class FakeSimulation:
         self.delta_s = dt_s
         self.steps_s.append(dt_s)
 
+    def has_stream(self, stream_id: int) -> bool:
+        return stream_id < 1000
+
+    def prepare(self, world_map: str) -> None:
+        """Nothing takes time."""
+
     def load(self, world_map: str, *, reset_settings: bool) -> None:
         self.episode_id += 1
         self.map_name = world_map
@@ -68,7 +77,7 @@ class FakeMaps:
     def names(self) -> list[str]:
         return ["/Game/Carla/Maps/Plain"]
 
-    def load(self, name: str) -> str:
+    def ready(self, name: str) -> str:
         if name.rsplit("/", 1)[-1] not in ("Plain", *("OpenDriveMap" for _ in self.sent)):
             raise Refusal(f"Map '{name}' not found")
         return f"Carla/Maps/{name.rsplit('/', 1)[-1]}"
@@ -76,6 +85,9 @@ class FakeMaps:
     def from_opendrive(self, text: str, *, wall_height_m: float = 0.0, beyond_m: float = 0.0) -> str:
         self.sent.append(text)
         return "OpenDriveMap"
+
+    def keep(self, made: str) -> None:
+        """Nothing is made."""
 
 
 class FakeFrames:

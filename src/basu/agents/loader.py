@@ -24,6 +24,9 @@ BUILT_IN = {
     "behavioral": "basu.agents.builtin.behavioral",
     "behavioral-cautious": "basu.agents.builtin.behavioral_cautious",
     "behavioral-aggressive": "basu.agents.builtin.behavioral_aggressive",
+    "blind": "basu.agents.builtin.controls:BlindAgent",
+    "creeper": "basu.agents.builtin.controls:CreeperAgent",
+    "standing": "basu.agents.builtin.controls:StandingAgent",
     "deviating": "basu.agents.builtin.deviating",
     "forward": "basu.agents.builtin.forward",
     "human": "basu.agents.builtin.human",
@@ -72,8 +75,9 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
 def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
     """The agent by its name or from its file."""
     if wanted in BUILT_IN:
-        module = importlib.import_module(BUILT_IN[wanted])
-        return LoadedAgent(_only(_agents_in(module.__dict__, module.__name__), wanted), wanted, None)
+        module_name, _, class_name = BUILT_IN[wanted].partition(":")
+        agents = _agents_in(vars(importlib.import_module(module_name)), module_name)
+        return LoadedAgent(_only([a for a in agents if class_name in {"", a.__name__}], wanted), wanted, None)
     text, _, class_name = wanted.partition(":") if ".py:" in wanted else (wanted, "", "")
     path = Path(text)
     if path.suffix != ".py":

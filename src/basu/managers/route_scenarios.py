@@ -60,6 +60,8 @@ def _evidence(playing: Playing, judged: Judged | None, step_s: float) -> dict[st
         "phases_s": {phase: round(tick * step_s, 3) for phase, tick in playing.phase_ticks.items()},
         "judgements": [judgement._asdict() for judgement in judgements],
         "margins": {} if judged is None else judged.margins,
+        "assessment": None if judged is None or judged.assessment is None else judged.assessment.document(),
+        "collisions": [] if judged is None else [collision._asdict() for collision in judged.collisions],
         "tree": dict(tree_of(playing.composed, judgements)),
         "actors": playing.actors(),
         "things": [thing._asdict() for thing in playing.things],

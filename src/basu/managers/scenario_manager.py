@@ -89,7 +89,8 @@ class Playing:
         try:
             criteria = asked(who, self.scenario.criteria)
             played = self.played(history, outcome)
-            return asked(who, lambda: judge(criteria, played, outcome, triggered=self.triggered))
+            exercised = self.scenario.exercised
+            return asked(who, lambda: judge(criteria, played, outcome, triggered=self.triggered, exercised=exercised))
         except UserError as error:
             return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=self.triggered)
 

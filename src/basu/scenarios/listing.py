@@ -6,7 +6,7 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from basu.scenarios.cases import ALL, Playable, snake
-from basu.scenarios.nhtsa import TOLLS, Group
+from basu.scenarios.nhtsa import BURDENS, Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.scenario import Scenario
 
@@ -33,9 +33,9 @@ def as_text(cases_by_type: Listed, *, full: bool) -> list[str]:
         scenarios = [scenario for scenario in cases_by_type if scenario.group is group]
         if not scenarios:
             continue
-        toll = TOLLS.get(group)
-        told = f": {toll.crashes:,} crashes a year, {toll.cost_musd:,} million dollars" if toll else ""
-        lines.append(f"{group.value.upper()}{told}")
+        burden = BURDENS.get(group)
+        yearly = f": {burden.crashes:,} crashes a year, {burden.cost_musd:,} million dollars" if burden else ""
+        lines.append(f"{group.value.upper()}{yearly}")
         for scenario in scenarios:
             cases = cases_by_type[scenario]
             told = f"{snake(scenario.__name__)} ({_many(len(cases), 'case')}): {scenario.title()}"

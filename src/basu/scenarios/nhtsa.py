@@ -1,7 +1,12 @@
-"""The nine groups of NHTSA's pre-crash typology and what they cost: table 1.1 of the thesis.
+"""NHTSA's pre-crash typology: nine groups with their yearly burden, and the 37 scenarios with their frequencies.
 
-Source: yearly averages of FARS and GES 2011-2015, crashes in which a light vehicle makes the critical action, as table
-1.1 of the thesis prints them out of NHTSA's report of August 2019 [5]. Costs are in millions of dollars.
+Burden: yearly averages of FARS and GES 2011-2015, crashes in which a light vehicle makes the critical action, as table
+1.1 of the thesis prints them out of DOT HS 812 745 (Swanson and others, August 2019). Costs are in millions of dollars.
+
+Frequencies: DOT HS 810 767 (Najm, Smith and Yanagisawa, Pre-Crash Scenario Typology for Crash Avoidance Research, April
+2007), table 13: police-reported crashes of 2004 with a light vehicle, GES, in thousands. The figures are taken from a
+public transcription of that table; its percentages are parts of 5,942,000 crashes, to which the counts add up with
+"other". The scenarios stand in the nine groups of DOT HS 812 745; those outside the nine groups have none.
 """
 
 from __future__ import annotations
@@ -25,7 +30,7 @@ class Group(enum.Enum):
     SHUTTLE = "shuttle"  # what a shuttle meets besides; not in NHTSA's typology, weighs nothing in its shares
 
 
-class Toll(NamedTuple):
+class Burden(NamedTuple):
     """What the crashes of a group take in a year."""
 
     fatal_crashes: int
@@ -34,15 +39,137 @@ class Toll(NamedTuple):
     equivalent_lives: int
 
 
-TOLLS: dict[Group, Toll] = {
-    Group.CONTROL_LOSS: Toll(4_456, 470_733, 77_507, 8_474),
-    Group.ROAD_DEPARTURE: Toll(6_500, 547_098, 97_737, 10_686),
-    Group.ANIMAL: Toll(102, 297_968, 6_231, 681),
-    Group.PEDESTRIAN: Toll(3_731, 70_461, 47_342, 5_176),
-    Group.PEDALCYCLIST: Toll(518, 47_927, 12_146, 1_328),
-    Group.LANE_CHANGE: Toll(752, 644_099, 32_935, 3_601),
-    Group.OPPOSITE_DIRECTION: Toll(3_258, 100_786, 48_255, 5_276),
-    Group.REAR_END: Toll(1_245, 1_709_717, 106_515, 11_646),
-    Group.CROSSING_PATHS: Toll(3_972, 1_131_273, 135_406, 14_805),
+BURDENS: dict[Group, Burden] = {
+    Group.CONTROL_LOSS: Burden(4_456, 470_733, 77_507, 8_474),
+    Group.ROAD_DEPARTURE: Burden(6_500, 547_098, 97_737, 10_686),
+    Group.ANIMAL: Burden(102, 297_968, 6_231, 681),
+    Group.PEDESTRIAN: Burden(3_731, 70_461, 47_342, 5_176),
+    Group.PEDALCYCLIST: Burden(518, 47_927, 12_146, 1_328),
+    Group.LANE_CHANGE: Burden(752, 644_099, 32_935, 3_601),
+    Group.OPPOSITE_DIRECTION: Burden(3_258, 100_786, 48_255, 5_276),
+    Group.REAR_END: Burden(1_245, 1_709_717, 106_515, 11_646),
+    Group.CROSSING_PATHS: Burden(3_972, 1_131_273, 135_406, 14_805),
 }
-PRINTED_TOTAL = Toll(24_534, 5_020_062, 564_073, 61_674)  # as the table has it; sums differ by rounding
+PRINTED_TOTAL = Burden(24_534, 5_020_062, 564_073, 61_674)  # as the table has it; sums differ by rounding
+
+
+class PreCrash(NamedTuple):
+    """One of the 37 pre-crash scenarios."""
+
+    number: int  # in the order of DOT HS 810 767
+    name: str
+    group: Group | None
+    thousands: int  # of crashes in a year
+
+
+_ROWS: dict[Group | None, tuple[tuple[int, str, int], ...]] = {
+    Group.CONTROL_LOSS: (
+        (2, "control loss with prior vehicle action", 103),
+        (3, "control loss without prior vehicle action", 529),
+    ),
+    Group.ROAD_DEPARTURE: (
+        (6, "road edge departure with prior vehicle maneuver", 68),
+        (7, "road edge departure without prior vehicle maneuver", 334),
+        (8, "road edge departure while backing up", 66),
+    ),
+    Group.ANIMAL: (
+        (9, "animal crash with prior vehicle maneuver", 23),
+        (10, "animal crash without prior vehicle maneuver", 305),
+    ),
+    Group.PEDESTRIAN: (
+        (11, "pedestrian crash with prior vehicle maneuver", 17),
+        (12, "pedestrian crash without prior vehicle maneuver", 39),
+    ),
+    Group.PEDALCYCLIST: (
+        (13, "pedalcyclist crash with prior vehicle maneuver", 18),
+        (14, "pedalcyclist crash without prior vehicle maneuver", 24),
+    ),
+    Group.LANE_CHANGE: (
+        (16, "vehicle turning, same direction", 222),
+        (17, "vehicle parking, same direction", 48),
+        (18, "vehicle changing lanes, same direction", 338),
+        (19, "vehicle drifting, same direction", 98),
+    ),
+    Group.OPPOSITE_DIRECTION: (
+        (20, "vehicle making a maneuver, opposite direction", 15),
+        (21, "vehicle not making a maneuver, opposite direction", 124),
+    ),
+    Group.REAR_END: (
+        (22, "following vehicle making a maneuver", 85),
+        (23, "lead vehicle accelerating", 19),
+        (24, "lead vehicle moving at lower constant speed", 210),
+        (25, "lead vehicle decelerating", 428),
+        (26, "lead vehicle stopped", 975),
+    ),
+    Group.CROSSING_PATHS: (
+        (4, "running red light", 254),
+        (5, "running stop sign", 48),
+        (27, "left turn across path from opposite directions at signalized junctions", 220),
+        (28, "vehicle turning right at signalized junctions", 35),
+        (29, "left turn across path from opposite directions at non-signalized junctions", 190),
+        (30, "straight crossing paths at non-signalized junctions", 264),
+        (31, "vehicle turning at non-signalized junctions", 435),
+    ),
+    None: (
+        (1, "vehicle failure", 42),
+        (15, "backing up into another vehicle", 131),
+        (32, "evasive action with prior vehicle maneuver", 13),
+        (33, "evasive action without prior vehicle maneuver", 56),
+        (34, "non-collision incident", 46),
+        (35, "object crash with prior vehicle maneuver", 30),
+        (36, "object crash without prior vehicle maneuver", 55),
+    ),
+}
+PRE_CRASH = {
+    number: PreCrash(number, name, group, count) for group, rows in _ROWS.items() for number, name, count in rows
+}
+OTHER_THOUSANDS = 35  # scenario 37, 0.6 % of the crashes
+
+# The scenarios of NHTSA that each of BASU's stands for, by its class. A user's class names its own in `pre_crash`.
+STANDS_FOR: dict[str, tuple[int, ...]] = {
+    "ControlLoss": (3,),
+    "SlipperyStop": (2,),
+    "BendDeparture": (7,),
+    "CrossWind": (7,),
+    "DeerAtDusk": (10,),
+    "DogOnTheRoad": (10,),
+    "OccludedChild": (12,),
+    "PedestrianCrossing": (12,),
+    "PedestrianTurn": (11,),
+    "PedestrianTurnsBack": (12,),
+    "CyclistAhead": (14,),
+    "CyclistAtRightTurn": (13,),
+    "CyclistCrossing": (14,),
+    "CyclistSwerves": (14,),
+    "Dooring": (14,),
+    "DynamicObject": (14,),
+    "CutInBeforeStop": (18,),
+    "DriftingNeighbour": (19,),
+    "ParkedCarPullsOut": (17,),
+    "RightHook": (16,),
+    "NarrowedStreet": (20,),
+    "OncomingOvertaker": (20,),
+    "StrayingOncoming": (21,),
+    "FollowLeadingVehicle": (24, 26),
+    "FollowLeadingVehicleWithObstacle": (25,),
+    "LeadVehicleBrakes": (25,),
+    "LeadVehicleSwerves": (26,),
+    "StaticObject": (26,),
+    "StopAndGo": (23, 25),
+    "CarAcrossJunction": (30,),
+    "EgoTurnsLeft": (27, 29),
+    "LeftTurnAcrossPath": (27, 29),
+    "RedLightRunner": (4,),
+    "RightTurnIntoPath": (31,),
+    "Roundabout": (31,),
+    "StopSignRunner": (5,),
+    "StraightCrossingPaths": (30,),
+    "TurnIntoTraffic": (31,),
+    "UnsignalizedIntersection": (30,),
+}
+
+
+def stands_for(scenario: str, group: Group, declared: tuple[int, ...] = ()) -> tuple[PreCrash, ...]:
+    """The pre-crash scenarios of ``group`` that a scenario stands for; none where none is known."""
+    numbers = declared or STANDS_FOR.get(scenario, ())
+    return tuple(PRE_CRASH[number] for number in numbers if PRE_CRASH[number].group is group)

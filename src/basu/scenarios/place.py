@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.errors import ScenarioError
+from basu.routing import ControlKind
 from basu.scenarios.stage import Pose
 
 if TYPE_CHECKING:
@@ -65,6 +66,11 @@ class Place:
             raise ScenarioError(f"the route '{self.route.id}' was not laid on a map, so nothing is known beside it")
         index = int(np.searchsorted(self.route.s_m, self.trigger_s_m + ahead_m - 1e-6))
         return self.route.waypoints[min(index, len(self.route.waypoints) - 1)]
+
+    def stop_line_m(self, before_m: float = math.inf) -> float | None:
+        """How far ahead the next stop sign's line is; None where there is none on the next ``before_m`` metres."""
+        ahead_m = [c.s_m - self.trigger_s_m for c in self.route.controls if c.kind is ControlKind.STOP_SIGN]
+        return next((at_m for at_m in ahead_m if 0.0 < at_m < before_m), None)
 
     @property
     def left_m(self) -> float:

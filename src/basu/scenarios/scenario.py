@@ -28,14 +28,16 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, ClassVar
 
+from basu.scenarios.exercise import came_about
 from basu.scenarios.triggers import EgoArrives
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from py_trees.behaviour import Behaviour
 
-    from basu.scenarios.criteria.criterion import Criterion
+    from basu.scenarios.criteria.criterion import Criterion, Played
+    from basu.scenarios.exercise import Finding
     from basu.scenarios.nhtsa import Group
     from basu.scenarios.parameters import Parameter, Value
     from basu.scenarios.place import Place
@@ -57,6 +59,7 @@ class Scenario(ABC):
     needs_m: ClassVar[float] = 60.0  # of the ego's route behind the trigger point
     needs_junction: ClassVar[bool] = False  # behind it: a case without a destination goes on to the next
     aliases: ClassVar[Sequence[str]] = ()  # types of ScenarioRunner and the leaderboard that mean this one
+    pre_crash: ClassVar[tuple[int, ...]] = ()  # numbers in DOT HS 810 767; BASU's are in `basu.scenarios.nhtsa`
     reference: ClassVar[str] = "behavioral"  # an agent that comes with BASU and passes every case
 
     def __init__(self, place: Place, values: Mapping[str, Value]) -> None:
@@ -106,4 +109,12 @@ class Scenario(ABC):
 
     @abstractmethod
     def criteria(self) -> Sequence[Criterion]:
-        """By what the ego is judged."""
+        """Return the criteria of this scenario; the policy adds its own (`basu.scenarios.policy`)."""
+
+    def partners(self) -> Collection[str] | None:
+        """Return the roles and things that the ego must avoid; None means the actors that move, or all if none does."""
+        return None
+
+    def exercised(self, played: Played) -> Finding:
+        """Return whether the conflict came about (`basu.scenarios.exercise`); a scenario may define its own effect."""
+        return came_about(played, self.partners())

@@ -1,30 +1,50 @@
-"""Which of the situations that cause real crashes a driver survives, and how much of the national toll that stands for.
+"""The part of real crashes that the passed cases of a driver stand for, with its confidence interval.
 
-Within a group of NHTSA's typology every scenario weighs the same, and within a scenario every case. Each group then
-weighs by what its crashes take in a year: cost, crashes, fatal crashes, equivalent lives (`basu.scenarios.nhtsa`).
+A group of NHTSA's typology has pre-crash scenarios with frequencies (`basu.scenarios.nhtsa`). Each pre-crash scenario
+is represented by the BASU scenarios that stand for it, in equal parts; a BASU scenario by its cases, in equal parts.
+Each group then weighs by what its crashes take in a year: cost, crashes, fatal crashes, equivalent lives.
+
+Two figures come of this. *Of the exercised*: the passed part of the cases in which the conflict came about. *Shown*:
+the passed part of all played cases, over all nine groups; what was not exercised, not represented or not played counts
+as not passed. Absence from a conflict cannot raise the second figure.
+
+Intervals are those of Wilson 1927 at 95 % for each scenario's cases, combined over scenarios by the method of variance
+estimates recovery (Zou and Donner 2008, equation 5). They cover the number of cases alone.
 """
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.scenarios.nhtsa import PRINTED_TOTAL, TOLLS, Group
+from basu.scenarios.nhtsa import BURDENS, PRE_CRASH, PRINTED_TOTAL, Group, stands_for
 from basu.scenarios.verdict import Verdict
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
 ASSUMPTIONS = (
-    "A group's scenarios here stand for all crashes of that group, and each of them for as much as any other.",
+    "A pre-crash scenario's cases here stand for all crashes of that scenario.",
+    "A scenario weighs by its frequency within its group (DOT HS 810 767, table 13, GES 2004).",
+    "A group weighs by its burden (table 1.1 of the thesis, from DOT HS 812 745, FARS and GES 2011-2015).",
+    "A scenario that stands for none of the 37 weighs as much as the mean of its group's other scenarios.",
     "Our places stand for the nation's roads and our parameters for its traffic, however often each is met.",
-    "The toll is that of people driving light vehicles (FARS and GES, yearly mean of 2011-2015), whatever drove here.",
-    "To survive is to meet every deciding criterion; who does not is taken to pay the mean of the group's crashes.",
-    "Groups without a case that was judged are left out of both sums, neither survived nor lost.",
-    "An agent that broke down has not survived; cases spoiled by simulator, set-up, benchmark or by hand are left out.",
+    "The burden is that of people driving light vehicles, whatever drove here.",
+    "A failed case is taken to cost the mean of its group's crashes, whether it was a scratch or a near miss.",
+    "NOT_EXERCISED counts for neither side in the first figure, and as not passed in the figure for all crashes.",
+    "An agent that broke down has not passed; cases spoiled by simulator, set-up, benchmark or by hand are left out.",
     "The shuttle's own situations are not in the typology and weigh nothing.",
+    "Not covered: backing up, vehicle failure, evasive action, crashes with objects, and speeds above a shuttle's.",
+    "Intervals (95 %) cover the number of cases alone: cases were chosen by hand and not drawn from crashes.",
 )
+CONTROL_DRIVERS = {
+    "blind": "ignores all others",
+    "creeper": "drives at 2 m/s",
+    "standing": "never moves",
+}
 MARGINS = ("distance_m", "ttc_s", "pet_s")
+Z = 1.959964  # of the normal distribution, two-sided 95 %
 
 
 class Result(NamedTuple):
@@ -36,57 +56,97 @@ class Result(NamedTuple):
     verdict: Verdict
     message: str
     margins: Mapping[str, float | None]
+    at_fault: int = 0  # collisions for which the agent is at fault
+    collisions: int = 0
+    pre_crash: tuple[int, ...] = ()  # declared by a user's scenario
+
+
+class Estimate(NamedTuple):
+    """A share with its interval of 95 %."""
+
+    share: float
+    low: float
+    high: float
 
 
 class GroupShare(NamedTuple):
-    """How much of a group was survived."""
+    """How much of a group was passed."""
 
     group: Group
-    survived: float  # 0..1: the mean over scenarios of the mean over cases
+    passed: Estimate | None  # of the exercised cases; None where none was exercised
+    shown: Estimate  # of all played cases, and of all crashes of the group
     scenarios: int  # with at least one case that counts
     cases: int  # that count
+    not_exercised: int
 
 
 class Narrowest(NamedTuple):
-    """How narrowly a scenario's survived cases were survived; None where nobody came near."""
+    """How narrowly a scenario's passed cases were passed; None where nobody came near."""
 
     scenario: str
     least: Mapping[str, float | None]  # by the keys of MARGINS
     cases: Mapping[str, str | None]  # in which case each was
 
 
-class Standing(NamedTuple):
-    """What one agent's results stand for. A share is None where no group was measured."""
+class CrashShares(NamedTuple):
+    """What one agent's results stand for. A share is None where no group was exercised."""
 
     groups: tuple[GroupShare, ...]  # in the order of the typology, the shuttle's own last
-    cost: float | None  # share of crash cost in situations survived
-    crashes: float | None
-    fatal_crashes: float | None
-    equivalent_lives: float | None
+    cost: Estimate | None  # of the exercised
+    crashes: Estimate | None
+    fatal_crashes: Estimate | None
+    equivalent_lives: Estimate | None
+    shown_cost: Estimate  # of all crash cost
     measured_of_cost: float  # the measured groups' part of the cost of all nine
     unmeasured: tuple[Group, ...]  # of the typology
-    left_out: tuple[Result, ...]
+    not_exercised: int
+    collisions: int
+    at_fault: int
+    left_out: tuple[Result, ...]  # for faults of others
     narrowest: tuple[Narrowest, ...]  # by scenario, in the order in which they come
 
 
-def standing(results: Sequence[Result]) -> Standing:
+class _Stratum(NamedTuple):
+    """The cases of one scenario, and its weight within its group."""
+
+    weight: float
+    passed: int
+    cases: int
+
+
+def wilson(passed: int, cases: int) -> Estimate:
+    """The interval of a proportion: Wilson 1927, equation 4."""
+    share, z2 = passed / cases, Z * Z
+    middle = (share + z2 / (2.0 * cases)) / (1.0 + z2 / cases)
+    half = Z / (1.0 + z2 / cases) * math.sqrt(share * (1.0 - share) / cases + z2 / (4.0 * cases * cases))
+    return Estimate(share, max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half)))
+
+
+def crash_shares(results: Sequence[Result]) -> CrashShares:
     """Weigh the results of one agent."""
     counted = [result for result in results if result.verdict.counts]
-    groups = tuple(
-        _group(group, of_group)
-        for group in Group
-        if (of_group := [result for result in counted if result.group is group])
-    )
-    measured = {share.group: share.survived for share in groups if share.group in TOLLS}
-    return Standing(
-        groups=groups,
-        cost=_weighed(measured, {group: TOLLS[group].cost_musd for group in measured}),
-        crashes=_weighed(measured, {group: TOLLS[group].crashes for group in measured}),
-        fatal_crashes=_weighed(measured, {group: TOLLS[group].fatal_crashes for group in measured}),
-        equivalent_lives=_weighed(measured, {group: TOLLS[group].equivalent_lives for group in measured}),
-        measured_of_cost=sum(TOLLS[group].cost_musd for group in measured) / sum(t.cost_musd for t in TOLLS.values()),
-        unmeasured=tuple(group for group in TOLLS if group not in measured),
-        left_out=tuple(result for result in results if not result.verdict.counts),
+    absent = [result for result in results if result.verdict is Verdict.NOT_EXERCISED]
+    played = [*counted, *absent]
+    exercised = {group: _strata(group, counted) for group in Group}
+    shown = {group: _strata(group, played, whole_group=True) for group in Group}
+    measured = [group for group in BURDENS if exercised[group]]
+    return CrashShares(
+        groups=tuple(
+            _group_share(group, exercised[group], shown[group], counted, absent)
+            for group in Group
+            if any(result.group is group for result in played)
+        ),
+        cost=_weighed(exercised, measured, "cost_musd"),
+        crashes=_weighed(exercised, measured, "crashes"),
+        fatal_crashes=_weighed(exercised, measured, "fatal_crashes"),
+        equivalent_lives=_weighed(exercised, measured, "equivalent_lives"),
+        shown_cost=_weighed(shown, list(BURDENS), "cost_musd") or Estimate(0.0, 0.0, 0.0),
+        measured_of_cost=sum(BURDENS[g].cost_musd for g in measured) / sum(b.cost_musd for b in BURDENS.values()),
+        unmeasured=tuple(group for group in BURDENS if group not in measured),
+        not_exercised=len(absent),
+        collisions=sum(result.collisions for result in results),
+        at_fault=sum(result.at_fault for result in results),
+        left_out=tuple(result for result in results if result not in played),
         narrowest=_narrowest(counted),
     )
 
@@ -101,30 +161,39 @@ def results_from(documents: Iterable[Mapping[str, Any]]) -> list[Result]:
             verdict=Verdict(document["verdict"]),
             message=document["message"],
             margins=document["margins"],
+            at_fault=sum(collision["at_fault"] for collision in document["collisions"]),
+            collisions=len(document["collisions"]),
+            pre_crash=tuple(document.get("pre_crash", ())),
         )
         for document in documents
     ]
 
 
-def standing_to_json(found: Standing) -> dict[str, Any]:
-    """Plain values, with the table's figures and the assumptions beside them."""
+def shares_to_json(found: CrashShares) -> dict[str, Any]:
+    """Plain values, with the tables' figures and the assumptions beside them."""
     return {
-        "share_of_cost": found.cost,
-        "share_of_crashes": found.crashes,
-        "share_of_fatal_crashes": found.fatal_crashes,
-        "share_of_equivalent_lives": found.equivalent_lives,
+        "share_of_cost": _plain(found.cost),
+        "share_of_crashes": _plain(found.crashes),
+        "share_of_fatal_crashes": _plain(found.fatal_crashes),
+        "share_of_equivalent_lives": _plain(found.equivalent_lives),
+        "shown_of_cost": _plain(found.shown_cost),
         "measured_of_cost": found.measured_of_cost,
         "groups": [
             {
                 "group": share.group.value,
-                "survived": share.survived,
+                "passed": _plain(share.passed),
+                "shown": _plain(share.shown),
                 "scenarios": share.scenarios,
                 "cases": share.cases,
-                "toll": TOLLS[share.group]._asdict() if share.group in TOLLS else None,
+                "not_exercised": share.not_exercised,
+                "burden": BURDENS[share.group]._asdict() if share.group in BURDENS else None,
             }
             for share in found.groups
         ],
         "unmeasured": [group.value for group in found.unmeasured],
+        "not_exercised": found.not_exercised,
+        "collisions": found.collisions,
+        "at_fault": found.at_fault,
         "left_out": [
             {"case": result.case, "verdict": result.verdict.value, "message": result.message}
             for result in found.left_out
@@ -138,53 +207,114 @@ def standing_to_json(found: Standing) -> dict[str, Any]:
     }
 
 
-def sentence(found: Standing) -> str:
+def sentence(found: CrashShares) -> str:
     """The score in a sentence."""
     if found.cost is None:
-        return "no group of the typology was measured, so nothing can be said about the crash toll"
-    number = len(TOLLS) - len(found.unmeasured)
-    groups = "the one group measured, which is" if number == 1 else f"the {number} groups measured, which are"
+        return "no group of the typology was exercised, so nothing can be said about crashes"
+    number = len(BURDENS) - len(found.unmeasured)
+    groups = "the one group exercised, which is" if number == 1 else f"the {number} groups exercised, which are"
     text = (
-        f"it survives situations that stand for {100.0 * found.cost:.0f} % of the crash cost of {groups} "
-        f"{100.0 * found.measured_of_cost:.0f} % of all"
+        f"it passes situations that stand for {_percent(found.cost)} of the crash cost of {groups} "
+        f"{100.0 * found.measured_of_cost:.0f} % of all, and shows {_percent(found.shown_cost)} of all crash cost"
     )
     if found.unmeasured:
-        text += f"; not measured: {', '.join(group.value for group in found.unmeasured)}"
+        text += f"; not exercised: {', '.join(group.value for group in found.unmeasured)}"
     if found.left_out:
         text += f"; {len(found.left_out)} case{'s' if len(found.left_out) > 1 else ''} left out"
     return text
 
 
-def _group(group: Group, results: Sequence[Result]) -> GroupShare:
-    """The share of a group from its cases that count, of which there is at least one."""
-    by_scenario: dict[str, list[bool]] = defaultdict(list)
+def _percent(estimate: Estimate) -> str:
+    """A share with its interval."""
+    return f"{100.0 * estimate.share:.0f} % ({100.0 * estimate.low:.0f} to {100.0 * estimate.high:.0f})"
+
+
+def _plain(estimate: Estimate | None) -> dict[str, float] | None:
+    """An estimate for a document."""
+    return None if estimate is None else estimate._asdict()
+
+
+def _strata(group: Group, results: Sequence[Result], *, whole_group: bool = False) -> list[_Stratum]:
+    """The scenarios of a group with their weights.
+
+    Weights sum to 1; with ``whole_group``, to the part of the group's crashes whose scenarios were played.
+    """
+    by_scenario: dict[str, list[Result]] = defaultdict(list)
     for result in results:
-        by_scenario[result.scenario].append(result.verdict is Verdict.SUCCESS)
-    means = [sum(survived) / len(survived) for survived in by_scenario.values()]
-    return GroupShare(group, sum(means) / len(means), len(means), len(results))
+        if result.group is group:
+            by_scenario[result.scenario].append(result)
+    meant = {name: stands_for(name, group, of[0].pre_crash) for name, of in by_scenario.items()}
+    sharing: dict[int, int] = defaultdict(int)
+    for kinds in meant.values():
+        for kind in kinds:
+            sharing[kind.number] += 1
+    weights = {name: sum(kind.thousands / sharing[kind.number] for kind in kinds) for name, kinds in meant.items()}
+    known = [weight for weight in weights.values() if weight > 0.0]
+    mean = sum(known) / len(known) if known else 1.0
+    weights = {name: weight or mean for name, weight in weights.items()}
+    total = sum(weights.values())
+    if whole_group and known:
+        total = max(total, float(sum(kind.thousands for kind in PRE_CRASH.values() if kind.group is group)))
+    return [
+        _Stratum(weights[name] / total, sum(one.verdict is Verdict.SUCCESS for one in of), len(of))
+        for name, of in by_scenario.items()
+    ]
 
 
-def _weighed(survived: Mapping[Group, float], weights: Mapping[Group, int]) -> float | None:
-    """The mean of the groups' shares by these weights."""
-    if not survived:
+def _combined(strata: Iterable[_Stratum]) -> Estimate:
+    """The weighted sum of proportions: Zou and Donner 2008, equation 5."""
+    share = below = above = 0.0
+    for weight, passed, cases in strata:
+        one = wilson(passed, cases)
+        share += weight * one.share
+        below += (weight * (one.share - one.low)) ** 2
+        above += (weight * (one.high - one.share)) ** 2
+    return Estimate(share, max(0.0, share - math.sqrt(below)), min(1.0, share + math.sqrt(above)))
+
+
+def _group_share(
+    group: Group,
+    exercised: Sequence[_Stratum],
+    shown: Sequence[_Stratum],
+    counted: Sequence[Result],
+    absent: Sequence[Result],
+) -> GroupShare:
+    """The share of one group."""
+    return GroupShare(
+        group=group,
+        passed=_combined(exercised) if exercised else None,
+        shown=_combined(shown),
+        scenarios=len(exercised),
+        cases=sum(result.group is group for result in counted),
+        not_exercised=sum(result.group is group for result in absent),
+    )
+
+
+def _weighed(strata: Mapping[Group, Sequence[_Stratum]], groups: Sequence[Group], key: str) -> Estimate | None:
+    """The strata of several groups, each group weighed by its burden."""
+    if not groups:
         return None
-    return sum(weights[group] * share for group, share in survived.items()) / sum(weights.values())
+    burden: dict[Group, int] = {group: getattr(BURDENS[group], key) for group in groups}
+    total = sum(burden.values())
+    return _combined(
+        stratum._replace(weight=stratum.weight * burden[group] / total) for group in groups for stratum in strata[group]
+    )
 
 
 def _narrowest(counted: Sequence[Result]) -> tuple[Narrowest, ...]:
-    """The least margins of the cases that were survived."""
+    """The least margins of the cases that were passed."""
     by_scenario: dict[str, list[Result]] = defaultdict(list)
     for result in counted:
         if result.verdict is Verdict.SUCCESS:
             by_scenario[result.scenario].append(result)
-    return tuple(_narrowest_of(scenario, survived) for scenario, survived in by_scenario.items())
+    return tuple(_narrowest_of(scenario, passed) for scenario, passed in by_scenario.items())
 
 
-def _narrowest_of(scenario: str, survived: Sequence[Result]) -> Narrowest:
+def _narrowest_of(scenario: str, passed: Sequence[Result]) -> Narrowest:
     """Of one scenario."""
     least: dict[str, float | None] = {}
     cases: dict[str, str | None] = {}
     for key in MARGINS:
-        known = [(value, result.case) for result in survived if (value := result.margins.get(key)) is not None]
+        known = [(value, result.case) for result in passed if (value := result.margins.get(key)) is not None]
         least[key], cases[key] = min(known, key=lambda found: found[0], default=(None, None))
     return Narrowest(scenario, least, cases)

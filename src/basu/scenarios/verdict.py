@@ -1,18 +1,24 @@
-"""The verdict about a case: what its criteria say, kept apart from what was nobody's driving."""
+"""The verdict about a case: the policy's three answers as one word, kept apart from faults that are not the driving.
+
+SUCCESS is safe, completed and exercised. FAILURE is unsafe, or exercised and not completed. NOT_EXERCISED is safe where
+the conflict never came about; it counts for neither side. See `basu.scenarios.policy`.
+"""
 
 from __future__ import annotations
 
 import enum
-import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from basu.metrics.collisions import beginnings
+from basu.metrics.responsibility import responsibility
 from basu.outcome import Fault, Outcome, Status
-from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.going import arrival_tick
 from basu.scenarios.criteria.told import margins_of, told_always
+from basu.scenarios.exercise import Finding, came_about
+from basu.scenarios.policy import Assessment, assess, with_policy
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from basu.scenarios.criteria.criterion import Criterion, Judgement, Played
 
@@ -23,6 +29,7 @@ class Verdict(enum.Enum):
     SUCCESS = "SUCCESS"
     FAILURE = "FAILURE"
     AGENT_FAULT = "AGENT_FAULT"  # it raised, hung or answered with nonsense: not survived
+    NOT_EXERCISED = "NOT_EXERCISED"  # safe, but the conflict never came about
     SIMULATOR_FAULT = "SIMULATOR_FAULT"
     SETUP_FAULT = "SETUP_FAULT"  # the scenario could not be played, or never began although the ego came by
     BENCHMARK_FAULT = "BENCHMARK_FAULT"  # a bug of ours
@@ -55,14 +62,27 @@ ELSEWHERE = {
 }
 
 
+class Collision(NamedTuple):
+    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.responsibility`)."""
+
+    t_s: float
+    other: str  # a role, a thing's name or a blueprint id
+    speed_mps: float  # of the ego in the frame before
+    at_fault: bool
+    kind: str
+    sentence: str
+
+
 class Judged(NamedTuple):
     """A case with its verdict."""
 
     verdict: Verdict
     message: str  # why, in a sentence
-    judgements: tuple[Judgement, ...]  # of the scenario's criteria in its order, then what is told of every case
+    judgements: tuple[Judgement, ...]  # of the scenario's criteria in its order, then those of every case
     margins: dict[str, float | None]  # how narrowly: distance_m, ttc_s, pet_s
     outcome: Outcome  # of the run
+    assessment: Assessment | None  # None where nothing was recorded
+    collisions: tuple[Collision, ...] = ()
 
     @property
     def fault(self) -> Fault:
@@ -70,72 +90,89 @@ class Judged(NamedTuple):
         return self.verdict.fault
 
 
-def judge(criteria: Sequence[Criterion], played: Played | None, outcome: Outcome, *, triggered: bool) -> Judged:
-    """Judge a case; ``played`` is None where nothing was recorded, ``triggered`` says whether the conflict began.
-
-    What a criterion of the user's raises is let through.
-    """
-    judgements: tuple[Judgement, ...] = ()
-    if played is not None and len(played.history.frames):
-        judgements = tuple(criterion.judge(played) for criterion in (*criteria, *told_always(criteria)))
-    verdict, message = _verdict(criteria, judgements, played, outcome, triggered=triggered)
-    return Judged(verdict, message, judgements, margins_of(judgements), outcome)
-
-
-def _verdict(
+def judge(
     criteria: Sequence[Criterion],
-    judgements: tuple[Judgement, ...],
     played: Played | None,
     outcome: Outcome,
     *,
     triggered: bool,
-) -> tuple[Verdict, str]:
-    """The first of these that holds: a fault, a scenario that never began, a failure, nothing to judge by, success."""
+    exercised: Callable[[Played], Finding] = came_about,
+) -> Judged:
+    """Judge a case.
+
+    ``played`` is None where nothing was recorded; ``triggered`` says whether the conflict began; ``exercised`` answers
+    whether it came about. What a user's criterion raises is let through.
+    """
+    if played is None or len(played.history.frames) == 0:
+        verdict, message = _fault(outcome) or (
+            Verdict.BENCHMARK_FAULT,
+            f"nothing was recorded, though the run ended as {outcome.status.value}",
+        )
+        return Judged(verdict, message, (), margins_of(()), outcome, None)
+    asked = with_policy(criteria)
+    judgements = tuple(criterion.judge(played) for criterion in (*asked, *told_always(asked)))
+    begun = exercised(played) if triggered else Finding(False, "the ego never came to where the conflict begins")
+    assessment = assess(asked, judgements, outcome, begun)
+    verdict, message = (
+        _fault(outcome)
+        or _never_triggered(played, triggered=triggered)
+        or _of_driving(assessment, judgements[: len(criteria)])
+    )
+    return Judged(verdict, message, judgements, margins_of(judgements), outcome, assessment, _collisions(played))
+
+
+def _collisions(played: Played) -> tuple[Collision, ...]:
+    """Every contact of the drive, with the responsibility for it."""
+    history = played.history
+    speed_mps, t_s = history.speed_mps(), history.frames["t_s"]
+    found = []
+    for event in beginnings(history, {}):
+        said = responsibility(history, event)
+        found.append(
+            Collision(
+                t_s=float(t_s[event.tick]),
+                other=played.roles.get(event.other_id, event.other_type),
+                speed_mps=float(speed_mps[max(0, event.tick - 1)]),
+                at_fault=said.at_fault,
+                kind=said.kind.value,
+                sentence=said.sentence,
+            )
+        )
+    return tuple(found)
+
+
+def _fault(outcome: Outcome) -> tuple[Verdict, str] | None:
+    """The verdict of a run that something other than the driving decided."""
     if outcome.status in BROKEN:
         return Verdict.AGENT_FAULT, outcome.message
     if outcome.status.fault in ELSEWHERE:
         return ELSEWHERE[outcome.status.fault], outcome.message
-    if not judgements or played is None:
-        return Verdict.BENCHMARK_FAULT, f"nothing was recorded, though the run ended as {outcome.status.value}"
+    return None
+
+
+def _never_triggered(played: Played, *, triggered: bool) -> tuple[Verdict, str] | None:
+    """The verdict of a scenario whose ego arrived without triggering it."""
     arrived = arrival_tick(played.history)
-    if not triggered and arrived is not None:
-        t_s = played.history.frames["t_s"]
-        return Verdict.SETUP_FAULT, (
-            f"it never triggered, although the ego arrived after {t_s[arrived] - t_s[0]:.1f} s: its trigger has to "
-            "come true on the ego's way"
-        )
-    return _of_driving(criteria, judgements, outcome, triggered=triggered)
+    if triggered or arrived is None:
+        return None
+    t_s = played.history.frames["t_s"]
+    return Verdict.SETUP_FAULT, (
+        f"it never triggered, although the ego arrived after {t_s[arrived] - t_s[0]:.1f} s: its trigger has to "
+        "come true on the ego's way"
+    )
 
 
-def _of_driving(
-    criteria: Sequence[Criterion], judgements: tuple[Judgement, ...], outcome: Outcome, *, triggered: bool
-) -> tuple[Verdict, str]:
-    """What the drive deserves, where nothing but the driving decided."""
-    failed = _most_serious(criteria, judgements)
-    if failed is not None:
-        return Verdict.FAILURE, f"{failed.criterion}: {failed.sentence}"
-    if not triggered:
-        return Verdict.FAILURE, f"the ego never came to where it would have been triggered: {outcome.message}"
-    if outcome.status.fault is Fault.AGENT:
-        return Verdict.FAILURE, outcome.message
-    return _passed(judgements)
-
-
-def _passed(judgements: tuple[Judgement, ...]) -> tuple[Verdict, str]:
-    """Nothing failed: success, if anything that decides was judged at all."""
+def _of_driving(assessment: Assessment, judgements: Sequence[Judgement]) -> tuple[Verdict, str]:
+    """What the drive deserves; ``judgements`` are those of the scenario's own criteria."""
+    safe, completed, exercised = assessment
+    if safe.holds is False:
+        return Verdict.FAILURE, safe.sentence
+    if not exercised.holds:
+        return Verdict.NOT_EXERCISED, exercised.sentence
+    if completed.holds is False:
+        return Verdict.FAILURE, completed.sentence
     deciding = [judgement for judgement in judgements if judgement.deciding]
-    by = [judgement for judgement in deciding if judgement.passed is not None]
-    if not by:
+    if all(judgement.passed is None for judgement in deciding):
         why = "; ".join(judgement.sentence for judgement in deciding) or "no criterion of it decides"
         return Verdict.SETUP_FAULT, f"there is nothing to judge it by: {why}"
-    return Verdict.SUCCESS, f"all {len(by)} criteria were met: {', '.join(judgement.criterion for judgement in by)}"
-
-
-def _most_serious(criteria: Sequence[Criterion], judgements: tuple[Judgement, ...]) -> Judgement | None:
-    """Of the deciding criteria that failed: a collision before all, then the earliest, then the first in order."""
-    failed = [
-        (not isinstance(criterion, NoCollision), math.inf if found.t_s is None else found.t_s, index)
-        for index, (criterion, found) in enumerate(zip(criteria, judgements, strict=False))
-        if found.deciding and found.passed is False
-    ]
-    return judgements[min(failed)[2]] if failed else None
+    return Verdict.SUCCESS, f"safe, completed and exercised: {exercised.sentence}"

@@ -19,7 +19,9 @@ def steady(speed_mps: float) -> Driver:
     return lambda _stage: speed_mps
 
 
-def waiting_at(s_m: float, seconds: float, speed_mps: float, brake_mps2: float = 2.0) -> Driver:
+def waiting_at(
+    s_m: float, seconds: float, speed_mps: float, brake_mps2: float = 2.0, start_mps2: float = START_MPS2
+) -> Driver:
     """A speed, a lawful stop before ``s_m`` of the route for so long, and on."""
     stood_s = 0.0
 
@@ -27,12 +29,12 @@ def waiting_at(s_m: float, seconds: float, speed_mps: float, brake_mps2: float =
         nonlocal stood_s
         now_mps, left_m = stage.ego.forward_mps, s_m - stage.ego_s_m
         if stood_s >= seconds or left_m < -0.5:
-            return min(speed_mps, now_mps + START_MPS2 * stage.step_s)
+            return min(speed_mps, now_mps + start_mps2 * stage.step_s)
         wanted_mps = min(speed_mps, math.sqrt(2.0 * brake_mps2 * max(left_m - 0.3, 0.0)))
         if wanted_mps < 0.3:
             stood_s += stage.step_s
             return 0.0
-        return min(wanted_mps, now_mps + START_MPS2 * stage.step_s)
+        return min(wanted_mps, now_mps + start_mps2 * stage.step_s)
 
     return drive
 

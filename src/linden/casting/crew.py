@@ -1,4 +1,4 @@
-"""Work in threads: on long arrays by all processors at once, and beside other work.
+"""Work on long arrays by all processors at once.
 
 The threads are daemons: a process that is told to end does not wait for them. Those of ``concurrent.futures`` it would
 wait for, and for ever where the signal came in the moment in which one was started.
@@ -11,9 +11,10 @@ from functools import lru_cache
 from itertools import count
 from queue import SimpleQueue
 from threading import Thread
-from typing import TypeAlias, TypeVar
+from typing import TypeAlias
 
-Made = TypeVar("Made")
+from linden.background import carry_out
+
 Task: TypeAlias = tuple[Callable[[], None], "Future[None]"]
 
 FEWEST = 512
@@ -34,18 +35,11 @@ def _tasks() -> "SimpleQueue[Task]":
 
     def serve() -> None:
         while True:
-            _do(*tasks.get())
+            carry_out(*tasks.get())
 
     for _ in range(processors() - 1):
         Thread(target=serve, name="rays", daemon=True).start()
     return tasks
-
-
-def _do(work: Callable[[], Made], done: "Future[Made]") -> None:
-    try:
-        done.set_result(work())
-    except BaseException as error:  # noqa: BLE001 - it is raised again where the result is asked for
-        done.set_exception(error)
 
 
 def in_stretches(total: int, work: Callable[[int, int], None], *, multiple: int) -> None:
@@ -71,10 +65,3 @@ def in_stretches(total: int, work: Callable[[int, int], None], *, multiple: int)
     take()
     for helper in helpers:
         helper.result()
-
-
-def in_background(work: Callable[[], Made]) -> "Future[Made]":
-    """Return what will have been made by a thread of its own, which may wait for others."""
-    made: Future[Made] = Future()
-    Thread(target=_do, args=(work, made), name="background", daemon=True).start()
-    return made

@@ -1,5 +1,7 @@
 """What a handler may touch: the simulation, the maps, the streams, and what goes out with this call."""
 
+import logging
+import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
@@ -11,11 +13,7 @@ from linden.simulation import Simulation
 from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.world.maps import MapLibrary
 
-SCENE_S = 0.8
-"""How long a call waits at most for the scene that sensors look at: two may stand in line, the Traffic Manager's behind
-the program's own."""
-MOMENT_S = 0.1
-"""How long a frame of asynchronous mode does, before calls have their turn."""
+log = logging.getLogger("linden")
 
 
 class Frames(Protocol):
@@ -62,28 +60,28 @@ class Context:
         self.outbox.extend(self.frames.sensor_payloads(self.simulation, listened))
         return self.simulation.frame
 
-    def wait_for_the_scene(self) -> None:
-        """Give what sensors look at some time to be built, where it is being built.
-
-        So each of the calls that lead to a first picture waits a little, rather than the tick all the time: CARLA's
-        examples give a call two seconds.
-        """
-        self.simulation.seeing.wait(SCENE_S)
+    def builds_the_scene(self) -> bool:
+        """Whether what sensors look at is being built."""
+        return not self.simulation.seeing.wait(0.0)
 
     def waits_for_the_scene(self) -> bool:
-        """Whether the next frame would have to wait until what sensors look at is built, after a moment of patience."""
-        simulation = self.simulation
-        if simulation.seeing.wait(0.0):
+        """Whether the next frame has to wait until what sensors look at is built: somebody listens to one of them."""
+        if not self.builds_the_scene():
             return False
-        listened, actors = self.streams.listened(), simulation.episode.actors
-        if not any(actors.get(sensor_id).stream_id in listened for sensor_id in simulation.episode.eyes):
-            return False
-        return not simulation.seeing.wait(MOMENT_S)
+        episode, listened = self.simulation.episode, self.streams.listened()
+        return any(episode.actors.get(sensor_id).stream_id in listened for sensor_id in episode.eyes)
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""
         self.complaints.say(sentence)
 
-    def own_up(self, sentence: str) -> None:
-        """Log a bug of ours; however many warnings clients have called forth, it is seen."""
-        self.bugs.say(sentence)
+    def own_up(self, sentence: str, error: BaseException | None = None) -> None:
+        """Log a bug of ours with its traceback; however many warnings clients have called forth, it is seen.
+
+        Where memory does not suffice for the traceback, the log has none.
+        """
+        try:
+            trace = "" if error is None else " " + "".join(traceback.format_exception(error))
+            self.bugs.say(sentence + trace)
+        except MemoryError:
+            log.warning("a bug of ours, for whose traceback the memory does not suffice")

@@ -10,13 +10,14 @@ from pathlib import Path
 
 from linden.errors import Refusal
 from linden.handlers.context import Context
-from linden.handlers.registry import method
+from linden.handlers.registry import Long, method
 from linden.recording.errors import NoRecordingError, RecordingError
 from linden.recording.read import Recording
 from linden.recording.reports.blocked import blocked
 from linden.recording.reports.collisions import ASKED_FOR, collisions
 from linden.recording.reports.info import file_info
 from linden.recording.reports.wording import number
+from linden.recording.track import track_of
 from linden.simulation.replayer import Plan, Replayer
 from linden.values.space import Transform
 from linden.wire.decode import U8, U32
@@ -50,13 +51,13 @@ def stop_recorder(context: Context) -> None:
 
 
 @method("show_recorder_file_info")
-def show_recorder_file_info(context: Context, name: str, show_all: bool) -> str:  # noqa: FBT001 - the wire's order
+def show_recorder_file_info(context: Context, name: str, show_all: bool) -> Long[str]:  # noqa: FBT001 - the wire's order
     """Return what is in a recording: who came, went and collided, or with ``show_all`` everything."""
     return _report(context, name, lambda recording: file_info(recording, show_all=show_all))
 
 
 @method("show_recorder_collisions")
-def show_recorder_collisions(context: Context, name: str, first_kind: U8, second_kind: U8) -> str:
+def show_recorder_collisions(context: Context, name: str, first_kind: U8, second_kind: U8) -> Long[str]:
     """Return who ran into whom; kinds are letters, sent as their codes."""
     first, second = chr(first_kind), chr(second_kind)
     if not {first, second} <= set(ASKED_FOR):
@@ -66,14 +67,24 @@ def show_recorder_collisions(context: Context, name: str, first_kind: U8, second
 
 
 @method("show_recorder_actors_blocked")
-def show_recorder_actors_blocked(context: Context, name: str, min_time: float, min_distance: float) -> str:
+def show_recorder_actors_blocked(context: Context, name: str, min_time: float, min_distance: float) -> Long[str]:
     """Return who moved less than ``min_distance`` (cm) for ``min_time`` (s) or longer."""
     return _report(context, name, lambda recording: blocked(recording, min_time, min_distance))
 
 
-def _report(context: Context, name: str, tell: Callable[[Recording], str]) -> str:
+def _report(context: Context, name: str, tell: Callable[[Recording], str]) -> Long[str]:
     """Return a report, or CARLA's words where there is no such file or it is no recording."""
     path = context.recordings.file(name)
+    report: str = yield lambda: _told_of(path, tell)
+    return report
+
+
+def _told_of(path: Path, tell: Callable[[Recording], str]) -> str:
+    """Return the report of a file.
+
+    Raises:
+        Refusal: it is a recording, but none that can be read.
+    """
     recording = _opened(path)
     if isinstance(recording, str):
         return recording
@@ -109,7 +120,7 @@ def replay_file(
     follow_id: U32,
     replay_sensors: bool,  # noqa: FBT001 - the wire's order
     offset: Transform,
-) -> str:
+) -> Long[str]:
     """Replay a recording from the next frame on, on its own map; what is recorded or replayed meanwhile ends."""
     if not (math.isfinite(start) and math.isfinite(duration)):
         raise Refusal(f"replay_file: start {start} and duration {duration} must be finite numbers of seconds")
@@ -123,15 +134,17 @@ def replay_file(
     map_name = recording.header.map_name
     if map_name != _short(simulation.map_name):
         try:
-            simulation.load(context.maps.load(map_name), reset_settings=True)
+            ready = context.maps.ready(map_name) or (yield lambda: context.maps.make(map_name))
         except Refusal:
             recording.close()
             return f"{told}Could not load mapfile {map_name}\n"
+        context.maps.keep(ready)
+        yield lambda: simulation.prepare(ready)
+        simulation.load(ready, reset_settings=True)
         told += f"Loading map {map_name}\nReplayer will start after map is loaded...\n"
     try:
-        span = simulation.replayer.start(
-            simulation, recording, Plan(start, duration, follow_id, offset, replay_sensors)
-        )
+        track = yield lambda: track_of(recording)
+        span = simulation.replayer.start(simulation, track, Plan(start, duration, follow_id, offset, replay_sensors))
     except RecordingError as error:
         raise Refusal(str(error)) from error
     total = number(span.total_s)

@@ -6,18 +6,27 @@
     def set_actor_location(context: Context, actor_id: U32, location: Vector3D) -> None: ...
 
 A result annotated None is CARLA's void; anything else travels as its annotation says (:mod:`linden.wire.decode`).
+
+A handler with long work yields it, and goes on with what was made. The work is done in the background, where it may
+change nothing that others see; meanwhile the server serves everybody but the client that waits::
+
+    @method("copy_opendrive_to_file")
+    def copy_opendrive_to_file(context: Context, text: str) -> Long[None]:
+        made = yield lambda: make(text)
+        context.maps.keep(made)
 """
 
 import importlib
 import inspect
 import pkgutil
-import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from concurrent.futures import Future
 from dataclasses import dataclass
-from typing import Any, get_type_hints
+from typing import Any, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
 
 import linden.handlers
 from linden import CARLA_VERSION, __version__
+from linden.background import in_background
 from linden.errors import Refusal
 from linden.handlers.complaints import shortened
 from linden.handlers.context import Context
@@ -29,6 +38,10 @@ from linden.wire.vocabulary import CARLA_FUNCTIONS
 from linden.world.actors import ActorRefusal
 
 Handler = Callable[..., Any]
+Made = TypeVar("Made")
+Work: TypeAlias = Callable[[], Any]
+Long: TypeAlias = Generator[Work, Any, Made]
+"""What a handler with long work returns; its result travels as ``Made``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +97,8 @@ def method(name: str, *, bare: bool = False, advances: bool = False) -> Callable
         hints = get_type_hints(handler, include_extras=True)
         parameters = list(inspect.signature(handler).parameters)[1:]
         result = hints["return"]
+        if get_origin(result) is Generator:
+            result = get_args(result)[-1]
         METHODS[name] = Method(
             name=name,
             handler=handler,
@@ -109,23 +124,74 @@ def advances(call: Call) -> bool:
     return found is not None and found.advances
 
 
-def dispatch(context: Context, call: Call) -> bytes:
-    """Carry out one call and return the bytes of its answer; nothing a client sends makes it raise."""
+class Unanswered:
+    """A call whose long work is being made in the background; its handler goes on when that is done."""
+
+    def __init__(self, call: Call, steps: "Generator[Work, Any, Any]", work: Work) -> None:
+        self.call = call
+        self.steps = steps
+        self.made: Future[Any] = in_background(work)
+
+
+def dispatch(context: Context, call: Call) -> bytes | Unanswered:
+    """Carry out one call and return the bytes of its answer; nothing a client sends makes it raise.
+
+    Where the handler asks for long work, what is returned is to be gone on with by :func:`go_on` when it is done.
+    """
     found = METHODS.get(call.method)
     if found is None:
         return _missing(context, call)
-    try:
+
+    def begin() -> bytes | Unanswered:
         result = found.handler(context, *found.arguments(call.args))
-        if found.reply is Reply.VALUE:
-            return rpc.value(call, found.encode(result) if found.encode else result)
-        return rpc.void(call) if found.reply is Reply.VOID else rpc.bare(call, result)
+        if isinstance(result, Generator):
+            return _step(found, call, result, lambda: next(result))
+        return _answer(found, call, result)
+
+    return _guarded(context, call, found, begin)
+
+
+def go_on(context: Context, unanswered: Unanswered) -> bytes | Unanswered:
+    """Go on with a call whose long work is done; returns as :func:`dispatch` does."""
+    call, steps, found = unanswered.call, unanswered.steps, METHODS[unanswered.call.method]
+
+    def step() -> Work:
+        error = unanswered.made.exception()
+        work: Work = steps.send(unanswered.made.result()) if error is None else steps.throw(error)
+        return work
+
+    return _guarded(context, call, found, lambda: _step(found, call, steps, step))
+
+
+def _step(
+    found: Method, call: Call, steps: "Generator[Work, Any, Any]", step: Callable[[], Work]
+) -> bytes | Unanswered:
+    """Let a handler go on to its next long work, or to its end."""
+    try:
+        work = step()
+    except StopIteration as end:
+        return _answer(found, call, end.value)
+    return Unanswered(call, steps, work)
+
+
+def _answer(found: Method, call: Call, result: Any) -> bytes:  # noqa: ANN401 - what a handler returns
+    if found.reply is Reply.VALUE:
+        return rpc.value(call, found.encode(result) if found.encode else result)
+    return rpc.void(call) if found.reply is Reply.VOID else rpc.bare(call, result)
+
+
+def _guarded(context: Context, call: Call, found: Method, act: Callable[[], bytes | Unanswered]) -> bytes | Unanswered:
+    """Return what ``act`` returns, or the bytes of a refusal."""
+    try:
+        return act()
     except Refusal as refusal:
         return _refuse(context, call, told(call.method, refusal), found.reply)
+    except MemoryError:
+        sentence = f"{call.method} is refused: the server's memory does not suffice for it; ask for less at once"
+        context.own_up(sentence)
+        return _refuse(context, call, sentence, found.reply)
     except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-        context.own_up(
-            f"internal error in {call.method}; the call is refused and the server goes on. "
-            + "".join(traceback.format_exception(error))
-        )
+        context.own_up(f"internal error in {call.method}; the call is refused and the server goes on.", error)
         sentence = (
             f"internal error of linden {__version__} in {call.method}: {type(error).__name__}: {error}; the server "
             f"goes on, its log has the traceback"

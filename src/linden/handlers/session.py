@@ -9,7 +9,7 @@ from typing import NamedTuple
 from linden import CARLA_VERSION
 from linden.errors import Refusal
 from linden.handlers.context import Context
-from linden.handlers.registry import method
+from linden.handlers.registry import Long, method
 from linden.values.enums import MapLayer
 from linden.values.episode import EpisodeSettings, MapInfo, OpendriveGenerationParameters
 from linden.wire.decode import U16, U32
@@ -41,24 +41,30 @@ def get_available_maps(context: Context) -> list[str]:
 
 
 @method("load_new_episode")
-def load_new_episode(context: Context, name: str, reset_settings: bool, layers: U16) -> None:  # noqa: FBT001 - the wire's order
+def load_new_episode(context: Context, name: str, reset_settings: bool, layers: U16) -> Long[None]:  # noqa: FBT001 - the wire's order
     """Begin a new episode on a map, with some of its layers; an empty name is the map that is loaded now."""
-    simulation = context.simulation
-    simulation.load(context.maps.load(name or simulation.map_name), reset_settings=reset_settings)
+    simulation, maps = context.simulation, context.maps
+    wanted = name or simulation.map_name
+    ready = maps.ready(wanted)
+    if ready is None:
+        ready = yield lambda: maps.make(wanted)
+        maps.keep(ready)
+    if ready is not simulation.episode.map:
+        yield lambda: simulation.prepare(ready)
+    simulation.load(ready, reset_settings=reset_settings)
     if layers != MapLayer.ALL:
         simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)
 
 
 @method("copy_opendrive_to_file")
-def copy_opendrive_to_file(context: Context, opendrive: str, parameters: OpendriveGenerationParameters) -> None:
+def copy_opendrive_to_file(context: Context, opendrive: str, parameters: OpendriveGenerationParameters) -> Long[None]:
     """Make a map of an OpenDRIVE text; the client then loads it as ``OpenDriveMap``.
 
     Walls are built as high and as far beyond driving lanes as the parameters say. The others say how a mesh is cut and
     smoothed; here the surface follows from the text alone, and goes on beside the road, so that none of them shows.
     """
-    context.maps.from_opendrive(
-        opendrive, wall_height_m=parameters.wall_height, beyond_m=max(0.0, parameters.additional_width)
-    )
+    maps, beyond_m = context.maps, max(0.0, parameters.additional_width)
+    maps.keep((yield lambda: maps.from_opendrive(opendrive, wall_height_m=parameters.wall_height, beyond_m=beyond_m)))
 
 
 @method("get_map_info")

@@ -9,10 +9,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.background import checkpoint
 from linden.ground import Ground
 from linden.meshes.mesh import Material, Mesh, join
 from linden.meshes.patches import Look, polygons
 from linden.meshes.road import ASPHALT, is_paved
+from linden.opendrive.limits import MOST_FLOOR_CELLS
 from linden.opendrive.mesh import RoadMesh
 from linden.opendrive.model import NO_JUNCTION
 from linden.values.enums import SemanticTag
@@ -71,6 +73,9 @@ def _floor(low: F64, high: F64, road: RoadMesh, ground: Ground, paved: Flags) ->
     """Return the quads (Q, 4, 3) and the cells of one junction's floor."""
     first = np.floor(low / CELL_M).astype(np.int64) - _MARGIN
     count = np.ceil(high / CELL_M).astype(np.int64) + _MARGIN - first + 1
+    if count.prod() > MOST_FLOOR_CELLS:
+        return np.empty((0, 4, 3)), np.empty((0, 2), np.int64)
+    checkpoint()
     x, y = (CELL_M * (first[k] + np.arange(count[k])) for k in range(2))
     nodes = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     height, triangle = ground.surfaces_under(np.column_stack([nodes, np.full(len(nodes), _HIGH_M)]))

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.background import checkpoint
 from linden.ground import Ground
 from linden.meshes.markings import PAINT_HEIGHT_M, WHITE
 from linden.meshes.mesh import Material, Mesh, join
@@ -12,6 +13,7 @@ from linden.meshes.patches import Look, polygons
 from linden.meshes.road import GRASS, KERB_STONE, is_paved
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.furniture import RoadObject
+from linden.opendrive.limits import MOST_BARS, MOST_PAINTED
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import SemanticTag
 from linden.world.map_facts import MapFacts
@@ -36,6 +38,9 @@ def across_lanes(opendrive: OpenDrive, facts: MapFacts) -> Mesh:
             if len(outline) < 3:
                 continue
             kind = thing.type.lower()
+            if len(found) > MOST_PAINTED:
+                return join(found)
+            checkpoint()
             if thing.is_crosswalk:
                 found += [canvas.flat(piece) for piece in _bars(outline)]
             elif kind == "roadmark" and "yield" in thing.name.lower():
@@ -72,6 +77,11 @@ def _towards(tables: Tables, road_index: int, thing: RoadObject) -> F64:
     return forward * np.array([math.cos(heading), -math.sin(heading)])
 
 
+def _several(fit: float) -> int:
+    """Return how many pieces of paint there are where so many fit: at least one."""
+    return max(1, min(MOST_BARS, math.floor(fit)))
+
+
 def _bars(outline: F64) -> list[F64]:
     """Return the bars of a crosswalk: they lie the way the cars go, one beside the other along its longest side."""
     sides = np.roll(outline, -1, axis=0) - outline
@@ -79,7 +89,7 @@ def _bars(outline: F64) -> list[F64]:
     longest = int(np.argmax(lengths))
     along = sides[longest] / lengths[longest]
     at = (outline - outline[longest]) @ along
-    count = max(1, math.floor((at.max() - at.min() + _BAR_GAP_M) / (_BAR_M + _BAR_GAP_M)))
+    count = _several((at.max() - at.min() + _BAR_GAP_M) / (_BAR_M + _BAR_GAP_M))
     rest = at.max() - at.min() - count * _BAR_M - (count - 1) * _BAR_GAP_M
     first = at.min() + 0.5 * rest
     begins = [first + nth * (_BAR_M + _BAR_GAP_M) for nth in range(count)]
@@ -101,7 +111,7 @@ def _teeth(outline: F64, coming: F64) -> list[F64]:
     across = np.array([-along[1], along[0]])
     across = across if across @ coming > 0.0 else -across
     at, depth = (outline - outline[longest]) @ along, (outline - outline[longest]) @ across
-    count = max(1, math.floor((at.max() - at.min() + _TOOTH_GAP_M) / (_TOOTH_M + _TOOTH_GAP_M)))
+    count = _several((at.max() - at.min() + _TOOTH_GAP_M) / (_TOOTH_M + _TOOTH_GAP_M))
     pitch = (at.max() - at.min()) / count
     teeth = []
     for nth in range(count):

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.background import checkpoint
 from linden.ground import Ground
 from linden.meshes.arrows import arrows
 from linden.meshes.floors import floors
@@ -39,7 +40,9 @@ _SEED = 880
 def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:
     """Return what stands: triangles of things name their box in ``scene``, those of the streets and the land none."""
     lanes = laid(opendrive)
+    checkpoint()
     under = floors(road_mesh(opendrive), facts.ground)
+    checkpoint()
     lawn = land(lanes, facts.ground, under)
     return join([streets(lanes, opendrive, facts), under.mesh, lawn, _beside(facts, scene, lawn), things(facts, scene)])
 
@@ -78,6 +81,7 @@ def things(facts: MapFacts, scene: Scene) -> Mesh:
     for kind, make in _MAKERS.items():
         rows = np.flatnonzero(scene.things["kind"] == kind)
         if len(rows):
+            checkpoint()
             parts.append(make(_Of(facts, scene, rows)))
     return join(parts)
 

@@ -1,17 +1,22 @@
 """The walking mesh of a map: every tile painted, cleared of what stands there, and cut into convex polygons."""
 
+import logging
 import math
 from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.background import checkpoint
 from linden.navigation import raster
 from linden.navigation.areas import Surfaces
 from linden.navigation.contour import Corner, faces_of
 from linden.navigation.raster import CROSSWALK, EDGE, LEVELS, ROAD, SIDEWALK, VOID
 from linden.navigation.tile import BORDER, EAST, NORTH, SOUTH, WEST, Area, Obstacles, Polygon, Tile, WalkingMesh
 from linden.navigation.triangulate import convex_polygons
+from linden.opendrive.limits import MOST_WALKING_TILES
+
+log = logging.getLogger("linden")
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -44,10 +49,14 @@ def build(surfaces: Surfaces, obstacles: Obstacles) -> WalkingMesh:
     reach_m = np.hypot(obstacles.half_m[:, 0], obstacles.half_m[:, 1]) + RADIUS_M
     around = obstacles.centre_m[:, :2]
     boxes_of = _by_tile(around - reach_m[:, None], around + reach_m[:, None], low_m, tile_m)
+    if len(wanted) > MOST_WALKING_TILES:
+        log.warning("the map's pavements take %d tiles, too many for a walking mesh: nobody walks here", len(wanted))
+        return WalkingMesh((0.0, 0.0), tile_m, ())
     tiles = []
     for column, row in sorted(wanted):
         if column < 0 or row < 0:
             continue
+        checkpoint()
         frame = np.array([low_m[0] + column * tile_m, low_m[1] + row * tile_m, CELL_M])
         frame[:2] -= _MARGIN * CELL_M
         boxes = boxes_of.get((column, row), np.empty(0, np.int32))

@@ -34,8 +34,15 @@ class MeshLibrary:
         self._cache = cache
         self._known: WeakKeyDictionary[LoadedMap, MeshFile | None] = WeakKeyDictionary()
 
+    def knows(self, world_map: LoadedMap) -> bool:
+        """Return whether the mesh of a map is made, so that :meth:`file_of` takes no time."""
+        return world_map in self._known
+
     def file_of(self, world_map: LoadedMap, obstacles: Obstacles) -> MeshFile | None:
-        """Return the mesh of a map, None where it has no pavements. ``obstacles`` are always those of the map."""
+        """Return the mesh of a map, None where it has no pavements. ``obstacles`` are always those of the map.
+
+        Any thread may call it.
+        """
         if world_map not in self._known:
             content = self._kept(world_map, obstacles) if self._cache else _made(world_map, obstacles)
             digest = hashlib.sha256(content).hexdigest()[:16]

@@ -15,6 +15,7 @@ from linden.opendrive.evaluate.pieces import F64, I64
 from linden.opendrive.evaluate.strips import edges_of, strips_of
 from linden.opendrive.evaluate.tables import Tables, tables_of
 from linden.opendrive.lane_table import LANES
+from linden.opendrive.limits import HIGHEST_M, MOST_OVERLAPS, WIDEST_EXTENT_M, WIDEST_LANE_M, refuse_beyond
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import LaneType, SemanticTag
 
@@ -29,7 +30,6 @@ TAGS = {
 }
 """What lanes of these types are tagged; all others are roads."""
 _SMALLEST_AREA_M2 = 1e-6
-_FARTHEST_M = 2e7  # half way round the Earth
 
 
 class RoadMesh(NamedTuple):
@@ -45,14 +45,14 @@ def road_mesh(opendrive: OpenDrive) -> RoadMesh:
     """Return the surface of all lanes of a map, those inside junctions too.
 
     Raises:
-        MapError: a lane runs off the Earth.
+        MapError: a lane is too far away, too high or too wide.
     """
     tables = tables_of(opendrive)
     if not len(tables.lanes):
         return RoadMesh(np.empty((0, 3)), np.empty((0, 3), np.int32), np.empty(0, np.int32), np.empty(0, LANES))
     strips = strips_of(tables)
     vertices = points_from_opendrive(np.concatenate(edges_of(tables, strips)))
-    _refuse_beyond_earth(tables, strips.lane, vertices)
+    _refuse_beyond_limits(tables, strips.lane, vertices)
     quads = np.flatnonzero(strips.continues)
     speed_mps = tables.speeds.value(strips.lane[quads], strips.probe_m[quads])
     row_of_quad, lanes = _lane_table(tables, strips.lane[quads], speed_mps)
@@ -61,22 +61,40 @@ def road_mesh(opendrive: OpenDrive) -> RoadMesh:
     a, b, c = (vertices[triangles[:, corner], :2] for corner in range(3))
     twice_area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     kept = np.abs(twice_area) > 2.0 * _SMALLEST_AREA_M2
+    _refuse_overlaps(vertices[triangles[kept], :2])
     # inside a bend tighter than the lane is wide a strip folds over; its triangles are turned to face up again
     triangles[twice_area < 0.0] = triangles[twice_area < 0.0][:, [0, 2, 1]]
     return RoadMesh(vertices, triangles[kept].astype(np.int32), lane_of_triangle[kept].astype(np.int32), lanes)
 
 
-def _refuse_beyond_earth(tables: Tables, lane: I64, vertices: F64) -> None:
-    """Raise a MapError where polynomials or positions have run away."""
-    wrong = ~(np.abs(vertices) < _FARTHEST_M).all(axis=1)
-    if wrong.any():
-        row = tables.lanes[lane[int(np.argmax(wrong)) % len(lane)]]
-        road = tables.roads[row["road"]]
-        raise MapError(
-            f"lane {row['lane_id']} of road {road.id} runs further than {_FARTHEST_M:g} m from the map's origin; "
-            "look at its geometry, elevation and widths",
-            road.source_line,
-        )
+def _refuse_beyond_limits(tables: Tables, lane: I64, vertices: F64) -> None:
+    """Raise a MapError where polynomials or positions have run away; the inner edges come before the outer ones."""
+    finite = np.isfinite(vertices).all(axis=1)
+    near = np.abs(vertices[:, :2] - np.median(vertices[finite, :2], axis=0)) <= 0.5 * WIDEST_EXTENT_M
+    width_m = np.hypot(*(vertices[: len(lane), :2] - vertices[len(lane) :, :2]).T)
+    for wrong, what in (
+        (~(finite & near.all(axis=1)), f"runs further than {0.5 * WIDEST_EXTENT_M:g} m from the map's middle"),
+        (~(np.abs(vertices[:, 2]) <= HIGHEST_M), f"lies more than {HIGHEST_M:g} m high or deep"),
+        (~(width_m <= WIDEST_LANE_M), f"is wider than {WIDEST_LANE_M:g} m"),
+    ):
+        if wrong.any():
+            row = tables.lanes[lane[int(np.argmax(wrong)) % len(lane)]]
+            road = tables.roads[row["road"]]
+            raise MapError(
+                f"lane {row['lane_id']} of road {road.id} {what}; look at its geometry, elevation and widths",
+                road.source_line,
+            )
+
+
+def _refuse_overlaps(corners_m: F64) -> None:
+    """Raise a MapError where many triangles (T, 3, 2) lie over each place: ``ground`` keeps them place by place."""
+    if not len(corners_m):
+        return
+    low, high = corners_m.min(axis=1), corners_m.max(axis=1)
+    size_m = np.maximum(high.max(axis=0) - low.min(axis=0), 1.0)
+    place_m = max(1.0, float(np.sqrt(size_m.prod() / (2.0 * len(corners_m) + 64.0))))
+    touched = (np.floor((high - low) / place_m) + 1.0).prod(axis=1).sum()
+    refuse_beyond(touched / (len(corners_m) + 1000), MOST_OVERLAPS, "lanes over one another, on an average")
 
 
 def _triangles(quads: I64, places: int, is_left: NDArray[np.bool_]) -> I64:

@@ -9,13 +9,13 @@ from typing import Any, cast
 from lxml import etree
 
 from linden.opendrive.errors import MapError
+from linden.opendrive.limits import LONGEST_TOTAL_M, MOST_ELEMENTS, MOST_SIGNALS, refuse_beyond
 from linden.opendrive.model import OpenDrive
 from linden.opendrive.reading.attributes import line_of
 from linden.opendrive.reading.furniture import read_controllers
 from linden.opendrive.reading.junctions import read_junction
 from linden.opendrive.reading.roads import read_road
 
-_LONGEST_TOTAL_M = 5e6  # a text of some megabytes could otherwise ask for any amount of memory
 _CDATA = re.compile(r"^\s*<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
@@ -43,10 +43,9 @@ def _collector_paused() -> Iterator[None]:
 
 def _read(root: etree._Element) -> OpenDrive:
     roads = tuple(read_road(node) for node in root.iterchildren("road"))
-    if (total_m := sum(road.length_m for road in roads)) > _LONGEST_TOTAL_M:
-        raise MapError(
-            f"the roads are {total_m / 1000.0:,.0f} km long together; {_LONGEST_TOTAL_M / 1000.0:,.0f} are allowed"
-        )
+    total_m = sum(road.length_m for road in roads)
+    refuse_beyond(total_m / 1000.0, LONGEST_TOTAL_M / 1000.0, "km of roads")
+    refuse_beyond(sum(len(road.signals) for road in roads), MOST_SIGNALS, "signals")
     junctions = tuple(read_junction(node) for node in root.iterchildren("junction"))
     _refuse_repeated("road", [(road.id, road.source_line) for road in roads])
     _refuse_repeated("junction", [(junction.id, junction.source_line) for junction in junctions])
@@ -62,6 +61,7 @@ def _read(root: etree._Element) -> OpenDrive:
 
 def _root(text: str | bytes) -> etree._Element:
     data = text.encode() if isinstance(text, str) else text
+    refuse_beyond(data.count(b"<"), MOST_ELEMENTS, "elements")
     if isinstance(text, str):  # lxml must not be told twice which encoding it is
         data = re.sub(rb"^(\s*<\?xml[^>]*?)\s+encoding\s*=\s*(\"[^\"]*\"|'[^']*')", rb"\1", data, count=1)
     parser = etree.XMLParser(

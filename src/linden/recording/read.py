@@ -11,7 +11,7 @@
 import io
 import logging
 import struct
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, NamedTuple
@@ -134,8 +134,8 @@ class Recording:
             if packet_id == PacketId.FRAME_START:
                 raise self._damaged(at - size - _PACKET_HEAD.size, "a frame begins inside another")
 
-    def frame(self, place: FramePlace) -> Frame:
-        """Return the frame that lies at a place.
+    def frame(self, place: FramePlace, wanted: Container[int] = frozenset(PacketId)) -> Frame:
+        """Return the frame that lies at a place, with those of its packets that are ``wanted``.
 
         Raises:
             RecordingError: something in it cannot be.
@@ -143,7 +143,7 @@ class Recording:
         self._file.seek(place.start)
         packets: dict[PacketId, object] = {}
         for packet in _split(self._file.read(place.end - place.start), place.start):
-            if packet.id in (PacketId.FRAME_START, PacketId.FRAME_END):
+            if packet.id in (PacketId.FRAME_START, PacketId.FRAME_END) or packet.id not in wanted:
                 continue
             found = decode(packet)
             if found is None:

@@ -20,6 +20,10 @@ from linden.values.actors import ActorDescription
 F32 = NDArray[np.float32]
 
 
+MOST_RAYS = 1024 * 1024
+"""Of one measurement, whatever time it covers: a second of work."""
+
+
 class RadarSpec(NamedTuple):
     """Degrees, m, points a second."""
 
@@ -62,7 +66,7 @@ class Radar:
     def measure(self, look: Look) -> Detections:
         """Return what the rays of the time since the last measurement met, in their order."""
         spec = self._spec
-        ahead = directions(spec, int(spec.points_per_s * look.interval_s + 1e-6), look.number)
+        ahead = directions(spec, min(MOST_RAYS, int(spec.points_per_s * look.interval_s + 1e-6)), look.number)
         turn = rotation_matrix(look.pose.rotation)
         direction = (ahead @ turn.T).astype(np.float32)
         origin = np.broadcast_to(np.array(look.pose.location, np.float32), direction.shape)

@@ -5,28 +5,50 @@ that thread has been heard of. CARLA's frames take so long that the subscription
 so that a sensor measures from the first tick after ``listen()`` on. Knows no clock: it is told the time.
 """
 
+from collections import Counter
+from typing import NamedTuple
+
 PATIENCE_S = 0.5
 """How long a frame waits for somebody who has asked and does not come. The official client takes a millisecond,
 and some hundreds of them where ten programs share a processor."""
+MOST_IN_VAIN = 3
+"""How often frames wait for a client that does not come; then its questions hold up nobody, until it has come once."""
+
+
+class _Wait(NamedTuple):
+    client: int
+    until_s: float
 
 
 class Expected:
     """Which streams have been asked for and not been subscribed to yet. All times in s of one steady clock."""
 
     def __init__(self) -> None:
-        self._until_s: dict[int, float] = {}
+        self._waits: dict[int, _Wait] = {}
+        self._in_vain: Counter[int] = Counter()
 
-    def asked(self, stream_id: int, now_s: float) -> None:
-        """Note that somebody wants to know where a stream is."""
-        self._until_s[stream_id] = now_s + PATIENCE_S
+    def asked(self, stream_id: int, client: int, now_s: float) -> None:
+        """Note that a client wants to know where a stream is; asking again makes nobody wait longer."""
+        if stream_id not in self._waits and self._in_vain[client] < MOST_IN_VAIN:
+            self._waits[stream_id] = _Wait(client, now_s + PATIENCE_S)
 
     def came(self, stream_id: int) -> None:
         """Note that somebody has begun to listen to it."""
-        self._until_s.pop(stream_id, None)
+        wait = self._waits.pop(stream_id, None)
+        if wait is not None:
+            self._in_vain.pop(wait.client, None)
+
+    def forget(self, client: int) -> None:
+        """Note that a client has gone; whom it asked for need not be waited for."""
+        self._in_vain.pop(client, None)
+        self._waits = {stream_id: wait for stream_id, wait in self._waits.items() if wait.client != client}
 
     def wait_s(self, now_s: float) -> float | None:
         """Return how long the next frame waits at most; None where nobody is expected, or not any more."""
-        if not self._until_s:
+        if not self._waits:
             return None
-        self._until_s = {stream_id: until_s for stream_id, until_s in self._until_s.items() if until_s > now_s}
-        return max(self._until_s.values()) - now_s if self._until_s else None
+        for stream_id, wait in tuple(self._waits.items()):
+            if wait.until_s <= now_s:
+                del self._waits[stream_id]
+                self._in_vain[wait.client] += 1
+        return max(wait.until_s for wait in self._waits.values()) - now_s if self._waits else None

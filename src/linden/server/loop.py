@@ -4,11 +4,11 @@ There is no lock, because nothing happens at the same time: between two events t
 """
 
 import contextlib
+import gc
 import logging
 import selectors
 import socket
 import time
-import traceback
 from functools import partial
 
 from linden.errors import ProtocolError
@@ -52,9 +52,10 @@ class Server:
         self._entrance = Entrance(ports, self._selector, self._clock, self._welcome, self._close)
         self._waiting = Waiting()
         self._clients: dict[RpcPeer, None] = {}  # an ordered set
-        self._calls = Calls(self.context, self._subscribers, self._clock, self._watch, self._close)
+        self._calls = Calls(self.context, self._subscribers, self._clock, self._watch, self._close, self._wake)
         self._wake_reader, self._wake_writer = socket.socketpair()
         self._stopping = False
+        simulation.seeing.when_built = self._wake
         self._wake_reader.settimeout(0.0)
         self._wake_writer.settimeout(0.0)
         self._selector.register(self._wake_reader, _READ, lambda _: self._wake_reader.recv(64))
@@ -65,7 +66,7 @@ class Server:
         """Serve until :meth:`stop`, then close every connection."""
         try:
             while not self._stopping:
-                self._turn()
+                self._turn_in_any_memory()
         finally:
             for key in list(self._selector.get_map().values()):
                 self._selector.unregister(key.fileobj)
@@ -79,8 +80,24 @@ class Server:
     def stop(self) -> None:
         """Ask the server to end; the one method that another thread or a signal handler may call."""
         self._stopping = True
+        self._wake()
+
+    def _wake(self) -> None:
+        """End the present wait; any thread may call it."""
         with contextlib.suppress(OSError):  # it has ended, or was asked so often that it will wake anyway
             self._wake_writer.send(b"\0")
+
+    def _turn_in_any_memory(self) -> None:
+        try:
+            self._turn()
+        except MemoryError:
+            self._make_room()
+
+    def _make_room(self) -> None:
+        """Drop what was to be sent, where there is no memory left; what called for it has been unwound by now."""
+        self.context.outbox.clear()
+        gc.collect()
+        self.context.own_up("the server's memory does not suffice; what was being made is dropped, and it goes on")
 
     def _turn(self) -> None:
         """Wait for the next thing to do, and do it."""
@@ -98,6 +115,7 @@ class Server:
         now_s = self._clock()
         waits = [
             self._calls.frame_wait_s(now_s) if self._calls.unfinished else None,
+            self._calls.held_s(now_s),
             self._entrance.wait_s(now_s),
             self._waiting.untold_s(now_s),
         ]
@@ -160,7 +178,7 @@ class Server:
             log.info("%s is gone: %s", peer, error)
             self._close(peer)
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-            self.context.own_up(f"{_BUG % peer}, without it. {_traceback(error)}")
+            self.context.own_up(f"{_BUG % peer}, without it.", error)
             self._close(peer)
         if peer.is_open:
             self._watch(peer)
@@ -228,10 +246,6 @@ class Server:
         try:
             self.context.advance()
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-            self.context.own_up(f"{_BUG % 'a frame'}. {_traceback(error)}")
+            self.context.own_up(f"{_BUG % 'a frame'}.", error)
         self._pace.frame_made(now_s, settings.fixed_delta_seconds)
         self._calls.publish()
-
-
-def _traceback(error: Exception) -> str:
-    return "".join(traceback.format_exception(error))

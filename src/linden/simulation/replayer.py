@@ -5,14 +5,15 @@ so a recording of N steps is replayed by N steps of the same length. Source of t
 """
 
 import logging
+from collections import deque
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from linden.geometry import compose
-from linden.recording.errors import CutShortError, RecordingError
+from linden.recording.errors import RecordingError
 from linden.recording.packets import Frame
-from linden.recording.read import FramePlace, Recording
+from linden.recording.track import Track
 from linden.simulation import recorded_lamps
 from linden.simulation.replay_cast import Cast, Rules
 from linden.simulation.replay_moment import Places, between, places
@@ -57,18 +58,18 @@ class Replayer:
         self.ignore_spectator = True
         self._run: _Run | None = None
 
-    def start(self, simulation: "Simulation", recording: Recording, plan: Plan) -> "Span":
+    def start(self, simulation: "Simulation", track: Track, plan: Plan) -> "Span":
         """Replay a recording from now on, in place of the one under way; closes it at the end.
 
         Raises:
-            RecordingError: it holds no frame, or something in it cannot be; it is then closed.
+            RecordingError: something in it cannot be; it is then closed.
         """
         self.stop(keep_actors=False)
         rules = Rules(self.ignore_hero, self.ignore_spectator, plan.replay_sensors)
         try:
-            self._run = _Run(simulation, recording, plan, rules)
+            self._run = _Run(simulation, track, plan, rules)
         except RecordingError:
-            recording.close()
+            track.recording.close()
             raise
         return self._run.span
 
@@ -113,16 +114,15 @@ class Span(NamedTuple):
 class _Run:
     """A replay under way."""
 
-    def __init__(self, simulation: "Simulation", recording: Recording, plan: Plan, rules: Rules) -> None:
-        self.recording = recording
+    def __init__(self, simulation: "Simulation", track: Track, plan: Plan, rules: Rules) -> None:
+        self.recording = track.recording
         self._simulation, self._plan = simulation, plan
-        self._frames = _places_of(recording)
-        self._elapsed_s = np.array([place.elapsed_s for place in self._frames])
+        self._frames, self._elapsed_s = track.places, track.elapsed_s
+        self._events = deque(sorted(track.events.items()))
         self.span = _span(float(self._elapsed_s[-1]), plan)
         self._cast = Cast(simulation, rules)
         self._stage = Stage(simulation, self._cast)
         self._known: dict[int, Frame] = {}
-        self._events_done = 0
         self._now_s = self.span.start_s
         self._has_begun = False
         self._show()
@@ -138,9 +138,8 @@ class _Run:
     def _show(self) -> None:
         now_s = min(self._now_s, self.span.total_s)
         at = max(0, int(np.searchsorted(self._elapsed_s, now_s + _SAME_MOMENT_S, side="right")) - 1)
-        while self._events_done <= at:
-            self._take_in_events(self._events_done)
-            self._events_done += 1
+        while self._events and self._events[0][0] <= at:
+            self._take_in(self._events.popleft()[1])
         frame = self._frame(at)
         self._stage.put(self._places(at, now_s))
         self._stage.show(frame)
@@ -162,9 +161,14 @@ class _Run:
             self._known[at] = self.recording.frame(self._frames[at])
         return self._known[at]
 
-    def _take_in_events(self, at: int) -> None:
-        """Let those come and go who do so in a frame, and switch the lamps that were switched in it."""
-        frame = self._frame(at)
+    def _take_in(self, frame: Frame | RecordingError) -> None:
+        """Let those come and go who do so in a frame, and switch the lamps that were switched in it.
+
+        Raises:
+            RecordingError: the frame is damaged.
+        """
+        if isinstance(frame, RecordingError):
+            raise frame
         parent_of = dict(frame.parents.tolist())
         for actor in frame.added:
             self._cast.enter(actor, parent_of.get(actor.id, 0))
@@ -184,30 +188,11 @@ class _Run:
     def end(self, *, keep_actors: bool) -> None:
         """Give everybody back to the physics and close the recording."""
         if not keep_actors:
-            for at in range(self._events_done, len(self._frames)):
-                for (actor_id,) in self._frame(at).removed.tolist():
+            for _, frame in self._events:
+                for (actor_id,) in () if isinstance(frame, RecordingError) else frame.removed.tolist():
                     self._cast.leave(actor_id)
         self._cast.dismiss()
         self.recording.close()
-
-
-def _places_of(recording: Recording) -> list[FramePlace]:
-    """Return where the whole frames of a recording lie.
-
-    Raises:
-        RecordingError: there is none, or what is there cannot be.
-    """
-    found: list[FramePlace] = []
-    try:
-        found.extend(recording.places())
-    except CutShortError as error:
-        log.warning("%s", error)
-    elapsed_s = np.array([place.elapsed_s for place in found])
-    if not (np.isfinite(elapsed_s).all() and (np.diff(elapsed_s) >= 0.0).all()):
-        raise RecordingError(f"{recording.path}: damaged recording: the times of its frames do not go forward", 0)
-    if not found:
-        raise RecordingError(f"{recording.path} holds no whole frame, so there is nothing to replay", 0)
-    return found
 
 
 def _span(total_s: float, plan: Plan) -> Span:

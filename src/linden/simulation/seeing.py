@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.crew import in_background
+from linden.background import Unwanted, in_background
 from linden.casting.rays import CPU, Instances
 from linden.meshes.mesh import Mesh
 from linden.scene.objects import Scene
@@ -53,12 +53,14 @@ class Seeing:
     Attributes:
         standing_on: gives the mesh of what stands on a map, anew or out of a cache.
         bodies_of: gives the meshes of a library's actors, likewise.
+        when_built: called when what was being built is there, or will not be; by any thread.
         device: where rays are cast: "cpu", or a GPU as Warp names it, "cuda".
     """
 
     def __init__(self, library: BlueprintLibrary) -> None:
         self.standing_on: Callable[[LoadedMap, Scene], Mesh] = standing_on
         self.device = CPU
+        self.when_built: Callable[[], None] = lambda: None
         self.bodies_of: Callable[[BlueprintLibrary], Bodies] = bodies_of
         self._library = library
         self._bodies: Future[Bodies] | None = None
@@ -66,6 +68,7 @@ class Seeing:
         self._whole: tuple[Scene, Mesh] | None = None
         self._stage: Stage | None = None
         self._coming: tuple[Wanted, Future[Stage]] | None = None
+        self._unwanted: Unwanted | None = None
         self._episode: Episode | None = None
         self._signals: tuple[Episode, U32] | None = None
         self._shining = Shining()
@@ -77,7 +80,20 @@ class Seeing:
         if not self._is_built(episode) and (self._coming is None or not self._coming[0].is_for(episode)):
             wanted, before, bodies = Wanted.of(episode), self._coming, self._bodies_coming()
             self._stage = None  # before the next is built: two of them at once would take twice the memory
-            self._coming = wanted, in_background(lambda: self._built(wanted, bodies, before))
+            self._give_up()
+            self._unwanted = unwanted = Unwanted()
+            self._coming = wanted, in_background(lambda: self._built(wanted, bodies, before), unwanted)
+            self._coming[1].add_done_callback(lambda _: self.when_built())
+
+    def leave(self, episode: "Episode") -> None:
+        """Give up what is being built, unless an episode that begins wants the same."""
+        if self._coming is not None and not self._coming[0].is_for(episode):
+            self._give_up()
+            self._coming = None
+
+    def _give_up(self) -> None:
+        if self._unwanted is not None:
+            self._unwanted.set()
 
     def wait(self, at_most_s: float) -> bool:
         """Wait for what is being built, if anything is, but no longer than that; return whether all is there."""
@@ -131,7 +147,8 @@ class Seeing:
         """Return the stage; what does not stand any more (layers, single objects) is left out of it."""
         self.prepare(episode)
         if self._coming is not None:
-            self._stage, self._coming = self._coming[1].result(), None
+            coming, self._coming = self._coming[1], None
+            self._stage = coming.result()
         assert self._stage is not None
         return self._stage
 

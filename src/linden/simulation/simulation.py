@@ -8,6 +8,7 @@ from linden.simulation.eyes import Now
 from linden.simulation.measuring import Measurements, measure
 from linden.simulation.recorder import Recorder
 from linden.simulation.replayer import Replayer
+from linden.simulation.scenery import scenery_of
 from linden.simulation.seeing import Seeing
 from linden.simulation.spawning import destroy, refuse_idle, spawn
 from linden.simulation.step import step
@@ -55,11 +56,17 @@ class Simulation:
             self.settings = EpisodeSettings()
         self._begin(world_map)
 
+    @staticmethod
+    def prepare(world_map: LoadedMap) -> None:
+        """Make what an episode on a map begins with, so that a load takes no time; any thread may call it."""
+        scenery_of(world_map)
+
     def _begin(self, world_map: LoadedMap) -> None:
         self.episode_id += 1
         self.recorder.stop()
         self.replayer.forget()
         self.episode = Episode(world_map, first_frame=self.frame)
+        self.seeing.leave(self.episode)
         self.delta_s = self.settings.fixed_delta_seconds or 0.0
         self.episode.observe()
 
@@ -120,6 +127,11 @@ class Simulation:
         if record.id in self.episode.eyes:
             self.seeing.prepare(self.episode)
         return record
+
+    def has_stream(self, stream_id: int) -> bool:
+        """Return whether a sensor sends its measurements on a stream."""
+        in_use = FIRST_SENSOR_STREAM <= stream_id < self._next_stream
+        return in_use and any(record.stream_id == stream_id for record in self.episode.actors)
 
     def destroy(self, actor_id: int) -> None:
         """Take an actor and all that is attached to it out of the world.

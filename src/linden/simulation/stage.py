@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.crew import in_background
+from linden.background import in_background
 from linden.casting.rays import CPU, Caster
 from linden.meshes.mesh import NO_OBJECT, Mesh
 from linden.physics.contact.statics import Statics

@@ -1,7 +1,7 @@
 """What a client asks to spawn, checked against its blueprint and completed with its defaults."""
 
 import math
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
 from linden.errors import Refusal
 from linden.values.actors import ActorAttribute, ActorDefinition, ActorDescription, AttributeValue
@@ -10,23 +10,56 @@ from linden.values.enums import AttributeType
 REFUSED = "Spawn failed because of invalid actor description"
 """CARLA's own words (ActorSpawnResult.cpp); scripts match on them."""
 
-AT_LEAST = {
-    "sensor_tick": 0.0,
-    "image_size_x": 1.0,
-    "image_size_y": 1.0,
-    "channels": 1.0,
-    "points_per_second": 1.0,
-    "range": 0.0,
-    "distance": 0.0,
-    "hit_radius": 0.0,
-    "scale": 0.0,
-    "mass": 0.0,
-    "extent_x": 0.0,
-    "extent_y": 0.0,
-    "extent_z": 0.0,
-    "friction": 0.0,
+_QUOTED = 80  # characters of a value that a sentence quotes
+
+
+class Bounds(NamedTuple):
+    """Least and greatest value that an attribute can take, both included."""
+
+    least: float
+    most: float
+
+
+LARGEST = 1e9
+"""Of a number without bounds of its own: far beyond what anything measures, and its square still fits 32 bits."""
+ANY_INTEGER = Bounds(-(2**31), 2**31 - 1)
+ANY_NUMBER = Bounds(-LARGEST, LARGEST)
+ANY_DEVIATION = Bounds(0.0, LARGEST)
+
+BOUNDS = {
+    "sensor_tick": Bounds(0.0, 1e6),
+    "image_size_x": Bounds(1, 2**31 - 1),  # sensors.camera.spec says what a picture can be
+    "image_size_y": Bounds(1, 2**31 - 1),
+    "channels": Bounds(1, 4096),  # lidars that are sold have up to 300
+    "points_per_second": Bounds(1, 20_000_000),  # lidars that are sold fire up to 5 million
+    "rotation_frequency": Bounds(-10_000.0, 10_000.0),
+    "horizontal_fov": Bounds(-360.0, 360.0),
+    "vertical_fov": Bounds(-360.0, 360.0),
+    "upper_fov": Bounds(-360.0, 360.0),
+    "lower_fov": Bounds(-360.0, 360.0),
+    "range": Bounds(0.0, 1e6),
+    "distance": Bounds(0.0, 1e6),
+    "hit_radius": Bounds(0.0, 1e3),
+    "positive_threshold": Bounds(0.01, 1e6),  # an event for every step of brightness: a smaller one never ends
+    "negative_threshold": Bounds(0.01, 1e6),
+    "scale": Bounds(0.0, 1e3),
+    "mass": Bounds(0.0, 1e7),
+    "extent_x": Bounds(0.0, 1e6),
+    "extent_y": Bounds(0.0, 1e6),
+    "extent_z": Bounds(0.0, 1e6),
+    "friction": Bounds(0.0, 1e3),
 }
-"""Least value that means anything, for attributes whose type allows less."""
+"""What an attribute can take, where that is less than its type allows: what means nothing, or would take a server all
+its time and memory."""
+
+
+def bounds_of(attribute: ActorAttribute) -> Bounds:
+    """Return what a number can be."""
+    if attribute.id in BOUNDS:
+        return BOUNDS[attribute.id]
+    if attribute.type == AttributeType.INT:
+        return ANY_INTEGER
+    return ANY_DEVIATION if attribute.id.endswith("_stddev") or "_stddev_" in attribute.id else ANY_NUMBER
 
 
 def complete(definition: ActorDefinition, description: ActorDescription) -> ActorDescription:
@@ -74,7 +107,7 @@ def _refuse(blueprint_id: str, reason: str) -> NoReturn:
 
 
 def _check(blueprint_id: str, attribute: ActorAttribute, value: str) -> None:
-    quoted = f"'{value}' as {attribute.id}"
+    quoted = f"'{value[:_QUOTED]}' as {attribute.id}"
     if not attribute.is_modifiable:
         _refuse(blueprint_id, f"{quoted}: it is '{attribute.value}' and can only be read")
     # CARLA's generate_traffic.py asks walkers that have no wheelchair to use it, and CARLA lets them go on foot
@@ -84,9 +117,12 @@ def _check(blueprint_id: str, attribute: ActorAttribute, value: str) -> None:
     wanted = _wanted(AttributeType(attribute.type), value)
     if wanted is not None:
         _refuse(blueprint_id, f"{quoted}: expected {wanted}, such as '{attribute.value}'")
-    least = 0.0 if attribute.id.endswith("_stddev") or "_stddev_" in attribute.id else AT_LEAST.get(attribute.id)
-    if least is not None and float(value) < least:
-        _refuse(blueprint_id, f"{quoted}: expected at least {least:g}")
+    if attribute.type in (AttributeType.INT, AttributeType.FLOAT):
+        bounds = bounds_of(attribute)
+        if float(value) < bounds.least:
+            _refuse(blueprint_id, f"{quoted}: expected at least {bounds.least:g}")
+        if float(value) > bounds.most:
+            _refuse(blueprint_id, f"{quoted}: expected at most {bounds.most:.10g}")
 
 
 def _wanted(kind: AttributeType, value: str) -> str | None:

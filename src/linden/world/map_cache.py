@@ -8,6 +8,7 @@ import hashlib
 import logging
 import os
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from typing import IO, Any
 
@@ -24,6 +25,7 @@ MOST_BYTES = 500_000_000
 """How much the folder may hold; a town of 240,000 triangles takes 24 MB."""
 
 _DIGEST_BYTES = 32
+_PARTS = count()  # two threads may write the same file
 _PACKAGE = Path(__file__).parent.parent
 _DERIVING = ("opendrive/**/*.py", "values/*.py", "world/map_*.py", "ground.py", "geometry.py", "compiled.py")
 
@@ -92,7 +94,7 @@ class MapCache:
         self._keep(file, lambda stream: np.savez(stream, **pack(facts)))  # type: ignore[arg-type] # one array could be called allow_pickle
 
     def _keep(self, file: Path, write: Callable[[IO[bytes]], object]) -> None:
-        part = file.with_suffix(f".{os.getpid()}.part")
+        part = file.with_suffix(f".{os.getpid()}.{next(_PARTS)}.part")
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             with part.open("wb") as stream:

@@ -6,6 +6,7 @@ made wider (MeshFactory.cpp, GenerateWalls; Lane.cpp, GetCornerPositions). Frame
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -13,8 +14,9 @@ from numpy.typing import NDArray
 
 from linden.geometry import points_from_opendrive
 from linden.ground import Ground
-from linden.opendrive.evaluate.strips import edges_of, strips_of
+from linden.opendrive.evaluate.strips import Edges, edges_of, strips_of
 from linden.opendrive.evaluate.tables import Tables, tables_of
+from linden.opendrive.limits import MOST_WALL_PIECES
 from linden.opendrive.model import OpenDrive
 from linden.values.enums import LaneType
 
@@ -40,7 +42,7 @@ def walls_along(opendrive: OpenDrive, ground: Ground, beyond_m: float) -> F64:
     Unlike CARLA's they leave out what would stand on another road, as between the two directions of a street.
     """
     tables = tables_of(opendrive)
-    pieces = [piece for side in _sides(tables) for piece in _along(tables, side, beyond_m)]
+    pieces = [piece for side, line in _lines(tables) for piece in _along(tables, side, line, beyond_m)]
     if not pieces:
         return np.empty((0, 2, 3))
     feet = np.concatenate([piece[0] for piece in pieces])
@@ -61,10 +63,23 @@ def _sides(tables: Tables) -> Iterator[_Side]:
                 yield _Side(rows[ids[-1]], ids[-1] > 0, is_left=True)
 
 
-def _along(tables: Tables, side: _Side, beyond_m: float) -> Iterator[tuple[F64, F64]]:
+def _lines(tables: Tables) -> Iterator[tuple[_Side, F64]]:
+    """Yield each side with the edge (N, 3) of its lane that it stands on; all lanes are laid out at once."""
+    sides = list(_sides(tables))
+    if not sides:
+        return
+    strips = strips_of(tables, np.array([side.lane for side in sides]))
+    edges = Edges(*(points_from_opendrive(edge) for edge in edges_of(tables, strips)))
+    begins = np.flatnonzero(np.concatenate([[True], ~strips.continues[:-1]]))
+    of_lane = {int(strips.lane[begin]): at for begin, at in zip(begins, pairwise([*begins, None]), strict=True)}
+    for side in sides:
+        if side.lane in of_lane:  # a section shorter than any piece has no places
+            begin, end = of_lane[side.lane]
+            yield side, (edges.outer if side.is_outer else edges.inner)[begin:end]
+
+
+def _along(tables: Tables, side: _Side, line: F64, beyond_m: float) -> Iterator[tuple[F64, F64]]:
     """Yield feet (K, 2, 3) and probes (K, 2), which lie just behind the middles of the pieces."""
-    edges = edges_of(tables, strips_of(tables, np.array([side.lane])))
-    line = points_from_opendrive(edges.outer if side.is_outer else edges.inner)
     line = line[np.concatenate([[True], np.hypot(*np.diff(line[:, :2], axis=0).T) > _SHORTEST_M])]
     if len(line) < 2:
         return
@@ -76,7 +91,8 @@ def _along(tables: Tables, side: _Side, beyond_m: float) -> Iterator[tuple[F64, 
     line, outward = line[bends := _bends(line)], outward[bends]
     for begin, end, behind in zip(line[:-1], line[1:], outward[:-1], strict=True):
         length_m, rise_m = math.hypot(*(end - begin)[:2]), abs(end[2] - begin[2])
-        count = max(math.ceil(length_m / _LONGEST_M), math.ceil(rise_m / _MOST_RISE_M))
+        wanted = max(math.ceil(length_m / _LONGEST_M), math.ceil(rise_m / _MOST_RISE_M))
+        count = min(wanted, MOST_WALL_PIECES)
         nodes = begin + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - begin)
         yield np.stack([nodes[:-1], nodes[1:]], axis=1), 0.5 * (nodes[:-1] + nodes[1:])[:, :2] + _PROBE_M * behind
 

@@ -75,24 +75,44 @@ class MapLibrary:
         return [_FOLDERS[0] + name for name in sorted(self._files)]
 
     def load(self, name: str) -> LoadedMap:
-        """Return a map by any of its names, ready.
+        """Return a map by any of its names, ready, and keep it.
 
         Raises:
             Refusal: there is none of that name, or its file cannot be used.
         """
-        bare = name.removeprefix(_FOLDERS[0]).removeprefix(_FOLDERS[1]).removesuffix(".xodr")
-        if bare not in self._loaded:
-            if bare not in self._files:
-                raise Refusal(f"Map '{name}' not found; this server has: {', '.join(sorted(self._files))}")
-            try:
-                text = self._files[bare].read_text("utf-8")
-                self._loaded[bare] = self._make_ready(bare, text)
-            except (OSError, UnicodeDecodeError, UserError) as error:
-                raise Refusal(f"Map '{name}' cannot be read: {error}") from error
-        return self._loaded[bare]
+        found = self.ready(name) or self.make(name)
+        self.keep(found)
+        return found
+
+    def ready(self, name: str) -> LoadedMap | None:
+        """Return a map by any of its names, None where it is not ready yet.
+
+        Raises:
+            Refusal: there is none of that name.
+        """
+        bare = _bare(name)
+        if bare not in self._loaded and bare not in self._files:
+            raise Refusal(f"Map '{name}' not found; this server has: {', '.join(sorted(self._files))}")
+        return self._loaded.get(bare)
+
+    def make(self, name: str) -> LoadedMap:
+        """Return a map of a file, made ready; changes nothing, so that any thread may call it.
+
+        Raises:
+            Refusal: its file cannot be used.
+        """
+        bare = _bare(name)
+        try:
+            return self._make_ready(bare, self._files[bare].read_text("utf-8"))
+        except (OSError, UnicodeDecodeError, UserError) as error:
+            raise Refusal(f"Map '{name}' cannot be read: {error}") from error
+
+    def keep(self, made: LoadedMap) -> None:
+        """Keep a map for the next load of its name."""
+        self._loaded[made.name] = made
 
     def from_opendrive(self, text: str, *, wall_height_m: float = 0.0, beyond_m: float = 0.0) -> LoadedMap:
-        """Make a map of a text that a client sent and keep it for the load that follows.
+        """Return a map of a text that a client sent; changes nothing, so that any thread may call it.
 
         Args:
             text: the OpenDRIVE text.
@@ -106,13 +126,16 @@ class MapLibrary:
             ready = self._make_ready(GENERATED_MAP, text)
             if wall_height_m > 0.0:
                 ready = replace(ready, walls=Walls(_walls(text, ready, beyond_m), wall_height_m))
-            self._loaded[GENERATED_MAP] = ready
         except UserError as error:
             raise Refusal(f"the OpenDRIVE text cannot be used: {error}") from error
-        return self._loaded[GENERATED_MAP]
+        return ready
 
     def _make_ready(self, name: str, text: str) -> LoadedMap:
         return LoadedMap(name=name, text=text, **vars(self._facts_of(text)))
+
+
+def _bare(name: str) -> str:
+    return name.removeprefix(_FOLDERS[0]).removeprefix(_FOLDERS[1]).removesuffix(".xodr")
 
 
 def _walls(text: str, facts: MapFacts, beyond_m: float) -> NDArray[np.float64]:

@@ -36,7 +36,7 @@ def test_the_thesis_sample_is_loaded_as_it_stands_there() -> None:
     assert agent.get_initial_route_locations() is None
 
 
-@pytest.mark.parametrize("name", ["basic", "forward"])
+@pytest.mark.parametrize("name", ["basic", "forward", "blind", "creeper", "standing"])
 def test_the_built_in_agents_are_found_by_name(name: str) -> None:
     loaded = load_agent(name)
     assert issubclass(loaded.agent_class, AutonomousAgent)

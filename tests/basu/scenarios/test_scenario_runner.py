@@ -5,15 +5,18 @@ SCENARIO_RUNNER_PYTHON, an interpreter with what it requires and CARLA's ``agent
 skipped. Which calls of the simulator its classes make is tested without it in ``tests/compat/test_scenario_calls.py``.
 """
 
+import ast
 import json
 import math
 import os
+import re
 import subprocess
 import time
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeGuard
 
 import carla
 import pytest
@@ -27,15 +30,18 @@ from servers import RunningServer
 PROJECT = Path(__file__).parents[3]
 EXAMPLES = PROJECT / "examples" / "scenario_runner"
 SPOTS = EXAMPLES / "linden.xml"
+OWN_CLASSES, OWN_CASES = EXAMPLES / "linden_scenarios.py", EXAMPLES / "linden_scenarios.xml"
 ALONG_RAD = math.radians(30.0)
 ROOT, PYTHON = os.environ.get("SCENARIO_RUNNER_ROOT"), os.environ.get("SCENARIO_RUNNER_PYTHON")
 needs_scenario_runner = pytest.mark.skipif(
     not (ROOT and PYTHON), reason="ScenarioRunner is not here: set SCENARIO_RUNNER_ROOT and SCENARIO_RUNNER_PYTHON"
 )
 PASSED_BY_THE_AUTOPILOT = (
-    "LindenFollowLeadingVehicle_1",
-    "LindenDynamicObjectCrossing_1",
-    "LindenOppositeVehicleRunningRedLight_1",
+    ("LindenFollowLeadingVehicle_1", SPOTS, "Straight"),
+    ("LindenDynamicObjectCrossing_1", SPOTS, "Straight"),
+    ("LindenOppositeVehicleRunningRedLight_1", SPOTS, "Straight"),
+    ("LindenUnsignalizedIntersection_1", OWN_CASES, "Straight"),
+    ("LindenRoundabout_1", OWN_CASES, "Right"),
 )
 
 
@@ -45,10 +51,13 @@ def town() -> carla.Map:
     return carla.Map("Linden", text)
 
 
-def test_every_hero_of_the_example_stands_in_a_lane_and_looks_along_it(town: carla.Map) -> None:
-    scenarios = list(ET.parse(SPOTS).getroot().iter("scenario"))
+@pytest.mark.parametrize(("file", "at_least"), [(SPOTS, 25), (OWN_CASES, 4)])
+def test_every_hero_of_the_example_stands_in_a_lane_and_looks_along_it(
+    town: carla.Map, file: Path, at_least: int
+) -> None:
+    scenarios = list(ET.parse(file).getroot().iter("scenario"))
     names = [scenario.get("name") for scenario in scenarios]
-    assert len(set(names)) == len(names) > 25
+    assert len(set(names)) == len(names) >= at_least
     for scenario in scenarios:
         assert scenario.get("town") == "Linden"
         (hero,) = scenario.findall("ego_vehicle")
@@ -57,6 +66,31 @@ def test_every_hero_of_the_example_stands_in_a_lane_and_looks_along_it(town: car
         assert math.hypot(lane.location.x - x_m, lane.location.y - y_m) < 0.5, scenario.get("name")
         turned_rad = math.remainder(math.radians(lane.rotation.yaw - yaw_deg), math.tau)
         assert abs(turned_rad) < ALONG_RAD, scenario.get("name")
+
+
+PLACES = ("other_actor", "meeting", "leaves", "source", "sink", "exit")
+
+
+def test_every_place_of_our_own_cases_lies_in_a_lane_and_is_read_by_its_class(town: carla.Map) -> None:
+    classes = {node.name: node for node in ast.parse(OWN_CLASSES.read_text(encoding="utf-8")).body if is_class(node)}
+    for scenario in ET.parse(OWN_CASES).getroot().iter("scenario"):
+        text = ast.unparse(classes[str(scenario.get("type"))])
+        given = [element for element in scenario if element.tag in PLACES]
+        for element in given:
+            x_m, y_m, z_m = (float(element.get(name, "nan")) for name in "xyz")
+            lane = town.get_waypoint(carla.Location(x_m, y_m, z_m)).transform.location
+            assert math.hypot(lane.x - x_m, lane.y - y_m) < 1.0, (scenario.get("name"), element.tag)
+            assert element.tag == "other_actor" or repr(element.tag) in text
+        read = set(re.findall(r"(?:location|hero_within)\((?:[^()]*, )*'(\w+)'\)", text)) | set(
+            re.findall(r"hero_within\(.*?, '(\w+)'\)", text)
+        )
+        assert read <= {element.tag for element in given}
+        numbers = {element.tag for element in scenario if element.get("value") is not None}
+        assert numbers <= set(re.findall(r"self\.value\('(\w+)'", text))
+
+
+def is_class(node: ast.AST) -> TypeGuard[ast.ClassDef]:
+    return isinstance(node, ast.ClassDef)
 
 
 @pytest.mark.parametrize("name", ["LindenFollowLeadingVehicle_1", "LindenOppositeVehicleRunningRedLight_1"])
@@ -78,9 +112,10 @@ def test_a_file_of_its_own_is_read_unchanged() -> None:
 
 
 @contextmanager
-def autopilot(port: int, tm_port: int) -> Iterator[None]:
-    """Somebody who drives the hero."""
+def autopilot(port: int, tm_port: int, way: str) -> Iterator[None]:
+    """The Traffic Manager drives the hero."""
     words = [str(PYTHON), str(EXAMPLES / "autopilot_hero.py"), "--port", str(port), "--tm-port", str(tm_port)]
+    words += ["--way", way]
     driver = subprocess.Popen(words)
     try:
         yield
@@ -91,16 +126,19 @@ def autopilot(port: int, tm_port: int) -> Iterator[None]:
 
 @pytest.mark.slow
 @needs_scenario_runner
-@pytest.mark.parametrize("name", PASSED_BY_THE_AUTOPILOT)
-def test_its_classes_are_played_to_a_verdict(name: str, simulator: RunningServer, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("name", "file", "way"), PASSED_BY_THE_AUTOPILOT)
+def test_its_classes_and_ours_are_played_to_a_verdict(
+    name: str, file: Path, way: str, simulator: RunningServer, tmp_path: Path
+) -> None:
     tm_port = free_port()
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     words = [
         *(str(PYTHON), "scenario_runner.py", "--sync", "--timeout", "60", "--json", "--outputDir", str(tmp_path)),
         *("--port", str(simulator.port), "--trafficManagerPort", str(tm_port)),
-        *("--configFile", str(SPOTS), "--scenario", name),
+        *("--configFile", str(file), "--scenario", name),
+        *(("--additionalScenario", str(OWN_CLASSES)) if file == OWN_CASES else ()),
     ]
-    with autopilot(simulator.port, tm_port):
+    with autopilot(simulator.port, tm_port, way):
         process = subprocess.Popen(words, cwd=ROOT, env={**os.environ, "PYTHONPATH": path})
         try:
             result = written(tmp_path, process)

@@ -1,13 +1,24 @@
 """Claims about verdicts: driving apart from faults, and the sentence that says why."""
 
+from functools import partial
+
 import pytest
 
 from basu.outcome import Fault, Outcome, Status
 from basu.scenarios.criteria import Arrives, Criterion, InTime, Judgement, KeepsLane, LeastDistance, NoCollision, Played
-from basu.scenarios.verdict import Verdict, judge
+from basu.scenarios.exercise import Finding
+from basu.scenarios.verdict import Verdict
+from basu.scenarios.verdict import judge as judge_by
 from fakes.drives import at, driven, hit, straight_route
 from fakes.played import played
 
+
+def met(_: Played) -> Finding:
+    """The conflict came about."""
+    return Finding(True, "the ego met child")
+
+
+judge = partial(judge_by, exercised=met)
 ENDED = Outcome(Status.SCENARIO_ENDED, "the scenario came to its end after 11.9 s")
 ARRIVED = played(driven(at(10.0, 12.0), route=straight_route(100.0)), outcome=ENDED)
 SHORT = played(driven(at(10.0, 4.0)), outcome=Outcome(Status.SCENARIO_TIMEOUT, "not over after 4 s"), timeout_s=4.0)
@@ -28,8 +39,9 @@ class Says(Criterion):
 def test_meeting_every_criterion_is_success() -> None:
     found = judge(CRITERIA, ARRIVED, ENDED, triggered=True)
     assert (found.verdict, found.fault) == (Verdict.SUCCESS, Fault.NOBODY)
-    assert found.message == "all 3 criteria were met: no collision, arrives, in time"
+    assert found.message == "safe, completed and exercised: the ego met child"
     assert [one.criterion for one in found.judgements[3:]] == [
+        "no near miss",
         "least distance",
         "least time to collision",
         "post-encroachment time",
@@ -55,7 +67,7 @@ def test_a_fault_is_the_verdict_whatever_was_driven(
 ) -> None:
     found = judge(CRITERIA, record, Outcome(status, "it broke"), triggered=True)
     assert (found.verdict, found.fault, found.message) == (verdict, fault, "it broke")
-    assert len(found.judgements) == (0 if record is None else 6)  # what was measured is told all the same
+    assert len(found.judgements) == (0 if record is None else 7)  # what was measured is told all the same
 
 
 def test_every_end_of_a_run_has_a_verdict() -> None:
@@ -91,10 +103,22 @@ def test_who_arrives_without_having_triggered_it_met_no_scenario() -> None:
     assert found.message.startswith("it never triggered, although the ego arrived after 9.8 s")
 
 
-def test_who_never_comes_to_the_trigger_fails() -> None:
+def test_a_driver_that_never_comes_to_the_trigger_exercised_nothing() -> None:
     found = judge((NoCollision(),), SHORT, SHORT.outcome, triggered=False)
+    assert (found.verdict, found.fault) == (Verdict.NOT_EXERCISED, Fault.NOBODY)
+    assert found.message == "the ego never came to where the conflict begins"
+    assert found.assessment is not None
+    assert found.assessment.completed == Finding(False, "not over after 4 s")
+
+
+def test_without_a_conflict_success_is_not_earned_and_failure_is_not_charged() -> None:
+    absent = Finding(False, "nobody came")
+    for case in (ARRIVED, SHORT):
+        found = judge_by(CRITERIA, case, case.outcome, triggered=True, exercised=lambda _: absent)
+        assert (found.verdict, found.message) == (Verdict.NOT_EXERCISED, "nobody came")
+    unsafe = played(driven(at(10.0, 4.0), collisions=[hit(70)]))
+    found = judge_by(CRITERIA, unsafe, ENDED, triggered=True, exercised=lambda _: absent)
     assert found.verdict is Verdict.FAILURE
-    assert found.message == "the ego never came to where it would have been triggered: not over after 4 s"
 
 
 def test_a_collision_on_the_way_to_the_trigger_is_why_it_was_not_reached() -> None:

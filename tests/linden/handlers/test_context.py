@@ -1,11 +1,11 @@
-"""Claims about when a frame of asynchronous mode waits for what sensors look at."""
+"""Claims about when a frame waits for what sensors look at."""
 
 from types import SimpleNamespace
 
 import pytest
 
 from fakes.simulation import FakeFrames, FakeMaps, FakeSeeing
-from linden.handlers.context import MOMENT_S, Context
+from linden.handlers.context import Context
 
 CAMERA, STREAM = 7, 3
 
@@ -17,13 +17,12 @@ def test_a_frame_waits_for_the_scene_only_where_somebody_looks_at_it(
     *, is_there: bool, listened: set[int], waits: bool
 ) -> None:
     episode = SimpleNamespace(actors={CAMERA: SimpleNamespace(stream_id=STREAM)}, eyes={CAMERA: None})
-    seeing = FakeSeeing(is_there=is_there)
     context = Context(
-        simulation=SimpleNamespace(seeing=seeing, episode=episode),
+        simulation=SimpleNamespace(seeing=FakeSeeing(is_there=is_there), episode=episode),
         maps=FakeMaps(),
         frames=FakeFrames(),
         streams=SimpleNamespace(listened=lambda: listened),
         variable_step_s=lambda: 0.1,
     )
     assert context.waits_for_the_scene() is waits
-    assert seeing.waits_s == ([MOMENT_S] if waits else [])
+    assert context.builds_the_scene() is not is_there

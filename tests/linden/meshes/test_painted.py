@@ -6,6 +6,7 @@ import pytest
 from linden.meshes.markings import PAINT_HEIGHT_M
 from linden.meshes.mesh import Material, Mesh
 from linden.meshes.painted import across_lanes
+from linden.opendrive.limits import MOST_BARS
 from linden.opendrive.parse import parse
 from linden.world.map_facts import derive
 from opendrive_texts import street_through_junction
@@ -64,3 +65,9 @@ def test_a_crosswalk_that_reaches_over_the_kerb_does_not_climb_it() -> None:
 def test_no_paint_lies_on_a_pavement() -> None:
     outline = [(-1.5, 3.7), (1.5, 3.7), (1.5, 4.9), (-1.5, 4.9)]
     assert len(painted("Crosswalk", "crosswalk", outline).triangles) == 0
+
+
+@pytest.mark.parametrize(("name", "kind"), [("Crosswalk", "crosswalk"), ("YieldLine", "roadMark")])
+def test_paint_of_any_length_has_a_number_of_pieces_that_fits_into_memory(name: str, kind: str) -> None:
+    far = [(-1.5, -9e3), (1.5, -9e3), (1.5, 9e3), (-1.5, 9e3)]
+    assert len(painted(name, kind, far).triangles) <= 2 * MOST_BARS

@@ -7,6 +7,7 @@ import carla
 import numpy as np
 import pytest
 
+from linden.opendrive.errors import MapError
 from linden.opendrive.mesh import RoadMesh, road_mesh
 from linden.opendrive.parse import parse
 from linden.values.enums import LaneType, SemanticTag
@@ -130,3 +131,39 @@ def test_lindens_lanes_have_their_waypoints_in_the_middle_of_their_surface() -> 
 def test_the_same_text_gives_the_same_bytes() -> None:
     first, second = (road_mesh(parse(LINDEN)) for _ in range(2))
     assert all(one.tobytes() == other.tobytes() for one, other in zip(first, second, strict=True))
+
+
+WIDE = '<width sOffset="0" a="300" b="0" c="0" d="0"/>'
+LONG = line(0, 0, 0, 0, 2e5)
+HIGH = '<elevation s="0" a="1e8" b="0" c="0" d="0"/>'
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (opendrive(road(1, 100.0, line(0, 0, 0, 0, 100), section(right=lane(-1, widths=WIDE)))), "wider than 250 m"),
+        (opendrive(road(1, 2e5, LONG, section(right=lane(-1)))), "further than 25000 m from the map's middle"),
+        (
+            opendrive(road(1, 9.0, line(0, 0, 0, 0, 9), section(right=lane(-1)), elevation=HIGH)),
+            "more than 20000 m high",
+        ),
+        (
+            opendrive(
+                *(
+                    road(n, 2e5, line(0, 0, 0, 0, 2e5, '<arc curvature="4"/>'), section(right=lane(-1) + lane(-2)))
+                    for n in range(4)
+                )
+            ),
+            "places along its lanes",
+        ),
+        (
+            opendrive(*(road(n, 9.0, line(0, 0, 0, 0, 9), section(right=lane(-1, width=240.0))) for n in range(3000))),
+            "lanes over one another, on an average; 64 are allowed",
+        ),
+    ],
+    ids=["wide", "long", "high", "places", "overlaps"],
+)
+def test_a_map_that_asks_for_too_much_is_told_how_much_is_allowed(text: str, told: str) -> None:
+    with pytest.raises(MapError) as caught:
+        road_mesh(parse(text))
+    assert told in str(caught.value)

@@ -68,7 +68,7 @@ def test_shapes_are_read() -> None:
         ('length="50.0"', 'length="nan"', "it should be a finite number"),
         ('length="50.0"', 'length="1e999"', "it should be a finite number"),
         ('length="50.0"', 'length="5_0"', "it should be a finite number"),
-        ('length="50.0"', 'length="-1"', "greater than 0"),
+        ('length="50.0"', 'length="-1"', "between 1e-05 and 200000"),
         ('length="50.0"', "", "attribute 'length' of <road> is missing"),
         ('id="1" junction', 'id="Main St" junction', "a whole number"),
         ('id="2" junction="-1"', 'id="1" junction="-1"', "road 1 stands twice, first in line 4"),
@@ -77,7 +77,9 @@ def test_shapes_are_read() -> None:
         ('<laneSection s="0.0">', '<laneSection s="90">', "outside its road"),
         ('<lane id="1"', '<lane id="-1"', "lane -1 stands twice"),
         ('<lane id="1"', '<lane id="2000000000"', "between -1000 and 1000"),
-        ('length="50.0"', 'length="1e6"', "at most 200000 m"),
+        ('length="50.0"', 'length="1e-300"', "between 1e-05 and 200000"),
+        (' a="3.5"', ' a="1e10"', "between -1e+09 and 1e+09"),
+        ('length="50.0"', 'length="1e6"', "between 1e-05 and 200000"),
         (' a="3.5"', ' a="inf"', "'a' of <width> is 'inf'"),
         ("</OpenDRIVE>", "", "no well-formed XML"),
         ("OpenDRIVE>", "svg>", "the outermost element is <svg>"),
@@ -159,3 +161,29 @@ def test_the_origin_is_the_one_libcarla_reads(text: str) -> None:
 
 def test_an_origin_that_stops_libcarla_counts_as_unreadable() -> None:
     assert read_origin("+lat_0=north +lon_0=2") == (42.0, 2.0, False)
+
+
+CORNERS = '<cornerLocal u="1" v="1" z="0" height="0"/>'
+
+
+def crossed(corners: str) -> str:
+    outline = f'<object id="1" name="Crosswalk" type="crosswalk" s="30" t="0"><outline>{corners}</outline></object>'
+    return street_through_junction(objects=outline)
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        (crossed(CORNERS.replace('u="1"', 'u="1e308"')), "attribute 'u' of <cornerLocal> is '1e308'"),
+        (crossed(CORNERS.replace('u="1"', 'u="1e6"')), "it should be between -10000 and 10000"),
+        (crossed(CORNERS * 1001), "1,001 corners in one outline; 1,000 are allowed"),
+        (street_through_junction("".join(signal(str(n), 1, 1) for n in range(10_001))), "10,001 signals; 10,000 are"),
+        (opendrive("<a/>" * 3_000_001), "elements; 3,000,000 are allowed"),
+        (opendrive(*(road(n, 2e5, line(0, 0, 0, 0, 2e5), section()) for n in range(26))), "5,200 km of roads; 5,000"),
+    ],
+    ids=["beyond numbers", "far", "corners", "signals", "elements", "long"],
+)
+def test_a_text_that_asks_for_too_much_is_told_how_much_is_allowed(text: str, told: str) -> None:
+    with pytest.raises(MapError) as caught:
+        parse(text)
+    assert told in str(caught.value)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from fakes.solids import at, box, described, floor, instances, look_at, seen_of
 from linden.meshes.mesh import join
 from linden.sensors.lidar import Lidar, SemanticLidar
-from linden.sensors.lidar.fan import fire, points_a_channel, read_fan, turned_on
+from linden.sensors.lidar.fan import MOST_RAYS, fire, points_a_channel, read_fan, turned_on
 from linden.values.enums import SemanticTag
 from linden.values.space import Rotation, Transform, Vector3D
 
@@ -59,6 +59,11 @@ def test_each_channel_fires_its_share_of_the_points(channels: int, points_per_s:
     count = points_a_channel(fan, interval_s)
     assert abs(count - points_per_s * interval_s / channels) <= 0.5 + 1e-6
     assert fire(fan, 0.0, interval_s).rays == channels * count
+
+
+def test_a_measurement_of_any_time_has_a_number_of_points_that_fits_into_memory() -> None:
+    fan = read_fan(described("sensor.lidar.ray_cast", channels=4096, points_per_second=20_000_000))
+    assert fire(fan, 0.0, 1e6).rays == MOST_RAYS
 
 
 def test_points_come_channel_by_channel_the_uppermost_first() -> None:

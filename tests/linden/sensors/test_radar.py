@@ -7,7 +7,7 @@ import pytest
 
 from fakes.solids import at, box, described, floor, instances, look_at, seen_of
 from linden.meshes.mesh import join
-from linden.sensors.radar import Detections, Radar
+from linden.sensors.radar import MOST_RAYS, Detections, Radar
 from linden.values.space import Rotation, Transform, Vector3D
 
 WALL = box((0.5, 100.0, 100.0), centre_m=(20.5, 0.0, 0.0))
@@ -84,3 +84,8 @@ def test_the_same_measurement_repeats_and_the_next_one_differs() -> None:
     assert all(np.array_equal(one, other) for one, other in zip(first, again, strict=True))
     assert not np.array_equal(first.azimuth_rad, later.azimuth_rad)
     assert detected(seen, chosen={"noise_seed": 4}).azimuth_rad[0] != pytest.approx(first.azimuth_rad[0])
+
+
+def test_a_measurement_of_any_time_has_a_number_of_points_that_fits_into_memory() -> None:
+    found = detected(seen_of(WALL, [], instances()), interval_s=1e6, chosen={"points_per_second": 20_000_000})
+    assert 0 < len(found.depth_m) <= MOST_RAYS

@@ -8,14 +8,15 @@ import struct
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import pairwise
 
 import pytest
 
 from fakes.raw_client import RawClient, RawSubscriber
 from fakes.simulation import FakeFrames, FakeMaps, FakeSimulation
+from linden.errors import Refusal
 from linden.handlers import registry
-from linden.handlers.context import SCENE_S
 from linden.server import loop, subscribers, waiting
 from linden.server.calls import CALLS_PER_TURN
 from linden.server.loop import Server
@@ -192,12 +193,95 @@ def test_a_tick_waits_for_whoever_has_just_asked_where_a_stream_is(running: Live
         client.answer()
 
 
-def test_calls_that_make_no_frame_give_the_scene_some_time_to_be_built(running: Live) -> None:
+def test_an_answer_waits_for_the_scene_and_nobody_else_does(running: Live) -> None:
+    seeing = running.simulation.seeing
+    with running.client() as client, running.client() as other:
+        seeing.is_there = False
+        assert client.call("tick_cue") == 1  # nobody listens to a sensor that looks
+        number = client.send("version")
+        assert other.call("tick_cue") == 2
+        seeing.is_there = True
+        seeing.when_built()
+        assert client.answer() == [1, number, None, [[1, "0.9.16"]]]
+        seeing.is_there = False
+        assert client.call("version") == "0.9.16"  # it does not wait for ever
+
+
+@contextmanager
+def long_work(monkeypatch: pytest.MonkeyPatch, work: Callable[[], object]) -> Iterator[None]:
+    """Let ``version`` return what ``work`` makes in the background."""
+
+    def handler(_context: object) -> registry.Long[object]:
+        return (yield work)
+
+    registry.load_handlers()
+    found = registry.METHODS["version"]
+    with monkeypatch.context() as patched:
+        patched.setitem(registry.METHODS, "version", replace(found, handler=handler))
+        yield
+
+
+def test_long_work_is_waited_for_by_its_caller_only(running: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    may_end = threading.Event()
+    with long_work(monkeypatch, lambda: may_end.wait(20)), running.client() as client, running.client() as other:
+        version, tick = client.send("version"), client.send("tick_cue")
+        assert other.call("tick_cue") == 1
+        assert other.call("tick_cue") == 2
+        may_end.set()
+        assert client.answer() == [1, version, None, [[1, True]]]
+        assert client.answer() == [1, tick, None, [[1, 3]]]
+
+
+def test_long_work_that_fails_is_refused(running: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse() -> None:
+        raise Refusal("not today")
+
+    def break_down() -> None:
+        raise ZeroDivisionError("a wheel of no radius")
+
     with running.client() as client:
-        client.call("tick_cue")
-        assert running.simulation.seeing.waits_s == []
-        client.call("version")
-    assert running.simulation.seeing.waits_s == [SCENE_S]
+        with long_work(monkeypatch, refuse), pytest.raises(RuntimeError, match="not today"):
+            client.call("version")
+        with long_work(monkeypatch, break_down), pytest.raises(RuntimeError, match=r"internal error .* no radius"):
+            client.call("version")
+        assert client.call("version") == "0.9.16"
+
+
+def test_who_leaves_before_its_long_work_is_done_leaves_nothing(running: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+    may_end = threading.Event()
+    with long_work(monkeypatch, lambda: may_end.wait(20)), running.client() as other:
+        with running.client() as client:
+            client.send("version")
+        assert other.call("tick_cue") == 1
+        may_end.set()
+        assert other.call("tick_cue") == 2
+
+
+def test_a_call_for_which_the_memory_does_not_suffice_is_refused_even_without_memory_for_a_traceback(
+    running: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def too_much(*_: object) -> None:
+        raise MemoryError
+
+    with running.client() as client:
+        with monkeypatch.context() as patched:
+            patched.setattr("traceback.format_exception", too_much)
+            patched.setattr(running.simulation, "step", too_much)
+            with pytest.raises(RuntimeError, match="tick_cue is refused: the server's memory does not suffice"):
+                client.call("tick_cue")
+            patched.setattr(running.server._entrance, "look", too_much)
+            wait_until(lambda: client.call("version") == "0.9.16")
+        assert client.call("tick_cue") == 1
+
+
+def test_asking_for_streams_that_nobody_joins_holds_up_no_ticks_for_long(running: Live) -> None:
+    with running.client() as rude, running.client() as polite:
+        for number in range(2000):
+            rude.call("get_sensor_token", 1000 + number)  # there are no such streams
+            assert polite.call("tick_cue") == number + 1
+        for number in range(20):
+            rude.call("get_sensor_token", 2 + number)
+            polite.call("tick_cue")
 
 
 def test_a_tick_does_not_wait_for_ever_for_who_has_asked(running: Live) -> None:

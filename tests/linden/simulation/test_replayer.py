@@ -9,6 +9,7 @@ from fakes.street_drive import HERO, STEP_S, Drive, spawned, street
 from linden.geometry import compose
 from linden.recording.errors import RecordingError
 from linden.recording.read import Recording
+from linden.recording.track import track_of
 from linden.simulation import Simulation
 from linden.simulation.doors import Door
 from linden.simulation.replayer import Plan
@@ -79,7 +80,7 @@ def light(simulation: Simulation) -> bytes:
 
 
 def start(simulation: Simulation, path: Path, plan: Plan = ALL) -> None:
-    simulation.replayer.start(simulation, Recording(path), plan)
+    simulation.replayer.start(simulation, track_of(Recording(path)), plan)
 
 
 def fresh(recorded: Recorded, plan: Plan = ALL) -> Simulation:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fakes.solids import box, described, floor
+from linden.background import checkpoint
 from linden.casting.rays import STATIC, Rays
 from linden.geometry import compose, rotation_matrix
 from linden.meshes.mesh import LampOf, Mesh, join
@@ -17,6 +18,7 @@ from linden.values.episode import EpisodeSettings
 from linden.values.space import Rotation, Transform, Vector3D
 from linden.world.blueprints import BlueprintLibrary
 from linden.world.maps import HOME_MAP, LoadedMap, MapLibrary
+from opendrive_texts import street_through_junction
 
 STEP_S = 0.05
 
@@ -219,3 +221,24 @@ def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedM
     assert seeing.wait(60.0)
     simulation.seeing = seeing
     assert len(look(simulation).standing.triangles) == len(floor(9.0).triangles)
+
+
+def test_a_load_of_another_map_gives_up_what_was_being_built(world_map: LoadedMap) -> None:
+    simulation, begun, ended = Simulation(world_map, EpisodeSettings()), Event(), Event()
+
+    def build_for_ever(_map: LoadedMap, _scene: object) -> Mesh:
+        begun.set()
+        try:
+            while True:
+                checkpoint()
+        finally:
+            ended.set()
+
+    simulation.seeing.standing_on = build_for_ever
+    simulation.spawn(described("sensor.lidar.ray_cast"), Transform())
+    assert begun.wait(20)
+    simulation.load(world_map, reset_settings=False)
+    assert not ended.is_set()  # the same map wants the same
+    simulation.load(MapLibrary().from_opendrive(street_through_junction()), reset_settings=False)
+    assert ended.wait(20)
+    assert simulation.seeing.wait(0.0)

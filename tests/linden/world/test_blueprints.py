@@ -9,6 +9,7 @@ import pytest
 from linden.errors import Refusal
 from linden.values.actors import ActorDefinition, ActorDescription, AttributeValue
 from linden.values.enums import AttributeType, SemanticTag
+from linden.world.blueprint_check import bounds_of
 from linden.world.blueprints import Blueprint, BlueprintLibrary, Kind
 
 LIBRARY = BlueprintLibrary.load()
@@ -223,6 +224,17 @@ def test_a_walker_without_a_wheelchair_may_be_asked_to_use_one() -> None:
         ("sensor.camera.rgb", {"exposure_mode": "auto"}, "allowed are histogram, manual"),
         ("sensor.camera.rgb", {"image_size_x": "800.5"}, "expected a whole number, such as '800'"),
         ("sensor.camera.rgb", {"image_size_x": "0"}, "expected at least 1"),
+        ("sensor.camera.depth", {"fov": "1e300"}, "expected at most 1000000000"),
+        ("sensor.camera.dvs", {"positive_threshold": "1e-300"}, "expected at least 0.01"),
+        ("sensor.lidar.ray_cast", {"channels": "2000000000"}, "expected at most 4096"),
+        ("sensor.lidar.ray_cast_semantic", {"points_per_second": "2000000000"}, "expected at most 20000000"),
+        ("sensor.lidar.ray_cast", {"rotation_frequency": "1e300"}, "expected at most 10000"),
+        ("sensor.other.radar", {"points_per_second": "20000001"}, "expected at most 20000000"),
+        ("sensor.other.obstacle", {"hit_radius": "1e300"}, "expected at most 1000"),
+        ("sensor.other.imu", {"noise_accel_stddev_x": "1e300"}, "expected at most 1000000000"),
+        ("sensor.other.gnss", {"noise_seed": "9999999999"}, "expected at most 2147483647"),
+        ("static.prop.mesh", {"scale": "1e300"}, "expected at most 1000"),
+        ("static.trigger.friction", {"extent_x": "1e300"}, "expected at most 1000000"),
         ("sensor.other.gnss", {"sensor_tick": "soon"}, "expected a finite number"),
         ("sensor.other.gnss", {"sensor_tick": "nan"}, "expected a finite number"),
         ("sensor.other.gnss", {"sensor_tick": "-0.1"}, "expected at least 0"),
@@ -237,3 +249,15 @@ def test_a_bad_description_is_refused_with_carlas_words_and_the_reason(
         LIBRARY.validate(described(blueprint_id, **attributes))
     assert str(refusal.value).startswith("Spawn failed because of invalid actor description: ")
     assert sentence in str(refusal.value)
+
+
+def test_every_number_of_a_sensor_has_bounds_that_allow_its_default() -> None:
+    numbers = [
+        attribute
+        for definition in LIBRARY.definitions
+        for attribute in definition.attributes
+        if attribute.is_modifiable and attribute.type in (AttributeType.INT, AttributeType.FLOAT)
+    ]
+    for attribute in numbers:
+        least, most = bounds_of(attribute)
+        assert least <= float(attribute.value) <= most <= 2**31, attribute.id

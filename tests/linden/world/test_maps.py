@@ -44,6 +44,7 @@ def test_a_map_is_made_ready_once(folder: Path) -> None:
 def test_a_sent_map_is_kept_under_carlas_name_until_another_is_sent(folder: Path) -> None:
     library = MapLibrary([folder])
     first = library.from_opendrive(STREET)
+    library.keep(first)
     assert library.load("OpenDriveMap") is first
     assert library.from_opendrive(STREET) is not first
     assert library.names() == ["/Game/Carla/Maps/Linden", "/Game/Carla/Maps/Street"]

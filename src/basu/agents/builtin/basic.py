@@ -31,6 +31,7 @@ class BasicAgent(AutonomousAgent):
     """A careful driver; from ``setup`` on, ``driver`` holds its plan and may be looked at."""
 
     sight_m = RADIUS_M  # how far others are looked at
+    perceives_others = True  # False: the driver knows of no vehicle, walker or prop
     cruise_mps = math.inf  # never faster than this, whatever vehicle and limits allow
     driver: Driver | None = None
     facts: VehicleFacts | None = None
@@ -53,7 +54,8 @@ class BasicAgent(AutonomousAgent):
         if self.driver is None or self.facts is None:
             self.driver, self.facts = self._get_in(own.get_transform())
         ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
-        command = self.driver.step(ego, self._perception.others(snapshot, ego), self._lights.shows)
+        others = self._perception.others(snapshot, ego) if self.perceives_others else []
+        command = self.driver.step(ego, others, self._lights.shows)
         return _control(command, self.facts, ego.speed_mps)
 
     def config(self) -> dict[str, str]:

@@ -89,11 +89,15 @@ def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
 
 def worst(documents: Iterator[dict[str, Any]]) -> int:
     """The exit code of what went worst: a simulator that failed before a set-up, before an agent."""
-    codes = {
-        Fault.AGENT.value if document["verdict"] == "FAILURE" else Fault[document["fault"].upper()].value
-        for document in documents
-    }
-    return max(codes, default=Fault.SETUP.value)
+    return max({_exit_code(document) for document in documents}, default=Fault.SETUP.value)
+
+
+def _exit_code(document: dict[str, Any]) -> int:
+    """The agent's for a failure, and where nothing was exercised and the drive was not completed either."""
+    absent = document["verdict"] == "NOT_EXERCISED" and document["assessment"]["completed"]["holds"] is False
+    if document["verdict"] == "FAILURE" or absent:
+        return Fault.AGENT.value
+    return int(Fault[document["fault"].upper()].value)
 
 
 def _loaded(options: ScenarioOptions) -> list[FoundAgent]:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from basu.scenarios.cases import Playable
     from basu.scenarios.verdict import Judged
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 def document_of(
@@ -50,6 +50,8 @@ def document_of(
         "fault": judged.fault.name.lower(),
         "status": judged.outcome.status.value,
         "message": judged.message,
+        "assessment": None if judged.assessment is None else judged.assessment.document(),
+        "collisions": [collision._asdict() for collision in judged.collisions],
         "ended": judged.outcome.message,  # how the run ended, for judging it again
         "phases_s": {} if playing is None else {k: round(t * STEP_S, 3) for k, t in playing.phase_ticks.items()},
         "judgements": [judgement._asdict() for judgement in judged.judgements],

@@ -1,4 +1,4 @@
-"""``matrix.json``: all cases with all agents, and the shares of the toll that they survive."""
+"""``matrix.json``: all cases with all agents, and the crashes that the passed ones stand for."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import basu
 from basu.running.scenario_runs.document import about
 from basu.scenarios.sampling import Grid, Sweep
-from basu.scenarios.shares import results_from, standing, standing_to_json
+from basu.scenarios.shares import crash_shares, results_from, shares_to_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -18,8 +18,18 @@ if TYPE_CHECKING:
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.scenarios.cases import Playable
 
-SCHEMA_VERSION = 1
-TOLD = ("verdict", "fault", "status", "message", "margins", "simulated_s", "wall_s")  # of a result
+SCHEMA_VERSION = 2
+SUMMARY = (  # entries of a result
+    "verdict",
+    "fault",
+    "status",
+    "message",
+    "assessment",
+    "collisions",
+    "margins",
+    "simulated_s",
+    "wall_s",
+)
 
 
 def matrix_of(
@@ -40,7 +50,7 @@ def matrix_of(
             if done is not None:
                 document, folder = done
                 by_agent[agent].append(document)
-                results[agent] = {**{key: document[key] for key in TOLD}, "folder": folder}
+                results[agent] = {**{key: document[key] for key in SUMMARY}, "folder": folder}
         rows.append({**about(playable), "results": results})
     return {
         "schema_version": SCHEMA_VERSION,
@@ -53,7 +63,7 @@ def matrix_of(
         "wall_s": round(wall_s, 1),
         "workers": options.workers,
         "cases": rows,
-        "shares": {agent: standing_to_json(standing(results_from(by_agent[agent]))) for agent in agents},
+        "shares": {agent: shares_to_json(crash_shares(results_from(by_agent[agent]))) for agent in agents},
         "versions": {"basu": basu.__version__, "carla": version("carla"), "python": platform.python_version()},
     }
 

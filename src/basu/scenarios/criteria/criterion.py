@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import enum
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,13 @@ if TYPE_CHECKING:
     from basu.outcome import Outcome
     from basu.records.history import History
     from basu.scenarios.stage import Pose
+
+
+class Aspect(enum.Enum):
+    """What a criterion says something about."""
+
+    SAFE = "safe"  # harm and rules: unsafe counts even where the conflict never came about
+    COMPLETED = "completed"  # goals of the drive
 
 
 class Thing(NamedTuple):
@@ -90,7 +98,9 @@ class Judgement(NamedTuple):
 
 
 class Criterion(ABC):
-    """One thing to be judged. ``deciding=False`` makes it tell without weighing.
+    """One thing to be judged. ``deciding=False`` makes it report without weighing.
+
+    ``aspect`` says whether it is about safety or about a goal of the drive (`basu.scenarios.policy`).
 
     One of your own::
 
@@ -105,6 +115,7 @@ class Criterion(ABC):
     """
 
     name: str
+    aspect: ClassVar[Aspect] = Aspect.SAFE
 
     def __init__(self, *, deciding: bool = True) -> None:
         self.deciding = deciding

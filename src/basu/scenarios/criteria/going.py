@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.outcome import Status
-from basu.scenarios.criteria.criterion import Criterion
+from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.triggers.along_route import ARRIVED_M, PARKED_M, PARKED_MPS
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ def arrival_tick(history: History) -> int | None:
 class Arrives(Criterion):
     """The ego comes to the end of its route: within 2 m of it, or to rest within 5 m."""
 
+    aspect = Aspect.COMPLETED
     name = "arrives"
 
     def judge(self, played: Played) -> Judgement:
@@ -44,6 +45,8 @@ class Arrives(Criterion):
 
 class Reaches(Criterion):
     """The ego's origin passes a place along its route, ``s_m`` from the route's beginning."""
+
+    aspect = Aspect.COMPLETED
 
     def __init__(self, s_m: float, what: str = "", *, deciding: bool = True) -> None:
         super().__init__(deciding=deciding)
@@ -69,6 +72,8 @@ class Reaches(Criterion):
 
 class ReachesPoint(Criterion):
     """The ego's origin comes within ``radius_m`` of a point on the map (CARLA's frame)."""
+
+    aspect = Aspect.COMPLETED
 
     def __init__(
         self, x_m: float, y_m: float, radius_m: float, what: str = "the place", *, deciding: bool = True
@@ -100,6 +105,7 @@ class InTime(Criterion):
     as a collision, is neither in time nor late.
     """
 
+    aspect = Aspect.COMPLETED
     name = "in time"
 
     def __init__(self, limit_s: float | None = None, *, deciding: bool = True) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.stretches import stretches
-from basu.scenarios.criteria.criterion import Criterion
+from basu.scenarios.criteria.criterion import Aspect, Criterion
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -92,6 +92,7 @@ class Regains(Criterion):
     Back is within ``lateral_m`` of the route's middle and within ``yaw_deg`` of its direction, for a second on end.
     """
 
+    aspect = Aspect.COMPLETED
     name = "regains its lane"
 
     def __init__(

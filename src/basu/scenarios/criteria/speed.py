@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from basu.metrics.speeding import LEAST_S, TOLERANCE_MPS, episodes, limits_mps
-from basu.scenarios.criteria.criterion import Criterion, Judgement, Played
+from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played
 
 
 class KeepsSpeed(Criterion):
@@ -66,6 +66,7 @@ class MinimumSpeed(Criterion):
     For scenarios in which nothing is in the way: who creeps through them has not shown that it can drive.
     """
 
+    aspect = Aspect.COMPLETED
     name = "minimum speed"
 
     def __init__(self, least_mps: float, *, since: str | None = None, deciding: bool = True) -> None:

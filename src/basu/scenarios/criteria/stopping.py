@@ -9,7 +9,7 @@ import numpy as np
 from basu.errors import ScenarioError
 from basu.metrics.passengers.boxes import other_boxes, own_boxes
 from basu.metrics.stretches import stretches
-from basu.scenarios.criteria.criterion import Criterion
+from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margins.company import company
 from basu.scenarios.criteria.margins.gap import gap_m
 
@@ -30,6 +30,8 @@ class StoppedFor(Criterion):
     ``s_m``, a line across the route there, and ``what`` its name: at rest with the front bumper between ``within_m``
     before it and 1 m beyond. ``since`` is a phase from which on it counts.
     """
+
+    aspect = Aspect.COMPLETED
 
     def __init__(
         self,

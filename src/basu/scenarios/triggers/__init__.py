@@ -8,6 +8,7 @@ from basu.scenarios.triggers.along_route import (
     EgoLeavesJunction,
     EgoPasses,
     TimeToArrival,
+    TimeToRest,
 )
 from basu.scenarios.triggers.motion import ClosesIn, EgoTouches, Elapsed, Faster, Slower, StandsStill
 from basu.scenarios.triggers.places import Circle, CrossesLine, EgoNear, InRegion, Near, NearPlace, Polygon, Stretch
@@ -35,5 +36,6 @@ __all__ = [
     "StandsStill",
     "Stretch",
     "TimeToArrival",
+    "TimeToRest",
     "Trigger",
 ]

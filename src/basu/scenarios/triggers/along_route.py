@@ -14,6 +14,23 @@ if TYPE_CHECKING:
 # are wider by what a vehicle does in a frame, so that the tree knows no later than the run.
 ARRIVED_M = 2.0
 PARKED_M, PARKED_MPS = 5.0, 0.15
+COMFORT_MPS2 = 1.0  # with which an ego is taken to brake for a line: what standing passengers bear (Hoberock 1977)
+LEAST_MPS = 0.5  # an ego slower than this is not taken to arrive ever later
+AT_LINE_M = 3.0  # an ego that rests no farther than this before its place has come to it
+
+
+def rests_in_s(left_m: float, speed_mps: float) -> float:
+    """How long an ego needs to come to rest so many metres ahead: at its speed, then braking for it in comfort.
+
+    0 once it rests there, or is beyond.
+    """
+    if left_m <= 0.0 or (left_m <= AT_LINE_M and speed_mps < LEAST_MPS):
+        return 0.0
+    speed_mps = max(speed_mps, LEAST_MPS)
+    braking_m = speed_mps * speed_mps / (2.0 * COMFORT_MPS2)
+    if left_m <= braking_m:
+        return 2.0 * left_m / speed_mps
+    return (left_m - braking_m) / speed_mps + speed_mps / COMFORT_MPS2
 
 
 class EgoArrives(Trigger):
@@ -73,6 +90,21 @@ class TimeToArrival(Trigger):
         """When and at which speed, once it is."""
         left_m, speed_mps = self.s_m - self.stage.ego_s_m, self.stage.ego.forward_mps
         if left_m > max(speed_mps, 0.0) * self.seconds:
+            return None
+        return f"ego at {left_m:.1f} m and {speed_mps:.1f} m/s"
+
+
+class TimeToRest(Trigger):
+    """The ego, if it is to come to rest ``s_m`` along its route, needs no more than ``seconds`` until it does."""
+
+    def __init__(self, s_m: float, seconds: float, what: str = "") -> None:
+        super().__init__(f"ego {seconds:.3g} s from rest at {what or f'{s_m:.0f} m'}")
+        self.s_m, self.seconds = s_m, seconds
+
+    def has_come(self) -> str | None:
+        """When and at which speed, once it is."""
+        left_m, speed_mps = self.s_m - self.stage.ego_s_m, self.stage.ego.forward_mps
+        if rests_in_s(left_m, speed_mps) > self.seconds:
             return None
         return f"ego at {left_m:.1f} m and {speed_mps:.1f} m/s"
 

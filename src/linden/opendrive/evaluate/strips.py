@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from linden.opendrive.evaluate.pieces import F64, I64
 from linden.opendrive.evaluate.sampling import Samples, sample, sections_before, sections_of
 from linden.opendrive.evaluate.tables import Tables
+from linden.opendrive.limits import MOST_PLACES, refuse_beyond
 
 
 class Strips(NamedTuple):
@@ -45,6 +46,7 @@ def strips_of(tables: Tables, rows: I64 | None = None) -> Strips:
     first_of_section = np.cumsum(count_of_section) - count_of_section
     section = before[tables.lanes["road"][rows]] + tables.lanes["section"][rows]
     counts = count_of_section[section]
+    refuse_beyond(counts.sum(), MOST_PLACES, "places along its lanes, section by section and lane by lane")
     of_row = np.repeat(np.arange(len(rows)), counts)
     nth = np.arange(len(of_row)) - np.repeat(np.cumsum(counts) - counts, counts)
     return Strips(samples, rows[of_row], first_of_section[section[of_row]] + nth, nth < counts[of_row] - 1)

@@ -7,6 +7,7 @@ from typing import Any, NoReturn
 from lxml.etree import _Element as Element
 
 from linden.opendrive.errors import MapError
+from linden.opendrive.limits import LARGEST_NUMBER
 
 _MPS_PER_UNIT = {"m/s": 1.0, "km/h": 1.0 / 3.6, "mph": 0.44704}
 
@@ -32,12 +33,22 @@ def number(node: Element, attribute: str) -> float:
         reject(node, attribute, "a number")
     if not isfinite(value) or "_" in text:  # Python takes 1_000 for a number, nobody else does
         reject(node, attribute, "a finite number")
+    if abs(value) > LARGEST_NUMBER:
+        reject(node, attribute, f"between {-LARGEST_NUMBER:g} and {LARGEST_NUMBER:g}")
     return value
 
 
 def number_or(node: Element, attribute: str, default: float) -> float:
     """Return a finite number, ``default`` where the attribute is missing or empty."""
     return number(node, attribute) if node.get(attribute) else default
+
+
+def within(node: Element, attribute: str, least: float, most: float) -> float:
+    """Return a number that has to be there, between two others."""
+    value = number(node, attribute)
+    if not least <= value <= most:
+        reject(node, attribute, f"between {least:g} and {most:g}")
+    return value
 
 
 def positive(node: Element, attribute: str) -> float:
@@ -66,7 +77,7 @@ def cubic_coefficients(node: Element) -> tuple[float, float, float, float]:
         a, b, c, d = float(get("a") or 0.0), float(get("b") or 0.0), float(get("c") or 0.0), float(get("d") or 0.0)
     except ValueError:
         a = b = c = d = math.nan
-    if isfinite(a + b + c + d):
+    if abs(a) + abs(b) + abs(c) + abs(d) <= LARGEST_NUMBER:
         return a, b, c, d
     return number_or(node, "a", 0.0), number_or(node, "b", 0.0), number_or(node, "c", 0.0), number_or(node, "d", 0.0)
 

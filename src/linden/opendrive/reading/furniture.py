@@ -15,7 +15,8 @@ from linden.opendrive.furniture import (
     SignalReference,
     Validity,
 )
-from linden.opendrive.reading.attributes import line_of, number, number_or, user_data, whole
+from linden.opendrive.limits import FARTHEST_CORNER_M, MOST_CORNERS, refuse_beyond
+from linden.opendrive.reading.attributes import line_of, number, number_or, user_data, whole, within
 
 # ObjectParser.cpp; the number begins at the seventh character, or the fourteenth in "Speed_STATIC_30"
 _SPEED_STENCIL = re.compile(r"[Ss]peed_(?:STATIC_)?(\d+(?:\.\d+)?)")
@@ -171,15 +172,17 @@ def _outline(node: Element) -> tuple[Corner, ...]:
     outline = next(node.iter("outline"), None)
     if outline is None:
         return ()
-    return tuple(_corner(child) for child in outline if child.tag in {"cornerLocal", "cornerRoad"})
+    corners = tuple(_corner(child) for child in outline if child.tag in {"cornerLocal", "cornerRoad"})
+    refuse_beyond(len(corners), MOST_CORNERS, "corners in one outline", line_of(node))
+    return corners
 
 
 def _corner(node: Element) -> Corner:
     along_road = node.tag == "cornerRoad"
     first, second, lift = ("s", "t", "dz") if along_road else ("u", "v", "z")
     return Corner(
-        first_m=number(node, first),
-        second_m=number(node, second),
+        first_m=number(node, first) if along_road else within(node, first, -FARTHEST_CORNER_M, FARTHEST_CORNER_M),
+        second_m=within(node, second, -FARTHEST_CORNER_M, FARTHEST_CORNER_M),
         z_m=number_or(node, lift, 0.0),
         height_m=number_or(node, "height", 0.0),
         is_along_road=along_road,

@@ -3,6 +3,7 @@
 from lxml.etree import _Element as Element
 
 from linden.opendrive.errors import MapError
+from linden.opendrive.limits import MOST_LANES
 from linden.opendrive.model import Cubic, Height, Lane, LaneSection, RoadMark, Speed
 from linden.opendrive.reading.attributes import (
     cubic_coefficients,
@@ -19,7 +20,6 @@ from linden.values.enums import LaneType
 _LANE_TYPES = {
     name.lower().replace("_", ""): kind for name, kind in LaneType.__members__.items() if kind is not LaneType.NONE
 }
-_MOST_LANES = 1000  # on one side of a road; more can only be a mistake, and would be slow to look through
 _SIDES = ("left", "center", "right")
 
 
@@ -58,8 +58,8 @@ def _lanes_of(section: Element) -> tuple[Lane, ...]:
             continue
         for node in side.iterchildren("lane"):
             lane = _lane(node)
-            if abs(lane.id) > _MOST_LANES:
-                reject(node, "id", f"between -{_MOST_LANES} and {_MOST_LANES}")
+            if abs(lane.id) > MOST_LANES:
+                reject(node, "id", f"between -{MOST_LANES} and {MOST_LANES}")
             if lane.id in lanes:
                 raise MapError(f"lane {lane.id} stands twice in one <laneSection>", line_of(node))
             lanes[lane.id] = lane

@@ -3,6 +3,7 @@
 from lxml.etree import _Element as Element
 
 from linden.opendrive.errors import MapError
+from linden.opendrive.limits import LONGEST_ROAD_M, SHORTEST_ROAD_M
 from linden.opendrive.model import (
     NO_JUNCTION,
     Arc,
@@ -25,20 +26,18 @@ from linden.opendrive.reading.attributes import (
     speed_mps,
     user_data,
     whole,
+    within,
 )
 from linden.opendrive.reading.furniture import read_objects, read_signal_references, read_signals, read_speed_stencils
 from linden.opendrive.reading.lanes import read_lane_offsets, read_sections
 
 # An arc of less curvature than this is a line; LibCarla asserts more (Geometry.cpp, GeometryArc).
 _STRAIGHT_PER_M = 1e-15
-_LONGEST_M = 200e3  # of one road; a hostile text could otherwise ask for any amount of memory
 
 
 def read_road(node: Element) -> Road:
     """Return one road with everything along it."""
-    length_m = positive(node, "length")
-    if length_m > _LONGEST_M:
-        reject(node, "length", f"at most {_LONGEST_M:g} m")
+    length_m = within(node, "length", SHORTEST_ROAD_M, LONGEST_ROAD_M)
     parts = {child.tag: child for child in node}
     lanes, link, profile = parts.get("lanes"), parts.get("link"), parts.get("elevationProfile")
     if lanes is None:

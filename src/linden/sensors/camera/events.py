@@ -21,6 +21,8 @@ EVENT = np.dtype([("x", "<u2"), ("y", "<u2"), ("t", "<i8"), ("polarity", "?")])
 """As it goes over the wire (DVSEvent.h, packed): pixel, ns of simulated time, brighter or darker."""
 assert EVENT.itemsize == 13
 
+MOST_EVENTS = 4 * 1024 * 1024
+"""Of one frame: nine of each pixel of 800 x 600. What is further down in the picture has none then."""
 _NOT_YET = -1
 _LEAST_STEP = 0.01
 _SAME = 1e-6
@@ -105,6 +107,8 @@ def _watch(
                     break
                 at_ns = start_ns + int((level - was) * (end_ns - start_ns) / (now - was))
                 if spoke_ns[y, x] == _NOT_YET or at_ns - spoke_ns[y, x] >= rest_ns:
+                    if count == MOST_EVENTS:
+                        return found
                     if count == len(found):
                         found = np.concatenate((found, np.empty_like(found)))
                     found[count, 0], found[count, 1], found[count, 2], found[count, 3] = x, y, at_ns, brighter

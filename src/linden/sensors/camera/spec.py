@@ -7,7 +7,8 @@ from linden.errors import Refusal
 from linden.values.actors import ActorDescription
 
 LARGEST_SIDE_PX = 8192
-"""A picture of this size on both sides takes 3 GB to make: beyond it a number is more likely a slip than a wish."""
+LARGEST_AREA_PX = 4096 * 4096
+"""Twice a picture of 8 million pixels (4k) takes 0.8 GB to make; more is more likely a slip than a wish."""
 
 
 class Lens(NamedTuple):
@@ -81,6 +82,11 @@ def camera_spec(description: ActorDescription) -> CameraSpec:
         raise Refusal(
             f"Spawn failed because of invalid actor description: a picture of {width} x {height} pixels cannot be "
             f"made; image_size_x and image_size_y lie between 1 and {LARGEST_SIDE_PX}"
+        )
+    if width * height > LARGEST_AREA_PX:
+        raise Refusal(
+            f"Spawn failed because of invalid actor description: a picture of {width} x {height} pixels cannot be "
+            f"made; it has at most {LARGEST_AREA_PX} pixels, such as 4096 x 4096"
         )
     fov_deg = _number(description, "fov")
     if not 0.0 < fov_deg < 180.0:

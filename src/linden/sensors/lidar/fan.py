@@ -21,6 +21,10 @@ F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
 
 
+MOST_RAYS = 4 * 1024 * 1024
+"""Of one measurement, whatever time it covers: some seconds of work. Those of a longer time lie further apart."""
+
+
 class Fan(NamedTuple):
     """Degrees, turns a second, points a second, m."""
 
@@ -65,8 +69,9 @@ def read_fan(description: ActorDescription) -> Fan:
 
 
 def points_a_channel(fan: Fan, interval_s: float) -> int:
-    """Return how many points each channel fires in a time; a half counts as one."""
-    return max(0, math.floor(fan.points_per_s * interval_s / fan.channels + 0.5))
+    """Return how many points each channel fires in a time; a half counts as one, and :data:`MOST_RAYS` are the most."""
+    wanted = math.floor(fan.points_per_s * interval_s / fan.channels + 0.5)
+    return max(0, min(wanted, MOST_RAYS // fan.channels))
 
 
 def turned_on(fan: Fan, start_deg: float, interval_s: float) -> float:

@@ -11,6 +11,7 @@ from basu.scenarios.library.crossing_paths.stream import Stream
 from basu.scenarios.library.motorists import run_up_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import next_junction
+from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import EGO
 from basu.testing import Driver, PaperStage, rehearse, waiting_at
 
@@ -21,10 +22,9 @@ CASES = {
     "left_turn_across_path_2": "other",
     "right_turn_into_path_1": "other",
     "car_across_junction_1": "other",
-    "straight_crossing_paths_2": "left 1",
-    "turn_into_traffic_1": "left 1",
     "ego_turns_left_1": "oncoming 2",
 }
+BEHIND_A_STOP_SIGN = ("straight_crossing_paths_2", "turn_into_traffic_1", "unsignalized_intersection_2")
 
 
 def unmoved(top_mps: float) -> Driver:
@@ -42,6 +42,41 @@ def test_who_drives_on_is_hit_by_the_one_whose_way_crosses(laid, case, party):
     assert scenario.group is Group.CROSSING_PATHS
     rehearsal = rehearse(scenario, unmoved(6.4), until_s=15.0)
     assert next(iter(rehearsal.contacts_s), None) == party
+
+
+def stopping(scenario: Scenario, seconds: float, speed_mps: float) -> Driver:
+    """Comes to rest at its stop sign for so long, and drives off whoever comes."""
+    line_m = scenario.place.stop_line_m()
+    assert line_m is not None
+    return waiting_at(scenario.place.trigger_s_m + line_m - 2.0, seconds, speed_mps, brake_mps2=1.0, start_mps2=0.85)
+
+
+@pytest.mark.parametrize(
+    ("case", "speed_mps"),
+    [(case, mps) for case in BEHIND_A_STOP_SIGN for mps in (4.0, 6.4)]
+    + [(case, 2.0) for case in BEHIND_A_STOP_SIGN[:2]],
+)
+def test_behind_a_stop_sign_the_others_come_when_the_ego_drives_off_however_slowly_it_came(laid, case, speed_mps):
+    scenario = laid(case)
+    rehearsal = rehearse(scenario, stopping(scenario, 1.5, speed_mps), until_s=60.0)
+    others = {spec.name for spec in scenario.actors()}
+    assert others & rehearsal.contacts_s.keys()
+
+
+@pytest.mark.parametrize("case", BEHIND_A_STOP_SIGN[:2])
+@pytest.mark.parametrize("stands_s", [0.5, 2.0, 3.5, 5.0])
+def test_a_stream_has_no_gap_for_who_drives_off_early_or_late(laid, case, stands_s):
+    scenario = laid(case)
+    rehearsal = rehearse(scenario, stopping(scenario, stands_s, 6.4), until_s=60.0)
+    assert {spec.name for spec in scenario.actors()} & rehearsal.contacts_s.keys()
+
+
+@pytest.mark.parametrize("case", BEHIND_A_STOP_SIGN)
+def test_a_stream_ends_and_who_waits_for_that_passes(laid, case):
+    scenario = laid(case)
+    rehearsal = rehearse(scenario, stopping(scenario, 16.0, 6.4))
+    assert not rehearsal.contacts_s
+    assert rehearsal.over
 
 
 @pytest.mark.parametrize("case", list(CASES)[::2])
@@ -89,7 +124,7 @@ def test_cars_of_a_stream_stand_one_behind_the_other_with_room_between(laid):
     scenario = laid("straight_crossing_paths_3")
     assert isinstance(scenario, Stream)
     poses = {spec.name: spec.pose for spec in scenario.actors()}
-    assert sorted(poses) == ["left 1", "left 2", "left 3", "right 1", "right 2", "right 3"]
+    assert sorted(poses) == [f"{side} {number}" for side in ("left", "right") for number in range(1, 6)]
     for side in ("left", "right"):
         apart_m = math.dist(poses[f"{side} 1"][:2], poses[f"{side} 2"][:2])
         assert apart_m == pytest.approx(2.2 * 9.0, abs=0.5)

@@ -38,7 +38,7 @@ MET = {
     "CyclistAhead": "cyclist",
     "DeerAtDusk": "deer_2",
     "DogOnTheRoad": "dog",
-    "Dooring": "door",
+    "Dooring": "cyclist",
     "CarAtTheStop": "car",
     "RunningForTheShuttle": "passenger",
 }
@@ -95,7 +95,7 @@ def test_who_stops_in_time_arrives_unharmed(laid: Laid, name: str) -> None:
     scenario = laid(name)
     driver = careful(SHUTTLE_MPS)
     if isinstance(scenario, DeerAtDusk | Dooring | CyclistCrossing):
-        driver = waiting_at(_meets_m(scenario) - 5.0, 9.0, SHUTTLE_MPS)
+        driver = waiting_at(_meets_m(scenario) - 5.0, 9.0, SHUTTLE_MPS, brake_mps2=4.0)
     played = rehearse(scenario, driver)
     assert played.over, played.phases_s
     assert not played.contacts_s
@@ -106,6 +106,8 @@ def _meets_m(scenario: Scenario) -> float:
     """Along the route, where who drives on meets them."""
     if isinstance(scenario, CyclistCrossing):
         return crossing(scenario.place, cast("Side", scenario.choice("side"))).ego_s_m
+    if isinstance(scenario, Dooring):
+        return scenario.number("ahead") - 4.0  # the cyclist stands before the door's hinge
     return scenario.number("ahead")
 
 

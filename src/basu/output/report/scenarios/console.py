@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 WIDTH = 110
 NAME_WIDTH, AGENT_WIDTH = 30, 24  # of a scenario and an agent; a longer name is cut
 GAP = "   "
+LATER = {"FAILURE": 1, "NOT_EXERCISED": 2}
 MOST_TOLD = 6  # cases of an agent whose end is told in a sentence
 GREEN, RED, YELLOW, BOLD, DIM, PLAIN = "\x1b[32m", "\x1b[31m", "\x1b[33m", "\x1b[1m", "\x1b[2m", "\x1b[0m"
 
@@ -29,7 +30,7 @@ class Cell(NamedTuple):
     share: str  # 2/3
     distance: str  # 0.82 m
     time: str  # 1.4 s
-    marks: str  # 1! 2?
+    marks: str  # 1! 3○ 2?
     colour: str
 
 
@@ -77,7 +78,8 @@ def _columns(matrix: dict[str, Any], agents: Sequence[str]) -> dict[str, list[Ce
 
 def _cell(found: Tally) -> Cell:
     """The text of a cell."""
-    marks = [f"{count}{sign}" for count, sign in ((found.agent_faults, "!"), (found.unjudged, "?")) if count]
+    signs = ((found.agent_faults, "!"), (found.absent, "○"), (found.unjudged, "?"))
+    marks = [f"{count}{sign}" for count, sign in signs if count]
     all_passed = found.passed == found.judged
     return Cell(
         share=f"{found.passed}/{found.judged}" if found.judged else "-",
@@ -143,7 +145,9 @@ def _key(matrix: dict[str, Any]) -> str:
     told = ["passed of judged; of those passed, the least distance to anybody, and the least time to a collision."]
     if "AGENT_FAULT" in verdicts:
         told.append("! the agent itself broke down: judged, and not passed.")
-    if any(not LOOKS[verdict].is_judged for verdict in verdicts):
+    if "NOT_EXERCISED" in verdicts:
+        told.append("○ not exercised: the conflict never came about; counts for neither side.")
+    if any(not LOOKS[verdict].is_judged and verdict != "NOT_EXERCISED" for verdict in verdicts):
         told.append("? not judged, for a fault of the simulator, the set-up or the benchmark, or interrupted.")
     return "\n".join(told)
 
@@ -157,7 +161,7 @@ def _endings(matrix: dict[str, Any], *, colour: bool) -> str:
             for case in matrix["cases"]
             if agent in case["results"] and case["results"][agent]["verdict"] != "SUCCESS"
         ]
-        found.sort(key=lambda pair: pair[1]["verdict"] == "FAILURE")  # faults first; otherwise as they come
+        found.sort(key=lambda pair: LATER.get(pair[1]["verdict"], 0))  # faults first; otherwise as they come
         if not found:
             continue
         lines.append(f"{_painted(agent, BOLD, colour=colour)} did not pass {len(found)}:")

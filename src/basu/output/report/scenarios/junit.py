@@ -93,6 +93,8 @@ def _evidence(case: dict[str, Any], result: dict[str, Any]) -> Sequence[str]:
     ]
     lines = [
         result["message"],
+        *(f"{name}: {_answer(found)}" for name, found in (result["assessment"] or {}).items()),
+        *(f"collision at {one['t_s']:.2f} s with {one['other']}, {one['sentence']}" for one in result["collisions"]),
         f"{case['scenario']}: {case['title']}",
         f"at {case['place']}" if case["place"] else "",
         f"with {parameters}" if parameters else "",
@@ -101,6 +103,12 @@ def _evidence(case: dict[str, Any], result: dict[str, Any]) -> Sequence[str]:
         f"again, with this agent: basu scenario run {case['id']}",
     ]
     return [line for line in lines if line]
+
+
+def _answer(found: dict[str, Any]) -> str:
+    """One of the policy's answers."""
+    word = {True: "yes", False: "no", None: "not judged"}[found["holds"]]
+    return f"{word}, {found['sentence']}"
 
 
 def _value(value: float | str) -> str:

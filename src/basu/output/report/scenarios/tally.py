@@ -18,7 +18,9 @@ class Tally(NamedTuple):
     passed: int
     judged: int  # with failures and the agent's own faults
     agent_faults: int
-    unjudged: int  # for faults of others: simulator, set-up, benchmark, or a person who ended it
+    absent: int  # not exercised: the conflict never came about
+    unjudged: int  # for faults of others: simulator, set-up, benchmark, or an interruption
+    at_fault: int  # collisions for which the agent is at fault
     distance_m: float | None  # None where nothing was passed or nobody was near, so the others
     ttc_s: float | None
     pet_s: float | None
@@ -66,11 +68,14 @@ def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
     results = [case["results"][agent] for case in cases if agent in case["results"]]
     judged = [result for result in results if LOOKS[result["verdict"]].is_judged]
     passed = [result for result in judged if result["verdict"] == "SUCCESS"]
+    absent = sum(result["verdict"] == "NOT_EXERCISED" for result in results)
     return Tally(
         passed=len(passed),
         judged=len(judged),
         agent_faults=sum(result["verdict"] == "AGENT_FAULT" for result in judged),
-        unjudged=len(results) - len(judged),
+        absent=absent,
+        unjudged=len(results) - len(judged) - absent,
+        at_fault=sum(collision["at_fault"] for result in results for collision in result["collisions"]),
         distance_m=_least(passed, "distance_m"),
         ttc_s=_least(passed, "ttc_s"),
         pet_s=_least(passed, "pet_s"),

@@ -18,6 +18,7 @@ LOOKS = {
     "SUCCESS": Look("✓", "passed", "passed", is_judged=True),
     "FAILURE": Look("✗", "failed", "failed", is_judged=True),
     "AGENT_FAULT": Look("!", "agent fault", "broken", is_judged=True),
+    "NOT_EXERCISED": Look("○", "not exercised", "absent", is_judged=False),
     "SIMULATOR_FAULT": Look("?", "simulator fault", "unjudged", is_judged=False),
     "SETUP_FAULT": Look("?", "set-up fault", "unjudged", is_judged=False),
     "BENCHMARK_FAULT": Look("?", "benchmark fault", "unjudged", is_judged=False),

@@ -26,9 +26,9 @@ class StraightCrossingPaths(Stream):
 
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("side", ("left", "right", "both"), "from which they come"),
-        Number("cars", 3.0, 1.0, 4.0, "", "how many from a side, rounded"),
+        Number("cars", 5.0, 3.0, 6.0, "", "how many from a side, rounded"),
         Number("speed", 8.0, 5.0, 11.0, "m/s", "of all of them"),
-        Number("headway", 2.2, 1.6, 4.0, "s", "from one to the next"),
+        Number("headway", 2.2, 1.6, 3.0, "s", "from one to the next"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 30.0, "sun_altitude_angle": 45.0}
 

@@ -22,9 +22,9 @@ class TurnIntoTraffic(Stream):
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Number("cars", 3.0, 1.0, 4.0, "", "how many, rounded"),
+        Number("cars", 5.0, 3.0, 6.0, "", "how many, rounded"),
         Number("speed", 8.0, 5.0, 11.0, "m/s", "of all of them"),
-        Number("headway", 2.2, 1.6, 4.0, "s", "from one to the next"),
+        Number("headway", 2.2, 1.6, 3.0, "s", "from one to the next"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 100.0, "precipitation": 30.0, "wetness": 60.0}
     aliases: ClassVar[Sequence[str]] = ("NonSignalizedJunctionRightTurn",)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, Meanwhile, ReachAtEgosArrival
 from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, LeastDistance, NoCollision
+from basu.scenarios.library.crossing_paths.stream import departs_s, rest_s_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import crossing, next_junction
@@ -31,17 +32,20 @@ MODELS: dict[str, str] = {
     "van": "vehicle.volkswagen.t2",
     "motorcycle": "vehicle.kawasaki.ninja",
 }
-APPROACH_M, LEAVE_M = 70.0, 40.0  # of the other's way, before and behind the junction
-SLOWEST_MPS = 3.0  # of the other while it makes for the meeting
+SPARE_M, LEAVE_M = 10.0, 40.0  # of the other's way, before where it waits and behind the junction
+SLOWEST_MPS, UNHURRIED = 2.0, 0.6  # of the other while the ego comes: at the least, and of its speed at the most
+HURRY = 1.3  # of its speed, once the ego is at the line
+SETTLED_S = 1.8  # before they meet, the other keeps its speed
 DAYLIGHT: dict[str, float] = {"cloudiness": 10.0, "sun_altitude_angle": 60.0}
 
 
 class UnsignalizedIntersection(Scenario):
     """At a junction without lights another vehicle makes for the point that the ego has to cross.
 
-    The other sets off when the ego reaches a first region before the junction and tries to meet it; when the ego
-    reaches a second one, the other accelerates and goes on. The ego has to stop at its sign, give way and pass. NHTSA
-    pre-crash scenario: straight crossing paths, or turning into a path, at a non-signalized junction.
+    The other sets off when the ego reaches a first region before the junction; when the ego reaches a second one, at
+    its line, the other accelerates and goes on. It is timed by the ego's rest at the line: an ego that drives off
+    again without a look meets it. The ego has to stop at its sign, give way and pass. NHTSA pre-crash scenario:
+    straight crossing paths, or turning into a path, at a non-signalized junction.
     """
 
     group = Group.CROSSING_PATHS
@@ -49,11 +53,11 @@ class UnsignalizedIntersection(Scenario):
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("side", tuple(SIDES), "from which the other comes"),
         Choice("other", tuple(MODELS), "what it is"),
-        Number("first", 38.0, 20.0, 60.0, "m", "from the junction to the region in which the other sets off"),
-        Number("second", 6.0, 2.0, 15.0, "m", "from the junction to the region in which it accelerates"),
-        Number("waits", 28.0, 15.0, 60.0, "m", "from the meeting point to where the other waits"),
-        Number("speed", 8.0, 4.0, 12.0, "m/s", "of the other once it goes on"),
-        Number("offset", 1.2, -1.0, 2.5, "s", "after the ego it would be at the meeting point, did it not accelerate"),
+        Number("first", 20.0, 10.0, 40.0, "m", "from the junction to the region in which the other sets off"),
+        Number("second", 6.0, 2.0, 9.0, "m", "from the junction to the region in which it accelerates"),
+        Number("waits", 75.0, 50.0, 100.0, "m", "from the meeting point to where the other waits"),
+        Number("speed", 8.0, 6.0, 12.0, "m/s", "of the other once it goes on"),
+        Number("offset", 0.0, -1.5, 1.5, "s", "after an ego that drives off without a look it is at the meeting point"),
     )
     weather: ClassVar[Mapping[str, float]] = DAYLIGHT
     timeout_s = 60.0
@@ -68,9 +72,9 @@ class UnsignalizedIntersection(Scenario):
     @cached_property
     def crossing(self) -> Crossing:
         """The other's way across it."""
-        return crossing(
-            self.place, SIDES[self.choice("side")], junction=self.junction, approach_m=APPROACH_M, leave_m=LEAVE_M
-        )
+        before_m = self.number("waits") + SPARE_M
+        side = SIDES[self.choice("side")]
+        return crossing(self.place, side, junction=self.junction, approach_m=before_m, leave_m=LEAVE_M)
 
     def actors(self) -> Sequence[ActorSpec]:
         """The other, waiting on its own street."""
@@ -84,19 +88,10 @@ class UnsignalizedIntersection(Scenario):
     def conflict(self) -> Behaviour:
         """The other makes for the meeting, and accelerates once the ego is in the second region."""
         way, speed_mps = self.crossing, self.number("speed")
-        meeting = ReachAtEgosArrival(
-            OTHER,
-            way.path,
-            way.meet_s_m,
-            way.ego_s_m,
-            self.number("offset"),
-            low_mps=SLOWEST_MPS,
-            high_mps=speed_mps,
-            settled_s=0.8,
-        )
         second = EgoPasses(self._before(self.number("second")), "the second region")
         return InTurn(
-            Meanwhile(second, meeting, name="the other makes for the meeting"),
+            Meanwhile(second, self._makes_for_it(UNHURRIED * speed_mps), name="the other makes for the meeting"),
+            self._makes_for_it(HURRY * speed_mps),
             DriveAlong(OTHER, way.path, speed_mps, to_m=way.meet_s_m + 5.0, at_end="go on"),
             name="negotiation",
         )
@@ -108,6 +103,22 @@ class UnsignalizedIntersection(Scenario):
     def criteria(self) -> Sequence[Criterion]:
         """Stop at the sign, touch nobody, and pass; one metre to who has the right of way is near already."""
         return [HeedsStopSigns(), NoCollision(), LeastDistance(1.0, to=OTHER, while_moving=True), Arrives(), InTime()]
+
+    def _makes_for_it(self, top_mps: float) -> Behaviour:
+        """The other makes for the meeting point, so as to be there when the ego is that has not looked."""
+        way, rest_m = self.crossing, rest_s_m(self.place, self.junction)
+        after_s = 0.0 if rest_m is None else departs_s(way.ego_s_m - rest_m, self.junction.turn)
+        return ReachAtEgosArrival(
+            OTHER,
+            way.path,
+            way.meet_s_m,
+            way.ego_s_m if rest_m is None else rest_m,
+            after_s + self.number("offset"),
+            ego_stops=rest_m is not None,
+            low_mps=SLOWEST_MPS,
+            high_mps=top_mps,
+            settled_s=SETTLED_S,
+        )
 
     def _before(self, ahead_m: float) -> float:
         """So far before the junction, along the ego's route."""

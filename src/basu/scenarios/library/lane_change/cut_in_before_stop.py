@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 CHANGE_M = 12.0
 CUTS_IN_MPS = 9.5  # what the overtaker has then at the most, past a shuttle; past a faster ego it stops over the line
 LINE_M = 0.5  # its bumper stops so far before the line
-RESTS_S = 2.0
+RESTS_S = 4.0  # it looks to both sides: longer than an ego right behind it needs to the line
 
 
 class CutInBeforeStop(OvertakesEgo):

@@ -28,7 +28,8 @@ MODELS: dict[str, str] = {
     "bicycle": "vehicle.gazelle.omafiets",
 }
 NOTICED_M = 2.0  # the leader sets off once the ego is no farther behind than it was placed, and this
-STOPS_BEFORE_M = 5.0  # of its middle before the junction: its front is at the line
+HALF_LENGTH_M = {"car": 1.85, "motorcycle": 1.1, "bicycle": 0.9}
+LINE_M = 0.5  # the leader's front stops so far before the line; before the junction where none is
 CLOSE_M = 12.0  # middle to middle; behind a car that leaves 7 m between the bumpers
 DAYLIGHT: dict[str, float] = {"cloudiness": 10.0, "sun_altitude_angle": 60.0}
 
@@ -60,7 +61,9 @@ class FollowLeadingVehicle(Scenario):
     @property
     def stop_m(self) -> float:
         """Where the leader's middle comes to stand, ahead of the trigger point."""
-        return next_junction(self.place, self.number("ahead")).from_m - STOPS_BEFORE_M
+        entered_m = next_junction(self.place, self.number("ahead")).from_m
+        line_m = self.place.stop_line_m(before_m=entered_m)
+        return (entered_m if line_m is None else line_m) - LINE_M - HALF_LENGTH_M[self.choice("leader")]
 
     def way(self) -> Path:
         """The leader's, from where it stands to the junction."""

@@ -68,7 +68,18 @@ def test_colour_changes_no_character() -> None:
 def test_what_the_shares_assume_stands_with_them() -> None:
     document = matrix()
     text = matrix_text(document)
-    assert line_of(text, "crash cost").split()[2:] == ["81", "%", "100", "%", "0", "%"]
+    assert line_of(text, "crash cost").split()[2:] == [
+        "81",
+        "%",
+        "(52-94)",
+        "100",
+        "%",
+        "(67-100)",
+        "0",
+        "%",
+        "(0-33)",
+    ]
+    assert "shown of all crash cost" in text
     for assumption in document["shares"]["basic"]["assumptions"]:
         assert " ".join(assumption.split()) in " ".join(text.split())
 
@@ -79,3 +90,21 @@ def test_one_group_alone_is_not_weighed() -> None:
 
 def test_a_sweep_tells_where_failing_begins() -> None:
     assert "fails where gap < 2.89 m (31 of 58), passes elsewhere (142 of 142)" in matrix_text(sweep())
+
+
+def test_control_drivers_stand_last_and_are_explained_and_without_them_is_said_how_to_play_them() -> None:
+    document = matrix(agents=("blind", "basic"))
+    text = matrix_text(document)
+    assert line_of(text, "passed of the exercised").split()[-2:] == ["basic", "blind"]
+    assert "control drivers: blind ignores all others." in text
+    assert "--agent blind --agent creeper --agent standing" in matrix_text(matrix(agents=("basic",)))
+
+
+def test_cases_that_were_not_exercised_have_a_sign_of_their_own_and_count_for_neither_side() -> None:
+    verdicts = ["SUCCESS", "FAILURE", "NOT_EXERCISED", "NOT_EXERCISED"]
+    cases = [case(f"deer_{n}", "DeerAtDusk", "animal", {"basic": verdict}) for n, verdict in enumerate(verdicts)]
+    text = matrix_text(matrix_of(cases, ["basic"]))
+    assert line_of(text, "DeerAtDusk").split()[1] == "1/2"
+    assert "2○" in line_of(text, "DeerAtDusk")
+    assert "○ not exercised: the conflict never came about" in text
+    assert "?" not in line_of(text, "DeerAtDusk")

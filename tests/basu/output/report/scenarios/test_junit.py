@@ -113,3 +113,18 @@ def test_cases_that_an_agent_did_not_come_to_are_not_in_its_suite() -> None:
     document["cases"][1]["results"]["forward"] = told("SUCCESS", "x", "forward", 1.0)
     basic, forward = parsed(junit_xml(document))
     assert int(basic.get("tests")) == int(forward.get("tests")) + 1
+
+
+def test_what_was_not_exercised_is_skipped_with_its_reason() -> None:
+    document = matrix_of([case("deer_1", "DeerAtDusk", "animal", {"basic": "NOT_EXERCISED"})], ["basic"])
+    (suite,) = parsed(junit_xml(document))
+    assert (suite.get("failures"), suite.get("errors"), suite.get("skipped")) == ("0", "0", "1")
+    (skipped,) = suite.iter("skipped")
+    assert skipped.get("message").startswith("not exercised: ")
+
+
+def test_a_failure_holds_the_policys_answers_and_the_responsibility_for_contacts() -> None:
+    document = matrix_of([case("deer_1", "DeerAtDusk", "animal", {"basic": "FAILURE"})], ["basic"])
+    (failure,) = parsed(junit_xml(document)).iter("failure")
+    assert "safe: no, " in failure.text
+    assert "collision at 8.00 s with walker, at fault: the ego's front met the other" in failure.text

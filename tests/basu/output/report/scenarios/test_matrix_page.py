@@ -74,7 +74,7 @@ def test_the_shares_stand_with_what_they_assume_and_a_bar_as_long_as_its_group_w
     for assumption in document["shares"]["basic"]["assumptions"]:
         assert assumption.replace("'", "&#x27;") in page or assumption in page
     weights = [float(w) for w in re.findall(r'class="weight" style="width:([0-9.]+)%"', page)]
-    costs = [group["toll"]["cost_musd"] for group in document["shares"]["basic"]["groups"] if group["toll"]]
+    costs = [group["burden"]["cost_musd"] for group in document["shares"]["basic"]["groups"] if group["burden"]]
     assert weights[::3] == pytest.approx([100.0 * cost / max(costs) for cost in costs], abs=0.001)
 
 

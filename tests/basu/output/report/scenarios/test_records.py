@@ -78,5 +78,16 @@ def test_a_matrix_that_somebody_changed_is_refused_with_the_place(tmp_path: Path
 
 def test_a_matrix_of_another_version_is_refused(tmp_path: Path) -> None:
     write_json(tmp_path / MATRIX_FILE, {**matrix(), "schema_version": 7})
-    with pytest.raises(UserError, match="schema version 7, and this version of basu reads 1"):
+    with pytest.raises(UserError, match="schema version 7, and this version of basu reads 2"):
         read_matrix(tmp_path)
+
+
+def test_documents_made_before_the_policy_are_refused_with_what_to_do(tmp_path: Path) -> None:
+    write_json(tmp_path / MATRIX_FILE, {**matrix(), "schema_version": 1})
+    with pytest.raises(
+        UserError, match="before scenarios were judged on safe, completed and exercised; play its cases"
+    ):
+        read_matrix(tmp_path)
+    write_json(tmp_path / RESULT_FILE, case_result(schema_version=1))
+    with pytest.raises(UserError, match="play its cases again"):
+        read_case(tmp_path)

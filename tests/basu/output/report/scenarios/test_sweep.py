@@ -9,7 +9,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
-from basu.output.report.scenarios.sweep.boundary import boundary, boundary_of
+from basu.output.report.scenarios.sweep.boundary import boundary, boundary_of, sentences
 from basu.output.report.scenarios.sweep.neighbours import best_pair
 from basu.output.report.scenarios.sweep.plane import HEIGHT_PX, LEFT_PX, TOP_PX, WIDTH_PX, region
 from basu.output.report.scenarios.sweep.rules import best_rule, between
@@ -212,3 +212,13 @@ def polygon_area(path: str) -> float:
                 abs(sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(corners, corners[1:] + corners[:1], strict=True))) / 2
             )
     return total
+
+
+def test_a_case_that_was_not_exercised_is_missing_and_neither_passes_nor_fails() -> None:
+    document = sweep(60)
+    for row in document["cases"][:20]:
+        row["results"]["basic"]["verdict"] = "NOT_EXERCISED"
+    (study,) = studies(document)
+    assert (len(study.failed), study.absent) == (40, 20)
+    assert not {row["id"] for row in document["cases"][:20]} & set(study.ids)
+    assert "20 more cases were not exercised and are left out." in sentences(boundary_of(study))

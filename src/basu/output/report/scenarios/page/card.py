@@ -38,6 +38,10 @@ def card(
         data_agent=result["agent"],
         data_verdict=verdict,
     )
+    if result.get("assessment") is not None:  # a run made before them has neither
+        article.append(answers(result["assessment"]))
+    if result.get("collisions"):
+        article.append(collisions(result["collisions"]))
     if picture and history is not None and len(history.frames):
         article.append(e("figure", case_drawing(result, history, streets), class_="picture"))
     line = phase_line(result)
@@ -50,6 +54,31 @@ def card(
     command = shlex.join(str(word) for word in result["command"])
     article.append(e("details", e("summary", "Play it again"), e("pre", command), _where(result), class_="folded"))
     return article
+
+
+def answers(assessment: dict[str, Any]) -> Element:
+    """The policy's three answers, each with its sentence."""
+    words = {True: ("✓", "passed"), False: ("✗", "failed"), None: (DASH, "unjudged")}
+    rows = []
+    for name, found in assessment.items():
+        sign, style = words[found["holds"]]
+        if name == "exercised" and found["holds"] is False:
+            sign, style = "○", "absent"
+        rows.append(
+            e(
+                "tr",
+                e("td", sign, class_=f"outcome {style}"),
+                e("th", name, scope="row"),
+                e("td", found["sentence"]),
+            )
+        )
+    return e("table", e("tbody", *rows), class_="answers")
+
+
+def collisions(found: Sequence[dict[str, Any]]) -> Element:
+    """The contacts, each with the responsibility for it."""
+    rows = [e("li", f"{one['t_s']:.2f} s with {one['other']}: {one['sentence']}") for one in found]
+    return e("div", e("b", "Collisions"), e("ul", *rows), class_="collisions")
 
 
 def verdict_mark(verdict: str) -> Element:

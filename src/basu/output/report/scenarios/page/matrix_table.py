@@ -35,7 +35,10 @@ def matrix_table(matrix: dict[str, Any], carded: Collection[str]) -> Element:
 def key() -> Element:
     """What the signs mean."""
     shown = {look.style: look for look in LOOKS.values()}
-    words = {"unjudged": "not judged: a fault of simulator, set-up or benchmark, or interrupted"}
+    words = {
+        "absent": "not exercised: the conflict never came about",
+        "unjudged": "not judged: a fault of simulator, set-up or benchmark, or interrupted",
+    }
     return e(
         "p",
         *(
@@ -64,12 +67,13 @@ def _total(cases: Sequence[dict[str, Any]], agent: str) -> Element:
     """How many were passed, and how narrowly."""
     found = tally(cases, agent)
     narrowly = [found.narrowest, "" if found.ttc_s is None else f"{found.ttc_s:.1f} s"]
+    absent = f"{found.absent} not exercised" if found.absent else ""
     style = "unjudged" if not found.judged else "passed" if found.passed == found.judged else "failed"
     share = f"{found.passed}/{found.judged}" if found.judged else DASH
     return e(
         "td",
         e("b", share, class_=f"share {style}"),
-        e("small", ", ".join(text for text in narrowly if text)),
+        e("small", ", ".join(text for text in (*narrowly, absent) if text)),
         class_="cell",
     )
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from basu.errors import UserError
 from basu.output.report.folder import RESULT_FILE
 from basu.output.report.schema import read_document
 from basu.output.report.streets import read_streets
 from basu.records.history.files import HISTORY_FILE, read_history
+from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 MATRIX_FILE = "matrix.json"
+FIRST_VERSION = 1
 CASE_SCHEMA, MATRIX_SCHEMA = "scenario.schema.json", "matrix.schema.json"
 
 
@@ -35,7 +38,7 @@ def read_matrix(folder: Path) -> dict[str, Any]:
     Raises:
         UserError: there is none, or it is not what it should be.
     """
-    return read_document(folder / MATRIX_FILE, MATRIX_SCHEMA)
+    return _read(folder / MATRIX_FILE, MATRIX_SCHEMA)
 
 
 def read_case(folder: Path) -> CaseRecord:
@@ -45,7 +48,22 @@ def read_case(folder: Path) -> CaseRecord:
         UserError: it is none, or one of its files is not what it should be.
     """
     return CaseRecord(
-        result=read_document(folder / RESULT_FILE, CASE_SCHEMA),
+        result=_read(folder / RESULT_FILE, CASE_SCHEMA),
         history=read_history(folder) if (folder / HISTORY_FILE).exists() else None,
         streets=read_streets(folder),
     )
+
+
+def _read(path: Path, schema: str) -> dict[str, Any]:
+    """A document, checked; the first version has no verdict by the policy and cannot be shown.
+
+    Raises:
+        UserError: it is none, or not what it should be.
+    """
+    document = read_json(path, "the document", "name a folder that `basu scenario run` has left")
+    if isinstance(document, dict) and document.get("schema_version") == FIRST_VERSION:
+        raise UserError(
+            f"{path} was written before scenarios were judged on safe, completed and exercised; play its cases again "
+            "with `basu scenario run`"
+        )
+    return read_document(path, schema)

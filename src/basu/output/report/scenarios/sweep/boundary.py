@@ -50,11 +50,12 @@ def sentences(found: Boundary) -> list[str]:
     """What is known, in sentences that begin small, so that they can follow a name."""
     study = found.study
     count, failed = len(study.failed), int(study.failed.sum())
+    left = [f"{study.absent} more cases were not exercised and are left out."] if study.absent else []
     if failed == 0:
-        return [f"passes all {count} cases."]
+        return [f"passes all {count} cases.", *left]
     if failed == count:
-        return [f"fails all {count} cases."]
-    told = [f"fails {failed} of {count} cases."]
+        return [f"fails all {count} cases.", *left]
+    told = [f"fails {failed} of {count} cases.", *left]
     if found.rule is None:
         told.append("no single parameter tells which: any such rule could be chance (Fisher's exact test, 5 %).")
     else:

@@ -49,7 +49,8 @@ class Study(NamedTuple):
     failed: NDArray[np.bool_]  # (N,), an agent's own faults with them
     broken: NDArray[np.bool_]  # (N,), which of those were faults
     distance_m: NDArray[np.float64]  # (N,) the least, nan where nobody was near
-    unjudged: int  # cases that are left out
+    unjudged: int  # cases that are left out, those not exercised included
+    absent: int  # of those, not exercised: they neither pass nor fail
 
     @property
     def is_mixed(self) -> bool:
@@ -90,6 +91,7 @@ def _study(scenario: str, agent: str, cases: list[dict[str, Any]]) -> Study | No
         broken=np.array([result["verdict"] == "AGENT_FAULT" for _, result in judged]),
         distance_m=np.array([np.nan if value is None else value for value in distances], dtype=np.float64),
         unjudged=len(driven) - len(judged),
+        absent=sum(result["verdict"] == "NOT_EXERCISED" for _, result in driven),
     )
 
 

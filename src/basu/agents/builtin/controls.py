@@ -1,0 +1,40 @@
+"""The control drivers: blind, creeper and standing, drivers that perceive no other actor.
+
+They are controls for the judgement, not drivers to compete with. `docs/decisions/0055-control-drivers.md` states what
+each of them proves.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import carla
+
+from basu.agents.builtin.basic import BasicAgent
+from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+CREEP_MPS = 2.0
+
+
+class BlindAgent(BasicAgent):
+    """The basic agent without other actors: it keeps lanes, limits, lights and signs, and brakes for nothing else."""
+
+    perceives_others = False
+
+
+class CreeperAgent(BlindAgent):
+    """The blind agent at 2 m/s: what it survives, it survives by slowness."""
+
+    cruise_mps = CREEP_MPS
+
+
+class StandingAgent(BlindAgent):
+    """The blind agent with its brake on: what it survives, it survives by staying away."""
+
+    def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
+        """Return the same braking control at each step."""
+        del sensor_data
+        return carla.VehicleControl(brake=HOLD_BRAKE)
