@@ -26,7 +26,10 @@ if TYPE_CHECKING:
 
 
 class AgentsManager(BaseManager):
-    """Holds the agent. After ``tick``, ``control`` is what it answered; before its first answer, the brake is on."""
+    """Holds the agent. After ``tick``, ``requested`` is its answer and ``control`` the person's, if one drives.
+
+    Before the first answer, the brake is on.
+    """
 
     def __init__(
         self,
@@ -54,7 +57,7 @@ class AgentsManager(BaseManager):
         self._is_watched = isinstance(self._agent, RemoteAgent)
         config = self._agent.config()
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
-        self.control = carla.VehicleControl(brake=1.0)
+        self.control = self.requested = carla.VehicleControl(brake=1.0)
 
     @property
     def manual(self) -> bool:
@@ -114,7 +117,7 @@ class AgentsManager(BaseManager):
     def tick(self, frame: Frame) -> None:
         """Ask for a control, and the person whether it counts."""
         self._conduct.before(frame)
-        self.control = self._agent.step(frame.server_frame, self._sensor_data)
+        self.control = self.requested = self._agent.step(frame.server_frame, self._sensor_data)
         self._conduct.after(frame)
         if self.person is not None:
             by_hand = self.person.step(frame.tick, self._step_s, self.control)

@@ -80,7 +80,9 @@ def find_agent(
     if in_process:
         return load_agent(wanted, agent_config)
     memory = None if memory_gb is None else Memory(memory_gb)
-    file = None if wanted in BUILT_IN else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
+    file = (
+        None if wanted.partition(":")[0] in BUILT_IN else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
+    )
     agent = AgentInProcess("", file, "", False, wanted, agent_config, memory)
     try:
         found = agent.process().call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)

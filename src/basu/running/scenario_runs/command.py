@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import sys
 import time
@@ -21,6 +22,7 @@ from basu.running.scenario_runs.leave import leave
 from basu.running.scenario_runs.matrix import matrix_of
 from basu.running.scenario_runs.worker import Job, play
 from basu.scenarios.cases import cases_of, varied
+from basu.scenarios.characteristics import having
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.variation import Variation
 
@@ -72,6 +74,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
             matrix = matrix_of(options, names, playables, documents, began, wall_s)
             write_json(folder / MATRIX_FILE, matrix)
             leave(folder, matrix, options.junit)
+            print(f"repeat  basu scenario run --config {shlex.quote(str(folder / CONFIG_FILE))}")
     return Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
 
 
@@ -83,7 +86,8 @@ def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
     """
     variation = Variation(fixed=options.fixed, design=options.design, vary=options.vary)
     typology = list(Group)
-    by_group = sorted(cases_of(options.what, options.files), key=lambda each: typology.index(each.scenario.group))
+    cases = having(cases_of(options.what, options.files), options.where)
+    by_group = sorted(cases, key=lambda each: typology.index(each.scenario.group))
     return varied(by_group, variation)
 
 

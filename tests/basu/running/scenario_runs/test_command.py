@@ -11,7 +11,7 @@ from basu.cli import main
 from servers import RunningServer
 
 AGENTS = """
-import os, signal, time
+import os, random, signal, time
 import carla
 from basu.agents.autonomous_agent import AutonomousAgent
 
@@ -31,6 +31,10 @@ class Bad(AutonomousAgent):
 class Raises(Bad):
     def fail(self):
         raise ValueError("no idea")
+
+class Draws(Bad):
+    def fail(self):
+        raise ValueError(f"drew {random.random()}")
 
 class Hangs(Bad):
     def fail(self):
@@ -159,10 +163,11 @@ def test_config_and_command_repeat_a_sweep_and_each_of_its_cases(
 ) -> None:
     agent = tmp_path / "bad.py"
     agent.write_text(AGENTS, encoding="utf-8")
-    words = ("goes_well", "--scenarios", files, "--agent", f"{agent}:Raises", "--sweep", 2, "--seed", 7)
+    words = ("goes_well", "--scenarios", files, "--agent", f"{agent}:Draws", "--sweep", 2, "--seed", 7)
     run(simulator, tmp_path / "one", *words, "--step-limit", 2, "--vehicle", "vehicle.tesla.model3")
     wanted = drives(tmp_path / "one")
     assert len(wanted) == 2
+    assert all("drew 0." in result["message"] for _, result, _ in wanted.values()), "chance is a part of it"
     run(simulator, tmp_path / "two", "--config", tmp_path / "one" / "latest")
     assert drives(tmp_path / "two") == wanted
     name, alone = sorted(wanted.items())[1]
