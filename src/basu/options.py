@@ -174,6 +174,16 @@ class RunOptions(Settings):
     port: Port = 2000
     timeout_s: Timeout = 20.0
 
+    metric_files: Annotated[
+        tuple[Path, ...],
+        Option(
+            help="metrics of your own, reported beside BASU's or scored with them; may be given several times",
+            group=FOLDERS,
+            flag="--metrics",
+            metavar="FILE.py",
+            is_file=True,
+        ),
+    ] = ()
     record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
     output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
         Path("runs")

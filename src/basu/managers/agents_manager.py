@@ -29,7 +29,10 @@ SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first 
 
 
 class AgentsManager(BaseManager):
-    """Holds the agent. After ``tick``, ``control`` is what it answered; before its first answer, the brake is on."""
+    """Holds the agent. After ``tick``, ``requested`` is its answer and ``control`` the person's, if one drives.
+
+    Before the first answer, the brake is on.
+    """
 
     def __init__(
         self, loaded: LoadedAgent, *, step_limit_s: float, routes: str | None, person: Person | None = None
@@ -48,7 +51,7 @@ class AgentsManager(BaseManager):
         self._agent = self._ask("__init__", self._setup_limit_s, loaded.agent_class)
         config = parse_config(self._ask("config", self._setup_limit_s, self._agent.config), self._name)
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
-        self.control = carla.VehicleControl(brake=1.0)
+        self.control = self.requested = carla.VehicleControl(brake=1.0)
 
     @property
     def manual(self) -> bool:
@@ -121,7 +124,7 @@ class AgentsManager(BaseManager):
         """Ask for a control, and the person whether it counts."""
         data = self._sensor_data
         answer = self._ask("run_step", self._step_limit_s, lambda: self._agent.run_step(data))
-        self.control = checked(answer, self._name)
+        self.control = self.requested = checked(answer, self._name)
         if self.person is not None:
             by_hand = self.person.step(frame.tick, self._step_s, self.control)
             self._by_hand = by_hand is not None

@@ -132,7 +132,9 @@ def _until_over(
             return over
         if ended():
             raise SimulatorError("the simulator ended")
-        run.vehicle.apply_control(scenarios.through(agents.control))
+        control = scenarios.through(agents.control)
+        metrics.applied(control)
+        run.vehicle.apply_control(control)
         frame = _next_frame(run, frame)
 
 

@@ -14,7 +14,7 @@ from basu.agents.loader import load_agent
 from basu.agents.sensor_file import read_sensors
 from basu.errors import UserError
 from basu.managers.agents_manager import AgentsManager
-from basu.output.hud.seat import person_for
+from basu.output.hud.person_input import person_for
 from basu.routing.route_file import RouteDescription, read_routes
 from basu.routing.subset import subset
 from basu.scenarios.on_way import scenarios_on

@@ -22,6 +22,7 @@ from basu.running.scenario_runs.leave import leave
 from basu.running.scenario_runs.matrix import matrix_of
 from basu.running.scenario_runs.worker import Job, play
 from basu.scenarios.cases import cases_of, varied
+from basu.scenarios.characteristics import having
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.variation import Variation
 
@@ -85,7 +86,8 @@ def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
     """
     variation = Variation(fixed=options.fixed, design=options.design, vary=options.vary)
     typology = list(Group)
-    by_group = sorted(cases_of(options.what, options.files), key=lambda each: typology.index(each.scenario.group))
+    cases = having(cases_of(options.what, options.files), options.where)
+    by_group = sorted(cases, key=lambda each: typology.index(each.scenario.group))
     return varied(by_group, variation)
 
 

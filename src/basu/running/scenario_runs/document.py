@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from basu.options import STEP_S
 from basu.outcome import Outcome, Status
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
+from basu.scenarios.characteristics import measured
 from basu.scenarios.drawing import tree_of
 from basu.scenarios.verdict import judge
 from basu.settings.command_line import words_of
@@ -53,6 +54,7 @@ def document_of(
         "assessment": None if judged.assessment is None else judged.assessment.document(),
         "collisions": [collision._asdict() for collision in judged.collisions],
         "ended": judged.outcome.message,  # how the run ended, for judging it again
+        "measured": None if history is None or playing is None else _measured(playing, history),
         "phases_s": {} if playing is None else {k: round(t * STEP_S, 3) for k, t in playing.phase_ticks.items()},
         "judgements": [judgement._asdict() for judgement in judged.judgements],
         "margins": judged.margins,
@@ -65,6 +67,12 @@ def document_of(
         "wall_s": round(wall_s, 3),
         "timeout_s": scenario.timeout_s,
     }
+
+
+def _measured(playing: Playing, history: History) -> dict[str, Any] | None:
+    """Figures of the route and the drive where the conflict began; None where it never did."""
+    tick = playing.phase_ticks.get("conflict")
+    return None if tick is None or tick >= len(history.frames) else measured(history, tick)
 
 
 def lost(playable: Playable, loaded: LoadedAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:

@@ -46,6 +46,15 @@ class ScenarioOptions(Settings):
             is_file=True,
         ),
     ] = ()
+    where: Annotated[
+        tuple[tuple[str, str], ...],
+        Option(
+            help="only cases with this characteristic, such as lighting=dark; may be given several times",
+            group=CASES,
+            metavar="FIELD=VALUE",
+            style="pairs",
+        ),
+    ] = ()
     sweep: Annotated[
         int | None,
         Option(help="play N samples of each case (Latin hypercube)", group=CASES, metavar="N", rival="design"),
