@@ -184,9 +184,11 @@ def _driven(
             timeout_s=options.timeout_s,
             folder=folder,
             server_address=simulator.address,
+            own_simulator=simulator.own,
             weather=() if options.weather is not None else ground.description.weather,
         )
-        sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors)
+        watched = options.hud is not None or options.viewer or agents.person is not None
+        sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors, listener=agents, is_watched=watched)
         return drive(
             this_run,
             agents,
