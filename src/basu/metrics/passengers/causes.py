@@ -2,8 +2,8 @@
 
 Looked for is whatever asks for less speed within the reach of a braking that nobody minds: a second to think, then
 1.0 m/s² (`balance.STEP_MPS2`), and two metres to spare. What is farther away is no reason to brake harshly yet. A stop
-with no such reason is a phantom stop, as that of 20 February 2020 was. An actor is ahead where its box, moving on, touches
-the corridor that the vehicle is about to sweep.
+with no such reason is a phantom stop, as that of 20 February 2020 was. An actor is ahead where its box, moving on,
+touches the corridor that the vehicle is about to sweep.
 """
 
 from __future__ import annotations
