@@ -84,7 +84,8 @@ class SensorStreams:
 
     def stop(self) -> None:
         """Stop listening and let go of what was measured."""
-        for _, actor in self._sensors:
+        sensors, self._sensors = self._sensors, []
+        for _, actor in sensors:
             with contextlib.suppress(RuntimeError):  # the simulator or the sensor is gone
                 actor.stop()
         self._latest = {}
