@@ -142,9 +142,10 @@ def test_a_crosswalk_without_end_is_refused_or_painted_as_far_as_it_goes(
     raw.call("copy_opendrive_to_file", text, WITHOUT_WALLS)
     raw.call("load_new_episode", "OpenDriveMap", False, 0xFFFF)
     lidar = raw.call("spawn_actor", [0, "sensor.lidar.ray_cast", []], AT_ORIGIN)
-    with RawSubscriber(server.streaming_port, int.from_bytes(lidar[5][:4], "little")) as listener:
+    stream_id = int.from_bytes(lidar[5][:4], "little")
+    raw.call("get_sensor_token", stream_id)  # so that the tick waits for the subscriber
+    with RawSubscriber(server.streaming_port, stream_id) as listener:
         listener.socket.settimeout(120.0)
-        raw.call("tick_cue")
         raw.call("tick_cue")
         assert listener.message()
 
@@ -228,7 +229,9 @@ def test_a_server_without_memory_refuses_and_goes_on() -> None:
             if step_s < 1.0:
                 greedy = [[attribute, 1, value] for attribute, value in GREEDY.items()]
                 lidar = raw.call("spawn_actor", [0, "sensor.lidar.ray_cast_semantic", greedy], AT_ORIGIN)
-                listener = RawSubscriber(server.streaming_port, int.from_bytes(lidar[5][:4], "little"))
+                stream_id = int.from_bytes(lidar[5][:4], "little")
+                raw.call("get_sensor_token", stream_id)  # so that the tick waits for the subscriber
+                listener = RawSubscriber(server.streaming_port, stream_id)
                 raw.call("tick_cue")  # with what it looks at built
         limit = psutil.Process(server.process.pid).memory_info().vms + 60 * 2**20
         resource.prlimit(server.process.pid, resource.RLIMIT_AS, (limit, limit))

@@ -62,8 +62,9 @@ class AutonomousAgent(ABC):
     time_step_s: float
     server_address: tuple[str, int]
     manual: bool = False
+    driven_by_person: bool = False  # whether a person drives at first, before a window; the human agent
+    gives_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
     _sight: Sight | None = None
-    tells_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
 
     def bind(
         self,

@@ -44,6 +44,16 @@ class LoadedAgent(NamedTuple):
     name: str
     file: Path | None
 
+    @property
+    def class_name(self) -> str:
+        """The name of the class."""
+        return self.agent_class.__name__
+
+    @property
+    def is_human(self) -> bool:
+        """Whether a person drives at first."""
+        return self.agent_class.driven_by_person
+
 
 def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     """The agent called ``wanted``: a name, ``file.py``, or ``file.py:ClassName`` where a file holds several.

@@ -24,6 +24,7 @@ from basu.errors import (
     UserError,
 )
 from basu.managers.base_manager import BaseManager, Driver, Frame, Live, Run, ego_in
+from basu.managers.conduct import ticked
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
@@ -185,6 +186,7 @@ class Episode:
             timeout_s=spec.timeout_s,
             folder=self._folder if folder is None else folder,
             server_address=self._simulator.address,
+            own_simulator=self._simulator.own,
             weather=spec.weather_along,
         )
         self._prepared = True
@@ -356,8 +358,12 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
     except RuntimeError as error:
         raise SimulatorError(f"the simulator did not make a step: {error}") from error
     ego = snapshot.find(run.vehicle.id)
+    if ego is None and run.own_simulator:
+        raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
     if ego is None:
         raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
+    if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
+        raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:
         raise UserError(
             f"the simulator went from frame {before.server_frame} to {snapshot.frame} (asked for: {number}); "

@@ -68,6 +68,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     started = datetime.now(timezone.utc)
     spec = _spec(session, agents, job)
     recording: list[RecordingManager] = []
+    watched = session.options.hud is not None or session.options.viewer or agents.person is not None
 
     def observers(live: Live) -> Sequence[BaseManager]:
         live = live._replace(agents=agents)
@@ -85,7 +86,9 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         session.simulator,
         spec,
         towns=session.towns,
-        sensors=lambda: SensorsManager(*session.plan.sensors, late=agents.late_sensors),
+        sensors=lambda: SensorsManager(
+            *session.plan.sensors, late=agents.late_sensors, listener=agents, is_watched=watched
+        ),
         participants=[agents],
         observers=observers,
     )

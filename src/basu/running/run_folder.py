@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.builtin.human import HumanAgent
 from basu.metrics.result import judge
 from basu.options import STEP_S, RunOptions
 from basu.output.report import picture
@@ -28,7 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.config import AgentConfig
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.metrics.registry import Metric
     from basu.metrics.score import Scoring
     from basu.routing.lane_graph import LaneGraph
@@ -42,7 +41,7 @@ ROUTE_WEATHER = "of the route file"
 def run_config(
     options: RunOptions,
     scoring: Scoring,
-    loaded: LoadedAgent,
+    loaded: FoundAgent,
     wishes: AgentConfig,
     description: RouteDescription,
     *,
@@ -57,7 +56,7 @@ def run_config(
     return {
         **config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description)),
         "started": started.isoformat(timespec="seconds"),
-        "agent": {"name": loaded.name, "class": loaded.agent_class.__name__, "file": options.agent},
+        "agent": {"name": loaded.name, "class": loaded.class_name, "file": options.agent},
         "agent_config": asdict(wishes),
         "route": description.id,
         "town": description.town,
@@ -94,7 +93,7 @@ def command(options: RunOptions, scoring: Scoring) -> list[str]:
 
 
 def _files(
-    options: RunOptions, loaded: LoadedAgent, wishes: AgentConfig, description: RouteDescription
+    options: RunOptions, loaded: FoundAgent, wishes: AgentConfig, description: RouteDescription
 ) -> Iterator[Path]:
     """Yield the files that decide over the run's outcome."""
     if loaded.file is not None and loaded.file.is_file():
@@ -115,11 +114,11 @@ def _files(
             yield found
 
 
-def _notes(options: RunOptions, loaded: LoadedAgent) -> list[str]:
+def _notes(options: RunOptions, loaded: FoundAgent) -> list[str]:
     """Return what keeps a run from being repeated, in sentences."""
     if loaded.file is not None and not loaded.file.is_file():
         return [f"{loaded.name} is a class of a notebook or program; a run is repeatable with the agent in a file"]
-    by_hand = options.hud is not None or issubclass(loaded.agent_class, HumanAgent)
+    by_hand = options.hud is not None or loaded.is_human
     if by_hand and options.keys is None and options.record_keys is None:
         return ["a person could drive, and the keys were not recorded; --record-keys FILE makes such a run repeatable"]
     return []

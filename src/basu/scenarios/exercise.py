@@ -301,7 +301,8 @@ def _apart(present: Present, keys: list[int], first: int) -> str:
     away_m = np.hypot(rows["x_m"] - frames["x_m"], rows["y_m"] - frames["y_m"])
     nearest = int(np.argmin(away_m))
     at_s = float(frames["t_s"][nearest])
+    drove = "the ego never moved" if top_mps <= MOVING_MPS else f"the ego, at most {top_mps:.2f} m/s fast, met nobody"
     return (
-        f"the ego, at most {top_mps:.2f} m/s fast, would not have met anybody: the nearest conflict partner, "
+        f"{drove} and would have met nobody, had it driven on: the nearest conflict partner, "
         f"{present.described(int(rows['id'][nearest]))}, was {away_m[nearest]:.1f} m away at {at_s:.2f} s"
     )

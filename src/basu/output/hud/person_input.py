@@ -6,7 +6,6 @@ import contextlib
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from basu.agents.builtin.human import HumanAgent
 from basu.agents.manual.devices import Devices, check_display
 from basu.agents.manual.person import Person
 from basu.agents.manual.session import Played, Session, Setting, Tape, read_session, write_session
@@ -18,19 +17,19 @@ from basu.utils.packaged import find
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from basu.agents.autonomous_agent import AutonomousAgent
     from basu.agents.manual.inputs import InputSource
     from basu.managers.base_manager import Frame, Live, Run
     from basu.options import RunOptions
 
 
-def person_for(options: RunOptions, agent_class: type[AutonomousAgent]) -> Person | None:
+def person_for(options: RunOptions, *, by_hand: bool) -> Person | None:
     """Return the person at this run's window or recorded keys; None where an agent drives unwatched.
+
+    ``by_hand`` says whether the person drives at first.
 
     Raises:
         UserError: no window can be opened, or there is no such session.
     """
-    by_hand = issubclass(agent_class, HumanAgent)
     for path in (options.record_keys, options.hud_screenshot):
         if path is not None and not path.resolve().parent.is_dir():
             raise UserError(f"{path} cannot be written: there is no folder {path.parent}; make it, or name another")

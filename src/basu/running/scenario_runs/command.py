@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tqdm import tqdm
 
-from basu.agents.loader import load_agent
+from basu.agents.process.remote_agent import find_agent
 from basu.errors import UserError
 from basu.outcome import Fault
 from basu.output.report.folder import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.running.scenario_runs.worker import Done
     from basu.scenarios.cases import Playable
@@ -92,7 +93,7 @@ def play_matrix(
     """
     began, began_s = datetime.now(timezone.utc), time.perf_counter()
     playables = chosen(options)
-    agents = _loaded(options.agents) if given is None else list(given.values())
+    agents = _loaded(options) if given is None else list(given.values())
     names = [agent.name for agent in agents]
     folder = _folder(options, began)
     write_json(folder / CONFIG_FILE, run_config(options, agents))
@@ -165,13 +166,15 @@ def _exit_code(document: dict[str, Any]) -> int:
     return int(Fault[document["fault"].upper()].value)
 
 
-def _loaded(typed: Sequence[str]) -> list[LoadedAgent]:
+def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
     """The agents, loaded before anything begins, so that a wrong one is told at once.
 
     Raises:
         UserError: one cannot be had, or two have one name.
     """
-    agents = [load_agent(agent) for agent in typed]
+    agents = [
+        find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb) for agent in options.agents
+    ]
     names = [agent.name for agent in agents]
     for name in names:
         if names.count(name) > 1:

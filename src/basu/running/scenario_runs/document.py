@@ -19,7 +19,7 @@ from basu.settings.option import fields_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
     from basu.scenarios.cases import Playable
@@ -30,7 +30,7 @@ SCHEMA_VERSION = 2
 
 def document_of(
     playable: Playable,
-    loaded: LoadedAgent,
+    loaded: FoundAgent,
     playing: Playing | None,
     judged: Judged,
     options: ScenarioOptions,
@@ -75,7 +75,7 @@ def _measured(playing: Playing, history: History) -> dict[str, Any] | None:
     return None if tick is None or tick >= len(history.frames) else measured(history, tick)
 
 
-def lost(playable: Playable, loaded: LoadedAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
+def lost(playable: Playable, loaded: FoundAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
     """The document of a case whose process died: nothing is known of it."""
     judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
     return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)
@@ -104,12 +104,12 @@ def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> S
     return replace(options, **{**chosen, **found})
 
 
-def case_config(playable: Playable, options: ScenarioOptions, loaded: LoadedAgent) -> dict[str, Any]:
+def case_config(playable: Playable, options: ScenarioOptions, loaded: FoundAgent) -> dict[str, Any]:
     """Return ``config.json`` of a case, which plays it alone again."""
     return run_config(options_again(playable, options, typed_name(options, loaded)), [loaded])
 
 
-def run_config(options: ScenarioOptions, agents: Sequence[LoadedAgent]) -> dict[str, Any]:
+def run_config(options: ScenarioOptions, agents: Sequence[FoundAgent]) -> dict[str, Any]:
     """Return ``config.json`` of a run of scenarios."""
     pairs = [(file, file.with_suffix(".xml" if file.suffix == ".py" else ".py")) for file in options.all_files]
     files = [*(agent.file for agent in agents if agent.file is not None), *(file for pair in pairs for file in pair)]
@@ -117,7 +117,7 @@ def run_config(options: ScenarioOptions, agents: Sequence[LoadedAgent]) -> dict[
     return config_document(SCENARIO_RUN, options, None, command_of(options), there)
 
 
-def typed_name(options: ScenarioOptions, loaded: LoadedAgent) -> str:
+def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
     """Return an agent's name as it was typed, with the class where its file has several."""
     file = loaded.file
     if file is None or loaded.name in options.agents:

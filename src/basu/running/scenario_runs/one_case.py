@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.episode import Towns
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
@@ -81,7 +81,7 @@ class _Attempt(NamedTuple):
     streets_m: list[NDArray[np.float64]]
 
 
-def play_case(session: CaseSession, loaded: LoadedAgent, playable: Playable, output: Path) -> PlayedCase:
+def play_case(session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path) -> PlayedCase:
     """Play a case and write its folder below ``output``; whatever goes wrong becomes its verdict."""
     began_s = time.perf_counter()
     case, options = playable.case, session.options
@@ -113,7 +113,7 @@ def _judged(attempt: _Attempt, history: History | None) -> Judged:
     return attempt.playing.judged(history, attempt.outcome)
 
 
-def _attempt(session: CaseSession, loaded: LoadedAgent, playable: Playable, folder: Path) -> _Attempt:
+def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folder: Path) -> _Attempt:
     """Drive it, or find out why that is not possible."""
     options, episode = session.options, None
     try:
@@ -126,7 +126,7 @@ def _attempt(session: CaseSession, loaded: LoadedAgent, playable: Playable, fold
             session.simulator,
             replace(spec, config=agents.config),
             towns=session.towns,
-            sensors=lambda: SensorsManager(*sensors, late=agents.late_sensors),
+            sensors=lambda: SensorsManager(*sensors, late=agents.late_sensors, listener=agents),
             participants=[agents],
             folder=folder,
         )
@@ -152,7 +152,7 @@ def _streets(episode: Episode | None) -> list[NDArray[np.float64]]:
     return [] if episode is None or episode.ground is None else episode.ground.town.streets_m
 
 
-def _sensors(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
+def _sensors(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
     """What the agent senses with; those of our own read no sensors, theirs are for who looks on, as nobody does here.
 
     Raises:

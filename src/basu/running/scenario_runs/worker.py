@@ -8,7 +8,7 @@ import sys
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.agents.loader import load_agent
+from basu.agents.process.remote_agent import find_agent
 from basu.episode import Towns
 from basu.errors import BasuError
 from basu.outcome import Status
@@ -23,10 +23,12 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.running.scenario_runs.options import ScenarioOptions
 
-ENDING = frozenset({Status.SIMULATOR_FAILED, Status.AGENT_TIMED_OUT, Status.BENCHMARK_FAILED})
-"""After these a worker ends: its simulator is gone, or an agent's code still runs in its process."""
+ENDING = frozenset({Status.SIMULATOR_FAILED, Status.BENCHMARK_FAILED})
+"""After these a worker ends: its simulator is gone, or the benchmark has a bug."""
+ENDING_IN_PROCESS = ENDING | {Status.AGENT_TIMED_OUT}  # the agent's code may still run in it
 
 
 class Job(NamedTuple):
@@ -72,14 +74,17 @@ def play(
         KeyboardInterrupt: the user interrupted a case; what came of it has been yielded.
     """
     library = open_library(options.all_files)
-    agents = given or {agent: load_agent(agent) for agent in options.agents}
+    agents: Mapping[str, FoundAgent] = given or {
+        agent: find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb)
+        for agent in options.agents
+    }
     with simulator_for(options.run_options(options.agents[0])) as simulator:
         session = CaseSession(options, simulator, Towns(simulator))
         for job in jobs:
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
             played = play_case(session, loaded, playable, output / plain(loaded.name))
-            ends = played.outcome.status in ENDING
+            ends = played.outcome.status in (ENDING_IN_PROCESS if options.in_process or given else ENDING)
             yield Done(job.number, played.document, str(played.folder.relative_to(output)), ends)
             if played.outcome.status is Status.INTERRUPTED:
                 raise KeyboardInterrupt

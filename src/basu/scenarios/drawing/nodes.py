@@ -9,8 +9,8 @@ from py_trees.common import Status
 from py_trees.composites import Parallel, Selector
 from py_trees.composites import Sequence as Steps
 
-from basu.scenarios.node import BROKEN_OFF
-from basu.scenarios.triggers.trigger import Trigger
+from basu.scenarios.tree import BROKEN_OFF
+from basu.scenarios.triggers.motion import Trigger
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from basu.metrics.arrival import has_arrived
-from basu.scenarios.triggers.trigger import Trigger
+from basu.scenarios.triggers.motion import Trigger
 
 if TYPE_CHECKING:
     from basu.scenarios.paths import Path

@@ -69,7 +69,10 @@ def run(simulator: RunningServer, tmp_path: Path, route_file: Path, monkeypatch:
     def at(agent: object, *options: str) -> tuple[int, dict[str, Any], History]:
         address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
         output = tmp_path / "runs"
-        code = main(["run", str(agent), *address, "--routes", str(route_file), "--output", str(output), *options])
+        # a striker posts events to this process's window; only there it can
+        where = ["--in-process"] if "striker" in str(agent) else []
+        words = [*address, "--routes", str(route_file), "--output", str(output), *where, *options]
+        code = main(["run", str(agent), *words])
         folder = output / "latest"
         return code, json.loads((folder / "result.json").read_text()), read_history(folder)
 

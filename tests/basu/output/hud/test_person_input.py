@@ -7,8 +7,6 @@ from typing import Any
 import pygame
 import pytest
 
-from basu.agents.builtin.basic import BasicAgent
-from basu.agents.builtin.human import HumanAgent
 from basu.agents.manual.inputs import Held, Input
 from basu.agents.manual.session import Played, Session, Setting, Tape, read_session
 from basu.cli import main
@@ -28,39 +26,35 @@ def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_nobody_sits_before_an_agent_that_is_not_watched() -> None:
-    assert person_for(RunOptions(), BasicAgent) is None
+    assert person_for(RunOptions(), by_hand=False) is None
 
 
-@pytest.mark.parametrize(
-    ("options", "agent"), [(RunOptions(hud="map"), BasicAgent), (RunOptions(agent="human"), HumanAgent)]
-)
-def test_a_window_without_a_display_is_refused_before_anything_starts(
-    options: RunOptions, agent: type[BasicAgent]
-) -> None:
+@pytest.mark.parametrize(("options", "by_hand"), [(RunOptions(hud="map"), False), (RunOptions(agent="human"), True)])
+def test_a_window_without_a_display_is_refused_before_anything_starts(options: RunOptions, *, by_hand: bool) -> None:
     with pytest.raises(UserError, match="no window can be opened here"):
-        person_for(options, agent)
+        person_for(options, by_hand=by_hand)
 
 
 def test_keys_are_played_without_a_window_and_without_waiting() -> None:
-    person = person_for(RunOptions(agent="human", keys=SESSION), HumanAgent)
+    person = person_for(RunOptions(agent="human", keys=SESSION), by_hand=True)
     assert person is not None
     assert (person.driving, person.live) == (True, False)
 
 
 def test_under_an_agent_a_session_begins_with_the_agent() -> None:
-    person = person_for(RunOptions(keys=SESSION), BasicAgent)
+    person = person_for(RunOptions(keys=SESSION), by_hand=False)
     assert person is not None
     assert not person.driving
 
 
 def test_recording_needs_somebody_who_does_something() -> None:
     with pytest.raises(UserError, match="there is no window; add --hud"):
-        person_for(RunOptions(record_keys=Path("keys.json")), BasicAgent)
+        person_for(RunOptions(record_keys=Path("keys.json")), by_hand=False)
 
 
 def test_a_folder_that_is_not_there_is_told_of_before_anything_starts(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"keys\.json cannot be written: there is no folder"):
-        person_for(RunOptions(keys=SESSION, record_keys=tmp_path / "no" / "keys.json"), HumanAgent)
+        person_for(RunOptions(keys=SESSION, record_keys=tmp_path / "no" / "keys.json"), by_hand=True)
 
 
 def test_what_was_driven_is_written_with_where(tmp_path: Path) -> None:

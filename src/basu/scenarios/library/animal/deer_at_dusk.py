@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import InTurn, Together, Wait, WalkAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import STARTS_MPS2, across, ego_is_due, facing_deg, walking_s
+from basu.scenarios.library.road_users import STARTS_MPS2, across, ego_is_due, facing_deg, walking_s
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.scenario import Scenario

@@ -17,7 +17,7 @@ from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, NoCollision
 from basu.scenarios.criteria.margin import present_in
 from basu.scenarios.exercise import Finding
 from basu.scenarios.library.crossing_paths.from_the_side import NARROWLY, SETTLED_S, due
-from basu.scenarios.library.motorists import BLUEPRINTS, EGO_HALF_LENGTH_M, SETS_OFF_MPS2, run_up_m
+from basu.scenarios.library.road_users import BLUEPRINTS, EGO_HALF_LENGTH_M, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import next_junction
 from basu.scenarios.scenario import Scenario

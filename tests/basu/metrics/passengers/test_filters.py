@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from basu.metrics.passengers.weighting import WD, WF, WK, Weighting, gain, weigh
+from basu.metrics.passengers.filters import WD, WF, WK, Weighting, gain, weigh
 
 # ISO 2631-1:1997, table 3 and table 4 (principal weightings in third octaves), factors times 1000, below 10 Hz
 THIRDS_HZ = (

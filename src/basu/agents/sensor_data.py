@@ -1,4 +1,4 @@
-"""What a sensor measured, in the form in which the leaderboard hands it to an agent: numpy arrays."""
+"""Measurements as numpy arrays, as the leaderboard and ScenarioRunner hand them to an agent."""
 
 from __future__ import annotations
 

@@ -1,10 +1,12 @@
-"""One of BASU's agents in a host's world: made from a config, bound at its first step, stepped with arrays."""
+"""One of BASU's agents in a host's world: read from a config file, bound at its first step, stepped with arrays."""
 
 from __future__ import annotations
 
+import difflib
 import importlib
 import math
-from dataclasses import asdict
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.config import parse_config
@@ -17,6 +19,7 @@ from basu.errors import UserError
 from basu.options import STEP_S
 from basu.routing import plan
 from basu.routing.route_file import RouteDescription, RoutePoint
+from basu.utils.json_file import read_json
 from basu.utils.packaged import find
 
 if TYPE_CHECKING:
@@ -24,17 +27,48 @@ if TYPE_CHECKING:
 
     import carla
 
-    from basu.agents.export.guest_config import GuestConfig
     from basu.routing import Route
 
 POINT_EVERY_M = 10.0  # of the host's plan, which has one a metre; joined along the lanes again
 HERO = "hero"
 
 
-class Guest:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportConfig:
+    """What the host's agent config may say."""
+
+    agent: str = "basic"  # a name of BASU's, FILE.py, or FILE.py:Class
+    sensors: str | None = None  # a sensor file; None: as the agent says
+    track: str = "SENSORS"  # of the leaderboard; the evaluator's --track must be the same
+
+
+def read_config(name: str) -> ExportConfig:
+    """Read the file, ``{"agent": "basic"}``; without a file every default.
+
+    Raises:
+        UserError: it cannot be read, or says something that means nothing.
+    """
+    if not name:
+        return ExportConfig()
+    path = Path(name)
+    document = read_json(path, "agent config")
+    if not isinstance(document, dict):
+        raise UserError(f'agent config {path} must hold an object, such as {{"agent": "basic"}}')
+    known = [field.name for field in fields(ExportConfig)]
+    for key, value in document.items():
+        if key not in known:
+            close = difflib.get_close_matches(key, known, 1)
+            hint = f"did you mean '{close[0]}'?" if close else f"it may have {', '.join(known)}"
+            raise UserError(f"agent config {path} has the key '{key}', which means nothing here; {hint}")
+        if not isinstance(value, str) or not value:
+            raise UserError(f"agent config {path}: '{key}' is {value!r}; it must be a text")
+    return ExportConfig(**document)
+
+
+class ExportedAgent:
     """The life of it: ``sensors``, ``bind``, ``step`` each tick, ``close``."""
 
-    def __init__(self, config: GuestConfig) -> None:
+    def __init__(self, config: ExportConfig) -> None:
         self._loaded = load_agent(config.agent)
         if issubclass(self._loaded.agent_class, LeaderboardAgent):
             raise UserError(f"the agent '{config.agent}' is one of the leaderboard's already; give it as --agent")
@@ -86,7 +120,7 @@ class Guest:
             self.bound = False
             self._agent.destroy()
 
-    def _sensor_set(self, config: GuestConfig) -> tuple[SensorSpec, ...]:
+    def _sensor_set(self, config: ExportConfig) -> tuple[SensorSpec, ...]:
         """The sensors: the config's, else the agent's own, else the file that the agent names."""
         own = self._agent.sensors() if config.sensors is None else None
         if own is not None:

@@ -1,26 +1,26 @@
-"""Claims about the file that names the guest."""
+"""Claims about the file that names the exported agent."""
 
 from pathlib import Path
 
 import pytest
 
-from basu.agents.export.guest_config import GuestConfig, read_config
+from basu.agents.export.exported_agent import ExportConfig, read_config
 from basu.errors import UserError
 
 
 def written(folder: Path, text: str) -> str:
-    path = folder / "guest.json"
+    path = folder / "basu_agent.json"
     path.write_text(text)
     return str(path)
 
 
 def test_without_a_file_the_basic_agent_drives() -> None:
-    assert read_config("") == GuestConfig(agent="basic", sensors=None, track="SENSORS")
+    assert read_config("") == ExportConfig(agent="basic", sensors=None, track="SENSORS")
 
 
 def test_the_file_names_agent_sensors_and_track(tmp_path: Path) -> None:
     text = '{"agent": "mine.py:Mine", "sensors": "config/rig.json", "track": "MAP"}'
-    assert read_config(written(tmp_path, text)) == GuestConfig(
+    assert read_config(written(tmp_path, text)) == ExportConfig(
         agent="mine.py:Mine", sensors="config/rig.json", track="MAP"
     )
 
