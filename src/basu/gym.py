@@ -15,7 +15,7 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
 
 The values are clipped to the boxes' bounds. Reward: see ``Reward``. ``terminated`` on arrival, on leaving the route, on
 standing still for too long, and at a scenario's end; ``truncated`` when the simulated time is used up. ``info`` has
-``route_s_m``, ``infractions`` (new ones, reported and rewarded at every tenth and the last step), and with the last step
+``route_s_m``, ``infractions`` (new ones, reported and rewarded at every tenth and the last step), and at the end
 ``outcome`` and ``message``.
 """
 
