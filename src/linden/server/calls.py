@@ -11,6 +11,7 @@ from linden.handlers.context import Context
 from linden.handlers.registry import Unanswered
 from linden.server.cue import QUESTION, TICK, Cue, hear_question
 from linden.server.expected import Expected
+from linden.server.handover import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
 from linden.server.subscribers import Subscribers
 from linden.wire.rpc import Call
@@ -30,6 +31,8 @@ stand in line, the Traffic Manager's behind the program's own."""
 
 ABOUT_TO_LISTEN = "get_sensor_token"
 LOAD = "load_new_episode"
+LOADING_S = 0.5
+"""How long an answered load waits for its client to ask which episode there is."""
 JOINING_S = 0.05
 """What the official client needs from beginning to listen until it may stop again. It drops its stream when it loads an
 episode, and a busy client that had asked for that stream just before ends its own process with ``bad_weak_ptr``:
@@ -71,6 +74,8 @@ class Calls:
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
         self._working: dict[RpcPeer, Unanswered] = {}  # whose call has work in the background
+        self._handovers: dict[RpcPeer, Handover] = {}  # of loads by those who run a Traffic Manager
+        self._load_until_s = math.inf  # when a pending load begins in any case
         self._held: dict[RpcPeer, tuple[bytes, float]] = {}  # answers that wait for the scene, and until when
 
     def forget(self, peer: RpcPeer) -> None:
@@ -80,6 +85,7 @@ class Calls:
         self._cues.pop(peer, None)
         self._working.pop(peer, None)  # what it asked for is made, and nobody gets it
         self._held.pop(peer, None)
+        self._handovers.pop(peer, None)
         self.expected.forget(peer.number)
 
     def carry_out(self, peer: RpcPeer) -> None:
@@ -114,8 +120,7 @@ class Calls:
         self._watch(peer)
 
     def _leads_traffic(self, peer: RpcPeer) -> bool:
-        owners = self._context.traffic_managers.values()
-        return self.is_synchronous() and any(owner == peer.number for _, owner in owners)
+        return self.is_synchronous() and self._traffic_managers(peer) > 0
 
     def _keep_order(self, peer: RpcPeer, answers: list[bytes]) -> None:
         """Carry out a tick, or the question before it, of a client that runs a Traffic Manager; see ``server.cue``.
@@ -144,6 +149,8 @@ class Calls:
         """
         if peer in self._held:
             return self._done(peer, self._held.pop(peer)[0])
+        if peer in self._handovers and (answer := self._hand_over(peer)) is not None:
+            return answer
         self._context.caller = peer.number
         frame, call = self._context.simulation.frame, peer.calls[0]
         if peer in self._working:
@@ -158,6 +165,9 @@ class Calls:
             self._working[peer] = answer
             answer.made.add_done_callback(lambda _: self._wake())
             return None
+        if call.method == LOAD and (threads := self._traffic_managers(peer)):
+            self._handovers[peer] = Handover(answer, threads, self._clock() + GATHERING_S)
+            return None
         if not call.is_async and not registry.advances(call) and self._context.builds_the_scene():
             self._held[peer] = answer, self._clock() + SCENE_S
             return None
@@ -165,10 +175,46 @@ class Calls:
 
     def _prepare(self, peer: RpcPeer, call: Call) -> None:
         """Note what follows from a call before it is carried out."""
+        self._begin_load_before(peer, call)
         if call.method == LOAD:
             time.sleep(max(0.0, self.joined_s + JOINING_S - self._clock()))
+            self._load_until_s = math.inf
         if call.method == ABOUT_TO_LISTEN and call.args and self._is_stream(call.args[0]):
             self.expected.asked(call.args[0], peer.number, self._clock())
+
+    def _begin_load_before(self, peer: RpcPeer, call: Call) -> None:
+        """Begin an answered load before a call that has to find the new episode.
+
+        The client that loads asks for the version and the present episode first. Others go on in that episode
+        meanwhile, but not for long.
+        """
+        pending, now_s = self._context.pending_load, self._clock()
+        if pending is None:
+            return
+        is_due = self.load_is_due(now_s)
+        if peer.number != pending.client:
+            if is_due:
+                self._context.begin_pending_load()
+        elif call.method not in OF_A_LOAD:
+            self._context.begin_pending_load()
+        elif call.method == OF_A_LOAD[-1]:
+            self._load_until_s = now_s
+
+    def _hand_over(self, peer: RpcPeer) -> bytes | None:
+        """Return the answer to a load whose time has come, None where the client's next call is to be carried out."""
+        handover = self._handovers[peer]
+        if handover.phase is Phase.GATHERING:
+            return self._done(peer, handover.answered(self._clock()))
+        if handover.phase is Phase.SETTLING or not handover.bring_forward(peer, self._clock()):
+            del self._handovers[peer]
+        return None
+
+    def _traffic_managers(self, peer: RpcPeer) -> int:
+        return sum(owner == peer.number for _, owner in self._context.traffic_managers.values())
+
+    def hears(self, peer: RpcPeer) -> bool:
+        """Return whether to read on from a client although calls of its wait."""
+        return peer in self._handovers
 
     def _is_stream(self, stream_id: object) -> bool:
         """Whether that is the number of a stream on which something will come."""
@@ -186,15 +232,27 @@ class Calls:
             return not self._working[peer].made.done()
         if peer in self._held:
             return self._context.builds_the_scene() and self._clock() < self._held[peer][1]
+        if peer in self._handovers:
+            return self._handovers[peer].waits(peer, self._clock())
         return (
             peer.outgoing.waiting_bytes + unsent_bytes > UNREAD_ANSWERS_BYTES
             or self.waits_for_subscribers(peer)
             or (registry.advances(peer.calls[0]) and self._context.waits_for_the_scene())
         )
 
+    def load_is_due(self, now_s: float) -> bool:
+        """Return whether an answered load begins before the next frame that is made by the clock."""
+        if self._context.pending_load is None:
+            return False
+        if self._load_until_s == math.inf:
+            self._load_until_s = now_s + LOADING_S
+        return now_s >= self._load_until_s
+
     def held_s(self, now_s: float) -> float | None:
-        """Return how long the first of the answers that wait for the scene waits at most; None where none does."""
-        return min((max(0.0, until_s - now_s) for _, until_s in self._held.values()), default=None)
+        """Return how long the first of the answers that wait for the scene or a load waits at most; None for none."""
+        until_s = [until_s for _, until_s in self._held.values()]
+        until_s += [handover.until_s for handover in self._handovers.values()]
+        return max(0.0, min(until_s) - now_s) if until_s else None
 
     def waits_for_subscribers(self, peer: RpcPeer) -> bool:
         """Whether a client's next call makes a frame, for which somebody who lags behind or comes is not ready."""
