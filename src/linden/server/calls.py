@@ -9,7 +9,7 @@ from linden.errors import ProtocolError
 from linden.handlers import registry
 from linden.handlers.context import Context
 from linden.handlers.registry import Unanswered
-from linden.server.cue import QUESTION, TICK, Cue, hear_question
+from linden.server.cue import QUESTION, TICK, Cue, bring_question_forward
 from linden.server.expected import Expected
 from linden.server.handover import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
@@ -133,9 +133,9 @@ class Calls:
             answers.clear()
         cue = self._cues.setdefault(peer, Cue())
         if peer.calls[0].method == TICK:
-            if cue.answered_s is None and hear_question(peer, self._clock):
+            if cue.answered_s is None and bring_question_forward(peer):
                 return
-            cue.settle(self._clock)
+            cue.ticked()
             if (answer := self._answer(peer)) is not None:
                 answers.append(answer)
         elif (answer := self._answer(peer)) is not None:
@@ -214,7 +214,13 @@ class Calls:
 
     def hears(self, peer: RpcPeer) -> bool:
         """Return whether to read on from a client although calls of its wait."""
-        return peer in self._handovers
+        return peer in self._handovers or self._waits_for_cue(peer)
+
+    def _waits_for_cue(self, peer: RpcPeer) -> bool:
+        """Return whether a client's tick waits for its Traffic Manager's thread."""
+        if not peer.calls or peer.calls[0].method != TICK or peer in self._working or not self._leads_traffic(peer):
+            return False
+        return self._cues.setdefault(peer, Cue()).waits(peer, self._clock())
 
     def _is_stream(self, stream_id: object) -> bool:
         """Whether that is the number of a stream on which something will come."""
@@ -236,6 +242,7 @@ class Calls:
             return self._handovers[peer].waits(peer, self._clock())
         return (
             peer.outgoing.waiting_bytes + unsent_bytes > UNREAD_ANSWERS_BYTES
+            or self._waits_for_cue(peer)
             or self.waits_for_subscribers(peer)
             or (registry.advances(peer.calls[0]) and self._context.waits_for_the_scene())
         )
@@ -252,6 +259,9 @@ class Calls:
         """Return how long the first of the answers that wait for the scene or a load waits at most; None for none."""
         until_s = [until_s for _, until_s in self._held.values()]
         until_s += [handover.until_s for handover in self._handovers.values()]
+        until_s += [
+            s for peer in self.unfinished if peer in self._cues and (s := self._cues[peer].deadline_s) is not None
+        ]
         return max(0.0, min(until_s) - now_s) if until_s else None
 
     def waits_for_subscribers(self, peer: RpcPeer) -> bool:

@@ -36,7 +36,7 @@ def test_a_tick_goes_ahead_where_nobody_asks() -> None:
 
 def test_a_late_question_counts_for_the_step_it_belongs_to() -> None:
     cue = Cue()
-    cue.settle(time.monotonic)  # nobody has asked: the tick went ahead
+    cue.ticked()  # nobody has asked: the tick went ahead
     cue.answered(1.0)
     assert cue.answered_s is None
     cue.answered(2.0)
