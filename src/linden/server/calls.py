@@ -98,7 +98,7 @@ class Calls:
         unsent_bytes = 0
         try:
             while peer.calls and len(answers) < CALLS_PER_TURN and not self.must_wait(peer, unsent_bytes):
-                if peer.calls[0].method in (QUESTION, TICK) and self._leads_traffic(peer):
+                if self._keeps_order(peer):
                     self._keep_order(peer, answers)
                 elif (answer := self._answer(peer)) is not None:
                     answers.append(answer)
@@ -119,11 +119,14 @@ class Calls:
             return
         self._watch(peer)
 
-    def _leads_traffic(self, peer: RpcPeer) -> bool:
-        return self.is_synchronous() and self._traffic_managers(peer) > 0
+    def _keeps_order(self, peer: RpcPeer) -> bool:
+        """Return whether a client's next call is a tick that waits, or a tick or question of one that leads traffic."""
+        if self._waiting_tick(peer) is not None:
+            return True
+        return peer.calls[0].method in (QUESTION, TICK) and self.is_synchronous() and self._traffic_managers(peer) > 0
 
     def _keep_order(self, peer: RpcPeer, answers: list[bytes]) -> None:
-        """Carry out a tick, or the question before it, of a client that runs a Traffic Manager; see ``server.cue``.
+        """Go on with a tick, or the question before it, of a client that runs a Traffic Manager; see ``server.cue``.
 
         Raises:
             OSError: the client is gone.
@@ -132,15 +135,20 @@ class Calls:
             peer.outgoing.send(b"".join(answers))
             answers.clear()
         cue = self._cues.setdefault(peer, Cue())
-        if peer.calls[0].method == TICK:
-            if cue.answered_s is None and bring_question_forward(peer):
-                return
-            cue.ticked()
-            if (answer := self._answer(peer)) is not None:
-                answers.append(answer)
+        is_question = bring_question_forward(peer) or peer.calls[0].method == QUESTION
+        if cue.tick and not is_question:
+            answers.append(self._done(peer, cue.finish()))
         elif (answer := self._answer(peer)) is not None:
-            peer.outgoing.send(answer)
-            cue.answered(self._clock())
+            if is_question:
+                peer.outgoing.send(answer)
+                cue.answered(self._clock())
+            else:
+                answers.append(answer)
+
+    def _waiting_tick(self, peer: RpcPeer) -> Cue | None:
+        """Return the cue that a client's tick waits for; None where its next call is no tick that is carried out."""
+        cue = self._cues.get(peer)
+        return cue if cue is not None and cue.tick else None
 
     def _answer(self, peer: RpcPeer) -> bytes | None:
         """Carry out a client's next call, or go on with it; None where the answer is not there yet.
@@ -149,8 +157,8 @@ class Calls:
         """
         if peer in self._held:
             return self._done(peer, self._held.pop(peer)[0])
-        if peer in self._handovers and (answer := self._hand_over(peer)) is not None:
-            return answer
+        if peer in self._handovers and (load := self._hand_over(peer)) is not None:
+            return load
         self._context.caller = peer.number
         frame, call = self._context.simulation.frame, peer.calls[0]
         if peer in self._working:
@@ -165,13 +173,20 @@ class Calls:
             self._working[peer] = answer
             answer.made.add_done_callback(lambda _: self._wake())
             return None
-        if call.method == LOAD and (threads := self._traffic_managers(peer)):
-            self._handovers[peer] = Handover(answer, threads, self._clock() + GATHERING_S)
-            return None
-        if not call.is_async and not registry.advances(call) and self._context.builds_the_scene():
-            self._held[peer] = answer, self._clock() + SCENE_S
-            return None
-        return self._done(peer, answer)
+        return None if self._keep(peer, call, answer) else self._done(peer, answer)
+
+    def _keep(self, peer: RpcPeer, call: Call, answer: bytes) -> bool:
+        """Return whether an answer has to wait, and keep it where it has."""
+        now_s = self._clock()
+        if call.method == TICK and self._keeps_order(peer):
+            self._cues[peer].ticked(answer, now_s)
+        elif call.method == LOAD and (threads := self._traffic_managers(peer)):
+            self._handovers[peer] = Handover(answer, threads, now_s + GATHERING_S)
+        elif not call.is_async and not registry.advances(call) and self._context.builds_the_scene():
+            self._held[peer] = answer, now_s + SCENE_S
+        else:
+            return False
+        return True
 
     def _prepare(self, peer: RpcPeer, call: Call) -> None:
         """Note what follows from a call before it is carried out."""
@@ -213,14 +228,9 @@ class Calls:
         return sum(owner == peer.number for _, owner in self._context.traffic_managers.values())
 
     def hears(self, peer: RpcPeer) -> bool:
-        """Return whether to read on from a client although calls of its wait."""
-        return peer in self._handovers or self._waits_for_cue(peer)
-
-    def _waits_for_cue(self, peer: RpcPeer) -> bool:
-        """Return whether a client's tick waits for its Traffic Manager's thread."""
-        if not peer.calls or peer.calls[0].method != TICK or peer in self._working or not self._leads_traffic(peer):
-            return False
-        return self._cues.setdefault(peer, Cue()).waits(peer, self._clock())
+        """Return whether to read on from a client although calls of its wait, since what they wait for is a call."""
+        waits = peer in self._handovers or self._waiting_tick(peer) is not None
+        return waits and len(peer.calls) < CALLS_PER_TURN
 
     def _is_stream(self, stream_id: object) -> bool:
         """Whether that is the number of a stream on which something will come."""
@@ -240,9 +250,10 @@ class Calls:
             return self._context.builds_the_scene() and self._clock() < self._held[peer][1]
         if peer in self._handovers:
             return self._handovers[peer].waits(peer, self._clock())
+        if (cue := self._waiting_tick(peer)) is not None:
+            return cue.waits(peer, self._clock())
         return (
             peer.outgoing.waiting_bytes + unsent_bytes > UNREAD_ANSWERS_BYTES
-            or self._waits_for_cue(peer)
             or self.waits_for_subscribers(peer)
             or (registry.advances(peer.calls[0]) and self._context.waits_for_the_scene())
         )
@@ -259,9 +270,7 @@ class Calls:
         """Return how long the first of the answers that wait for the scene or a load waits at most; None for none."""
         until_s = [until_s for _, until_s in self._held.values()]
         until_s += [handover.until_s for handover in self._handovers.values()]
-        until_s += [
-            s for peer in self.unfinished if peer in self._cues and (s := self._cues[peer].deadline_s) is not None
-        ]
+        until_s += [cue.deadline_s for cue in self._cues.values() if cue.tick]
         return max(0.0, min(until_s) - now_s) if until_s else None
 
     def waits_for_subscribers(self, peer: RpcPeer) -> bool:
