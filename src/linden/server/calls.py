@@ -10,6 +10,7 @@ from linden.handlers import registry
 from linden.handlers.context import Context
 from linden.handlers.registry import Unanswered
 from linden.server.cue import QUESTION, TICK, Cue, bring_question_forward
+from linden.server.driven import BATCH, DESTROY, Driven
 from linden.server.expected import Expected
 from linden.server.handover import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
@@ -29,6 +30,18 @@ SCENE_S = 0.8
 picture waits a little, rather than the tick all the time. CARLA's examples give a call two seconds, and two may
 stand in line, the Traffic Manager's behind the program's own."""
 
+OF_TRAFFIC = frozenset(
+    (
+        QUESTION,
+        "get_actor_bounding_box",
+        "get_vehicle_light_states",
+        "get_weather_parameters",
+        "set_actor_simulate_physics",
+        "get_traffic_light_state",
+        "set_traffic_light_state",
+    )
+)
+"""What a Traffic Manager's thread calls in a step, but for its batch."""
 ABOUT_TO_LISTEN = "get_sensor_token"
 LOAD = "load_new_episode"
 LOADING_S = 0.5
@@ -73,6 +86,7 @@ class Calls:
         self.joined_s = -math.inf
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
+        self._driven: dict[RpcPeer, Driven] = {}  # of those too
         self._working: dict[RpcPeer, Unanswered] = {}  # whose call has work in the background
         self._handovers: dict[RpcPeer, Handover] = {}  # of loads by those who run a Traffic Manager
         self._load_until_s = math.inf  # when a pending load begins in any case
@@ -83,6 +97,7 @@ class Calls:
         peer.calls.clear()
         self.unfinished.pop(peer, None)
         self._cues.pop(peer, None)
+        self._driven.pop(peer, None)
         self._working.pop(peer, None)  # what it asked for is made, and nobody gets it
         self._held.pop(peer, None)
         self._handovers.pop(peer, None)
@@ -173,7 +188,38 @@ class Calls:
             self._working[peer] = answer
             answer.made.add_done_callback(lambda _: self._wake())
             return None
-        return None if self._keep(peer, call, answer) else self._done(peer, answer)
+        if self._keep(peer, call, answer):
+            return None
+        self._done(peer, answer)
+        return answer if not self._traffic_managers(peer) else self._with_driven(peer, call, answer)
+
+    def _with_driven(self, peer: RpcPeer, call: Call, answer: bytes) -> bytes | None:
+        """Return what is to be sent for a call of a client that runs Traffic Managers; see ``server.driven``."""
+        simulation = self._context.simulation
+        if call.method == BATCH and call.args:
+            ready = self._driven.setdefault(peer, Driven()).batch(call.args[0], simulation.frame)
+            return b"".join((answer, *ready))
+        if call.method != DESTROY or peer not in self._driven or call.is_async or not call.args:
+            return answer
+        frames_come = not self.is_synchronous() and not self._context.waits_for_the_scene()
+        waits = self._driven[peer].destroyed(
+            call.args[0], answer, self._clock(), simulation.frame, frames_come=frames_come
+        )
+        self._context.frame_is_due |= waits
+        return None if waits else answer
+
+    def send_overdue(self) -> None:
+        """Send the answers to destructions that no Traffic Manager has confirmed in time."""
+        now_s = self._clock()
+        for peer, driven in list(self._driven.items()):
+            if ready := driven.overdue(now_s):
+                try:
+                    peer.outgoing.send(b"".join(ready))
+                except OSError as error:
+                    log.info("%s is gone: %s", peer, error)
+                    self._close(peer)
+                    continue
+                self._watch(peer)
 
     def _keep(self, peer: RpcPeer, call: Call, answer: bytes) -> bool:
         """Return whether an answer has to wait, and keep it where it has."""
@@ -182,11 +228,23 @@ class Calls:
             self._cues[peer].ticked(answer, now_s)
         elif call.method == LOAD and (threads := self._traffic_managers(peer)):
             self._handovers[peer] = Handover(answer, threads, now_s + GATHERING_S)
-        elif not call.is_async and not registry.advances(call) and self._context.builds_the_scene():
+        elif self._leads_to_a_picture(peer, call) and self._context.builds_the_scene():
             self._held[peer] = answer, now_s + SCENE_S
         else:
             return False
         return True
+
+    def _leads_to_a_picture(self, peer: RpcPeer, call: Call) -> bool:
+        """Return whether an answer may wait for the scene.
+
+        A Traffic Manager's calls may not: its first step makes two for each car, and would take seconds. Cars that are
+        destroyed meanwhile end the client's process.
+        """
+        if call.is_async or registry.advances(call):
+            return False
+        if not self._traffic_managers(peer):
+            return True
+        return self.is_synchronous() and call.method not in OF_TRAFFIC
 
     def _prepare(self, peer: RpcPeer, call: Call) -> None:
         """Note what follows from a call before it is carried out."""
@@ -270,6 +328,7 @@ class Calls:
         """Return how long the first of the answers that wait for the scene or a load waits at most; None for none."""
         until_s = [until_s for _, until_s in self._held.values()]
         until_s += [handover.until_s for handover in self._handovers.values()]
+        until_s += [one.until_s for driven in self._driven.values() for one in driven.waiting]
         until_s += [cue.deadline_s for cue in self._cues.values() if cue.tick]
         return max(0.0, min(until_s) - now_s) if until_s else None
 

@@ -105,6 +105,7 @@ class Server:
             key.data(events)
         for peer in tuple(self._calls.unfinished):
             self._calls.carry_out(peer)
+        self._calls.send_overdue()
         self._make_due_frame()
         self._look_around()
 
