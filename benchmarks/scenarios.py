@@ -1,6 +1,6 @@
-"""How long it takes to play scenarios: every case with several agents, and what one case costs beside an empty one.
+"""How long it takes to play scenarios: every case with three agents and three control drivers, and the verdicts.
 
-``python benchmarks/scenarios.py [--agents basic,behavioral,forward] [--workers N] [WHAT …]``
+``python benchmarks/scenarios.py [--agents basic,blind] [--workers N] [WHAT …]``
 """
 
 import argparse
@@ -10,11 +10,13 @@ import json
 import statistics
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 from basu.cli import main
 
-AIM_S = 600.0  # all cases with three agents, on two cores (issue 6)
+AGENTS = "basic,behavioral,forward,blind,creeper,standing"
+AIM_S = 900.0  # all 171 cases with the six agents, on two quiet cores
 
 
 def played(words: list[str], output: Path) -> tuple[dict, float]:
@@ -28,15 +30,28 @@ def played(words: list[str], output: Path) -> tuple[dict, float]:
 
 def table(matrix: dict, wall_s: float) -> str:
     """A row an agent, and the whole."""
-    heads = ("drives", 8), ("passed", 8), ("simulated s", 13), ("median s", 10), ("longest s", 11), ("x real time", 13)
+    heads = (
+        ("drives", 8),
+        ("passed", 8),
+        ("failed", 8),
+        ("absent", 8),
+        ("at fault", 10),
+        ("simulated s", 13),
+        ("median s", 10),
+        ("longest s", 11),
+        ("x real time", 13),
+    )
     lines = [f"{'agent':<24}" + "".join(f"{head:>{width}}" for head, width in heads)]
     for agent in matrix["agents"]:
         results = [case["results"][agent] for case in matrix["cases"]]
         walls_s = [result["wall_s"] for result in results]
         simulated_s = sum(result["simulated_s"] for result in results)
-        passed = sum(result["verdict"] == "SUCCESS" for result in results)
+        verdicts = Counter(result["verdict"] for result in results)
+        at_fault = sum(collision["at_fault"] for result in results for collision in result["collisions"])
+        failed = verdicts["FAILURE"] + verdicts["AGENT_FAULT"]
         lines.append(
-            f"{agent:<24}{len(results):>8}{passed:>8}{simulated_s:>13.0f}{statistics.median(walls_s):>10.2f}"
+            f"{agent:<24}{len(results):>8}{verdicts['SUCCESS']:>8}{failed:>8}{verdicts['NOT_EXERCISED']:>8}{at_fault:>10}"
+            f"{simulated_s:>13.0f}{statistics.median(walls_s):>10.2f}"
             f"{max(walls_s):>11.2f}{simulated_s / sum(walls_s):>13.1f}"
         )
     drives = sum(len(case["results"]) for case in matrix["cases"])
@@ -51,7 +66,7 @@ def run() -> None:
     """Play and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", nargs="*", default=["all"])
-    parser.add_argument("--agents", default="basic,behavioral,forward")
+    parser.add_argument("--agents", default=AGENTS)
     parser.add_argument("--workers", default=None)
     arguments = parser.parse_args()
     words = [*arguments.what, *(word for agent in arguments.agents.split(",") for word in ("--agent", agent))]

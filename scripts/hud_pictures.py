@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/hud.md: the HUD in traffic, the same from above with a person at the keys, the help page.
+"""Makes the pictures of docs/hud.md: in traffic, from above with a person at the keys, the help page, a lidar.
 
     SDL_VIDEODRIVER=dummy python scripts/hud_pictures.py
 
@@ -32,6 +32,7 @@ PICTURES = {
     "hud.png": ("Watched", "--hud-camera", "960x540", "--vehicles", "40", "--walkers", "10", "--seed", "4"),
     "hud-map.png": ("Seen", *SESSION),
     "hud-help.png": ("Helped", *SESSION),
+    "hud-lidar.png": ("Scanned", "--vehicles", "40", "--walkers", "10", "--seed", "4"),
 }
 
 
@@ -69,6 +70,25 @@ class Helped(Seen):
     """Somebody who asks for help soon."""
 
     keys: Mapping[int, tuple[str, ...]] = {60: ("h", "F12"), 61: ("ESCAPE",)}
+
+
+class Scanned(Watched):
+    """Looks at its lidar instead of the camera."""
+
+    keys: Mapping[int, tuple[str, ...]] = {445: ("n",), 460: ("F12",), 461: ("ESCAPE",)}
+
+    def sensors(self) -> list[dict[str, Any]]:
+        """A lidar on the roof, a camera, and a receiver."""
+        lidar = {"channels": 64, "range": 60.0, "points_per_second": 1_000_000, "rotation_frequency": 20.0}
+        return [
+            {"type": "sensor.lidar.ray_cast", "id": "ROOF", "x": 0.0, "y": 0.0, "z": 1.8, **lidar},
+            {"type": "sensor.other.gnss", "id": "GNSS", "x": 0.0, "y": 0.0, "z": 1.8},
+            {"type": "sensor.other.imu", "id": "IMU", "x": 0.0, "y": 0.0, "z": 0.5},
+        ]
+
+    def config(self) -> dict[str, str]:
+        """As the human agent, with the sensors above."""
+        return {key: value for key, value in super().config().items() if key != "sensors"}
 
 
 def strike(keys: tuple[str, ...]) -> None:

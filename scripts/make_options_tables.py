@@ -1,4 +1,4 @@
-"""Fill the tables of options in docs/runs.md from the settings models: `python scripts/make_options_tables.py [--check]`.
+"""Fill the tables of options in docs/runs.md from the models: `python scripts/make_options_tables.py [--check]`.
 
 Each stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; the rest of the page is written by hand.
 """

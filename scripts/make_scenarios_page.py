@@ -16,12 +16,23 @@ from types import ModuleType
 from basu.scenarios import actions, criteria, paths, triggers
 from basu.scenarios.cases import ALL, open_library, snake
 from basu.scenarios.listing import as_text, listed
-from basu.scenarios.nhtsa import Group
+from basu.scenarios.nhtsa import Group, stands_for
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "scenarios.md"
 EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
-BASES = {"Trigger", "Action", "Puppet", "Criterion", "Judgement", "Played", "Thing", "told_always", "margins_of"}
+BASES = {
+    "Trigger",
+    "Action",
+    "Puppet",
+    "Aspect",
+    "Criterion",
+    "Judgement",
+    "Played",
+    "Thing",
+    "reported_always",
+    "margins_of",
+}
 
 
 def main() -> int:
@@ -56,11 +67,17 @@ def catalogue() -> str:
     """What comes with BASU, by group."""
     library = open_library()
     cases = [playable.scenario for playable in library.choose([ALL])]
-    lines = ["| group | scenario | what happens | cases | reads ScenarioRunner's |", "|---|---|---|---|---|"]
+    lines = [
+        "| group | scenario | what happens | cases | stands for | reads ScenarioRunner's |",
+        "|---|---|---|---|---|---|",
+    ]
     for group in Group:
         for scenario in (scenario for scenario in library.scenarios if scenario.group is group):
             theirs = ", ".join(f"`{name}`" for name in scenario.aliases)
-            row = (group.value, f"`{snake(scenario.__name__)}`", scenario.title(), str(cases.count(scenario)), theirs)
+            kinds = stands_for(scenario.__name__, group, scenario.pre_crash)
+            numbers = ", ".join(str(kind.number) for kind in kinds)
+            name, count = f"`{snake(scenario.__name__)}`", str(cases.count(scenario))
+            row = (group.value, name, scenario.title(), count, numbers, theirs)
             lines.append(f"| {' | '.join(map(cell, row))} |")
     return "\n".join(lines)
 

@@ -48,6 +48,26 @@ StepLimit = Annotated[
         help="wall time for one step of the agent", group=AGENT, flag="--step-limit", metavar="S", unit="s", above=0.0
     ),
 ]
+InProcess = Annotated[
+    bool,
+    Option(
+        help="drive the agent in BASU's own process, for debuggers; an agent that dies there ends everything",
+        group=AGENT,
+        repeats=False,
+    ),
+]
+AgentMemory = Annotated[
+    float | None,
+    Option(
+        help="memory that the agent's process may use; more is the agent's failure",
+        group=AGENT,
+        flag="--agent-memory",
+        metavar="GB",
+        unit="GB",
+        above=0.0,
+        default_text="no limit",
+    ),
+]
 Debug = Annotated[bool, Option(help="show the traceback of an agent that fails", group=AGENT, repeats=False)]
 
 
@@ -92,6 +112,8 @@ class RunOptions(Settings):
         ),
     ] = None
     step_limit_s: StepLimit = 10.0
+    in_process: InProcess = False
+    agent_memory_gb: AgentMemory = None
     debug: Debug = False
 
     routes: Annotated[
@@ -174,6 +196,16 @@ class RunOptions(Settings):
     port: Port = 2000
     timeout_s: Timeout = 20.0
 
+    metric_files: Annotated[
+        tuple[Path, ...],
+        Option(
+            help="metrics of your own, reported beside BASU's or scored with them; may be given several times",
+            group=FOLDERS,
+            flag="--metrics",
+            metavar="FILE.py",
+            is_file=True,
+        ),
+    ] = ()
     record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
     output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
         Path("runs")
@@ -253,8 +285,19 @@ class RunOptions(Settings):
             raise UserError("--resume continues a series; name it with --series, as when it was begun")
         if self.hud_screenshot is not None and self.hud is None:
             raise UserError("--hud-screenshot takes a picture of the window; add --hud")
+        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
         _check_size("--hud-size", self.hud_size, WINDOWS)
         _check_size("--hud-camera", self.hud_camera, PICTURES)
+
+
+def check_agent_process(*, in_process: bool, memory_gb: float | None) -> None:
+    """Check what was said of the agent's process.
+
+    Raises:
+        UserError: there is to be none, and its memory is to be limited.
+    """
+    if in_process and memory_gb is not None:
+        raise UserError("--agent-memory limits the agent's own process, and --in-process gives it none; choose one")
 
 
 def _check_size(flag: str, size: tuple[int, int], allowed: tuple[tuple[int, int], tuple[int, int]]) -> None:

@@ -3,9 +3,8 @@
 import json
 from typing import Any
 
-from basu.metrics.score import Scoring
+from basu.metrics.result import judge
 from basu.outcome import Outcome, Status
-from basu.output.report.result import result
 from basu.records.history import LaneInvasion
 from fakes.drives import at, driven, hit
 
@@ -34,6 +33,6 @@ def a_result(status: Status = Status.COMPLETED) -> dict[str, Any]:
         collisions=[hit(50)],
         lane_invasions=[LaneInvasion(tick=3, markings=("Solid/White",))],
     )
-    document = result(Outcome(status, "so it ended"), history, Scoring(), META)
+    document = judge(Outcome(status, "so it ended"), history, meta=META).document()
     plain: dict[str, Any] = json.loads(json.dumps(document))
     return plain

@@ -3,11 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from basu.metrics.score import Scoring
+from basu.metrics.result import judge
 from basu.outcome import Outcome, Status
 from basu.output.report.folder import CONFIG_FILE, RESULT_FILE, write_json
 from basu.output.report.reading import RunRecord
-from basu.output.report.result import result
 from basu.output.report.streets import Line, write_streets
 from basu.records.history import History
 from basu.records.history.files import write_history
@@ -35,7 +34,7 @@ def record(history: History | None, *, agent: str = "tester", message: str = "as
     return RunRecord(
         name="a-run",
         config={"command": ["basu", "run", agent, "--seed", "0"], "seed": 0},
-        result=result(outcome, history, Scoring(), meta),
+        result=judge(outcome, history, meta=meta),
         history=history,
         streets=STREETS,
     )
@@ -45,7 +44,7 @@ def written(folder: Path, run: RunRecord) -> Path:
     """The files of a record in a folder."""
     folder.mkdir(parents=True, exist_ok=True)
     write_json(folder / CONFIG_FILE, run.config)
-    write_json(folder / RESULT_FILE, run.result)
+    write_json(folder / RESULT_FILE, run.result.document())
     write_streets(folder, run.streets)
     if run.history is not None:
         write_history(folder, run.history)

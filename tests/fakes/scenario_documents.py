@@ -27,6 +27,7 @@ GROUPS = {
     "rear-end": ("FollowLeadingVehicle",),
     "shuttle": ("UnexpectedStop",),
 }
+CHARACTERISTICS = {"atmosphere": "rain", "lighting": "dark", "surface": "wet", "alignment": "straight"}
 VERDICT_FAULTS = {
     "SUCCESS": "nobody",
     "FAILURE": "nobody",
@@ -90,6 +91,9 @@ def case_result(**changes: Any) -> dict[str, Any]:
         "group": "pedestrian",
         "place": "Cleveland Avenue, north of Myrtle Avenue",
         "on_route": True,
+        "characteristics": dict(CHARACTERISTICS),
+        "pre_crash": [12],
+        "measured": {"posted_mps": 11.2, "travel_mps": 6.0, "in_bend": False, "level": True},
         "agent": "basic",
         "vehicle": "vehicle.easymile.ez10",
         "seed": 0,
@@ -275,6 +279,8 @@ def case(
         "group": group,
         "place": "Cleveland Avenue",
         "on_route": True,
+        "characteristics": dict(CHARACTERISTICS),
+        "pre_crash": [],
         "parameters": list(parameters),
         "results": {agent: told(verdict, id_, agent, distance_m) for agent, verdict in verdicts.items()},
     }

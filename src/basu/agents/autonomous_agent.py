@@ -25,11 +25,14 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any
 
+from basu.agents.sight import Sight
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     import carla
 
+    from basu.agents.sight import Other
     from basu.routing import Route
 
 
@@ -59,7 +62,9 @@ class AutonomousAgent(ABC):
     time_step_s: float
     server_address: tuple[str, int]
     manual: bool = False
-    tells_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
+    driven_by_person: bool = False  # whether a person drives at first, before a window; the human agent
+    gives_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
+    _sight: Sight | None = None
 
     def bind(
         self,
@@ -120,6 +125,19 @@ class AutonomousAgent(ABC):
     def get_initial_route_locations(self) -> Sequence[carla.Location] | None:
         """Give a route of one's own as locations to be joined along the lanes; None, as here, takes the route file."""
         return None
+
+    def visible_actors(self) -> list[Other]:
+        """Return the vehicles, walkers and props that the vehicle can see, or saw up to 2 s ago; call it once a tick.
+
+        It is what BASU's own agents know of others: actors within 80 m whose line of sight from the roof is free of
+        houses, trees, parked cars and other actors, within the range of light and weather. Each is a
+        :class:`basu.agents.sight.Other` with its box's centre, heading, velocity and size in CARLA's world frame (m,
+        rad, m/s; x east, y south, yaw clockwise). ``unseen_s`` is 0, or the time since it was last seen; its place is
+        extrapolated since then. For another radius, hold a :class:`basu.agents.sight.Sight` of your own.
+        """
+        if self._sight is None:
+            self._sight = Sight(self.world, self.vehicle)
+        return self._sight.others()
 
     def destroy(self) -> None:  # noqa: B027 - most agents have nothing to put away
         """Put away what ``setup`` took (files, windows, processes); called once after the last step in every case."""

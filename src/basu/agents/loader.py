@@ -15,15 +15,16 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.leaderboard.adapter import LeaderboardAgent, adapted
 from basu.agents.leaderboard.foreign import ENTRY_POINT, foreign_agent
 from basu.agents.leaderboard.modules import stand_in
+from basu.agents.sight import Knowledge
 from basu.agents.time_limit import OverrunError, call_within
 from basu.errors import UserError
 from basu.utils.user_module import module_of
 
 BUILT_IN = {
     "basic": "basu.agents.builtin.basic",
-    "behavioral": "basu.agents.builtin.behavioral",
-    "behavioral-cautious": "basu.agents.builtin.behavioral_cautious",
-    "behavioral-aggressive": "basu.agents.builtin.behavioral_aggressive",
+    "behavioral": "basu.agents.builtin.behavioral:BehavioralAgent",
+    "behavioral-cautious": "basu.agents.builtin.behavioral:CautiousAgent",
+    "behavioral-aggressive": "basu.agents.builtin.behavioral:AggressiveAgent",
     "blind": "basu.agents.builtin.controls:BlindAgent",
     "creeper": "basu.agents.builtin.controls:CreeperAgent",
     "standing": "basu.agents.builtin.controls:StandingAgent",
@@ -43,9 +44,21 @@ class LoadedAgent(NamedTuple):
     name: str
     file: Path | None
 
+    @property
+    def class_name(self) -> str:
+        """The name of the class."""
+        return self.agent_class.__name__
+
+    @property
+    def is_human(self) -> bool:
+        """Whether a person drives at first."""
+        return self.agent_class.driven_by_person
+
 
 def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     """The agent called ``wanted``: a name, ``file.py``, or ``file.py:ClassName`` where a file holds several.
+
+    ``basic:full`` is ``basic`` with full knowledge of others, instead of those in its line of sight.
 
     ``agent_config`` is the text of ``--agent-config``: agents of the leaderboard and of ScenarioRunner take one, mostly
     a file's name.
@@ -64,10 +77,12 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
 
 def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
     """The agent by its name or from its file."""
-    if wanted in BUILT_IN:
-        module_name, _, class_name = BUILT_IN[wanted].partition(":")
+    name, _, knowledge = wanted.partition(":")
+    if name in BUILT_IN:
+        module_name, _, class_name = BUILT_IN[name].partition(":")
         agents = _agents_in(vars(importlib.import_module(module_name)), module_name)
-        return LoadedAgent(_only([a for a in agents if class_name in {"", a.__name__}], wanted), wanted, None)
+        agent = _only([a for a in agents if class_name in {"", a.__name__}], name)
+        return _with_knowledge(agent, name, knowledge)
     text, _, class_name = wanted.partition(":") if ".py:" in wanted else (wanted, "", "")
     path = Path(text)
     if path.suffix != ".py":
@@ -85,6 +100,18 @@ def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
     if class_name:
         agents = [agent for agent in agents if agent.__name__ == class_name]
     return LoadedAgent(_only(agents, str(path)), path.stem, path)
+
+
+def _with_knowledge(agent: type[AutonomousAgent], name: str, knowledge: str) -> LoadedAgent:
+    """A built-in agent as it is, or the variant that knows all other actors (``basic:full``)."""
+    if not knowledge:
+        return LoadedAgent(agent, name, None)
+    if getattr(agent, "knowledge", Knowledge.NONE) is Knowledge.NONE:
+        raise UserError(f"the agent '{name}' looks at no other actors; leave ':{knowledge}' out")
+    if knowledge != Knowledge.FULL.value:
+        raise UserError(f"there is no agent '{name}:{knowledge}'; there are '{name}' and '{name}:full'")
+    variant = type(agent.__name__, (agent,), {"knowledge": Knowledge.FULL, "__module__": agent.__module__})
+    return LoadedAgent(variant, f"{name}-{knowledge}", None)
 
 
 def _run_file(path: Path) -> tuple[dict[str, object], str]:

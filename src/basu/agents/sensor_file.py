@@ -2,7 +2,8 @@
 
 ``{"sensors": [{"type": "sensor.other.gnss", "id": "GPS", "x": 0.7, "y": 0.0, "z": 1.6, …}]}`` or the bare list; beside
 ``type``, ``id`` and the six of the pose (m and degrees in the vehicle's frame) every field is an attribute of the
-sensor's blueprint, or one of the leaderboard's names for some: :data:`LEADERBOARDS_NAMES`.
+sensor's blueprint, or one of the leaderboard's names for some: :data:`LEADERBOARDS_NAMES`. ``data``, of a sensor or
+beside ``sensors`` for all, says in which form the agent receives what was measured: ``"numpy"`` or ``"carla"``.
 """
 
 from __future__ import annotations
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     import carla
 
 POSE_FIELDS = ("x", "y", "z", "roll", "pitch", "yaw")
+CARLAS_OBJECTS, NUMPY_ARRAYS = "carla", "numpy"
+FORMS = (CARLAS_OBJECTS, NUMPY_ARRAYS)
+"""What ``data`` may say: the form in which the agent receives measurements."""
+
 LEADERBOARDS_NAMES = {
     ("sensor.camera.", "width"): ("image_size_x",),
     ("sensor.camera.", "height"): ("image_size_y",),
@@ -43,6 +48,7 @@ class SensorSpec:
     pitch_deg: float
     yaw_deg: float
     attributes: tuple[tuple[str, str], ...]  # name and value as blueprints have them
+    as_numpy: bool = False  # whether the agent receives numpy arrays instead of CARLA's objects
 
 
 def read_sensors(path: Path) -> tuple[SensorSpec, ...]:
@@ -55,16 +61,19 @@ def read_sensors(path: Path) -> tuple[SensorSpec, ...]:
     entries = document.get("sensors") if isinstance(document, dict) else document
     if not isinstance(entries, list):
         raise UserError(f"sensor file {path} holds no list of sensors")
-    return parse_sensors(entries, f"sensor file {path}")
+    form = document.get("data", CARLAS_OBJECTS) if isinstance(document, dict) else CARLAS_OBJECTS
+    return parse_sensors(entries, f"sensor file {path}", form)
 
 
-def parse_sensors(entries: Iterable[Any], source: str) -> tuple[SensorSpec, ...]:
+def parse_sensors(entries: Iterable[Any], source: str, form: object = CARLAS_OBJECTS) -> tuple[SensorSpec, ...]:
     """Read a list of sensors that ``source`` gave, which is what complaints begin with.
+
+    ``form`` is the ``data`` of sensors that name none: one of :data:`FORMS`.
 
     Raises:
         UserError: an entry is incomplete, double or no sensor.
     """
-    specs = tuple(_spec(entry, number, source) for number, entry in enumerate(entries, start=1))
+    specs = tuple(_spec(entry, number, source, form) for number, entry in enumerate(entries, start=1))
     seen: set[str] = set()
     for spec in specs:
         if spec.id in seen:
@@ -99,7 +108,7 @@ def _nearest(wanted: str, known: list[str]) -> str:
     return f"did you mean '{close[0]}'?" if close else f"it has {', '.join(sorted(known))}"
 
 
-def _spec(entry: Any, number: int, source: str) -> SensorSpec:  # noqa: ANN401 - whatever stands in the file
+def _spec(entry: Any, number: int, source: str, form: object) -> SensorSpec:  # noqa: ANN401 - as given
     """One entry."""
     if not isinstance(entry, dict) or not isinstance(entry.get("type"), str) or not isinstance(entry.get("id"), str):
         raise UserError(f"{source}: sensor {number} needs a 'type' and an 'id', both texts")
@@ -109,10 +118,16 @@ def _spec(entry: Any, number: int, source: str) -> SensorSpec:  # noqa: ANN401 -
         if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
             raise UserError(f"{source}: sensor '{entry['id']}' has {name} = {value!r}; it must be a number")
         pose[name] = float(value)
+    form = entry.get("data", form)
+    if form not in FORMS:
+        raise UserError(
+            f"{source}: sensor '{entry['id']}' has data = {form!r}; it may be 'numpy' for arrays, or 'carla' for "
+            "CARLA's objects"
+        )
     attributes = {
         attribute: value
         for name, value in entry.items()
-        if name not in {"type", "id", *POSE_FIELDS}
+        if name not in {"type", "id", "data", *POSE_FIELDS}
         for attribute in _attributes(entry["type"], name)
     }
     return SensorSpec(
@@ -125,6 +140,7 @@ def _spec(entry: Any, number: int, source: str) -> SensorSpec:  # noqa: ANN401 -
         pitch_deg=pose["pitch"],
         yaw_deg=pose["yaw"],
         attributes=tuple((name, _as_text(value)) for name, value in attributes.items()),
+        as_numpy=form == NUMPY_ARRAYS,
     )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from basu.errors import UserError
+from basu.utils.json_file import read_json
 
 
 def add_score(score: argparse.ArgumentParser) -> None:
@@ -19,6 +20,14 @@ def add_score(score: argparse.ArgumentParser) -> None:
     score.description = score_run.__doc__
     score.add_argument("folder", type=Path, metavar="RUN", help="a run's folder, such as runs/latest")
     score.add_argument("--json", action="store_true", help="print the judgement as JSON")
+    score.add_argument(
+        "--metrics",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE.py",
+        help="metrics of your own; may be given several times",
+    )
     add_scoring(score)
     score.set_defaults(command=score_run)
 
@@ -53,12 +62,12 @@ def add_list(listing: argparse.ArgumentParser) -> None:
 def score_run(arguments: argparse.Namespace) -> int:
     """Compute scores and infractions of a run again, from its history and facts; no simulator is asked."""
     from basu.cli.run import scoring_of  # noqa: PLC0415 - as above
+    from basu.metrics.registry import user_metrics  # noqa: PLC0415 - likewise
+    from basu.metrics.result import judge  # noqa: PLC0415 - likewise
     from basu.metrics.scoring_json import scoring_of_run, scoring_to_json  # noqa: PLC0415 - as above
+    from basu.outcome import Outcome, Status  # noqa: PLC0415 - likewise
+    from basu.output.report.console import judgement, score_lines  # noqa: PLC0415 - likewise
     from basu.output.report.folder import CONFIG_FILE, RESULT_FILE  # noqa: PLC0415 - likewise
-    from basu.output.report.measures_table import measured  # noqa: PLC0415 - likewise
-    from basu.output.report.passengers_table import felt  # noqa: PLC0415 - likewise
-    from basu.output.report.result import judgement  # noqa: PLC0415 - likewise
-    from basu.output.report.schema import read_result  # noqa: PLC0415 - likewise
     from basu.records.history.files import read_history  # noqa: PLC0415 - pyarrow, which `--help` does not need
     from basu.running.series import SERIES_FILE  # noqa: PLC0415 - likewise
 
@@ -67,10 +76,13 @@ def score_run(arguments: argparse.Namespace) -> int:
         raise UserError(f"{folder} is no folder; name a run's, such as runs/latest")
     if (folder / SERIES_FILE).exists():
         raise UserError(f"{folder} is a series of runs; name one of them, a folder in it")
-    kept = read_result(folder) if (folder / RESULT_FILE).exists() else None
+    kept = _kept(folder / RESULT_FILE)
     history = read_history(folder)
     scoring = scoring_of(arguments, scoring_of_run(folder / CONFIG_FILE))
-    document = judgement(history, scoring)
+    outcome = Outcome(Status(kept["status"]), kept["message"]) if kept else Outcome(Status.COMPLETED, "scored again")
+    meta, scenarios = (kept.get("meta"), kept.get("scenarios", ())) if kept else (None, ())
+    result = judge(outcome, history, scoring, meta, own=user_metrics(arguments.metrics), scenarios=scenarios)
+    document = result.document()
     if kept is not None and kept["scoring"] == scoring_to_json(scoring) and kept["scores"] != document["scores"]:
         print(
             f"basu: {folder / RESULT_FILE} says {_scores(kept)}, and its record gives {_scores(document)}: the file "
@@ -80,13 +92,21 @@ def score_run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps(document, indent=2, ensure_ascii=False))
         return 0
-    for name, value in document["scores"].items():
-        print(f"{name:<16}{value:8.3f}")
-    for row in document["infractions"]:
-        print(f"  {row['t_s']:8.1f} s  {row['kind']:<21} {row['detail']}")
-    for line in (*measured(document), *felt(document)):
-        print(line)
+    print("\n".join([*score_lines(result), *judgement(result)] if result.scores else ["nothing was driven"]))
     return 0
+
+
+def _kept(path: Path) -> dict[str, Any] | None:
+    """The result that lies in the folder, of whatever version; None where there is none."""
+    from basu.outcome import Status  # noqa: PLC0415 - likewise
+
+    if not path.exists():
+        return None
+    document = read_json(path, "the result", "drive the run again, or remove the file to score its record alone")
+    known = {status.value for status in Status}
+    if not isinstance(document, dict) or document.get("status") not in known or "scores" not in document:
+        raise UserError(f"{path} is no result of a run; remove the file to score the record alone")
+    return document
 
 
 def _scores(document: dict[str, Any]) -> str:

@@ -123,6 +123,9 @@ def run_agent(arguments: argparse.Namespace) -> int:
 
         require()
     scoring = scoring_of(arguments, config.scoring)
+    from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
+
+    user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
     from basu.running.runner import run  # noqa: PLC0415 - the client and the plots, which `--help` does not need
 
     with terminated_as_interrupted():

@@ -48,6 +48,13 @@ def add_list_options(command: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="your own: FILE.py with classes or FILE.xml with cases; each brings the other of the same stem",
     )
+    command.add_argument(
+        "--where",
+        action="append",
+        default=[],
+        metavar="FIELD=VALUE",
+        help="only cases with this characteristic, such as lighting=dark; may be given several times",
+    )
     command.add_argument("--json", action="store_true", help="as JSON, in full")
 
 
@@ -91,9 +98,23 @@ def list_scenarios(arguments: argparse.Namespace) -> int:
     from basu.scenarios.listing import as_json, as_text, listed  # noqa: PLC0415 - likewise
 
     words: list[str] = arguments.what
-    found = listed(open_library([*arguments.scenarios, *files_among(words)]), words)
-    print(json.dumps(as_json(found), indent=2) if arguments.json else "\n".join(as_text(found, full=bool(words))))
+    where = [_condition(text) for text in arguments.where]
+    found = listed(open_library([*arguments.scenarios, *files_among(words)]), words, where)
+    full = bool(words or where)
+    print(json.dumps(as_json(found), indent=2) if arguments.json else "\n".join(as_text(found, full=full)))
     return 0
+
+
+def _condition(text: str) -> tuple[str, str]:
+    """A field and its value.
+
+    Raises:
+        UserError: it is no FIELD=VALUE.
+    """
+    field, sign, value = text.partition("=")
+    if not (field and sign and value):
+        raise UserError(f"--where {text}: it must be FIELD=VALUE, such as --where lighting=dark")
+    return field, value
 
 
 def run_command(arguments: argparse.Namespace) -> int:

@@ -37,6 +37,7 @@ class Run:
     folder: Path  # of the run; has another name until the run is over
     server_address: tuple[str, int] = ("127.0.0.1", 2000)
     weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
+    own_simulator: bool = False  # nothing but this run and its agent is connected to it
 
 
 class Ego(NamedTuple):

@@ -85,18 +85,15 @@ class MetricsManager(BaseManager):
         """Record a frame."""
         if self._first_frame is None:
             self._first_frame = frame.server_frame
-        vehicle, control, progress = self._run.vehicle, self._agents.control, self._routes.progress
+        vehicle, progress = self._run.vehicle, self._routes.progress
         light = int(vehicle.get_traffic_light_state()) if vehicle.is_at_traffic_light() else NO_LIGHT
         self._recorder.frame(
             (
                 frame.tick,
                 frame.tick * self._run.step_s,
                 *frame.ego,
-                control.throttle,
-                control.steer,
-                control.brake,
-                control.hand_brake,
-                control.reverse,
+                *_values(self._agents.requested),
+                *_values(self._agents.control),
                 vehicle.get_speed_limit() * MPS_PER_KMH,
                 light,
                 progress.s_m,
@@ -107,6 +104,10 @@ class MetricsManager(BaseManager):
             )
         )
         self._recorder.others(self._neighbours.near(frame))
+
+    def applied(self, control: carla.VehicleControl) -> None:
+        """Record the control that the vehicle is given in the latest frame, where a scenario has changed it."""
+        self._recorder.applied(_values(control))
 
     def close(self) -> None:
         """Take the sensors away."""
@@ -189,3 +190,8 @@ class MetricsManager(BaseManager):
             self._recorder.lane_invasion(LaneInvasion(tick=tick, markings=markings))
 
         self._later(event.frame, record)
+
+
+def _values(control: carla.VehicleControl) -> tuple[float, ...]:
+    """A control in the order of ``history.CONTROL``."""
+    return (control.throttle, control.steer, control.brake, float(control.hand_brake), float(control.reverse))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from basu.outcome import Outcome, Status
-from basu.scenarios.criteria.part import part_of
+from basu.scenarios.criteria.records import part_of
 from basu.scenarios.drawing import tree_of
 from basu.scenarios.verdict import judge
 

@@ -8,6 +8,7 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
+from basu.metrics.arrival import has_arrived
 from basu.metrics.delays import BLOCKED_MPS, BLOCKED_S, time_limit_s
 from basu.outcome import Outcome, Status
 from basu.routing.progress import Progress, advance
@@ -16,8 +17,6 @@ from basu.routing.route_weather import weather_at
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
 
-AT_END_M = 1.0  # nearer to the end of the route than this, the run is over
-PARKED_M, PARKED_MPS = 5.0, 0.1  # at rest this near to the end, too
 DEVIATION_M = 30.0  # from the route; the CARLA leaderboard's InRouteTest has the same
 WEATHER_TICKS = 20  # a second of simulated time, between two changes of weather along the route
 
@@ -66,7 +65,7 @@ class RoutesManager(BaseManager):
     def _judge(self, tick: int, speed_mps: float) -> Outcome | None:
         """The end of the run, if this is it."""
         remaining_m = self._route.length_m - self.progress.s_m
-        if remaining_m <= AT_END_M or (remaining_m <= PARKED_M and speed_mps < PARKED_MPS):
+        if has_arrived(remaining_m, speed_mps):
             return Outcome(Status.COMPLETED, f"arrived after {tick * self._step_s:.1f} s")
         if self.progress.distance_m > DEVIATION_M:
             return Outcome(

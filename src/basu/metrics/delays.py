@@ -7,9 +7,11 @@ The time for a route is a start, its length at a walking pace, and a time for ea
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from basu.metrics.infraction import Evidence, Incident, evidence
+from basu.metrics.infraction import Evidence, Incident, evidence, row_of
+from basu.metrics.json_schema import EVIDENCE, listing, number, record
+from basu.metrics.registry import Drive, Metric, register
 from basu.metrics.stretches import stretches
 
 if TYPE_CHECKING:
@@ -66,3 +68,30 @@ def delays(history: History) -> Delays:
         time_limit_s=limit_s,
         timeouts=(out_of_time,) if time_s > limit_s else (),
     )
+
+
+@register
+class RestsAndTime(Metric):
+    """How long a drive stood and took."""
+
+    name = "delays"
+    title = "rests and time"
+    order = 80
+    schema = record(
+        null_=True,
+        about_="rests and time",
+        longest_rest_s=number("s", low=0),
+        time_s=number("s", low=0),
+        time_limit_s=number("s", low=0),
+        events=listing(EVIDENCE),
+    )
+
+    def compute(self, drive: Drive) -> dict[str, Any]:
+        """The times, and each rest that was too long."""
+        found = delays(drive.history)
+        return {
+            "longest_rest_s": found.longest_rest_s,
+            "time_s": found.time_s,
+            "time_limit_s": found.time_limit_s,
+            "events": [row_of(event) for event in (*found.blocked, *found.timeouts)],
+        }

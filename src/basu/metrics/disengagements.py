@@ -9,12 +9,15 @@ the miles that the agent drove, over their number; without one there is no such 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from basu.metrics.infraction import Evidence, Incident, evidence
+from basu.metrics.infraction import Evidence, Incident, evidence, row_of
+from basu.metrics.json_schema import EVIDENCE, integer, listing, number, record
+from basu.metrics.registry import Drive, Metric, register
 from basu.metrics.stretches import chords, path_m, stretches, total_m
 
 if TYPE_CHECKING:
+    from basu.metrics.result import Result
     from basu.records.history import History
 
 M_PER_MILE = 1609.344
@@ -60,3 +63,40 @@ def disengagements(history: History) -> Disengagements:
         manual_m=total_m(pieces.length_m[by_person]),
         miles_per_disengagement=autonomous_m / M_PER_MILE / len(events) if events else None,
     )
+
+
+@register
+class Takeovers(Metric):
+    """How often a person took over, and how far each drove."""
+
+    name = "disengagements"
+    title = "disengagements"
+    order = 70
+    schema = record(
+        null_=True,
+        about_="takeovers by a person",
+        number=integer(low=0),
+        autonomous_m=number("m", low=0),
+        manual_m=number("m", low=0),
+        miles_per_disengagement=number("miles", low=0, null=True),
+        events=listing(EVIDENCE),
+    )
+
+    def compute(self, drive: Drive) -> dict[str, Any]:
+        """The number, the ways, and each takeover."""
+        found = disengagements(drive.history)
+        return {
+            "number": len(found.events),
+            "autonomous_m": found.autonomous_m,
+            "manual_m": found.manual_m,
+            "miles_per_disengagement": found.miles_per_disengagement,
+            "events": [row_of(event) for event in found.events],
+        }
+
+    def lines(self, result: Result) -> list[str]:
+        """A line where it happened."""
+        found = result.metrics[self.name]
+        if not found["number"]:
+            return []
+        miles = found["miles_per_disengagement"]
+        return [f"disengagements    {found['number']}, {miles:.2f} miles by the agent to each"]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import enum
 from collections import Counter
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from basu.metrics.responsibility import Responsibility
     from basu.records.history import History
 
 
@@ -35,6 +36,13 @@ class Incident(enum.Enum):
     ROUTE_TIMEOUT = "route_timeout"
 
 
+@dataclass(frozen=True, slots=True)
+class OwnKind:
+    """A kind of event that a user's metric finds."""
+
+    value: str
+
+
 # Factor on the infraction score for each occurrence: section 5.2.1 of the thesis, the collisions and the stop sign
 # as in the CARLA leaderboard; so is the red light, for routes that have one.
 DEFAULT_PENALTIES: Mapping[Infraction, float] = {
@@ -51,7 +59,7 @@ DEFAULT_PENALTIES: Mapping[Infraction, float] = {
 class Evidence:
     """One infraction or incident: when, where, how fast, and with whom."""
 
-    kind: Infraction | Incident
+    kind: Infraction | Incident | OwnKind
     tick: int
     t_s: float
     x_m: float  # of the vehicle under test, CARLA frame
@@ -61,10 +69,24 @@ class Evidence:
     route_s_m: float
     other: str | None  # the other party: blueprint id and actor id, or the sign
     detail: str  # a sentence with the figures
+    responsibility: Responsibility | None = None  # of a collision, once a whole run is judged
+
+
+def row_of(found: Evidence) -> dict[str, Any]:
+    """One infraction or incident as plain values; only a collision has a responsibility."""
+    row = {**asdict(found), "kind": found.kind.value}
+    del row["responsibility"]
+    return row if found.responsibility is None else {**row, "responsibility": found.responsibility.document()}
 
 
 def evidence(
-    history: History, kind: Infraction | Incident, tick: int, *, speed_mps: float, other: str | None, detail: str
+    history: History,
+    kind: Infraction | Incident | OwnKind,
+    tick: int,
+    *,
+    speed_mps: float,
+    other: str | None,
+    detail: str,
 ) -> Evidence:
     """The evidence for what happened in ``tick``, its place and time from the record."""
     frame = history.frames[tick]

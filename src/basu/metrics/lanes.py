@@ -13,17 +13,21 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from basu.metrics.infraction import Incident
-from basu.metrics.shares import Share, share_of
+from basu.metrics.json_schema import mapping, number
+from basu.metrics.registry import Drive, Metric, register
+from basu.metrics.shares import Share, share_line, share_of, share_record, share_row
 from basu.metrics.stretches import chords, path_m, total_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from basu.metrics.infraction import Evidence
+    from basu.metrics.result import Result
     from basu.records.history import History
 
 BEYOND_M = 0.5  # ALLOWED_OUT_DISTANCE of leaderboard 2.0 and 2.1; 1.0 has 1.3
@@ -86,6 +90,19 @@ def wrong_way(history: History) -> Share:
     )
 
 
+def off_road(history: History) -> tuple[Evidence, ...]:
+    """One event for each stretch off the road or on the pavement; a wrong lane may be needed to pass something."""
+    where = wheres(history)
+    beside = [list(Where).index(way) for way in (Where.OFF_ROAD, Where.SIDEWALK)]
+    share = share_of(
+        history,
+        np.isin(where, beside),
+        Incident.OUTSIDE_LANES,
+        lambda first, end: WORDS[list(Where)[int(np.bincount(where[first:end]).argmax())]],
+    )
+    return share.events
+
+
 def wheres(history: History) -> NDArray[np.int64]:
     """(T,) the index in ``Where`` of each frame, -1 within the lanes."""
     frames = history.frames
@@ -101,3 +118,43 @@ def wheres(history: History) -> NDArray[np.int64]:
     found[off] = order.index(Where.OFF_ROAD)
     found[off & (frames["lane_type"] == SIDEWALK)] = order.index(Where.SIDEWALK)
     return found
+
+
+@register
+class OutsideOfLanes(Metric):
+    """How much of the way lay outside of lanes for vehicles."""
+
+    name = "outside_lanes"
+    title = "outside lanes"
+    order = 61
+    schema = share_record("driven outside of lanes for vehicles", metres_by_where=mapping(number("m", low=0)))
+
+    def compute(self, drive: Drive) -> dict[str, Any]:
+        """Way, share, time and stretches, and the way by the kind of place."""
+        found = outside_lanes(drive.history)
+        return {
+            **share_row(found.total),
+            "metres_by_where": {where.value: metres for where, metres in found.metres_by_where.items()},
+        }
+
+    def lines(self, result: Result) -> list[str]:
+        """A line where it happened."""
+        return share_line(self.title, result.metrics[self.name])
+
+
+@register
+class WrongWay(Metric):
+    """How much of the way went against the direction of the lane."""
+
+    name = "wrong_way"
+    title = "wrong way"
+    order = 62
+    schema = share_record("driven against the lane's direction")
+
+    def compute(self, drive: Drive) -> dict[str, Any]:
+        """Way, share, time and stretches."""
+        return share_row(wrong_way(drive.history))
+
+    def lines(self, result: Result) -> list[str]:
+        """A line where it happened."""
+        return share_line(self.title, result.metrics[self.name])

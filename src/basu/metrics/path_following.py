@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from basu.metrics.arrival import PARKED_M
 from basu.metrics.stretches import chords, path_m, total_m
 
 if TYPE_CHECKING:
@@ -11,8 +12,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.records.history import History
-
-ARRIVED_M = 5.0  # a run that got this near to the end of the plan has driven to its end
 
 
 class PathFollowing(NamedTuple):
@@ -32,10 +31,10 @@ def path_following(history: History) -> PathFollowing:
 def compared(driven_m: float, progress_m: float, planned_m: float) -> PathFollowing:
     """Equation 5.3, which assumes that both paths end at the same place.
 
-    Where a run ends early that does not hold, and driving in circles would add length; then no more than the progress
-    along the plan counts as driven.
+    Where a run ends early, farther from the end than a vehicle may park, that does not hold, and driving in circles
+    would add length; then no more than the progress along the plan counts as driven.
     """
-    if planned_m - progress_m > ARRIVED_M:
+    if planned_m - progress_m > PARKED_M:
         driven_m = min(driven_m, progress_m)
     return PathFollowing(driven_m, planned_m, min(1.0, driven_m / planned_m))
 

@@ -13,11 +13,13 @@ red has run it: the simulator says under which light a vehicle stands.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from basu.metrics.infraction import Evidence, Infraction, evidence
+from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
+from basu.metrics.json_schema import flag, listing, number, record, text
+from basu.metrics.registry import Column, Drive, Metric, register
 from basu.metrics.stretches import stretches
 from basu.records.history.model import NO_LIGHT
 from basu.routing import ControlKind
@@ -25,6 +27,7 @@ from basu.routing import ControlKind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from basu.metrics.result import Result
     from basu.records.history import History
     from basu.routing import Control, Route
 
@@ -131,3 +134,57 @@ def _lane_width_m(route: Route, s_m: NDArray[np.float64]) -> NDArray[np.float64]
 def _state(value: int) -> str:
     """A carla.TrafficLightState in words."""
     return "not known" if value == NO_LIGHT else STATES[int(value)]
+
+
+@register
+class RedLights(Metric):
+    """What each traffic light on the route showed."""
+
+    name = "red_lights"
+    title = "red lights"
+    order = 30
+    schema = listing(
+        record(
+            id=text(),
+            route_s_m=number("m"),
+            t_s=number("s", low=0),
+            speed_mps=number("m/s", low=0),
+            state_at_front=text(),
+            state_at_rear=text(),
+            run=flag(),
+        ),
+        "every traffic light of the route that was passed; states are carla.TrafficLightState's in small letters",
+    )
+    nothing: ClassVar[list[Any]] = []
+    penalties: ClassVar[dict[str, float]] = {Infraction.RED_LIGHT.value: DEFAULT_PENALTIES[Infraction.RED_LIGHT]}
+
+    def compute(self, drive: Drive) -> list[dict[str, Any]]:
+        """A row for each light."""
+        t_s = drive.history.frames["t_s"]
+        return [
+            {
+                "id": passed.light.landmark_id,
+                "route_s_m": passed.light.s_m,
+                "t_s": float(t_s[passed.tick]),
+                "speed_mps": passed.speed_mps,
+                "state_at_front": passed.front_state,
+                "state_at_rear": passed.state,
+                "run": passed.run,
+            }
+            for passed in lights_passed(drive.history)
+        ]
+
+    def find(self, drive: Drive) -> tuple[Evidence, ...]:
+        """Each light that was run, on the route or beside it."""
+        return red_lights(drive.history)
+
+    def lines(self, result: Result) -> list[str]:
+        """How many were run."""
+        lights = result.metrics[self.name]
+        run = sum(light["run"] for light in lights)
+        return [f"traffic lights    {run} of {len(lights)} run on red"] if lights else []
+
+    def columns(self, result: Result) -> list[Column]:
+        """How many were run, those off the route with them."""
+        run = sum(found.kind is Infraction.RED_LIGHT for found in result.infractions)
+        return [Column("red lights", str(run))]

@@ -21,15 +21,19 @@ from __future__ import annotations
 import enum
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from basu.metrics.collisions import beginnings, collisions
+from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
+from basu.metrics.json_schema import integer, record
 from basu.metrics.passengers.boxes import other_boxes, own_boxes, touching
+from basu.metrics.registry import Column, Drive, Metric, register
 
 if TYPE_CHECKING:
     from basu.metrics.infraction import Evidence
+    from basu.metrics.result import Result
     from basu.records.history import Collision, History
 
 STOPPED_MPS = 0.05
@@ -159,3 +163,43 @@ def _at_fault(kind: CollisionKind, sentence: str) -> Responsibility:
 
 def _not_at_fault(kind: CollisionKind, sentence: str) -> Responsibility:
     return Responsibility(at_fault=False, kind=kind, sentence=f"not at fault: {sentence}")
+
+
+@register
+class Collisions(Metric):
+    """How often the vehicle touched something, and how often it was at fault."""
+
+    name = "collisions"
+    title = "collisions"
+    order = 10
+    schema = record(
+        null_=True,
+        about_="contacts, and those for which the vehicle under test is at fault",
+        number=integer(low=0),
+        at_fault=integer(low=0),
+    )
+    penalties: ClassVar[dict[str, float]] = {
+        kind.value: DEFAULT_PENALTIES[kind]
+        for kind in (Infraction.COLLISION_PEDESTRIAN, Infraction.COLLISION_VEHICLE, Infraction.COLLISION_STATIC)
+    }
+
+    def compute(self, drive: Drive) -> dict[str, int]:
+        """The two numbers."""
+        found = [blame.at_fault for _, blame in responsibilities(drive.history)]
+        return {"number": len(found), "at_fault": sum(found)}
+
+    def find(self, drive: Drive) -> tuple[Evidence, ...]:
+        """Each contact."""
+        return collisions(drive.history)
+
+    def lines(self, result: Result) -> list[str]:
+        """A line where there was one."""
+        found = result.metrics[self.name]
+        if not found["number"]:
+            return []
+        return [f"{self.title:<18}{found['number']}, at fault for {found['at_fault']} of them"]
+
+    def columns(self, result: Result) -> list[Column]:
+        """The number, and that of the collisions at fault."""
+        found = result.metrics[self.name] or {"number": 0, "at_fault": 0}
+        return [Column("collisions", str(found["number"])), Column("collisions at fault", str(found["at_fault"]))]

@@ -9,14 +9,17 @@ of the planned lane.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from basu.metrics.infraction import Incident
-from basu.metrics.shares import Share, share_of
+from basu.metrics.json_schema import number
+from basu.metrics.registry import Drive, Metric, register
+from basu.metrics.shares import Share, share_line, share_of, share_record, share_row
 
 if TYPE_CHECKING:
+    from basu.metrics.result import Result
     from basu.records.history import History
 
 THRESHOLD_M = 2.0
@@ -44,3 +47,22 @@ def route_deviation(history: History, threshold_m: float = THRESHOLD_M) -> Route
         threshold_m=threshold_m,
         largest_m=float(away_m.max(initial=0.0)),
     )
+
+
+@register
+class DeviationFromRoute(Metric):
+    """How much of the way lay outside the plan."""
+
+    name = "route_deviation"
+    title = "outside the plan"
+    order = 60
+    schema = share_record("driven outside the plan", threshold_m=number("m", low=0), largest_m=number("m", low=0))
+
+    def compute(self, drive: Drive) -> dict[str, Any]:
+        """Way, share, time and stretches."""
+        found = route_deviation(drive.history, drive.scoring.route_deviation_m)
+        return {**share_row(found.outside), "threshold_m": found.threshold_m, "largest_m": found.largest_m}
+
+    def lines(self, result: Result) -> list[str]:
+        """A line where it happened."""
+        return share_line(self.title, result.metrics[self.name])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from basu.metrics.infraction import Evidence, Incident, evidence
+from basu.metrics.infraction import Evidence, Incident, evidence, row_of
+from basu.metrics.json_schema import EVIDENCE, Schema, listing, number, record
 from basu.metrics.stretches import chords, path_m, stretches, total_m
 
 if TYPE_CHECKING:
@@ -67,3 +68,33 @@ def share_of(
         seconds=ticks * history.facts.step_s,
         events=tuple(events),
     )
+
+
+def share_record(about: str, **more: Schema) -> Schema:
+    """The schema of :func:`share_row` with what a metric adds."""
+    return record(
+        null_=True,
+        about_=about,
+        metres=number("m", low=0),
+        share=number(low=0, high=1),
+        seconds=number("s", low=0),
+        events=listing(EVIDENCE),
+        **more,
+    )
+
+
+def share_row(share: Share) -> dict[str, Any]:
+    """A share as plain values."""
+    return {
+        "metres": share.metres,
+        "share": share.share,
+        "seconds": share.seconds,
+        "events": [row_of(event) for event in share.events],
+    }
+
+
+def share_line(title: str, found: dict[str, Any]) -> list[str]:
+    """A line of the console's table for a share; none where it is 0."""
+    if not found["metres"]:
+        return []
+    return [f"{title:<18}{found['metres']:.1f} m, {100.0 * found['share']:.1f} % of the way (not scored)"]

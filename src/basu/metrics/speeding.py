@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from basu.metrics.infraction import Evidence, Infraction, evidence
+from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
+from basu.metrics.json_schema import number, record
+from basu.metrics.registry import Column, Drive, Metric, register
 from basu.metrics.stretches import stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from basu.metrics.result import Result
     from basu.records.history import History
 
 TOLERANCE_MPS = 1.0  # above the limit; 2.2 mph, about what a speedometer may be off at 25 mph
@@ -79,3 +82,46 @@ def episodes(
         if beyond[first:end].any():
             found.append((first + int(np.argmax(beyond[first:end])), end))
     return found
+
+
+@register
+class Speeding(Metric):
+    """How long and by how much the vehicle was too fast."""
+
+    name = "speeding"
+    title = "speeding"
+    order = 40
+    schema = record(
+        null_=True,
+        about_="above the limit by more than the tolerance",
+        seconds=number("s", low=0),
+        largest_excess_mps=number("m/s", low=0),
+    )
+    penalties: ClassVar[dict[str, float]] = {Infraction.SPEEDING.value: DEFAULT_PENALTIES[Infraction.SPEEDING]}
+
+    def compute(self, drive: Drive) -> dict[str, float]:
+        """Time and excess."""
+        excess_mps = drive.history.speed_mps() - limits_mps(drive.history)
+        beyond = excess_mps > drive.scoring.speeding_tolerance_mps
+        return {
+            "seconds": float(np.count_nonzero(beyond) * drive.history.facts.step_s),
+            "largest_excess_mps": float(excess_mps[beyond].max(initial=0.0)),
+        }
+
+    def find(self, drive: Drive) -> tuple[Evidence, ...]:
+        """Each episode."""
+        return speeding(drive.history, drive.scoring.speeding_tolerance_mps)
+
+    def lines(self, result: Result) -> list[str]:
+        """A line where it happened."""
+        found = result.metrics[self.name]
+        if not found["seconds"]:
+            return []
+        return [
+            f"{self.title:<18}{found['seconds']:.1f} s, up to {found['largest_excess_mps']:.2f} m/s above the limit"
+        ]
+
+    def columns(self, result: Result) -> list[Column]:
+        """The number of episodes."""
+        episodes_found = sum(found.kind is Infraction.SPEEDING for found in result.infractions)
+        return [Column("speeding", str(episodes_found))]

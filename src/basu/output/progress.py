@@ -23,7 +23,7 @@ class ProgressBar(BaseManager):
 
     def __init__(self, live: Live) -> None:
         self._live = live
-        self._score = "-"
+        self._score = "score so far -"
         self._bar: Any = None  # tqdm is generic to the type checker only
 
     def setup(self, run: Run) -> None:
@@ -43,12 +43,22 @@ class ProgressBar(BaseManager):
         if frame.tick % UPDATE_TICKS or self._bar is None:
             return
         if frame.tick and frame.tick % SCORE_TICKS == 0:
-            self._score = f"{self._live.metrics.scores_so_far().driving:.3f}"
-        faster = frame.tick * self._step_s / max(1e-6, time.perf_counter() - self._began_s)
-        self._bar.set_postfix_str(f"score so far {self._score}, {faster:.0f}x real time", refresh=False)
-        self._bar.update(self._live.routes.progress.s_m / 1000.0 - self._bar.n)
+            self._score = f"score so far {self._live.metrics.scores_so_far().driving:.3f}"
+        self._show(frame.tick)
 
     def close(self) -> None:
-        """Leave the bar as it stands."""
-        if self._bar is not None:
-            self._bar.close()
+        """Bring way and score up to the last tick, and leave the bar so."""
+        if self._bar is None:
+            return
+        ticks = self._live.metrics.ticks
+        if ticks:
+            self._score = f"score {self._live.metrics.scores_so_far().driving:.3f}"
+            self._show(ticks)
+        self._bar.close()
+        self._bar = None
+
+    def _show(self, ticks: int) -> None:
+        """Bring the bar to where the vehicle is."""
+        faster = ticks * self._step_s / max(1e-6, time.perf_counter() - self._began_s)
+        self._bar.set_postfix_str(f"{self._score}, {faster:.0f}x real time", refresh=False)
+        self._bar.update(self._live.routes.progress.s_m / 1000.0 - self._bar.n)

@@ -15,6 +15,7 @@ from basu.errors import (
     UserError,
 )
 from basu.managers.base_manager import Frame, Live, Run, ego_in
+from basu.managers.conduct import ticked
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.routes_manager import RoutesManager
 from basu.outcome import Outcome, Status
@@ -132,7 +133,9 @@ def _until_over(
             return over
         if ended():
             raise SimulatorError("the simulator ended")
-        run.vehicle.apply_control(scenarios.through(agents.control))
+        control = scenarios.through(agents.control)
+        metrics.applied(control)
+        run.vehicle.apply_control(control)
         frame = _next_frame(run, frame)
 
 
@@ -144,8 +147,12 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
     except RuntimeError as error:
         raise SimulatorError(f"the simulator did not make a step: {error}") from error
     ego = snapshot.find(run.vehicle.id)
+    if ego is None and run.own_simulator:
+        raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
     if ego is None:
         raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
+    if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
+        raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:
         raise UserError(
             f"the simulator went from frame {before.server_frame} to {snapshot.frame} (asked for: {number}); "

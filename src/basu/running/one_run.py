@@ -15,8 +15,9 @@ from basu.managers.route_scenarios import told
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.traffic_manager import TrafficManager
+from basu.metrics.registry import user_metrics
 from basu.options import STEP_S
-from basu.output.hud.seat import onlookers_for
+from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
 from basu.output.report.folder import make_draft
 from basu.output.viewer.onlooker import viewer_for
@@ -118,7 +119,8 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         log=None if recording is None else recording.path,
     )
     met = told(ground.scenarios.playing, driven.history, driven.outcome)
-    document = write_run_folder(draft, driven, session.scoring, ground.lanes, config, met)
+    own = user_metrics(session.options.metric_files)
+    document = write_run_folder(draft, driven, session.scoring, ground.lanes, config, met, own)
     return Finished(driven.outcome, draft, document, driven.bug)
 
 
@@ -182,9 +184,11 @@ def _driven(
             timeout_s=options.timeout_s,
             folder=folder,
             server_address=simulator.address,
+            own_simulator=simulator.own,
             weather=() if options.weather is not None else ground.description.weather,
         )
-        sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors)
+        watched = options.hud is not None or options.viewer or agents.person is not None
+        sensors = SensorsManager(*session.plan.sensors, late=agents.late_sensors, listener=agents, is_watched=watched)
         return drive(
             this_run,
             agents,

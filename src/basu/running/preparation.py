@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.loader import load_agent
+from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import read_sensors
 from basu.errors import UserError
 from basu.managers.agents_manager import AgentsManager
-from basu.output.hud.seat import person_for
+from basu.output.hud.person_input import person_for
 from basu.routing.route_file import RouteDescription, read_routes
 from basu.routing.subset import subset
 from basu.scenarios.on_way import scenarios_on
@@ -23,7 +23,7 @@ from basu.utils.packaged import find
 
 if TYPE_CHECKING:
     from basu.agents.config import AgentConfig
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.options import RunOptions
     from basu.scenarios.cases import Playable
@@ -51,7 +51,7 @@ class Job(NamedTuple):
 class Plan:
     """What is to be run."""
 
-    loaded: LoadedAgent
+    loaded: FoundAgent
     agents: AgentsManager  # for the first run; each further run makes its own
     sensors: SensorSet
     jobs: tuple[Job, ...]
@@ -63,7 +63,9 @@ def prepare(options: RunOptions) -> Plan:
     Raises:
         UserError, AgentError: nothing can be started like this.
     """
-    loaded = load_agent(options.agent, options.agent_config)
+    loaded = find_agent(
+        options.agent, options.agent_config, in_process=options.in_process, memory_gb=options.agent_memory_gb
+    )
     agents = new_agents(loaded, options, options.seed)
     config = agents.config
     weather_called(config.weather)
@@ -97,12 +99,12 @@ def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Play
     return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
 
 
-def new_agents(loaded: LoadedAgent, options: RunOptions, seed: int) -> AgentsManager:
+def new_agents(loaded: FoundAgent, options: RunOptions, seed: int) -> AgentsManager:
     """A fresh agent, with everything random in Python begun anew."""
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
-    person = person_for(options, loaded.agent_class)
-    agents = AgentsManager(loaded, step_limit_s=options.step_limit_s, routes=options.routes, person=person)
+    person = person_for(options, by_hand=loaded.is_human)
+    agents = AgentsManager(loaded, step_limit_s=options.step_limit_s, routes=options.routes, person=person, seed=seed)
     agents.config = replace(
         agents.config,
         weather=options.weather or agents.config.weather,
@@ -126,7 +128,7 @@ def _chosen(
     return chosen
 
 
-def sensor_set(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
+def sensor_set(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
     """The sensors that the agent wants, by its own method or by a file."""
     own = agents.own_sensors()
     if own is not None:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.builtin.human import HumanAgent
+from basu.metrics.result import judge
 from basu.options import STEP_S, RunOptions
 from basu.output.report import picture
 from basu.output.report.console import table
 from basu.output.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, write_json
 from basu.output.report.html.page import write_report
 from basu.output.report.reading import RunRecord
-from basu.output.report.result import result
 from basu.output.report.streets import around, write_streets
 from basu.records.carla_log.sources import LOG_FILE
 from basu.records.history.files import write_history
@@ -28,7 +27,8 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.config import AgentConfig
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
+    from basu.metrics.registry import Metric
     from basu.metrics.score import Scoring
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
@@ -41,7 +41,7 @@ ROUTE_WEATHER = "of the route file"
 def run_config(
     options: RunOptions,
     scoring: Scoring,
-    loaded: LoadedAgent,
+    loaded: FoundAgent,
     wishes: AgentConfig,
     description: RouteDescription,
     *,
@@ -56,7 +56,7 @@ def run_config(
     return {
         **config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description)),
         "started": started.isoformat(timespec="seconds"),
-        "agent": {"name": loaded.name, "class": loaded.agent_class.__name__, "file": options.agent},
+        "agent": {"name": loaded.name, "class": loaded.class_name, "file": options.agent},
         "agent_config": asdict(wishes),
         "route": description.id,
         "town": description.town,
@@ -93,12 +93,19 @@ def command(options: RunOptions, scoring: Scoring) -> list[str]:
 
 
 def _files(
-    options: RunOptions, loaded: LoadedAgent, wishes: AgentConfig, description: RouteDescription
+    options: RunOptions, loaded: FoundAgent, wishes: AgentConfig, description: RouteDescription
 ) -> Iterator[Path]:
     """Yield the files that decide over the run's outcome."""
     if loaded.file is not None:
         yield loaded.file
-    names = (description.source, wishes.sensors, options.agent_config, options.keys, *options.scenario_files)
+    names = (
+        description.source,
+        wishes.sensors,
+        options.agent_config,
+        options.keys,
+        *options.scenario_files,
+        *options.metric_files,
+    )
     for name in names:
         found = (
             next((place / name for place in places(loaded.file) if (place / name).is_file()), None) if name else None
@@ -107,9 +114,9 @@ def _files(
             yield found
 
 
-def _notes(options: RunOptions, loaded: LoadedAgent) -> list[str]:
+def _notes(options: RunOptions, loaded: FoundAgent) -> list[str]:
     """Return what keeps a run from being repeated, in sentences."""
-    by_hand = options.hud is not None or issubclass(loaded.agent_class, HumanAgent)
+    by_hand = options.hud is not None or loaded.is_human
     if by_hand and options.keys is None and options.record_keys is None:
         return ["a person could drive, and the keys were not recorded; --record-keys FILE makes such a run repeatable"]
     return []
@@ -136,8 +143,12 @@ def write_run_folder(
     lanes: LaneGraph,
     config: dict[str, Any],
     scenarios: Sequence[dict[str, Any]] = (),
+    own: Sequence[Metric] = (),
 ) -> dict[str, Any]:
-    """Write the folder of a run, print its table and return the result; ``scenarios`` are those on the route."""
+    """Write the folder of a run, print its table and return the document of its result.
+
+    ``scenarios`` are those on the route, ``own`` are users' metrics.
+    """
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
     meta = {
@@ -156,10 +167,9 @@ def write_run_folder(
         "town": config["town"],
         "versions": config["versions"],
     }
-    document = result(driven.outcome, history, scoring, meta)
-    if scenarios:
-        document["scenarios"] = list(scenarios)
-    text, lanes_m = table(document), lanes.streets()
+    result = judge(driven.outcome, history, scoring, meta, scenarios=scenarios, own=own)
+    document = result.document()
+    text, lanes_m = table(result), lanes.streets()
     print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
@@ -170,7 +180,7 @@ def write_run_folder(
         picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
     streets = [] if history is None else around(lanes_m, history)
     write_streets(folder, streets)
-    write_report(folder, RunRecord(name=folder.name, config=config, result=document, history=history, streets=streets))
+    write_report(folder, RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets))
     if config["recording"] is not None:
         print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return document

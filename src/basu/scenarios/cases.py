@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import ScenarioError
+from basu.scenarios.characteristics import characteristics_of
 from basu.scenarios.class_file import own_scenarios, users_scenarios
 from basu.scenarios.config.read import read_cases
-from basu.scenarios.nhtsa import Group
+from basu.scenarios.nhtsa import Group, stands_for
 from basu.scenarios.parameters import narrowed, read_values
 from basu.scenarios.variation import variant, variants
 
@@ -29,6 +30,14 @@ if TYPE_CHECKING:
 LIBRARY = Path(__file__).parent / "library"  # the cases that come with BASU: <group>/<type in snake case>.xml
 ALL = "all"
 GROUP = "group:"  # before a group's name where a type is called the same
+THESIS = {  # the scenarios of chapter 3 of the thesis, by their numbers there
+    "I": ("ControlLoss",),
+    "II": ("FollowLeadingVehicle", "FollowLeadingVehicleWithObstacle"),
+    "III": ("StaticObject", "DynamicObject"),
+    "IV": ("UnsignalizedIntersection",),
+    "V": ("Roundabout",),
+}
+NAMES_OF_THE_THESIS = {"ObstacleAvoidance": "III", "ObjectAvoidance": "III"}
 THEIRS = re.compile(
     "behind_vehicle_distance|bicycle_drive_distance|bicycle_speed|blocker_model|crossing_angle|direction|distance"
     "|flow_distance|flow_speed|front_vehicle_distance|offset|speed|(frequency|source_dist_interval)(_from|_to)?"
@@ -57,6 +66,8 @@ class Playable(NamedTuple):
             "scenario": scenario.__name__,
             "title": scenario.title(),
             "group": scenario.group.value,
+            "pre_crash": [kind.number for kind in stands_for(scenario.__name__, scenario.group, scenario.pre_crash)],
+            "characteristics": characteristics_of(self).document(),
             "parameters": [
                 {"name": p.name, "value": self.values[p.name], "unit": p.unit, "about": p.about}
                 for p in scenario.parameters
@@ -123,7 +134,25 @@ class Library:
         path, class_name = file_in(wanted)
         if path is not None:
             return self._of_file(path, class_name)
-        return self.of_id(wanted) or self._of_kind(wanted)
+        return self._of_thesis(wanted) or self.of_id(wanted) or self._of_kind(wanted)
+
+    def _of_thesis(self, wanted: str) -> tuple[Playable, ...]:
+        """The cases of `thesis`, of `thesis:III`, or of a name of the thesis; none where it is no such word.
+
+        Raises:
+            ScenarioError: the thesis has no scenario of that number.
+        """
+        word, _, number = wanted.partition(":")
+        named = {plain(name): numeral for name, numeral in NAMES_OF_THE_THESIS.items()}
+        if plain(wanted) in named:
+            number = named[plain(wanted)]
+        elif plain(word) != "thesis":
+            return ()
+        if number and number.upper() not in THESIS:
+            raise ScenarioError(f"the thesis has no scenario '{number}'; write thesis:{', thesis:'.join(THESIS)}")
+        types = THESIS[number.upper()] if number else [name for names in THESIS.values() for name in names]
+        chosen = [scenario for scenario in self.scenarios if scenario.__name__ in types]
+        return tuple(self.playable(case) for case in self.cases if self._is_one_of(case, chosen))
 
     def of_id(self, identity: str) -> tuple[Playable, ...]:
         """The one case that an id means, sampled or not; none where no case begins it.

@@ -26,7 +26,7 @@ from basu.metrics.passengers.boxes import boxes, other_boxes, own_boxes, touchin
 from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, times_to_collision_s
 from basu.metrics.stop_signs import AT_REST_MPS, ZONE_BEFORE_M, ZONE_BEYOND_M
 from basu.routing import ControlKind
-from basu.scenarios.criteria.margins.company import company
+from basu.scenarios.criteria.margin import present_in
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
     from basu.records.history import History
     from basu.scenarios.criteria.criterion import Played
-    from basu.scenarios.criteria.margins.company import Company
+    from basu.scenarios.criteria.margin import Present
 
 INTERACTION_TTC_S = 2.0  # somewhat above the 1.5 s that FHWA-HRT-08-051 calls a conflict
 MEETING_PET_S = 2.0  # within this time two actors have to settle which one goes first; FHWA-HRT-08-051 screens with 5 s
@@ -69,7 +69,7 @@ def came_about(played: Played, partners: Collection[str] | None = None) -> Findi
     first = played.first_tick("conflict")
     if first is None:
         return Finding(False, "the conflict never began")
-    present = company(played)
+    present = present_in(played)
     keys = _partner_keys(present, partners)
     if not keys:
         return effect_felt(played)
@@ -88,7 +88,7 @@ def effect_felt(played: Played, at_least_mps: float = EFFECT_MPS) -> Finding:
     return Finding(speed_mps >= at_least_mps, f"{sentence}; {at_least_mps:g} m/s are needed")
 
 
-def _partner_keys(present: Company, partners: Collection[str] | None) -> list[int]:
+def _partner_keys(present: Present, partners: Collection[str] | None) -> list[int]:
     """Ids of the partners in the record."""
     others = present.history.others
     if partners is not None:
@@ -101,16 +101,16 @@ def _partner_keys(present: Company, partners: Collection[str] | None) -> list[in
     return moved or list(present.names)
 
 
-def _touched(present: Company, keys: list[int]) -> Finding | None:
+def _touched(present: Present, keys: list[int]) -> Finding | None:
     """The first contact with a partner."""
     for event in present.history.collisions:
         if event.other_id in keys:
             at_s = float(present.history.frames["t_s"][event.tick])
-            return Finding(True, f"the ego touched {present.told(event.other_id)} at {at_s:.2f} s")
+            return Finding(True, f"the ego touched {present.described(event.other_id)} at {at_s:.2f} s")
     return None
 
 
-def _nearly_collided(present: Company, keys: list[int], first: int) -> Finding | None:
+def _nearly_collided(present: Present, keys: list[int], first: int) -> Finding | None:
     """The least time to collision with a partner while the ego moved, where it is short."""
     history = present.history
     others = history.others
@@ -127,11 +127,12 @@ def _nearly_collided(present: Company, keys: list[int], first: int) -> Finding |
     row = others[rows[least]]
     at_s = float(history.frames["t_s"][row["tick"]])
     return Finding(
-        True, f"{present.told(int(row['id']))} was {ttc_s[least]:.2f} s from a collision with the ego at {at_s:.2f} s"
+        True,
+        f"{present.described(int(row['id']))} was {ttc_s[least]:.2f} s from a collision with the ego at {at_s:.2f} s",
     )
 
 
-def _would_have_met(present: Company, keys: list[int], first: int) -> Finding | None:
+def _would_have_met(present: Present, keys: list[int], first: int) -> Finding | None:
     """The first continuation of the ego that meets a partner."""
     history = present.history
     step = max(1, round(START_S / history.facts.step_s))
@@ -146,7 +147,7 @@ def _would_have_met(present: Company, keys: list[int], first: int) -> Finding | 
             at_s = float(history.frames["t_s"][start])
             return Finding(
                 True,
-                f"driving on unimpeded from {at_s:.2f} s, the ego would have met {present.told(key)} within "
+                f"driving on unimpeded from {at_s:.2f} s, the ego would have met {present.described(key)} within "
                 f"{in_s:.2f} s, at {speed_mps:.2f} m/s",
             )
     return None
@@ -289,7 +290,7 @@ def _by_tick(history: History, key: int) -> tuple[NDArray[np.float64], NDArray[n
     return found, moving
 
 
-def _apart(present: Company, keys: list[int], first: int) -> str:
+def _apart(present: Present, keys: list[int], first: int) -> str:
     """Why the conflict did not come about: how far away the nearest partner was."""
     history = present.history
     rows = history.others[np.isin(history.others["id"], keys) & (history.others["tick"] >= first)]
@@ -300,7 +301,8 @@ def _apart(present: Company, keys: list[int], first: int) -> str:
     away_m = np.hypot(rows["x_m"] - frames["x_m"], rows["y_m"] - frames["y_m"])
     nearest = int(np.argmin(away_m))
     at_s = float(frames["t_s"][nearest])
+    drove = "the ego never moved" if top_mps <= MOVING_MPS else f"the ego, at most {top_mps:.2f} m/s fast, met nobody"
     return (
-        f"the ego, at most {top_mps:.2f} m/s fast, would not have met anybody: the nearest conflict partner, "
-        f"{present.told(int(rows['id'][nearest]))}, was {away_m[nearest]:.1f} m away at {at_s:.2f} s"
+        f"{drove} and would have met nobody, had it driven on: the nearest conflict partner, "
+        f"{present.described(int(rows['id'][nearest]))}, was {away_m[nearest]:.1f} m away at {at_s:.2f} s"
     )

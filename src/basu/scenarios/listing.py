@@ -6,11 +6,14 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from basu.scenarios.cases import ALL, Playable, snake
+from basu.scenarios.characteristics import Characteristics, characteristics_of, having
 from basu.scenarios.nhtsa import BURDENS, Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from basu.scenarios.cases import Library
     from basu.scenarios.parameters import Parameter
 
@@ -18,10 +21,16 @@ Listed = dict[type[Scenario], list[Playable]]  # the cases of each scenario
 WIDTH = 120  # of a line
 
 
-def listed(library: Library, words: list[str]) -> Listed:
-    """The cases that are meant, below their scenarios; without words, also scenarios that have no case."""
-    found: Listed = {} if words else {scenario: [] for scenario in library.scenarios}
-    for playable in library.choose(words or [ALL]):
+def listed(library: Library, words: list[str], where: Sequence[tuple[str, str]] = ()) -> Listed:
+    """The cases that are meant and have the characteristics asked for, below their scenarios.
+
+    Without words and characteristics, scenarios that have no case are listed as well.
+
+    Raises:
+        ScenarioError: nothing is meant by a word, or no case has such characteristics.
+    """
+    found: Listed = {} if words or where else {scenario: [] for scenario in library.scenarios}
+    for playable in having(library.choose(words or [ALL]), where):
         found.setdefault(playable.scenario, []).append(playable)
     return found
 
@@ -70,8 +79,18 @@ def _in_full(scenario: type[Scenario], cases: list[Playable]) -> list[str]:
     """A line a parameter and a line a case."""
     return [
         *(f"      {p.name:<20} {_values(p):<32} {p.about}" for p in scenario.parameters),
-        *(f"      {playable.case.name:<40} {_place(playable)}{_unread(playable)}" for playable in cases),
+        *(
+            f"      {playable.case.name:<40} {_place(playable)}{_unread(playable)}{_unusual(playable)}"
+            for playable in cases
+        ),
     ]
+
+
+def _unusual(playable: Playable) -> str:
+    """The characteristics of a case that differ from a clear day on a dry straight street, as `--where` takes them."""
+    usual, found = Characteristics().document(), characteristics_of(playable).document()
+    words = [f"{name}={value}" for name, value in found.items() if value != usual[name]]
+    return f"; {', '.join(words)}" if words else ""
 
 
 def _unread(playable: Playable) -> str:
@@ -131,4 +150,5 @@ def _case_as_json(playable: Playable) -> dict[str, Any]:
         "on_route": case.on_route,
         "values": dict(playable.values),
         "unread": list(playable.unread),
+        "characteristics": characteristics_of(playable).document(),
     }

@@ -28,8 +28,8 @@ from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_co
 from basu.outcome import Fault
 from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Aspect, Criterion
-from basu.scenarios.criteria.margins.company import company
-from basu.scenarios.criteria.margins.gap import gap_m
+from basu.scenarios.criteria.margin import present_in
+from basu.scenarios.criteria.surrogate_measures import gap_m
 from basu.scenarios.exercise import MOVING_MPS, Finding
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
 
     from basu.outcome import Outcome
     from basu.scenarios.criteria.criterion import Judgement, Played
-    from basu.scenarios.criteria.margins.company import Company
+    from basu.scenarios.criteria.margin import Present
 
 NEAR_TTC_S = 1.0
 NEAR_PET_S = 1.0
@@ -78,7 +78,7 @@ class NoNearMiss(Criterion):
 
     def judge(self, played: Played) -> Judgement:
         """The moment that undercuts its limit most decides."""
-        present = company(played)
+        present = present_in(played)
         found = [miss for miss in (_ttc(present), _pet(present), _clearance(present)) if miss is not None]
         if not found:
             limit = f"{NEAR_TTC_S:g} s, {NEAR_M:g} m"
@@ -136,13 +136,13 @@ def most_serious(pairs: Sequence[tuple[Criterion, Judgement]]) -> Judgement | No
     return pairs[min(failed)[2]][1] if failed else None
 
 
-def _moving_rows(present: Company) -> NDArray[np.int64]:
+def _moving_rows(present: Present) -> NDArray[np.int64]:
     """Rows of the others in frames in which the ego moves."""
     history = present.history
     return np.flatnonzero(history.speed_mps()[history.others["tick"]] > MOVING_MPS)
 
 
-def _ttc(present: Company) -> NearMiss | None:
+def _ttc(present: Present) -> NearMiss | None:
     """The least time to collision, where it is below its limit."""
     history, rows = present.history, _moving_rows(present)
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
@@ -151,7 +151,7 @@ def _ttc(present: Company) -> NearMiss | None:
     return _least(present, rows, found_s, ticks, (NEAR_TTC_S, "s", "was {:.2f} s from a collision"))
 
 
-def _pet(present: Company) -> NearMiss | None:
+def _pet(present: Present) -> NearMiss | None:
     """The least post-encroachment time, where it is below its limit and the ego moved when the second one came."""
     history = present.history
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
@@ -161,7 +161,7 @@ def _pet(present: Company) -> NearMiss | None:
     return _least(present, rows, found_s[rows], later[rows], (NEAR_PET_S, "s", words))
 
 
-def _clearance(present: Company) -> NearMiss | None:
+def _clearance(present: Present) -> NearMiss | None:
     """The least distance between boxes, where it is below its limit."""
     history, rows = present.history, _moving_rows(present)
     others = history.others[rows]
@@ -173,7 +173,7 @@ def _clearance(present: Company) -> NearMiss | None:
 
 
 def _least(
-    present: Company,
+    present: Present,
     rows: NDArray[np.int64],
     values: NDArray[np.float64],
     ticks: NDArray[np.int64],
@@ -187,7 +187,7 @@ def _least(
     value, tick = float(values[least]), int(ticks[least])
     key, history = int(present.history.others["id"][rows[least]]), present.history
     sentence = (
-        f"{present.told(key)} {words.format(value)} at {float(history.frames['t_s'][tick]):.2f} s, "
+        f"{present.described(key)} {words.format(value)} at {float(history.frames['t_s'][tick]):.2f} s, "
         f"the ego at {float(history.speed_mps()[tick]):.2f} m/s"
     )
-    return NearMiss(value / limit, sentence, tick, value, unit, f"at least {limit:g} {unit}", present.called(key))
+    return NearMiss(value / limit, sentence, tick, value, unit, f"at least {limit:g} {unit}", present.name_of(key))

@@ -59,8 +59,10 @@ class Scenario(ABC):
     needs_m: ClassVar[float] = 60.0  # of the ego's route behind the trigger point
     needs_junction: ClassVar[bool] = False  # behind it: a case without a destination goes on to the next
     aliases: ClassVar[Sequence[str]] = ()  # types of ScenarioRunner and the leaderboard that mean this one
+    characteristics: ClassVar[Mapping[str, str]] = {}  # fields of `basu.scenarios.characteristics`
     pre_crash: ClassVar[tuple[int, ...]] = ()  # numbers in DOT HS 810 767; BASU's are in `basu.scenarios.nhtsa`
     reference: ClassVar[str] = "behavioral"  # an agent that comes with BASU and passes every case
+    needs_perception: ClassVar[bool] = True  # of others: the agent `blind` passes no case
 
     def __init__(self, place: Place, values: Mapping[str, Value]) -> None:
         """Take the place and the values; nothing is in the world yet."""

@@ -34,6 +34,7 @@ ASSUMPTIONS = (
     "A failed case is taken to cost the mean of its group's crashes, whether it was a scratch or a near miss.",
     "NOT_EXERCISED counts for neither side in the first figure, and as not passed in the figure for all crashes.",
     "An agent that broke down has not passed; cases spoiled by simulator, set-up, benchmark or by hand are left out.",
+    "Control loss and road departure have no other actor: a driver that perceives nobody passes them as well.",
     "The shuttle's own situations are not in the typology and weigh nothing.",
     "Not covered: backing up, vehicle failure, evasive action, crashes with objects, and speeds above a shuttle's.",
     "Intervals (95 %) cover the number of cases alone: cases were chosen by hand and not drawn from crashes.",
@@ -269,6 +270,7 @@ def _combined(strata: Iterable[_Stratum]) -> Estimate:
         share += weight * one.share
         below += (weight * (one.share - one.low)) ** 2
         above += (weight * (one.high - one.share)) ** 2
+    share = min(1.0, share)  # weights sum to 1 but for rounding
     return Estimate(share, max(0.0, share - math.sqrt(below)), min(1.0, share + math.sqrt(above)))
 
 

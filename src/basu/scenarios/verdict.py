@@ -13,7 +13,7 @@ from basu.metrics.collisions import beginnings
 from basu.metrics.responsibility import responsibility
 from basu.outcome import Fault, Outcome, Status
 from basu.scenarios.criteria.going import arrival_tick
-from basu.scenarios.criteria.told import margins_of, told_always
+from basu.scenarios.criteria.surrogate_measures import margins_of, reported_always
 from basu.scenarios.exercise import Finding, came_about
 from basu.scenarios.policy import Assessment, assess, with_policy
 
@@ -110,7 +110,7 @@ def judge(
         )
         return Judged(verdict, message, (), margins_of(()), outcome, None)
     asked = with_policy(criteria)
-    judgements = tuple(criterion.judge(played) for criterion in (*asked, *told_always(asked)))
+    judgements = tuple(criterion.judge(played) for criterion in (*asked, *reported_always(asked)))
     begun = exercised(played) if triggered else Finding(False, "the ego never came to where the conflict begins")
     assessment = assess(asked, judgements, outcome, begun)
     verdict, message = (

@@ -13,6 +13,7 @@ from basu.settings.option import Field, Settings, bounds, fields_of, suggestion
 
 TYPED = "typed__"  # begins the names of options in the namespace
 UNKNOWN = re.compile(r"unrecognized arguments: (.*)")
+CHOICE = re.compile(r"argument (\S+): invalid choice: '(.*)' \(choose from (.*)\)")
 
 
 class Parser(argparse.ArgumentParser):
@@ -40,8 +41,12 @@ class Parser(argparse.ArgumentParser):
             SystemExit: with status 2.
         """
         unknown = UNKNOWN.match(message)
+        choice = CHOICE.match(message)
         if unknown is not None:
             message = f"'{unknown[1]}' is one word too many"
+        elif choice is not None:
+            known = [word.strip(" '") for word in choice[3].split(",")]
+            message = f"{choice[1]} is '{choice[2]}', which means nothing; {suggestion(choice[2], known)}"
         self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` lists all options\n")
 
 
@@ -119,9 +124,21 @@ def _add(group: argparse._ArgumentGroup, field: Field) -> None:
         shown["metavar"] = metavar
     if not option.positional:
         group.add_argument(field.flag, dest=TYPED + field.name, **form.arguments(), **shown)
+        if field.type is bool and option.repeats:
+            undo = f"undo {field.flag} of a --config"
+            const = option.inverted
+            group.add_argument(
+                _opposite(field.flag), dest=TYPED + field.name, action="store_const", const=const, help=undo
+            )
         return
     more = form.arguments() or {"nargs": "?"}
     group.add_argument(TYPED + field.name, **more, **shown)
     if option.flag is not None:
         same = "the same, in ScenarioRunner's way"
         group.add_argument(option.flag, dest=f"{TYPED}{field.name}_flag", metavar=metavar, help=same)
+
+
+def _opposite(flag: str) -> str:
+    """The flag that undoes a flag."""
+    word = flag.removeprefix("--")
+    return f"--with-{word.removeprefix('no-')}" if word.startswith("no-") else f"--no-{word}"

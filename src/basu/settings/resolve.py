@@ -47,9 +47,8 @@ def resolve(model: type[Model], layers: Sequence[Layer]) -> Model:
         for name, value in values.items():
             merged[name] = {**merged.get(name, _usual(model, name)), **value} if isinstance(value, dict) else value
             origin[name] = layer
-    text = json.dumps(merged, default=to_json)
     try:
-        return _validated(model, text)
+        return _validated(model, json.dumps(merged))
     except ValidationError as error:
         raise _sentence(model, error, origin) from None
     except OptionError as error:
@@ -61,6 +60,15 @@ def resolve(model: type[Model], layers: Sequence[Layer]) -> Model:
         raise UserError(
             f"{sources.pop()}: {error}" if len(sources) == 1 and "" not in sources else str(error)
         ) from None
+
+
+def from_keywords(model: type[Model], **given: object) -> Model:
+    """The model of keyword arguments; paths, enums and tuples are as welcome as their JSON.
+
+    Raises:
+        UserError: as ``resolve``; the sentence names the keyword.
+    """
+    return resolve(model, [Layer(given)])
 
 
 _ADAPTERS: dict[type, TypeAdapter[Any]] = {}
@@ -76,12 +84,27 @@ def _validated(model: type[Model], text: str) -> Model:
 
 def _known(model: type[Settings], layer: Layer) -> dict[str, Any]:
     """The values of a layer, none of which is for an option that does not exist."""
-    values = model.completed(layer.values, layer.source)
+    values = {name: _plain(layer.name(model, str(name)), value) for name, value in layer.values.items()}
+    values = model.completed(values, layer.source)
     names = [field.name for field in fields_of(model)]
     for name in values:
         if name not in names:
             raise UserError(f"{layer.name(model, str(name))} means nothing; {suggestion(str(name), names)}")
     return values
+
+
+def _plain(name: str, value: object) -> Any:  # noqa: ANN401 - a JSON value
+    """A value of Python as JSON has it.
+
+    Raises:
+        UserError: JSON has no such value.
+    """
+    plain = to_json(value)
+    try:
+        json.dumps(plain)
+    except (TypeError, ValueError):
+        raise UserError(f"{name} is {value!r}; it must be a text, a number, a list or an object of these") from None
+    return plain
 
 
 def _clear_rivals(model: type[Settings], layer: Layer, values: Mapping[str, Any], merged: dict[str, Any]) -> None:

@@ -14,6 +14,8 @@ from typing import TextIO
 
 from typing_extensions import Self
 
+from linden.cli.sparing import Sparing
+
 GRACE_S = 1.0
 """How long what is being done at a signal may take: any call but the loading of an unusual map."""
 MOST_FILES = 20_000
@@ -117,7 +119,9 @@ def _nowhere() -> TextIO:
 def write_log(level: str) -> None:
     """Write the server's log to stderr from a level on; the compiler's own log is nobody's business."""
     logging.basicConfig(level=logging.WARNING, handlers=[PatientHandler()], format="linden: %(levelname)s: %(message)s")
-    logging.getLogger("linden").setLevel(level)
+    log = logging.getLogger("linden")
+    log.setLevel(level)
+    log.addFilter(Sparing())
 
 
 def allow_connections() -> None:

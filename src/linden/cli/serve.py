@@ -86,7 +86,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
     from linden.sensors.compiling import compile_once  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
-    from linden.server.ports import open_ports, port_of  # noqa: PLC0415 - see above
+    from linden.server.ports import is_loopback, open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
     from linden.simulation.walking_mesh import mesh_file  # noqa: PLC0415 - see above
     from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
@@ -97,6 +97,12 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
 
         check_device(arguments.device)
     registry.load_handlers()
+    if not is_loopback(arguments.host):
+        log.warning(
+            "every machine that reaches %s can control this server, for nothing in CARLA's protocol asks who calls; "
+            "name 127.0.0.1 with --host, or let a firewall choose who comes",
+            arguments.host,
+        )
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
     cache = MapCache.of_user()
     maps, meshes = MapLibrary(arguments.maps, cache.facts_of), MeshLibrary(cache)

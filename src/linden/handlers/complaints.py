@@ -30,6 +30,16 @@ def shortened(sentence: str) -> str:
     return f"{sentence[:half]} … ({len(sentence) - LONGEST} characters) … {sentence[-half:]}"
 
 
+def plain(sentence: str) -> str:
+    """Return a sentence without what steers a terminal."""
+    return sentence.translate(_CONTROL)
+
+
+def kind_of(sentence: str) -> str:
+    """Return what a sentence has in common with those that differ from it in their figures alone."""
+    return _FIGURES.sub("#", sentence[:_KIND_CHARACTERS])
+
+
 class Complaints:
     """What one server has said."""
 
@@ -42,14 +52,14 @@ class Complaints:
         sentence = shortened(sentence)
         if sentence in self._said:
             return
-        kind = _FIGURES.sub("#", sentence[:_KIND_CHARACTERS])
+        kind = kind_of(sentence)
         if kind not in self._of_kind and len(self._of_kind) >= KINDS:
             return
         count = self._of_kind[kind] = min(self._of_kind[kind] + 1, OF_A_KIND + 1)
         if count > OF_A_KIND:
             return
         self._said.add(sentence)
-        log.warning("%s", sentence.translate(_CONTROL))
+        log.warning("%s", plain(sentence))
         if count == OF_A_KIND:
             log.warning("more of this kind are not shown")
         if len(self._of_kind) == KINDS and count == 1:

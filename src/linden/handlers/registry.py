@@ -37,6 +37,8 @@ from linden.wire.rpc import Call, Reply
 from linden.wire.vocabulary import CARLA_FUNCTIONS
 from linden.world.actors import ActorRefusal
 
+_QUOTED = 100  # characters of a function's name; CARLA's longest has 39
+
 Handler = Callable[..., Any]
 Made = TypeVar("Made")
 Work: TypeAlias = Callable[[], Any]
@@ -211,7 +213,7 @@ def told(function: str, refusal: Refusal) -> str:
 def _missing(context: Context, call: Call) -> bytes:
     reply = CARLA_FUNCTIONS.get(call.method)
     if reply is None:
-        sentence = f"linden has no method '{shortened(call.method)}', nor has CARLA {CARLA_VERSION}"
+        sentence = f"linden has no method '{call.method[:_QUOTED]}', nor has CARLA {CARLA_VERSION}"
         context.warn_once(sentence)
         return rpc.unknown(call, sentence)
     sentence = f"linden has no method '{call.method}': CARLA {CARLA_VERSION} has it, linden {__version__} not yet"

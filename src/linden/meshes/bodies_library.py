@@ -27,7 +27,7 @@ def bodies_of(library: BlueprintLibrary, cache: MapCache) -> "Bodies":
 
     Their arrays may be read-only.
     """
-    return _read(cache.kept(_name(), lambda: _made(library)))
+    return cache.kept(_name(), lambda: _made(library), _read)
 
 
 def keep_bodies(library: BlueprintLibrary, cache: MapCache) -> None:

@@ -25,7 +25,7 @@ def standing_of(world_map: LoadedMap, scene: Scene, cache: MapCache) -> Mesh:
 
     Its arrays may be read-only.
     """
-    return _read(cache.kept(_name(world_map, scene), lambda: _written(_made(world_map, scene))))
+    return cache.kept(_name(world_map, scene), lambda: _written(_made(world_map, scene)), _read)
 
 
 def keep_standing(world_map: LoadedMap, scene: Scene, cache: MapCache) -> None:

@@ -56,7 +56,7 @@ class MeshLibrary:
         key.update(world_map.text.encode())
         for column in obstacles:
             key.update(column.tobytes())
-        return self._cache.kept(f"{key.hexdigest()[:32]}.nav", lambda: _made(world_map, obstacles))
+        return self._cache.kept(f"{key.hexdigest()[:32]}.nav", lambda: _made(world_map, obstacles), bytes)
 
 
 def _made(world_map: LoadedMap, obstacles: Obstacles) -> bytes:

@@ -1,10 +1,12 @@
 """OpenDRIVE text to a map. Hostile text is refused: no DTD, no entities, no network, numbers finite."""
 
 import gc
+import hashlib
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, cast
+from weakref import WeakValueDictionary
 
 from lxml import etree
 
@@ -16,17 +18,23 @@ from linden.opendrive.reading.furniture import read_controllers
 from linden.opendrive.reading.junctions import read_junction
 from linden.opendrive.reading.roads import read_road
 
+_in_use: WeakValueDictionary[bytes, OpenDrive] = WeakValueDictionary()
+
 _CDATA = re.compile(r"^\s*<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
 def parse(text: str | bytes) -> OpenDrive:
-    """Return the map an OpenDRIVE text describes.
+    """Return the map an OpenDRIVE text describes; as long as somebody holds it, the same for the same text.
 
     Raises:
         MapError: the text is no XML, no OpenDRIVE, or says something that cannot be; with the line.
     """
-    with _collector_paused():
-        return _read(_root(text))
+    digest = hashlib.sha256(text.encode() if isinstance(text, str) else text).digest()
+    found = _in_use.get(digest)
+    if found is None:
+        with _collector_paused():
+            found = _in_use[digest] = _read(_root(text))
+    return found
 
 
 @contextmanager

@@ -25,7 +25,8 @@ from linden.values.vehicles import Gear, VehiclePhysicsControl, Wheel
 Item = TypeVar("Item")
 
 _KNOWN_IDS = frozenset(PacketId)
-_DISPUTED_IDS = (PacketId.DOORS, PacketId.WHEELS, PacketId.BIKERS)
+DISPUTED_IDS = (PacketId.DOORS, PacketId.WHEELS, PacketId.BIKERS)
+"""Which of these a packet is tells its content alone."""
 
 _COUNT = struct.Struct("<H")
 _LONG_COUNT = struct.Struct("<I")
@@ -118,7 +119,7 @@ def decode(packet: Packet) -> tuple[PacketId, object] | None:
     """
     if packet.id not in _KNOWN_IDS:
         return None
-    kind = _undisputed(packet) if packet.id in _DISPUTED_IDS else PacketId(packet.id)
+    kind = _undisputed(packet) if packet.id in DISPUTED_IDS else PacketId(packet.id)
     return kind, _content(kind, packet)
 
 

@@ -19,7 +19,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from linden.recording import layouts
-from linden.recording.decode import Cursor, Packet, decode, name_of
+from linden.recording.decode import DISPUTED_IDS, Cursor, Packet, decode, name_of
 from linden.recording.errors import CutShortError, NoRecordingError, RecordingError
 from linden.recording.layouts import PacketId
 from linden.recording.packets import Frame, Header
@@ -143,10 +143,10 @@ class Recording:
         self._file.seek(place.start)
         packets: dict[PacketId, object] = {}
         for packet in _split(self._file.read(place.end - place.start), place.start):
-            if packet.id in (PacketId.FRAME_START, PacketId.FRAME_END) or packet.id not in wanted:
+            if packet.id in (PacketId.FRAME_START, PacketId.FRAME_END):
                 continue
-            found = decode(packet)
-            if found is None:
+            found = decode(packet) if packet.id in wanted or packet.id in DISPUTED_IDS else None
+            if found is None or found[0] not in wanted:
                 continue
             kind, content = found
             if kind in packets:

@@ -14,7 +14,7 @@ from linden.recording.read import FramePlace, Recording
 
 log = logging.getLogger("linden")
 
-_EVENTS = frozenset((PacketId.ADDED, PacketId.REMOVED, PacketId.PARENTS, PacketId.SCENE_LIGHTS))
+_EVENTS = frozenset((PacketId.ADDED, PacketId.REMOVED, PacketId.PARENTS, PacketId.SCENE_LIGHTS, PacketId.DOORS))
 
 
 class Track(NamedTuple):

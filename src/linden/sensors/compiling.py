@@ -21,13 +21,25 @@ def compile_once(cache: MapCache) -> None:
     So a start compiles what is not compiled, and does not load what nobody has asked for yet.
     """
     name = _name()
-    files = json.loads(cache.kept(name, lambda: b"[]"))
+    files = cache.kept(name, lambda: b"[]", _files_of)
     if files and all(map(os.path.exists, files)):
         return
     from linden.sensors.warming import warm_up  # noqa: PLC0415 - a start that finds it compiled does without
 
     warm_up()
     cache.replace(name, json.dumps(_compiled_files()).encode())
+
+
+def _files_of(content: bytes) -> list[str]:
+    """Return the names of files that are kept.
+
+    Raises:
+        ValueError: these are none.
+    """
+    files = json.loads(content)
+    if not isinstance(files, list) or not all(isinstance(file, str) for file in files):
+        raise ValueError("no list of files")
+    return files
 
 
 def _name() -> str:

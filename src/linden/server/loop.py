@@ -8,13 +8,14 @@ import gc
 import logging
 import selectors
 import socket
+import sys
 import time
 from functools import partial
 
 from linden.errors import ProtocolError
 from linden.handlers import session
 from linden.handlers.context import Context, Frames
-from linden.server.calls import UNREAD_ANSWERS_BYTES, Calls
+from linden.server.calls import Calls
 from linden.server.entrance import Entrance
 from linden.server.pace import Pace
 from linden.server.peers import Peer, RpcPeer, StreamPeer
@@ -27,8 +28,17 @@ from linden.world.maps import MapLibrary
 
 log = logging.getLogger("linden")
 
-UNFINISHED_BYTES_OF_ALL = 256 * 1024 * 1024
-"""What half-received calls may take in all connections together: four of the largest, hundreds of any usual size."""
+UNFINISHED_BYTES_OF_ALL = 128 * 1024 * 1024
+"""What half-received calls may take in all connections together: two of the largest, hundreds of any usual size."""
+UNFINISHED_ARRAYS_OF_ALL = 8 * 1024 * 1024
+"""How many arrays half-received calls may have in all connections together: two of the most."""
+
+HOARD_BYTES = 64 * 1024
+"""From this size on a half-received call is looked at: smaller ones of a thousand clients are 64 MB."""
+
+SWITCH_S = 0.001
+"""How long work in the background keeps Python's lock when this thread wants it; a call wants it some times, and by
+default it would have to wait 5 ms each time."""
 
 _READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 _BUG = "internal error in %s; the server goes on"
@@ -64,6 +74,7 @@ class Server:
 
     def run(self) -> None:
         """Serve until :meth:`stop`, then close every connection."""
+        sys.setswitchinterval(SWITCH_S)
         try:
             while not self._stopping:
                 self._turn_in_any_memory()
@@ -221,7 +232,7 @@ class Server:
             peer.calls.extend(peer.connection.receive(data))
             if peer.calls:
                 self._entrance.has_spoken(peer)
-            elif peer.connection.unfinished_bytes > UNREAD_ANSWERS_BYTES:
+            elif peer.connection.unfinished_bytes > HOARD_BYTES:
                 self._refuse_to_hoard()
         else:
             peer.at_end = True
@@ -234,8 +245,11 @@ class Server:
             ProtocolError: the connection that went too far is to be closed.
         """
         held = sum(peer.connection.unfinished_bytes for peer in self._clients)
-        if held > UNFINISHED_BYTES_OF_ALL:
-            raise ProtocolError(f"half-received calls of all clients hold {held} bytes, too much to receive more")
+        arrays = sum(peer.connection.unfinished_arrays for peer in self._clients)
+        if held > UNFINISHED_BYTES_OF_ALL or arrays > UNFINISHED_ARRAYS_OF_ALL:
+            raise ProtocolError(
+                f"half-received calls of all clients hold {held} bytes with {arrays} arrays, too much to receive more"
+            )
 
     def _make_due_frame(self) -> None:
         """Make a frame by the clock, or because something new is to be shown; in asynchronous mode only."""

@@ -1,6 +1,7 @@
 """The two listening sockets, and the sentence where a port cannot be had."""
 
 import errno
+import ipaddress
 import socket
 from typing import NamedTuple
 
@@ -45,6 +46,15 @@ def open_ports(host: str, port: int, streaming_port: int | None = None) -> Ports
     except UserError:
         rpc.close()
         raise
+
+
+def is_loopback(host: str) -> bool:
+    """Return whether none but this machine reaches an address; a name that nothing is known about is none."""
+    try:
+        found = socket.getaddrinfo(host, None, type=socket.SOCK_STREAM)
+    except (socket.gaierror, UnicodeError):
+        return False
+    return all(ipaddress.ip_address(address[0]).is_loopback for *_, address in found)
 
 
 def port_of(listener: socket.socket) -> int:

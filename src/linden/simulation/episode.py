@@ -160,6 +160,18 @@ class Episode:
             raise ActorRefusal(otherwise, actor_id)
         return record.slot
 
+    def carrier(self, record: ActorRecord) -> ActorRecord | None:
+        """Return what moves an attached actor: the nearest that has a body of those it hangs on, None without one."""
+        carrier = self.actors.find(record.parent_id)
+        while carrier is not None and carrier.slot == NO_BODY:
+            carrier = self.actors.find(carrier.parent_id)
+        return carrier
+
+    def forget_contacts(self, slot: int) -> None:
+        """Forget what a body has touched, for it is leaving; whoever looks for it later finds nobody there."""
+        if len(self.contacts):
+            self.contacts = self.contacts[(self.contacts["a"] != slot) & (self.contacts["b"] != slot)]
+
     def light(self, actor_id: int) -> int:
         """Return the number of a traffic light.
 

@@ -16,7 +16,7 @@ from linden.sensors.seen import Seen
 from linden.simulation.seeing import Seeing
 from linden.values.actors import ActorDescription
 from linden.values.space import Transform
-from linden.world.actors import NO_BODY, ActorRecord
+from linden.world.actors import ActorRecord
 
 if TYPE_CHECKING:
     from linden.simulation.episode import Episode
@@ -103,9 +103,7 @@ def look_around(episode: "Episode", now: Now, listened: Container[int]) -> list[
 
 def _velocity(episode: "Episode", sensor: ActorRecord, pose: Transform) -> F64:
     """Return how fast (3,) the body that carries a sensor moves it, m/s in the world."""
-    carrier = episode.actors.find(sensor.parent_id)
-    while carrier is not None and carrier.slot == NO_BODY:
-        carrier = episode.actors.find(carrier.parent_id)
+    carrier = episode.carrier(sensor)
     if carrier is None:
         return np.zeros(3)
     bodies, slot = episode.bodies, carrier.slot

@@ -9,7 +9,7 @@ from linden.sensors.instrument import Moment, observe
 from linden.simulation.episode import Episode
 from linden.simulation.eyes import Now, look_around
 from linden.values.space import Transform, Vector3D
-from linden.world.actors import NO_BODY, ActorRecord
+from linden.world.actors import ActorRecord
 
 COLLISION_SENSOR = "sensor.other.collision"
 
@@ -51,8 +51,8 @@ def measure(episode: Episode, listened: Container[int], now: Now) -> Measurement
 
 def _turning(episode: Episode, sensor: ActorRecord) -> Vector3D:
     """Return the angular velocity, rad/s in the world, of the body that carries a sensor."""
-    carrier = episode.actors.find(sensor.parent_id)
-    if carrier is None or carrier.slot == NO_BODY:
+    carrier = episode.carrier(sensor)
+    if carrier is None:
         return Vector3D()
     return Vector3D(*map(float, episode.bodies.angular_velocity[carrier.slot]))
 
@@ -61,9 +61,9 @@ def _collisions(episode: Episode, listened: Container[int]) -> Measurements:
     carriers: dict[int, list[int]] = defaultdict(list)
     for record in episode.actors:
         if record.description.id == COLLISION_SENSOR and record.stream_id in listened:
-            parent = episode.actors.find(record.parent_id)
-            if parent is not None and parent.slot != NO_BODY:
-                carriers[parent.slot].append(record.id)
+            carrier = episode.carrier(record)
+            if carrier is not None:
+                carriers[carrier.slot].append(record.id)
     if not carriers:
         return []
     return [

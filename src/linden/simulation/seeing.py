@@ -86,10 +86,12 @@ class Seeing:
             self._coming[1].add_done_callback(lambda _: self.when_built())
 
     def leave(self, episode: "Episode") -> None:
-        """Give up what is being built, unless an episode that begins wants the same."""
+        """Give up what is being built, and let go of what is, unless an episode that begins wants the same."""
         if self._coming is not None and not self._coming[0].is_for(episode):
             self._give_up()
             self._coming = None
+        if self._stage is not None and self._stage.scene is not episode.surroundings.scene:
+            self._stage = self._whole = None
 
     def _give_up(self) -> None:
         if self._unwanted is not None:

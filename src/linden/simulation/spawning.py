@@ -156,15 +156,12 @@ def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
         raise Refusal(f"unable to destroy actor: not found (no actor has id {actor_id})")
     if record.kind in _OF_THE_MAP or actor_id == episode.spectator_id:
         raise Refusal(f"unable to destroy actor: {record.description.id} (actor {actor_id}) belongs to the map")
-    _remove(episode, actor_id, announce=announce)
-
-
-def _remove(episode: Episode, actor_id: int, *, announce: bool) -> None:
     for child in episode.actors.children(actor_id):
         episode.actors.detach(child.id)
     record = episode.actors.remove(actor_id, announce=announce)
     if record.slot != NO_BODY:
         episode.bodies.remove(record.slot)
+        episode.forget_contacts(record.slot)
     episode.instruments.pop(actor_id, None)
     episode.eyes.pop(actor_id, None)
     episode.doors.forget(actor_id)

@@ -67,7 +67,8 @@ def got(value: object) -> str:
         return "nil"
     if isinstance(value, (list, tuple)):
         return f"an array of {len(value)}"
-    shown = repr(value)
+    # of a text of megabytes only the beginning is written out
+    shown = repr(value[: _SHOWN + 1] if isinstance(value, (str, bytes)) else value)
     return f"{type(value).__name__} {shown if len(shown) <= _SHOWN else shown[:_SHOWN] + '…'}"
 
 

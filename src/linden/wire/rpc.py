@@ -15,10 +15,16 @@ from linden.wire.decode import got
 
 MAX_MESSAGE_BYTES = 64 * 1024 * 1024
 """Largest request; an OpenDRIVE text of a big town is 10 MB, a 4k texture as floats 40 MB."""
+MAX_ARRAYS = 4 * 1024 * 1024
+"""Most arrays in one message, one within another or side by side: an empty one is a byte of the message and 70 bytes of
+memory. What looks like an array's first byte is counted, so a text has none and numbers have a few too many. A picture
+of 1920 x 1080 pixels has 2 Mi."""
 MAX_ARRAY_ITEMS = 4 * 1024 * 1024
 """Most items of one array: its list is laid out before the items come, so that 5 bytes must not ask for gigabytes."""
 REQUEST, RESPONSE = 0, 1
 
+_ARRAYS = bytes((*range(0x80, 0xA0), 0xDC, 0xDD, 0xDE, 0xDF))
+"""The first bytes of arrays and maps in msgpack."""
 _FIRST_BUFFER_BYTES = 4096  # what a buffer starts with; it grows
 _UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
 _pack = msgpack.Packer(unicode_errors="surrogateescape", buf_size=_FIRST_BUFFER_BYTES).pack
@@ -55,6 +61,8 @@ class RpcConnection:
         )
         self.unfinished_bytes = 0
         """How much of a call has come that is not yet whole."""
+        self.unfinished_arrays = 0
+        """How many arrays that has at most."""
         self._failure: ProtocolError | None = None
 
     def receive(self, data: bytes) -> list[Call]:
@@ -83,11 +91,14 @@ class RpcConnection:
         if self._failure is not None:
             return
         self.unfinished_bytes += len(data)
+        self.unfinished_arrays += len(data) - len(data.translate(None, _ARRAYS))
+        if self.unfinished_arrays > MAX_ARRAYS:
+            raise ProtocolError(f"a message has more than {MAX_ARRAYS} arrays")
         try:
             self._unpacker.feed(data)
             for message in self._unpacker:
                 calls.append(_call(message))
-                self.unfinished_bytes = 0
+                self.unfinished_bytes = self.unfinished_arrays = 0
         except _UNPACKING_FAILED as error:
             raise ProtocolError(f"what arrived is not msgpack of a call: {error or type(error).__name__}") from error
         if self.unfinished_bytes > MAX_MESSAGE_BYTES:
@@ -101,7 +112,7 @@ def _call(message: object) -> Call:
     if type(call_id) is not int or type(method) is not str or type(params) is not list:
         raise ProtocolError(f"expected a request [0, id, method, parameters], got id {got(call_id)}, {got(method)}")
     if not params or type(params[0]) is not list or len(params[0]) != 1 or type(params[0][0]) is not bool:
-        raise ProtocolError(f"{method!r}: expected [is_async] before the arguments, got {got(params[0:1])}")
+        raise ProtocolError(f"{got(method)}: expected [is_async] before the arguments, got {got(params[0:1])}")
     return Call(call_id, method, params[1:], params[0][0])
 
 

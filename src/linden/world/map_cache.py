@@ -10,7 +10,7 @@ import os
 from collections.abc import Callable
 from itertools import count
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from linden.world.map_archive import pack, unpack
 from linden.world.map_facts import MapFacts, derive
 
 log = logging.getLogger("linden")
+Read = TypeVar("Read")
 
 MOST_BYTES = 500_000_000
 """How much the folder may hold; a town of 240,000 triangles takes 24 MB."""
@@ -37,6 +38,7 @@ class MapCache:
         """Use a folder, which is made when there is something to keep."""
         self._folder = folder
         self._most_bytes = most_bytes
+        self._is_told = False
 
     @classmethod
     def of_user(cls) -> "MapCache":
@@ -62,8 +64,8 @@ class MapCache:
             self._write(file, facts)
         return facts
 
-    def kept(self, name: str, make: Callable[[], bytes]) -> bytes:
-        """Return what is kept in the file of that name, made where there is none or it is broken.
+    def kept(self, name: str, make: Callable[[], bytes], read: Callable[[bytes], Read]) -> Read:
+        """Return what ``read`` reads of the file of that name, made where there is none or it is broken.
 
         The name has to tell all that decides what is in it.
         """
@@ -71,20 +73,23 @@ class MapCache:
         try:
             digest, content = (whole := file.read_bytes())[:_DIGEST_BYTES], whole[_DIGEST_BYTES:]
             if digest == _digest(content):
+                found = read(content)
                 os.utime(file)  # so that it counts as used
-                return content
-        except OSError as error:
+                return found
+        except FileNotFoundError as error:
             log.debug("%s is made: %s", file, error)
+        except Exception as error:  # noqa: BLE001 - whatever may be wrong with a file, it can be made anew
+            log.info("%s is made anew: %s", file, error)
         content = make()
         self.replace(name, content)
-        return content
+        return read(content)
 
     def keep(self, name: str, make: Callable[[], bytes]) -> None:
         """Have something kept under a name, for :meth:`kept` to read; made only where there is no file of that name."""
         try:
             os.utime(self._folder / name)  # it counts as used
         except OSError:
-            self.kept(name, make)
+            self.kept(name, make, bytes)
 
     def replace(self, name: str, content: bytes) -> None:
         """Keep something else than before under a name."""
@@ -102,7 +107,14 @@ class MapCache:
             part.replace(file)  # at once: nobody reads half a file, and of two writers the last one wins
             self._prune()
         except OSError as error:
-            log.info("what was derived from the map cannot be kept: %s", error)
+            if not self._is_told:
+                log.warning(
+                    "what was compiled and derived cannot be kept in %s (%s), so every start makes it anew, which may "
+                    "take a minute; set XDG_CACHE_HOME to a folder that can be written",
+                    self._folder,
+                    error.strerror or error,
+                )
+            self._is_told = True
 
     def _prune(self) -> None:
         """Remove the files used longest ago that the limit has no room for; what a killed server left is among them."""

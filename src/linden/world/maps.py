@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,11 +11,17 @@ from numpy.typing import NDArray
 from linden.errors import Refusal, UserError
 from linden.world.map_facts import MapFacts, derive
 
+if TYPE_CHECKING:
+    from linden.opendrive.model import OpenDrive
+
 HOME_MAP = "Linden"
 GENERATED_MAP = "OpenDriveMap"
 """The name under which CARLA loads what ``generate_opendrive_world`` sent."""
 
 _PACKAGED = Path(__file__).parent.parent / "data"
+MOST_KEPT = 2
+"""Maps of files that stay in memory, a town takes 30 MB: the one that is loaded and the one before."""
+
 _FOLDERS = ("/Game/Carla/Maps/", "Carla/Maps/")
 """How CARLA writes a map's name: the first when it lists them, the second in the map's info."""
 
@@ -108,8 +114,12 @@ class MapLibrary:
             raise Refusal(f"Map '{name}' cannot be read: {error}") from error
 
     def keep(self, made: LoadedMap) -> None:
-        """Keep a map for the next load of its name."""
+        """Keep a map for the next load of its name; of the maps of files, those loaded last are kept."""
+        self._loaded.pop(made.name, None)
         self._loaded[made.name] = made
+        of_files = [name for name in self._loaded if name != GENERATED_MAP]
+        for name in of_files[:-MOST_KEPT]:
+            del self._loaded[name]
 
     def from_opendrive(self, text: str, *, wall_height_m: float = 0.0, beyond_m: float = 0.0) -> LoadedMap:
         """Return a map of a text that a client sent; changes nothing, so that any thread may call it.
@@ -123,12 +133,13 @@ class MapLibrary:
             Refusal: the text is no OpenDRIVE that can be used.
         """
         try:
+            if wall_height_m <= 0.0:
+                return self._make_ready(GENERATED_MAP, text)
+            opendrive = _parsed(text)  # held here, so that the facts are derived of the same
             ready = self._make_ready(GENERATED_MAP, text)
-            if wall_height_m > 0.0:
-                ready = replace(ready, walls=Walls(_walls(text, ready, beyond_m), wall_height_m))
+            return replace(ready, walls=Walls(_walls(opendrive, ready, beyond_m), wall_height_m))
         except UserError as error:
             raise Refusal(f"the OpenDRIVE text cannot be used: {error}") from error
-        return ready
 
     def _make_ready(self, name: str, text: str) -> LoadedMap:
         return LoadedMap(name=name, text=text, **vars(self._facts_of(text)))
@@ -138,9 +149,13 @@ def _bare(name: str) -> str:
     return name.removeprefix(_FOLDERS[0]).removeprefix(_FOLDERS[1]).removesuffix(".xodr")
 
 
-def _walls(text: str, facts: MapFacts, beyond_m: float) -> NDArray[np.float64]:
-    # here, not above: only who sends a map pays for them
-    from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
-    from linden.world.map_walls import walls_along  # noqa: PLC0415 - see above
+def _parsed(text: str) -> "OpenDrive":
+    from linden.opendrive.parse import parse  # noqa: PLC0415 - only who sends a map pays for it
 
-    return walls_along(parse(text), facts.ground, beyond_m)
+    return parse(text)
+
+
+def _walls(opendrive: "OpenDrive", facts: MapFacts, beyond_m: float) -> NDArray[np.float64]:
+    from linden.world.map_walls import walls_along  # noqa: PLC0415 - only who sends a map pays for it
+
+    return walls_along(opendrive, facts.ground, beyond_m)

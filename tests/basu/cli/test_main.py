@@ -81,8 +81,8 @@ def test_a_record_is_scored_again_with_other_penalties(tmp_path: Path, capsys: p
     first = capsys.readouterr().out
     assert main(["score", str(tmp_path), "--penalty", "collision_static=0.5"]) == 0
     second = capsys.readouterr().out
-    assert "infraction         0.650" in first
-    assert "infraction         0.500" in second
+    assert "infractions        0.650" in first
+    assert "infractions        0.500" in second
     assert "hit static.poles at 10.00 m/s" in first
 
 

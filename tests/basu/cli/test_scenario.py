@@ -6,8 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from basu.cli import main
 from basu.cli.scenario import add_list_options, list_scenarios
 from basu.errors import ScenarioError
+from basu.scenarios.characteristics import Characteristics
 
 CLASSES = """
 from basu.scenarios.nhtsa import Group
@@ -99,6 +101,7 @@ def test_the_list_as_json_has_everything(capsys: pytest.CaptureFixture[str], min
                         "on_route": True,
                         "values": {"ahead": 25.0, "side": "left"},
                         "unread": [],
+                        "characteristics": Characteristics().document(),
                     }
                 ],
             }
@@ -109,3 +112,23 @@ def test_the_list_as_json_has_everything(capsys: pytest.CaptureFixture[str], min
 def test_a_word_that_means_nothing_is_told(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(ScenarioError, match="there is no scenario 'zzz'"):
         told(capsys, "zzz")
+
+
+def test_where_lists_the_cases_with_a_characteristic_in_full(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scenario", "list", "roundabout", "--where", "junction=roundabout"]) == 0
+    shown = capsys.readouterr().out
+    assert "roundabout_1" in shown
+    assert "junction=roundabout" in shown
+
+
+@pytest.mark.parametrize(
+    ("typed", "words"),
+    [
+        ("lightning=dark", "there is no characteristic 'lightning'; did you mean 'lighting'?"),
+        ("lighting=drak", "lighting has no value 'drak'; did you mean 'dark'?"),
+        ("lighting", "--where lighting: it must be FIELD=VALUE, such as --where lighting=dark"),
+    ],
+)
+def test_an_unknown_condition_is_refused(typed: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["scenario", "list", "--where", typed]) == 2
+    assert words in capsys.readouterr().err

@@ -8,6 +8,7 @@ import pytest
 from basu.agents import loader as agent_loader
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import load_agent
+from basu.agents.sight import Knowledge
 from basu.errors import UserError
 
 SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
@@ -41,6 +42,26 @@ def test_the_built_in_agents_are_found_by_name(name: str) -> None:
     loaded = load_agent(name)
     assert issubclass(loaded.agent_class, AutonomousAgent)
     assert (loaded.name, loaded.file) == (name, None)
+
+
+def test_a_built_in_agent_knows_whom_it_sees_or_everyone() -> None:
+    seeing, knowing = load_agent("behavioral"), load_agent("behavioral:full")
+    assert seeing.agent_class.knowledge is Knowledge.SEEN  # type: ignore[attr-defined]
+    assert knowing.agent_class.knowledge is Knowledge.FULL  # type: ignore[attr-defined]
+    assert knowing.name == "behavioral-full"
+
+
+@pytest.mark.parametrize(
+    ("wanted", "sentence"),
+    [
+        ("basic:all", "there is no agent 'basic:all'; there are 'basic' and 'basic:full'"),
+        ("forward:full", "the agent 'forward' looks at no other actors; leave ':full' out"),
+        ("blind:full", "the agent 'blind' looks at no other actors; leave ':full' out"),
+    ],
+)
+def test_knowledge_that_there_is_not_is_refused(wanted: str, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        load_agent(wanted)
 
 
 def test_imported_agents_are_not_taken_for_the_files_own(tmp_path: Path) -> None:

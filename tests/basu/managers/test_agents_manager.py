@@ -18,6 +18,8 @@ from basu.managers.base_manager import Run
 from basu.routing.route_file import RoutePoint
 from fakes.drives import straight_route
 
+FRAME: Any = SimpleNamespace(tick=0, server_frame=3)
+
 
 class Docile(AutonomousAgent):
     """Answers with what it is told to."""
@@ -69,9 +71,9 @@ def test_the_answer_becomes_the_control() -> None:
     manager = made(Docile)
     assert manager.control.brake == 1.0  # before the first answer
     manager.perceive({"GNSS": (3, "fix")})
-    manager.tick(None)
+    manager.tick(FRAME)
     assert manager.control.throttle == pytest.approx(0.5)
-    assert manager._agent.seen == [{"GNSS": (3, "fix")}]
+    assert manager._agent.agent.seen == [{"GNSS": (3, "fix")}]
 
 
 def test_the_agent_is_bound_before_its_setup() -> None:
@@ -81,12 +83,12 @@ def test_the_agent_is_bound_before_its_setup() -> None:
             assert self.config_values["routes"] == "mine.xml"
             self.step_at_setup_s = self.time_step_s
 
-    assert made(Looks, routes="mine.xml")._agent.step_at_setup_s == 0.05
+    assert made(Looks, routes="mine.xml")._agent.agent.step_at_setup_s == 0.05
 
 
 def test_values_out_of_range_are_brought_into_it_as_carla_does() -> None:
     manager = made(answering(carla.VehicleControl(throttle=1.5, steer=-3.0, brake=-0.5)))
-    manager.tick(None)
+    manager.tick(FRAME)
     assert (manager.control.throttle, manager.control.steer, manager.control.brake) == (1.0, -1.0, 0.0)
 
 
@@ -102,23 +104,23 @@ def test_values_out_of_range_are_brought_into_it_as_carla_does() -> None:
 )
 def test_nonsense_is_an_invalid_control(answer: Any, sentence: str) -> None:
     with pytest.raises(AgentInvalidControlError, match=sentence):
-        made(answering(answer)).tick(None)
+        made(answering(answer)).tick(FRAME)
 
 
 @pytest.mark.parametrize("error", [ValueError("no lane"), SystemExit(3), RuntimeError("time-out")])
 def test_whatever_the_agent_raises_is_a_crash_of_the_agent(error: BaseException) -> None:
     with pytest.raises(AgentCrashedError, match=rf"run_step\(\) of Answering raised {type(error).__name__}: .* \(line"):
-        made(answering(raising(error))).tick(None)
+        made(answering(raising(error))).tick(FRAME)
 
 
 def test_a_user_at_the_keyboard_is_not_the_agent() -> None:
     with pytest.raises(KeyboardInterrupt):
-        made(answering(raising(KeyboardInterrupt()))).tick(None)
+        made(answering(raising(KeyboardInterrupt()))).tick(FRAME)
 
 
 def test_sleeping_in_a_step_is_a_time_out() -> None:
     with pytest.raises(AgentTimedOutError, match=r"run_step\(\) of Answering took longer than its limit of 0.1 s"):
-        made(answering(lambda: time.sleep(3600.0)), limit_s=0.1).tick(None)
+        made(answering(lambda: time.sleep(3600.0)), limit_s=0.1).tick(FRAME)
 
 
 def test_a_busy_loop_in_a_step_is_a_time_out() -> None:
@@ -127,7 +129,7 @@ def test_a_busy_loop_in_a_step_is_a_time_out() -> None:
             pass
 
     with pytest.raises(AgentTimedOutError):
-        made(answering(loop), limit_s=0.1).tick(None)
+        made(answering(loop), limit_s=0.1).tick(FRAME)
 
 
 def test_a_setup_that_raises_is_a_crash_of_the_agent() -> None:

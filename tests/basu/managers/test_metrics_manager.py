@@ -42,7 +42,8 @@ class Stage:
 
     def __init__(self) -> None:
         self.sensors: dict[str, Sensor] = {}
-        self.agents = SimpleNamespace(control=carla.VehicleControl(throttle=0.25), manual=False)
+        asked = carla.VehicleControl(throttle=0.25)
+        self.agents = SimpleNamespace(requested=asked, control=asked, manual=False)
         self.routes = SimpleNamespace(progress=Progress.at_start())
         self.route = straight_route(60.0, limit_mps=10.0)
         self.route.points_m[:, 1] = LANE_M / 2.0
@@ -128,3 +129,20 @@ def test_the_latest_contacts_are_told_by_tick() -> None:
     for tick in (5, 30, 35, 90):
         stage.hit(tick)
     assert [event.tick for event in stage.metrics.contacts_since(20)] == [30, 35]
+
+
+@pytest.mark.parametrize("looked_at", [False, True])
+def test_the_requested_and_the_applied_control_are_recorded(*, looked_at: bool) -> None:
+    """A person's or a scenario's control is not the agent's; it may be known only after somebody has looked."""
+    stage = Stage()
+    stage.agents.control = carla.VehicleControl(throttle=0.5, steer=-0.25)
+    stage.drive(2, 8.0)
+    if looked_at:
+        stage.metrics.infractions_so_far()
+    stage.metrics.applied(carla.VehicleControl(brake=1.0, hand_brake=True))
+    stage.drive(1, 8.0)
+    frames = stage.metrics.history().frames
+    assert frames["throttle"].tolist() == [0.25, 0.25, 0.25]
+    assert frames["applied_throttle"].tolist() == [0.5, 0.0, 0.5]
+    assert frames["applied_steer"].tolist() == [-0.25, 0.0, -0.25]
+    assert (frames["applied_brake"].tolist(), frames["applied_hand_brake"].tolist()) == ([0.0, 1.0, 0.0], [0, 1, 0])

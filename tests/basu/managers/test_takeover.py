@@ -47,7 +47,7 @@ def managed(*inputs: Input) -> AgentsManager:
 
 
 def ticked(manager: AgentsManager, tick: int) -> tuple[bool, float]:
-    frame: Any = SimpleNamespace(tick=tick)
+    frame: Any = SimpleNamespace(tick=tick, server_frame=tick)
     manager.tick(frame)
     return manager.manual, round(manager.control.throttle, 3)
 
@@ -61,7 +61,7 @@ def test_the_persons_control_counts_while_they_drive_and_the_agent_is_asked_all_
         (False, 0.5),
         (False, 0.5),
     ]
-    assert manager._agent.asked == 5
+    assert manager._agent.agent.asked == 5
 
 
 def test_an_agent_that_fails_while_a_person_drives_has_failed() -> None:

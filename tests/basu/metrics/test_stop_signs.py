@@ -1,5 +1,7 @@
 """Claims about stop signs: at rest, before the line, before crossing it."""
 
+from dataclasses import replace
+
 import pytest
 
 from basu.metrics.stop_signs import AT_REST_MPS, signs_passed, stop_signs
@@ -18,13 +20,23 @@ def approach(rest_with_front_at_m: float, lowest_mps: float = 0.0, lateral_m: fl
     return driven(speeds_mps, route=route, start_m=start_m, lateral_m=lateral_m)
 
 
-@pytest.mark.parametrize("front_m", [44.5, 48.0, 49.5, 50.5])
+@pytest.mark.parametrize("front_m", [47.2, 48.0, 49.5, 50.5])
 def test_a_halt_shortly_before_the_line_is_a_stop(front_m: float) -> None:
     (passed,) = signs_passed(approach(front_m))
     assert passed.stopped
     assert passed.lowest_speed_mps == pytest.approx(0.0, abs=1e-9)
     assert passed.front_to_line_m == pytest.approx(50.0 - front_m, abs=1e-6)
     assert stop_signs(approach(front_m)) == ()
+
+
+@pytest.mark.parametrize("off_m", [-4.0, 4.0])
+@pytest.mark.parametrize("front_m", [48.5, 49.35, 50.0])
+def test_a_line_that_is_four_metres_from_its_place_is_noticed(front_m: float, off_m: float) -> None:
+    """BASU's own drivers stop 0.65 m before a line."""
+    history = approach(front_m)
+    assert stop_signs(history) == ()
+    shifted = replace(history.facts.route, controls=(stop_sign(50.0 + off_m),))
+    assert len(stop_signs(replace(history, facts=replace(history.facts, route=shifted)))) == 1
 
 
 def test_a_halt_in_the_queue_ten_metres_before_is_none() -> None:

@@ -19,7 +19,7 @@ from servers import RunningServer, running_server
 
 SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
 AGENT = """
-import os, signal, time
+import ctypes, os, signal, sys, time
 
 class TestAgent(AutonomousAgent):
     def setup(self):
@@ -134,6 +134,32 @@ def test_the_history_follows_the_vehicle_from_rest(run: Runner, tmp_path: Path) 
         pytest.param("while True: pass", "AgentTimedOut", "took longer than its limit of 0.5 s", id="loops"),
         pytest.param("return None", "AgentInvalidControl", "returned None", id="returns nothing"),
         pytest.param("return 'ahead'", "AgentInvalidControl", "returned a str", id="returns nonsense"),
+        pytest.param("os._exit(1)", "AgentCrashed", "its process ended with exit status 1", id="ends its process"),
+        pytest.param(
+            "os._exit(0)", "AgentCrashed", "its process ended with exit status 0", id="ends as if all is well"
+        ),
+        pytest.param("sys.exit(0)", "AgentCrashed", "raised SystemExit: 0", id="sys.exit"),
+        pytest.param("raise KeyboardInterrupt", "AgentCrashed", "raised KeyboardInterrupt", id="plays the user"),
+        pytest.param(
+            "from basu.errors import UserError; raise UserError('a bad route')",
+            "AgentCrashed",
+            "raised UserError: a bad route",
+            id="blames the set-up",
+        ),
+        pytest.param("ctypes.string_at(0)", "AgentCrashed", "ended by the signal SIGSEGV", id="segmentation fault"),
+        pytest.param(
+            "ctypes.PyDLL(None).sleep(3600)",  # PyDLL keeps the interpreter's lock
+            "AgentTimedOut",
+            "took longer than its limit of 0.5 s",
+            id="hangs in native code",
+        ),
+        pytest.param(
+            "time.sleep(3600) if os.fork() == 0 else os._exit(3)",
+            "AgentCrashed",
+            "its process ended with exit status 3",
+            id="leaves a child with its pipes open",
+        ),
+        pytest.param("os.closerange(3, 256)", "AgentCrashed", "its process", id="closes all that is open"),
     ],
 )
 def test_an_agent_that_fails_has_its_own_status_and_what_was_measured(
@@ -144,13 +170,29 @@ def test_an_agent_that_fails_has_its_own_status_and_what_was_measured(
     assert (result["status"], result["fault"]) == (status, "agent")
     assert sentence in result["message"]
     assert result["meta"]["ticks"] == 21
+    assert result["meta"]["wall_s"] < 10.0  # on a busy machine; the hang alone lasts an hour
     assert result["scores"]["path_following"] > 0.0
+
+
+def test_an_agent_that_takes_all_memory_has_failed(run: Runner, tmp_path: Path) -> None:
+    deed = "self.hoard = [bytes([1]) * 20_000_000 for _ in range(50)]"
+    code, result = run(doing(tmp_path, deed), "--agent-memory", "0.5", "--step-limit", "60")
+    assert (code, result["status"]) == (1, "AgentCrashed")
+    assert re.search(r"it used [01]\.\d\d GB of memory, more than its limit of 0.5 GB", result["message"])
+
+
+def test_the_agents_process_changes_nothing_of_the_drive(tmp_path: Path, simulator: RunningServer, run: Runner) -> None:
+    written = []
+    for mode in ("", "--in-process"):
+        code, _ = run("basic", *filter(None, [mode]))
+        assert code == 0
+        written.append((tmp_path / "runs" / "latest" / "history.parquet").read_bytes())
+    assert written[0] == written[1]
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path, name: str) -> None:
-    # raised in the agent's own thread: what is sent to a process may reach any thread, and Python a few steps later
-    code, result = run(doing(tmp_path, f"signal.raise_signal(signal.{name})"))
+    code, result = run(doing(tmp_path, f"os.kill(os.getppid(), signal.{name})"))
     assert (code, result["status"]) == (130, "Interrupted")
     assert result["message"] == {"SIGINT": "interrupted by the user", "SIGTERM": "terminated by SIGTERM"}[name]
     assert result["scores"] is not None
@@ -221,16 +263,16 @@ def test_a_simulator_of_our_own_is_gone_afterwards(tmp_path: Path, route_file: P
 def test_a_simulator_of_our_own_does_not_outlive_a_killed_benchmark(tmp_path: Path, route_file: Path) -> None:
     note = tmp_path / "children"
     deed = (
-        "import psutil; children = psutil.Process().children(); "
+        "import psutil; children = psutil.Process().parent().children(); "  # the simulator, and the agent itself
         f"open({str(note)!r}, 'w').write(' '.join(str(child.pid) for child in children)); "
-        "os.kill(os.getpid(), signal.SIGKILL)"
+        "os.kill(os.getppid(), signal.SIGKILL)"
     )
     arguments = ["run", str(doing(tmp_path, deed)), "--routes", str(route_file), "--output", str(tmp_path / "runs")]
     program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"
     killed = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
     assert killed.returncode == -9
     servers = [int(number) for number in note.read_text().split()]
-    assert servers
+    assert len(servers) == 2
     gone, alive = psutil.wait_procs([psutil.Process(pid) for pid in servers if psutil.pid_exists(pid)], timeout=20)
     assert not alive, f"{len(gone)} ended, {alive} live on"
 

@@ -103,7 +103,7 @@ def test_criteria_have_their_judgement_and_decide_the_whole(after: TreeNode) -> 
     nodes = by_name(after)
     assert (nodes["no collision"]["status"], nodes["no collision"]["feedback"]) == ("failure", "touched <a & b>")
     assert (nodes["speed"]["status"], nodes["speed"]["feedback"]) == ("success", "it had 6.0 m/s (at most 8 m/s)")
-    assert nodes["comfort (told only)"]["status"] == "not judged"
+    assert nodes["comfort (reported only)"]["status"] == "not judged"
     assert nodes["criteria"]["status"] == after["status"] == "failure"
     assert nodes["behaviour"]["status"] == "success"
 
@@ -120,7 +120,7 @@ def test_text_has_a_line_a_node_with_its_mark(after: TreeNode) -> None:
     assert lines[0] == "✗ ⇉ Odd"
     assert "✓ │  ├─ → setup" in lines
     assert "⊘ │  │     │  └─ □ wait 50 s  (broken off after 5.4 s)" in lines
-    assert lines[-1] == "~    └─ ○ comfort (told only)  (nothing was measured)"
+    assert lines[-1] == "~    └─ ○ comfort (reported only)  (nothing was measured)"
 
 
 def test_plain_text_is_ascii(after: TreeNode) -> None:

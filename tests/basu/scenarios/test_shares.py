@@ -157,7 +157,7 @@ def test_a_share_lies_in_its_interval_and_one_more_passed_never_lowers_it(
     results = [result(group, f"{group.name}{name}", n, verdict) for n, (group, name, verdict) in enumerate(cases)]
     found = crash_shares(results)
     for estimate in (found.cost, found.shown_cost):
-        assert estimate is None or 0.0 <= estimate.low <= estimate.share + 1e-12 <= estimate.high + 2e-12 <= 1.0 + 3e-12
+        assert estimate is None or 0.0 <= estimate.low <= estimate.share <= estimate.high <= 1.0
     measured = {share.group for share in found.groups if share.group in BURDENS and share.passed is not None}
     assert measured | set(found.unmeasured) == set(BURDENS)
     assert not measured & set(found.unmeasured)
@@ -165,6 +165,13 @@ def test_a_share_lies_in_its_interval_and_one_more_passed_never_lowers_it(
     assert found.cost is None or (better.cost is not None and better.cost.share >= found.cost.share - 1e-12)
     absent = crash_shares([one._replace(verdict=ABSENT) if one.verdict is LOST else one for one in results])
     assert absent.shown_cost.share <= found.shown_cost.share + 1e-12
+
+
+def test_weights_that_sum_to_a_little_more_than_one_leave_a_share() -> None:
+    names = ("CyclistAhead", "CyclistAtRightTurn", "CyclistCrossing", "CyclistSwerves", "Dooring", "DynamicObject")
+    (share,) = crash_shares([result(Group.PEDALCYCLIST, name, 1, OK) for name in names]).groups
+    assert share.passed is not None
+    assert share.passed.share <= 1.0
 
 
 def test_the_documents_of_cases_are_read_and_the_figures_written_with_their_assumptions() -> None:

@@ -123,6 +123,7 @@ def test_every_option_stands_on_the_help_page_with_its_meaning(
         (["run", "--step", "3"], "there is no option --step"),
         (["scenario", "run", "all", "--agents", "x"], "there is no option --agents; did you mean '--agent'?"),
         (["score", "x", "--harsh-stops", "3"], "there is no option --harsh-stops; did you mean '--harsh-stop'?"),
+        (["scenario", "rnu"], "basu scenario: COMMAND is 'rnu', which means nothing; did you mean 'run'?"),
         (["run", "basic", "forward"], "'forward' is one word too many"),
     ],
 )

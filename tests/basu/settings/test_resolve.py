@@ -1,15 +1,18 @@
 """Claims about layers of settings: which goes before which, and how a complaint names its source."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from basu.cli import parser
 from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.score import Scoring
 from basu.options import RunOptions
+from basu.settings.command_line import typed
 from basu.settings.option import Layer
-from basu.settings.resolve import resolve
+from basu.settings.resolve import from_keywords, resolve
 
 
 def test_a_later_layer_goes_before_an_earlier_one() -> None:
@@ -58,6 +61,21 @@ def test_a_complaint_about_python_names_the_keyword() -> None:
         resolve(RunOptions, [Layer({"step_limit_s": -1.0})])
     with pytest.raises(UserError, match=r"^step_limit means nothing; did you mean 'step_limit_s'"):
         resolve(RunOptions, [Layer({"step_limit": 1.0})])
+
+
+def test_keywords_may_be_python_values() -> None:
+    found = from_keywords(RunOptions, output=Path("there"), scenario_files=(Path("a.py"),), hud_size=(800, 600))
+    assert (found.output, found.scenario_files, found.hud_size) == (Path("there"), (Path("a.py"),), (800, 600))
+    assert from_keywords(Scoring, penalties={Infraction.SPEEDING: 0.5}).penalties[Infraction.SPEEDING] == 0.5
+    with pytest.raises(UserError, match=r"^agent is <class 'int'>; it must be a text, a number"):
+        from_keywords(RunOptions, agent=int)
+
+
+def test_a_flag_can_be_undone() -> None:
+    file = Layer({"record": True, "with_scenarios": False}, "c.json")
+    words = ["run", "--no-record", "--with-scenarios"]
+    given = Layer(typed(RunOptions, parser(words).parse_args(words)), typed=True)
+    assert resolve(RunOptions, [file, given]) == RunOptions()
 
 
 def test_bounds_hold_for_models_that_are_made_directly() -> None:

@@ -50,3 +50,15 @@ def test_where_machine_code_lies_elsewhere_it_is_asked_for_there(
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "elsewhere"))
     compile_once(cache)
     assert warmed == ["warm", "warm"]
+
+
+@pytest.mark.parametrize("content", [b"", b"7", b"[7]", b"{", b"\xff"])
+def test_a_list_that_is_none_is_made_again(
+    tmp_path: Path, warmed: list[str], machine_code: Path, content: bytes
+) -> None:
+    assert machine_code.exists()
+    cache = MapCache(tmp_path / "kept")
+    cache.replace(compiling._name(), content)
+    for _ in range(2):
+        compile_once(cache)
+    assert warmed == ["warm"]

@@ -5,7 +5,7 @@ import socket
 import pytest
 
 from linden.errors import UserError
-from linden.server.ports import open_ports, port_of
+from linden.server.ports import is_loopback, open_ports, port_of
 
 
 def test_port_0_lets_the_system_choose_both() -> None:
@@ -31,3 +31,11 @@ def test_a_port_in_use_is_a_sentence_and_leaves_nothing_open() -> None:
 def test_an_address_that_cannot_be_is_a_sentence(host: str, port: int) -> None:
     with pytest.raises(UserError, match="cannot listen on"):
         open_ports(host, port)
+
+
+@pytest.mark.parametrize(
+    ("host", "is_here"),
+    [("127.0.0.1", True), ("127.5.0.1", True), ("::1", True), ("0.0.0.0", False), ("::", False), ("no.such", False)],
+)
+def test_only_a_loopback_address_is_out_of_reach_of_others(host: str, *, is_here: bool) -> None:
+    assert is_loopback(host) is is_here

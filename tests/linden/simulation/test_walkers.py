@@ -1,8 +1,12 @@
 """Walkers that are led, and walkers that are struck."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from linden.physics.step import CONTACT
+from linden.recording.read import Recording
 from linden.simulation import Simulation
 from linden.values.actors import ActorDescription, AttributeValue
 from linden.values.enums import AttributeType
@@ -148,3 +152,31 @@ def test_the_dead_do_not_move_on_their_own(simulation: Simulation, follower: int
     for _ in range(20):
         simulation.step(DT_S)
     assert episode.transform(follower).location[:2] == pytest.approx(before[:2])
+
+
+def test_what_touches_a_corpse_when_it_goes_breaks_no_frame(
+    simulation: Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    episode = simulation.episode
+    victim = walker(simulation, at(20.0, 1.75, 1.0), invincible=False)
+    car = simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), at(10.0, 1.75, 0.5))
+    sensor = simulation.spawn(ActorDescription(0, "sensor.other.collision"), Transform(), parent_id=car.id)
+    slots = car.slot, episode.actors.get(victim).slot
+
+    def touching(*_: object) -> np.ndarray:
+        """Let the two touch in every frame, which needs a bumper lower than most."""
+        contacts = np.zeros(1, CONTACT)
+        contacts["a"], contacts["b"] = slots
+        return contacts
+
+    simulation.recorder.start(tmp_path / "end.log", episode, "street", lambda: 0.0, additional_data=False)
+    episode.walkers.die(episode, victim)
+    monkeypatch.setattr("linden.simulation.step.advance", touching)
+    collisions = 0
+    while victim in episode.actors:
+        simulation.step(DT_S)
+        collisions += len(simulation.measure({sensor.stream_id}))
+    assert collisions > 100
+    simulation.recorder.stop()
+    with Recording(tmp_path / "end.log") as recording:
+        assert [frame.number for frame in recording.frames()][-1] == simulation.frame

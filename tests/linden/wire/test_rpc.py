@@ -172,3 +172,28 @@ def test_ten_thousand_damaged_requests_end_in_calls_or_sentences() -> None:
         for _ in range(chance.randrange(1, 5)):
             message[chance.randrange(len(message))] = chance.randrange(256)
         assert outcome(RpcConnection(), bytes(message[: chance.randrange(len(message) + 1)]))
+
+
+@pytest.mark.parametrize("array", [b"\x90", b"\x80", b"\xdc\x00\x00", b"\xdd\x00\x00\x00\x00"])
+def test_empty_arrays_cannot_ask_for_gigabytes(array: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rpc, "MAX_ARRAYS", 1000)
+    connection, head = RpcConnection(), b"\x94\x00\x01\xa7version\xdd\x00\x00\xff\xff\x91\xc2"
+    assert connection.receive(head + array * 990) == []
+    with pytest.raises(ProtocolError, match="more than 1000 arrays"):
+        connection.receive(array * 20)
+    assert connection.is_broken
+
+
+def test_the_arrays_of_one_message_do_not_count_for_the_next(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rpc, "MAX_ARRAYS", 50)
+    connection, sent = RpcConnection(), Call(1, "version", [[], []] * 10, is_async=False)
+    for _ in range(20):
+        assert connection.receive(request(sent)) == [sent]
+
+
+def test_what_is_quoted_of_a_long_text_is_its_beginning() -> None:
+    connection = RpcConnection()
+    message = msgpack.packb([0, 1, "\udcff" * 1_000_000, [1]], unicode_errors="surrogateescape")
+    with pytest.raises(ProtocolError) as caught:
+        connection.receive(message)
+    assert len(str(caught.value)) < 200

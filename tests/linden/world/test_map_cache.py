@@ -265,3 +265,18 @@ def test_a_library_takes_its_maps_from_the_cache(tmp_path: Path, nothing_is_deri
     loaded = MapLibrary([maps], MapCache(cache).facts_of).load("Street")
     assert loaded.text == STREET
     assert [signal.signal_id for signal in loaded.signals] == ["7", "8"]
+
+
+def test_a_file_with_a_good_digest_and_bad_content_is_made_anew(tmp_path: Path) -> None:
+    cache = MapCache(tmp_path)
+    cache.replace("number", b"not a number")
+    assert cache.kept("number", lambda: b"7", int) == 7
+    assert cache.kept("number", lambda: b"8", int) == 7
+
+
+def test_a_folder_that_cannot_be_written_is_spoken_of_once(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "file").touch()
+    cache = MapCache(tmp_path / "file" / "maps")
+    for number in range(3):
+        assert cache.kept(f"{number}", lambda: b"7", int) == 7
+    assert caplog.text.count("set XDG_CACHE_HOME to a folder that can be written") == 1

@@ -1,12 +1,15 @@
 """Maps by their names: which there are, which name finds which, and what is said where there is none."""
 
+import gc
+import weakref
 from pathlib import Path
 
 import pytest
 
 from linden.errors import Refusal, UserError
+from linden.opendrive import parse
 from linden.world.map_facts import MapFacts, derive
-from linden.world.maps import MapLibrary
+from linden.world.maps import MOST_KEPT, MapLibrary
 from opendrive_texts import street_through_junction
 
 STREET = street_through_junction()
@@ -72,3 +75,23 @@ def test_a_folder_without_maps_is_an_error_of_the_user(tmp_path: Path) -> None:
         MapLibrary([tmp_path])
     with pytest.raises(UserError, match="is not a folder"):
         MapLibrary([tmp_path / "nowhere"])
+
+
+def test_a_library_lets_go_of_maps_that_were_loaded_long_ago(tmp_path: Path) -> None:
+    for number in range(MOST_KEPT + 3):
+        (tmp_path / f"Street{number}.xodr").write_text(STREET.replace('name="Test"', f'name="{number}"'), "utf-8")
+    library = MapLibrary([tmp_path])
+    sent = library.from_opendrive(STREET)
+    library.keep(sent)
+    loaded = [weakref.ref(library.load(f"Street{number}")) for number in range(MOST_KEPT + 3)]
+    gc.collect()
+    assert [found() is not None for found in loaded] == [False] * 3 + [True] * MOST_KEPT
+    assert library.load("OpenDriveMap") is sent
+
+
+def test_a_text_is_parsed_once_for_its_facts_and_its_walls(monkeypatch: pytest.MonkeyPatch) -> None:
+    parsed = []
+    read = parse._root
+    monkeypatch.setattr(parse, "_root", lambda text: (parsed.append(len(text)), read(text))[1])
+    assert len(MapLibrary().from_opendrive(STREET + "<!-- -->", wall_height_m=1.0).walls.feet_m)
+    assert parsed == [len(STREET) + 8]

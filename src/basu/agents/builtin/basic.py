@@ -15,8 +15,9 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.builtin.driving.driver import Driver
 from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
 from basu.agents.builtin.driving.task import make_task
-from basu.agents.builtin.perception import RADIUS_M, Lights, Perception, see_ego
+from basu.agents.builtin.perception import Lights, see_ego
 from basu.agents.builtin.vehicle_facts import SHUTTLE, read_facts
+from basu.agents.sight import RADIUS_M, Knowledge, Sight
 from basu.errors import UserError
 from basu.routing import ControlKind
 
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
 class BasicAgent(AutonomousAgent):
     """A careful driver; from ``setup`` on, ``driver`` holds its plan and may be looked at."""
 
-    sight_m = RADIUS_M  # how far others are looked at
-    perceives_others = True  # False: the driver knows of no vehicle, walker or prop
+    sight_m = RADIUS_M  # others farther away than this do not matter to it
+    knowledge = Knowledge.SEEN
     cruise_mps = math.inf  # never faster than this, whatever vehicle and limits allow
     driver: Driver | None = None
     facts: VehicleFacts | None = None
@@ -40,7 +41,7 @@ class BasicAgent(AutonomousAgent):
         """Look up the lights on the way; the vehicle is read at the first step, when it stands where it starts."""
         if self.route is None:
             raise UserError(f"{type(self).__name__} follows a route and was given none; name one with --routes")
-        self._perception = Perception(self.world, self.vehicle.id, self.sight_m)
+        self._sees = Sight(self.world, self.vehicle, self.sight_m, self.knowledge)
         lights = [c.landmark_id for c in self.route.controls if c.kind is ControlKind.TRAFFIC_LIGHT]
         self._lights = Lights(self.world, lights)
 
@@ -54,8 +55,7 @@ class BasicAgent(AutonomousAgent):
         if self.driver is None or self.facts is None:
             self.driver, self.facts = self._get_in(own.get_transform())
         ego = see_ego(snapshot, own, self.vehicle.get_control().gear)
-        others = self._perception.others(snapshot, ego) if self.perceives_others else []
-        command = self.driver.step(ego, others, self._lights.shows)
+        command = self.driver.step(ego, self._sees.others(snapshot), self._lights.shows)
         return _control(command, self.facts, ego.speed_mps)
 
     def config(self) -> dict[str, str]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from basu.agents.builtin.basic import BasicAgent
 from basu.agents.builtin.driving.behavioral_driver import SIGHT_M, BehavioralDriver
-from basu.agents.builtin.driving.manner import NORMAL
+from basu.agents.builtin.driving.manner import AGGRESSIVE, CAUTIOUS, NORMAL
 from basu.agents.builtin.driving.task import make_task
 from basu.agents.builtin.passing.road import make_road
 from basu.agents.builtin.vehicle_facts import OTHERS_TOP_MPS, read_facts
@@ -44,6 +44,18 @@ class BehavioralAgent(BasicAgent):
         left_width_m, right_lane_m = beside(self.route)
         road = make_road(self.route, task.path, left_width_m, right_lane_m, UNPOSTED_MPS)
         return BehavioralDriver(task, road, facts.body, facts.model, self.time_step_s, self.manner), facts
+
+
+class CautiousAgent(BehavioralAgent):
+    """The cautious profile; `docs/agents.md` has its figures."""
+
+    manner = CAUTIOUS
+
+
+class AggressiveAgent(BehavioralAgent):
+    """The aggressive profile."""
+
+    manner = AGGRESSIVE
 
 
 def beside(route: Route) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

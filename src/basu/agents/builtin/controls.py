@@ -12,6 +12,7 @@ import carla
 
 from basu.agents.builtin.basic import BasicAgent
 from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
+from basu.agents.sight import Knowledge
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -22,7 +23,7 @@ CREEP_MPS = 2.0
 class BlindAgent(BasicAgent):
     """The basic agent without other actors: it keeps lanes, limits, lights and signs, and brakes for nothing else."""
 
-    perceives_others = False
+    knowledge = Knowledge.NONE
 
 
 class CreeperAgent(BlindAgent):

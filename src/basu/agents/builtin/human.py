@@ -12,6 +12,8 @@ from basu.agents.builtin.basic import BasicAgent
 class HumanAgent(BasicAgent):
     """What drives while the person does not; BASU seats a person before whoever is one of these."""
 
+    driven_by_person = True
+
     def config(self) -> dict[str, str]:
         """The route, sensors, car and weather of the thesis's test runs."""
         return {

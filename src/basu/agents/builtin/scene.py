@@ -6,8 +6,11 @@ World frame throughout: CARLA's (metres, x east, y south, angles in rad clockwis
 from __future__ import annotations
 
 import enum
-import math
 from typing import NamedTuple
+
+from basu.agents.sight.actors import Kind, Other
+
+__all__ = ["Body", "Ego", "Kind", "Other", "Restriction", "Urgency"]
 
 
 class Body(NamedTuple):
@@ -29,34 +32,6 @@ class Ego(NamedTuple):
     yaw_rad: float
     speed_mps: float  # along its own axis, negative when rolling backwards
     gear: int = 1  # 0 while the gearbox shifts, and where nobody has pressed the throttle yet
-
-
-class Kind(enum.Enum):
-    """What another actor is; a prop may be anything that lies or stands about."""
-
-    VEHICLE = "vehicle"
-    WALKER = "walker"
-    PROP = "prop"
-
-
-class Other(NamedTuple):
-    """Another actor now; ``x_m, y_m`` is the centre of its box."""
-
-    id: int
-    kind: Kind
-    x_m: float
-    y_m: float
-    yaw_rad: float
-    velocity_x_mps: float
-    velocity_y_mps: float
-    yaw_rate_radps: float
-    half_length_m: float
-    half_width_m: float
-
-    @property
-    def speed_mps(self) -> float:
-        """How fast it moves, whichever way."""
-        return math.hypot(self.velocity_x_mps, self.velocity_y_mps)
 
 
 class Urgency(enum.IntEnum):

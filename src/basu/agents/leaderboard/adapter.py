@@ -12,8 +12,8 @@ from basu.agents.leaderboard.feeds import Feeds
 from basu.agents.leaderboard.foreign import Dialect, ForeignAgent
 from basu.agents.leaderboard.global_plan import global_plan
 from basu.agents.leaderboard.gps import Gps
-from basu.agents.leaderboard.measurements import as_array
 from basu.agents.leaderboard.sensor_sets import SPEEDOMETER, translated
+from basu.agents.sensor_data import as_array
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,7 +26,7 @@ class LeaderboardAgent(AutonomousAgent):
 
     foreign: ClassVar[ForeignAgent]
     conf_file: ClassVar[str]  # the text of --agent-config, "" without
-    tells_sensors_late = True  # an agent may say what it wants to see only once it is set up, in its world
+    gives_sensors_late = True  # an agent may say what it wants to see only once it is set up, in its world
 
     _agent: Any = None
     _gps: Gps

@@ -29,6 +29,7 @@ STRUCK_BY = {
     Strike.HELP: ("h", "QUESTION"),
     Strike.PANEL: ("F1",),
     Strike.VIEW: ("TAB",),
+    Strike.SENSOR: ("n",),
     Strike.SCREENSHOT: ("F12",),
     Strike.QUIT: ("ESCAPE",),
 }

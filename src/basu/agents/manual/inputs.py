@@ -25,6 +25,7 @@ class Strike(enum.Enum):
     HELP = "help"
     PANEL = "panel"
     VIEW = "view"
+    SENSOR = "sensor"
     SCREENSHOT = "screenshot"
     QUIT = "quit"
 

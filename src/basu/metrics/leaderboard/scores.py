@@ -9,20 +9,22 @@ record; its threshold of 0.1 m/s is the same.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+from basu.metrics.arrival import has_arrived
+from basu.metrics.json_schema import integer, listing, mapping, number, record, text
 from basu.metrics.leaderboard.contacts import collisions
 from basu.metrics.leaderboard.ending import Ending, completion_percent, ending
 from basu.metrics.leaderboard.lanes import outside_lanes
 from basu.metrics.leaderboard.minimum_speed import too_slow
 from basu.metrics.leaderboard.rules import SCENARIOS_ONLY, Event, Kind, Version, penalty
 from basu.metrics.red_lights import red_lights
+from basu.metrics.registry import Column, Drive, Metric, register, shown
 from basu.metrics.stop_signs import stop_signs
 
 if TYPE_CHECKING:
+    from basu.metrics.result import Result
     from basu.records.history import History
-
-ARRIVED_M, PARKED_M, PARKED_MPS = 1.0, 5.0, 0.1  # the benchmark's own end of a route, where it ends the drive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,8 +90,73 @@ def _completion(history: History, end: Ending, version: Version) -> float:
     """
     last = history.frames[-1]
     remaining_m = history.facts.route.length_m - float(last["route_s_m"])
-    parked = remaining_m <= PARKED_M and float(history.speed_mps()[-1]) < PARKED_MPS
-    if end.arrived or (end.by is None and (remaining_m <= ARRIVED_M or parked)):
+    arrived = has_arrived(remaining_m, float(history.speed_mps()[-1]))
+    if end.arrived or (end.by is None and arrived):
         return 100.0
     percent = float(completion_percent(history)[-1])
     return percent if version is Version.V1_0 else round(percent, 2)
+
+
+@register
+class Leaderboard(Metric):
+    """The same drive as each version of the CARLA leaderboard scores it."""
+
+    name = "leaderboard"
+    title = "CARLA leaderboard"
+    order = 90
+    schema = mapping(
+        record(
+            driving=number(low=0, high=100),
+            route_completion=number(low=0, high=100),
+            infraction_penalty=number(low=0, high=1),
+            ended_by=text(null=True),
+            not_measured=listing(text()),
+            events=listing(
+                record(kind=text(), tick=integer(low=0), t_s=number("s", low=0), percentage=number(null=True))
+            ),
+        ),
+        null=True,
+        about="the same drive as each version of the CARLA leaderboard scores it",
+    )
+
+    def compute(self, drive: Drive) -> dict[str, Any]:
+        """The scores of each version with what they come from."""
+        return {scores.version.value: _row(drive.history, scores) for scores in leaderboard_scores(drive.history)}
+
+    def lines(self, result: Result) -> list[str]:
+        """A line for each version."""
+        return [
+            f"leaderboard {version}   {scores['driving']:.2f} = {scores['route_completion']:.2f} % of the route "
+            f"x {scores['infraction_penalty']:.3f}{_ended(scores)}"
+            for version, scores in result.metrics[self.name].items()
+        ]
+
+    def columns(self, result: Result) -> list[Column]:
+        """The driving score of version 2.1."""
+        scores = (result.metrics[self.name] or {}).get("2.1", {})
+        return [Column("leaderboard 2.1", shown(scores.get("driving"), "", 1))]
+
+
+def _row(history: History, scores: LeaderboardScores) -> dict[str, Any]:
+    """The scores of one version as plain values."""
+    return {
+        "driving": scores.driving,
+        "route_completion": scores.route_completion,
+        "infraction_penalty": scores.infraction_penalty,
+        "ended_by": None if scores.ended_by is None else scores.ended_by.value,
+        "not_measured": [kind.value for kind in scores.not_measured],
+        "events": [
+            {
+                "kind": event.kind.value,
+                "tick": event.tick,
+                "t_s": float(history.frames["t_s"][event.tick]),
+                "percentage": event.percentage,
+            }
+            for event in scores.events
+        ],
+    }
+
+
+def _ended(scores: dict[str, Any]) -> str:
+    """What ended the drive short of the end of the route, in words."""
+    return f", ended by {scores['ended_by']}" if scores["ended_by"] is not None else ""

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.lowpass import lowpass, moving_mean
+from basu.metrics.passengers.filters import lowpass, moving_mean
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

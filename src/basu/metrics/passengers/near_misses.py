@@ -6,6 +6,10 @@ leaving a place and the other's coming to it; asked only where their ways cross 
 in a lane takes the same places all the time. Crossings and the 1.5 s of time to collision are those of the Surrogate
 Safety Assessment Model (FHWA-HRT-08-051, 2008), which screens with a post-encroachment time of 5 s; what is called a
 near miss here is one of 1.5 s, a definition of ours.
+
+To stop close before a thing is no near miss. With a thing that stands, the time to collision counts only while the
+braking that is needed to stop before it, speed squared over twice the distance (Cooper and Ferguson 1976), is above the
+2.5 m/s² that standing passengers can bear.
 """
 
 from __future__ import annotations
@@ -15,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu.metrics.passengers.balance import GRIP_MPS2
 from basu.metrics.passengers.boxes import other_boxes, own_boxes, time_to_touch_s, touching
 
 if TYPE_CHECKING:
@@ -47,6 +52,7 @@ def near_misses(history: History) -> tuple[Party, ...]:
         return ()
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
     ttc_s = times_to_collision_s(history, own, others)
+    ttc_s[_is_calm_before_thing(history, ttc_s)] = np.inf
     pet_s, pet_tick = post_encroachment_s(history, own, others)
     hit = {event.other_id for event in history.collisions}
     found = []
@@ -56,6 +62,15 @@ def near_misses(history: History) -> tuple[Party, ...]:
         if min(ttc_s[soonest], pet_s[closest]) <= SEEN_S:
             found.append(_party(history, key, ttc_s[soonest], soonest, pet_s[closest], int(pet_tick[closest])))
     return tuple(found)
+
+
+def _is_calm_before_thing(history: History, ttc_s: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(M,) rows of things before which the vehicle could still stop without throwing its passengers."""
+    things = [key for key, kind in history.facts.actor_types.items() if kind.startswith("static.")]
+    with np.errstate(divide="ignore"):
+        needed_mps2 = history.speed_mps()[history.others["tick"]] / (2.0 * ttc_s)
+    calm: NDArray[np.bool_] = np.isin(history.others["id"], things) & (needed_mps2 <= GRIP_MPS2)
+    return calm
 
 
 def _party(history: History, key: int, ttc_s: float, soonest: int, pet_s: float, pet_tick: int) -> Party:

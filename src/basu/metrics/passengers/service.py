@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
+from basu.metrics.arrival import serving
 
+if TYPE_CHECKING:
     from basu.records.history import History
     from basu.routing import Stop
     from basu.routing.timetable import Call
 
-NEAR_M = 3.0  # a stop is served when the vehicle comes to rest within this of it along the route
-AT_REST_MPS = 0.1
 EARLY_S, LATE_S = 60.0, 300.0
 
 
@@ -28,7 +26,7 @@ class Visit(NamedTuple):
 
     stop_id: str
     name: str
-    served: bool
+    served: bool  # as `metrics.arrival` has it
     arrival_s: float | None  # when it came to rest there
     departure_s: float | None  # when it moved on; None where it did not
     dwell_s: float | None
@@ -41,18 +39,16 @@ class Visit(NamedTuple):
 
 def service(history: History) -> tuple[Visit, ...]:
     """Each stop of the route, in order."""
-    timetable, speed_mps = history.facts.route.timetable, history.speed_mps()
+    timetable = history.facts.route.timetable
     calls = {} if timetable is None else {call.stop_id: call for call in timetable.calls}
     headway_s = None if timetable is None else timetable.headway_s
-    return tuple(_visit(history, speed_mps, stop, calls.get(stop.id), headway_s) for stop in history.facts.route.stops)
+    return tuple(_visit(history, stop, calls.get(stop.id), headway_s) for stop in history.facts.route.stops)
 
 
-def _visit(
-    history: History, speed_mps: NDArray[np.float64], stop: Stop, call: Call | None, headway_s: float | None
-) -> Visit:
+def _visit(history: History, stop: Stop, call: Call | None, headway_s: float | None) -> Visit:
     """What happened at one stop."""
     t_s = history.frames["t_s"]
-    resting = (np.abs(history.frames["route_s_m"] - stop.s_m) <= NEAR_M) & (speed_mps < AT_REST_MPS)
+    resting = serving(history, stop.s_m)
     arrival_s = departure_s = None
     if resting.any():
         first = int(np.argmax(resting))

@@ -1,8 +1,9 @@
 """Would its passengers have stood the ride? Pass or fail with reasons, and every figure behind it.
 
-A ride fails when somebody who stands could have been thrown: by a harsh stop, whatever its cause, or by any push above
-what volunteers recovered from with a step. It fails for a near miss, and for shaking that people call uncomfortable.
-Being late, or having to take a step now and then, lowers the comfort score but fails nobody.
+A ride fails for harm: any contact, a near miss, a rule of the road that was broken, a service stop that was passed, and
+a route that was not driven to its end. It fails when somebody who stands could have been thrown: by a harsh stop,
+whatever its cause, or by any push above what volunteers recovered from with a step. It fails for shaking that people
+call uncomfortable. Being late, or having to take a step now and then, lowers the comfort score but fails nobody.
 """
 
 from __future__ import annotations
@@ -10,16 +11,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from basu.metrics.arrival import completion
+from basu.metrics.collisions import collisions
+from basu.metrics.lanes import off_road
 from basu.metrics.passengers.balance import GRIP_MPS2, Balance, balance
 from basu.metrics.passengers.causes import Cause, Kind, cause
-from basu.metrics.passengers.comfort_score import ComfortWeights, comfort_score, parts
+from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_score, parts
 from basu.metrics.passengers.felt import STANDING, Felt, Place, felt
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2, HarshStop, harsh_stops
 from basu.metrics.passengers.near_misses import Party, near_misses
 from basu.metrics.passengers.service import Visit, service
 from basu.metrics.passengers.vibration import Vibration, vibration
+from basu.metrics.red_lights import red_lights
+from basu.metrics.speeding import TOLERANCE_MPS, speeding
+from basu.metrics.stop_signs import stop_signs
 
 if TYPE_CHECKING:
+    from basu.metrics.infraction import Evidence
     from basu.records.history import History
 
 UNCOMFORTABLE_MPS2 = 0.8  # where "uncomfortable" begins, ISO 2631-1 annex C.2.3
@@ -37,6 +45,9 @@ class Judged:
     vibration: Vibration
     parties: tuple[Party, ...]
     visits: tuple[Visit, ...]
+    contacts: tuple[Evidence, ...]
+    breaches: tuple[Evidence, ...]  # rules of the road that were broken
+    harm: Harm
     parts: dict[str, float]
     weights: ComfortWeights
     comfort: float | None
@@ -53,8 +64,15 @@ def judge(
     weights: ComfortWeights | None = None,
     place: Place = STANDING,
     harsh_mps2: float = HARSH_MPS2,
+    *,
+    tolerance_mps: float = TOLERANCE_MPS,
+    ended_early: bool = False,
 ) -> Judged | None:
-    """Judge a ride as somebody standing at ``place``; None for a record too short to feel anything."""
+    """Judge a ride as somebody standing at ``place``; None for a record too short to feel anything.
+
+    ``tolerance_mps`` is of speeding. ``ended_early`` says that the benchmark ended the drive before the end of its
+    route because all that it asks for was driven, as at the end of a scenario.
+    """
     sensed = felt(history, place)
     if sensed is None:
         return None
@@ -62,7 +80,17 @@ def judge(
     upright, shaken = balance(sensed), vibration(sensed)
     stops = tuple((stop, cause(history, stop)) for stop in harsh_stops(sensed, harsh_mps2))
     parties, visits = near_misses(history), service(history)
-    measured = parts(upright, [why.kind is Kind.NOTHING for _, why in stops], shaken, parties, visits)
+    contacts, breaches = collisions(history), _breaches(history, tolerance_mps)
+    phantom = [why.kind is Kind.NOTHING for _, why in stops]
+    harm = Harm(
+        contacts=len(contacts),
+        completion=1.0 if ended_early else completion(history),
+        near_misses=sum(party.is_near_miss for party in parties),
+        rules_broken=len(breaches),
+        stops_passed=sum(not visit.served for visit in visits),
+        phantom_stops=sum(phantom),
+    )
+    measured = parts(upright, phantom, shaken, harm, visits)
     return Judged(
         place=place,
         harsh_mps2=harsh_mps2,
@@ -72,17 +100,46 @@ def judge(
         vibration=shaken,
         parties=parties,
         visits=visits,
+        contacts=contacts,
+        breaches=breaches,
+        harm=harm,
         parts=measured,
         weights=weights,
-        comfort=comfort_score(measured, weights),
-        reasons=_reasons(upright, stops, shaken, parties),
+        comfort=comfort_score(measured, weights, harm),
+        reasons=(
+            *(f"collision at {found.t_s:.1f} s: {found.detail}" for found in contacts),
+            *(f"near miss: {party.detail}" for party in parties if party.is_near_miss),
+            *_rules_and_service(history, harm, breaches, visits),
+            *_pushes(upright, stops, shaken),
+        ),
     )
 
 
-def _reasons(
-    upright: Balance, stops: tuple[tuple[HarshStop, Cause], ...], shaken: Vibration, parties: tuple[Party, ...]
-) -> tuple[str, ...]:
-    """Everything against the ride, a sentence each."""
+def _breaches(history: History, tolerance_mps: float) -> tuple[Evidence, ...]:
+    """The rules of the road that were broken, in order of time."""
+    found = (*red_lights(history), *stop_signs(history), *speeding(history, tolerance_mps), *off_road(history))
+    return tuple(sorted(found, key=lambda each: (each.tick, each.kind.value)))
+
+
+def _rules_and_service(
+    history: History, harm: Harm, breaches: tuple[Evidence, ...], visits: tuple[Visit, ...]
+) -> list[str]:
+    """Sentences about broken rules, stops that were passed, and a route that was not driven to its end."""
+    found = [f"rule broken at {each.t_s:.1f} s: {each.detail}" for each in breaches]
+    reached_m = float(history.frames["route_s_m"].max())
+    place_m = {stop.id: stop.s_m for stop in history.facts.route.stops}
+    found.extend(
+        f"the service stop '{visit.name}' was passed"
+        for visit in visits
+        if not visit.served and place_m[visit.stop_id] <= reached_m
+    )
+    if harm.completion < 1.0:
+        found.append(f"the ride ended after {reached_m:.0f} m of its {history.facts.route.length_m:.0f} m")
+    return found
+
+
+def _pushes(upright: Balance, stops: tuple[tuple[HarshStop, Cause], ...], shaken: Vibration) -> list[str]:
+    """Sentences about harsh stops, strong pushes and shaking."""
     found = [
         f"{'phantom' if why.kind is Kind.NOTHING else 'harsh'} stop at {stop.t_s:.1f} s from {stop.from_mps:.2f} m/s, "
         f"up to {stop.strongest_mps2:.2f} m/s²: {why.detail}"
@@ -91,9 +148,8 @@ def _reasons(
     if upright.grip_s > 0.0:
         found.append(
             f"for {upright.grip_s:.2f} s pushed by more than {GRIP_MPS2} m/s², up to {upright.worst_mps2:.2f} at "
-            f"{upright.worst_t_s:.1f} s: who holds on to nothing may fall"
+            f"{upright.worst_t_s:.1f} s: a passenger who holds on to nothing may fall"
         )
-    found.extend(f"near miss: {party.detail}" for party in parties if party.is_near_miss)
     if shaken.total_mps2 >= UNCOMFORTABLE_MPS2:
         found.append(f"shaken by {shaken.total_mps2:.2f} m/s²: {' or '.join(shaken.reactions)}")
-    return tuple(found)
+    return found

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.weighting import WD, WF, WK, weigh
+from basu.metrics.passengers.filters import WD, WF, WK, weigh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

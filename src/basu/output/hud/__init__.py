@@ -1,1 +1,1 @@
-"""The head-up display: a window on a run, and the seat of the person before it."""
+"""The head-up display: a window on a run, and the input of the person before it."""

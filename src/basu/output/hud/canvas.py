@@ -6,12 +6,13 @@ import contextlib
 import io
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from basu.agents.manual.devices import import_pygame
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    import numpy as np
     from numpy.typing import NDArray
 
 Colour = tuple[int, int, int]
@@ -49,13 +50,25 @@ class Canvas:
         """Paint everything over."""
         self._surface.fill(colour)
 
-    def picture(self, bgra: bytes, size: tuple[int, int]) -> None:
-        """A camera's picture over the whole window."""
+    def picture(self, bgra: bytes, size: tuple[int, int], left: float | None = None) -> None:
+        """A camera's picture over the whole window, or as large as fits in the middle of what is right of ``left``."""
         image = self._pygame.image.frombuffer(bgra, size, "BGRA")
-        if size != self.size:
-            image = self._pygame.transform.smoothscale(image, self.size)
+        free = self.size[0] - (left or 0.0), self.size[1]
+        scale = min(free[0] / size[0], free[1] / size[1])
+        wanted = self.size if left is None else (round(scale * size[0]), round(scale * size[1]))
+        if size != wanted:
+            image = self._pygame.transform.smoothscale(image, wanted)
         image = image.convert(24)  # a picture without alpha, whatever the server writes into the fourth byte
-        self._surface.blit(image, (0, 0))
+        self._surface.blit(image, ((left or 0.0) + (free[0] - wanted[0]) / 2, (free[1] - wanted[1]) / 2))
+
+    def points(self, places: NDArray[np.float64], colours: NDArray[np.uint8], left: float) -> None:
+        """Dots of two by two pixels at (N, 2) places right of ``left``, in (N, 3) colours."""
+        pixels = self._pygame.surfarray.pixels3d(self._surface)  # a view: (width, height, 3)
+        column, row = np.floor(places).astype(np.int64).T
+        inside = (column >= left) & (column < self.size[0] - 1) & (row >= 0) & (row < self.size[1] - 1)
+        column, row, colours = column[inside], row[inside], colours[inside]
+        for right, down in ((0, 0), (1, 0), (0, 1), (1, 1)):
+            pixels[column + right, row + down] = colours
 
     def shade(self, box: Box, strength: float) -> None:
         """Darken a part of what is there; 1 is black."""
@@ -87,10 +100,10 @@ class Canvas:
             thick = max(1, round(self._zoom * width))
             self._pygame.draw.lines(self._surface, colour, False, (self._zoom * points).tolist(), thick)
 
-    def circle(self, at: tuple[float, float], radius: float, colour: Colour) -> None:
-        """Filled."""
+    def circle(self, at: tuple[float, float], radius: float, colour: Colour, *, border: int = 0) -> None:
+        """Filled, or a ring of ``border`` pixels."""
         centre = self._zoom * at[0], self._zoom * at[1]
-        self._pygame.draw.circle(self._surface, colour, centre, self._zoom * radius)
+        self._pygame.draw.circle(self._surface, colour, centre, self._zoom * radius, border)
 
     def show(self) -> None:
         """Bring what was drawn before eyes."""

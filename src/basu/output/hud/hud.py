@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import math
 import time
+from collections import deque
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,10 +18,10 @@ from basu.managers.base_manager import BaseManager
 from basu.managers.neighbours import Neighbours
 from basu.output.hud.camera import ChaseCamera
 from basu.output.hud.canvas import GREY, RED, WHITE, Canvas
-from basu.output.hud.help_page import draw_help
 from basu.output.hud.notices import Judge, Notices
-from basu.output.hud.panel import WIDTH, Panel
-from basu.output.hud.readings import read
+from basu.output.hud.panel import WIDTH, Panel, draw_help
+from basu.output.hud.readings import Around, Rates, read, setting_of
+from basu.output.hud.sensor_view import SensorView
 from basu.output.hud.top_down import Body, TopDown
 from basu.utils.atomic import write_bytes
 
@@ -28,10 +29,13 @@ if TYPE_CHECKING:
     from basu.agents.manual.person import Person
     from basu.managers.base_manager import Frame, Live, Run
     from basu.options import RunOptions
+    from basu.output.hud.readings import Setting
 
 DRAW_EVERY_S = 0.05  # wall time, where the run is faster than that
 RUN_TO_DRAW = 4.0  # there the run gets at least so many times what drawing takes
 WATCH_EVERY_S = 0.1  # simulated time between two pictures where nobody steers by them
+SETTING_EVERY_S = 2.0  # wall time between two questions for the weather, which a route may change
+RATE_S = 2.0  # of wall time, over which rates are taken
 LATE_S = 0.25  # a person who fell behind real time by more starts anew from there, rather than to race after it
 PICTURE = Path("hud.png")
 
@@ -46,12 +50,15 @@ class Hud(BaseManager):
         self._notices = Notices()
         self._judge = Judge(live.metrics, self._notices)
         self._pace = Pace()
+        self._meter = Meter()
         self._on_map = options.hud == "map"
         self._helps = False
         self._has_panel = True
         self._was_manual = person.drives_first
         self._draw_next_s = self._began_s = 0.0
         self._latest: Frame | None = None
+        self._setting: Setting | None = None
+        self._setting_next_s = 0.0
 
     def setup(self, run: Run) -> None:
         """Open the window and hang up the camera."""
@@ -62,6 +69,7 @@ class Hud(BaseManager):
         self._panel = Panel(self._canvas, self._agent)
         self._map = TopDown(run)
         self._neighbours = Neighbours(run.world, run.vehicle.id)
+        self._sensor_view = SensorView(run)
         self._began_s = time.perf_counter()
         if not self._on_map:
             self._hang_camera()
@@ -71,6 +79,7 @@ class Hud(BaseManager):
         """Heed what was struck, judge, draw and wait, each where it is due."""
         now_s = time.perf_counter()
         self._latest = frame
+        self._meter.tick(now_s)
         picture = self._heed(now_s)
         self._tell_driver(now_s)
         self._map.pass_by(frame)
@@ -117,6 +126,8 @@ class Hud(BaseManager):
                 self._has_panel = not self._has_panel
             elif strike is Strike.VIEW:
                 self._change_view()
+            elif strike is Strike.SENSOR:
+                self._next_sensor(now_s)
             elif strike is Strike.SCREENSHOT:
                 self._notices.add(f"picture in {(self._options.hud_screenshot or PICTURE).name}", now_s)
         return Strike.SCREENSHOT in strikes
@@ -129,11 +140,25 @@ class Hud(BaseManager):
             self._notices.add("a person drives" if self._was_manual else other, now_s)
 
     def _change_view(self) -> None:
-        """Camera or map."""
-        self._on_map = not self._on_map
+        """Camera or map; back to what was there before the sensors, where one is shown."""
+        if self._sensor_view.shown is None:
+            self._on_map = not self._on_map
+        self._sensor_view.shown = None
+        self._use_camera()
+
+    def _next_sensor(self, now_s: float) -> None:
+        """The agent's next sensor."""
+        if not self._live.sensors.types:
+            self._notices.add("the agent has no sensors", now_s)
+        self._sensor_view.step(self._live.sensors.types)
+        self._use_camera()
+
+    def _use_camera(self) -> None:
+        """Have the HUD's camera take pictures only while they are shown."""
+        wanted = not self._on_map and self._sensor_view.shown is None
         if self._camera is not None:
-            self._camera.look(begin=not self._on_map)
-        elif not self._on_map:
+            self._camera.look(begin=wanted)
+        elif wanted:
             self._hang_camera()
 
     def _hang_camera(self) -> None:
@@ -151,21 +176,34 @@ class Hud(BaseManager):
         assert canvas is not None, "setup opened it"
         rows = self._neighbours.near(frame)
         picture = None if self._camera is None else self._camera.latest
-        if self._on_map or picture is None:
+        left = WIDTH if self._has_panel else 0.0
+        if self._sensor_view.shown is not None:
+            self._sensor_view.draw(canvas, left, self._live.sensors.types, self._live.sensors.data)
+        elif self._on_map or picture is None:
             bodies = [self._body(row) for row in rows]
-            left = WIDTH if self._has_panel else 0.0
             self._map.draw(canvas, left, frame.ego, bodies, self._judge.latest.found)
         else:
             canvas.picture(*picture)
         if self._has_panel:
-            ego = frame.ego
-            nearby = [(self._neighbours.met[int(row[1])], math.dist(row[2:4], (ego.x_m, ego.y_m))) for row in rows]
-            wall_s = now_s - self._began_s
-            self._panel.draw(read(self._run, self._live, frame, self._judge.latest, nearby, wall_s))
+            self._panel.draw(read(self._run, self._live, frame, self._judge.latest, self._around(frame, rows, now_s)))
         self._draw_notices(canvas, now_s)
         if self._helps:
-            draw_help(canvas, WIDTH if self._has_panel else 0.0)
+            draw_help(canvas, left)
+        self._meter.picture(now_s)
         canvas.show()
+
+    def _around(self, frame: Frame, rows: list[tuple[float, ...]], now_s: float) -> Around:
+        """What the window keeps for the panel."""
+        ego = frame.ego
+        if self._setting is None or now_s >= self._setting_next_s:
+            self._setting, self._setting_next_s = setting_of(self._run, self._live), now_s + SETTING_EVERY_S
+        return Around(
+            self._setting,
+            self._neighbours.counts(),
+            self._meter.rates(self._run.step_s),
+            tuple((self._neighbours.met[int(row[1])], math.dist(row[2:4], (ego.x_m, ego.y_m))) for row in rows),
+            now_s - self._began_s,
+        )
 
     def _body(self, row: tuple[float, ...]) -> Body:
         """A neighbour's row as what is drawn."""
@@ -190,6 +228,33 @@ class Hud(BaseManager):
             write_bytes(path, self._canvas.png())
         except UserError as error:
             self._notices.add(str(error), time.perf_counter(), bad=True)
+
+
+class Meter:
+    """Counts ticks and pictures of the last ``RATE_S``; times are of ``time.perf_counter``."""
+
+    def __init__(self) -> None:
+        self._ticks_s: deque[float] = deque()
+        self._pictures_s: deque[float] = deque()
+
+    def tick(self, now_s: float) -> None:
+        """Count a step of the server."""
+        self._ticks_s.append(now_s)
+
+    def picture(self, now_s: float) -> None:
+        """Count a drawing of the window."""
+        self._pictures_s.append(now_s)
+
+    def rates(self, step_s: float) -> Rates:
+        """Return the rates up to the last tick."""
+        ticks_per_s, pictures_per_s = (self._per_s(times_s) for times_s in (self._ticks_s, self._pictures_s))
+        return Rates(ticks_per_s, pictures_per_s, ticks_per_s * step_s)
+
+    @staticmethod
+    def _per_s(times_s: deque[float]) -> float:
+        while times_s and times_s[-1] - times_s[0] > RATE_S:
+            times_s.popleft()
+        return (len(times_s) - 1) / (times_s[-1] - times_s[0]) if len(times_s) > 1 else 0.0
 
 
 class Pace:

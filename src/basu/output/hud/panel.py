@@ -1,11 +1,11 @@
-"""The panel on the left of the HUD: instruments, places, score and neighbours."""
+"""The panel on the left of the HUD (settings, instruments, places, score, neighbours), and the help page."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from basu.output.hud.canvas import BLACK, BLUE, GREEN, GREY, RED, WHITE, YELLOW
-from basu.output.hud.readings import compass_point
+from basu.output.hud.readings import compass_point, degrees
 
 if TYPE_CHECKING:
     from basu.output.hud.canvas import Canvas, Colour
@@ -15,6 +15,7 @@ WIDTH, MARGIN, ROW = 250, 12, 16
 MPS_PER_MPH = 0.44704
 OVER_MPS = 0.25  # above the limit the sign turns red: what a display of whole mph hides
 MOST_NEARBY = 5
+MOST_LETTERS = 40  # of a row, so that label and value do not touch
 GEARS = {-1: "R", 0: "N"}
 
 
@@ -30,6 +31,7 @@ class Panel:
         self._canvas.shade((0, 0, WIDTH, self._canvas.size[1]), 0.7)
         self._y = 10.0
         self._who(shown)
+        self._setting(shown)
         self._speed(shown)
         self._pedals(shown)
         self._place(shown)
@@ -39,7 +41,9 @@ class Panel:
         self._nearby(shown)
 
     def _row(self, label: str, value: str, colour: Colour = WHITE) -> None:
-        """A label on the left, its value on the right."""
+        """A label on the left, its value on the right, cut where both have no room."""
+        room = MOST_LETTERS - len(label)
+        value = value if len(value) <= room else f"{value[: room - 1].rstrip(' ,')}…"
         self._canvas.text((MARGIN, self._y), label, GREY)
         self._canvas.text((WIDTH - MARGIN, self._y), value, colour, align=1.0)
         self._y += ROW
@@ -56,6 +60,14 @@ class Panel:
         self._y += 20
         self._canvas.text((MARGIN, self._y), shown.vehicle, GREY)
         self._y += ROW
+
+    def _setting(self, shown: Readings) -> None:
+        """Where, in what weather, with which sensors and how much traffic it drives."""
+        setting, (vehicles, walkers) = shown.setting, shown.traffic
+        self._row("Map, route", f"{setting.town}, {setting.route}")
+        self._row("Weather", setting.weather)
+        self._row("Sensors", setting.sensors)
+        self._row("Traffic", f"{vehicles} vehicles, {walkers} walkers")
 
     def _speed(self, shown: Readings) -> None:
         """Speed, large, and the limit as its sign."""
@@ -107,7 +119,7 @@ class Panel:
         self._row("Heading", f"{shown.heading_deg:.0f}° {compass_point(shown.heading_deg)}")
         x_m, y_m, z_m = shown.at_m
         self._row("Location", f"{x_m:.1f}, {y_m:.1f}, {z_m:.1f} m")
-        self._row("GNSS", f"{shown.fix.latitude_deg:.6f}, {shown.fix.longitude_deg:.6f}")
+        self._row("GNSS", ", ".join(degrees(shown.fix, 6)))
         force, spin = shown.inertial
         self._row("Accelerometer", f"{signed(force)} m/s²")
         self._row("Gyroscope", f"{signed(spin)} °/s")
@@ -137,10 +149,12 @@ class Panel:
         self._gap()
 
     def _times(self, shown: Readings) -> None:
-        """Simulated and wall time."""
-        faster = shown.simulated_s / max(shown.wall_s, 1e-6)
-        self._row("Simulation time", clock(shown.simulated_s))
-        self._row("Wall time", f"{clock(shown.wall_s)}  ({faster:.1f}x)")
+        """Simulated and wall time, and how fast both go."""
+        self._row("Simulated, wall time", f"{clock(shown.simulated_s)}, {clock(shown.wall_s)}")
+        rates = shown.rates
+        self._row(
+            "Server, window", f"{rates.ticks_per_s:.0f}, {rates.pictures_per_s:.0f} fps ({times(rates.real_time)})"
+        )
         self._gap()
 
     def _nearby(self, shown: Readings) -> None:
@@ -157,6 +171,11 @@ def driver_word(shown: Readings) -> tuple[str, Colour]:
     return ("AUTOPILOT", BLUE) if shown.autopilot else ("AGENT", GREEN)
 
 
+def times(factor: float) -> str:
+    """A factor with two figures or so."""
+    return f"{factor:.2f}x" if factor < 1.0 else f"{factor:.1f}x"
+
+
 def clock(seconds: float) -> str:
     """Minutes and seconds."""
     return f"{int(seconds // 60)}:{seconds % 60:04.1f}"
@@ -165,3 +184,34 @@ def clock(seconds: float) -> str:
 def signed(values: tuple[float, ...]) -> str:
     """To one decimal place; what rounds to nothing has no minus before it."""
     return ", ".join(f"{round(value, 1) + 0.0:+.1f}" for value in values)
+
+
+KEYS = (
+    ("W, arrow up", "throttle"),
+    ("S, arrow down", "brake"),
+    ("A D, arrows", "steer left, right; the wheel returns when they are let go"),
+    ("Space", "hand brake, while it is down"),
+    ("Q", "reverse, on and off"),
+    ("P", "take over from the agent or autopilot, and give back"),
+    ("Tab", "camera or map"),
+    ("N", "the agent's next sensor; after the last, camera or map"),
+    ("F1", "the panel, on and off"),
+    ("F12", "picture of the window, into a file"),
+    ("H, ?", "this page, on and off"),
+    ("Esc", "end the run; what was driven is scored and written"),
+)
+HELP_WIDTH, HELP_ROW = 560, 26
+
+
+def draw_help(canvas: Canvas, panel: float) -> None:
+    """In the middle of what the panel, so wide, leaves free; over it where that is too narrow."""
+    height = 70 + HELP_ROW * len(KEYS)
+    free = canvas.size[0] - panel
+    left = panel + (free - HELP_WIDTH) / 2 if free >= HELP_WIDTH else canvas.size[0] - HELP_WIDTH
+    top = max(4.0, (canvas.size[1] - height) / 2)
+    canvas.shade((left, top, HELP_WIDTH, height), 0.85)
+    canvas.text((left + 20, top + 14), "Keys", size=30)
+    canvas.text((left + HELP_WIDTH - 20, top + 20), "BASU", GREY, align=1.0)
+    for row, (key, meaning) in enumerate(KEYS):
+        canvas.text((left + 20, top + 52 + HELP_ROW * row), key, YELLOW, size=20)
+        canvas.text((left + 150, top + 52 + HELP_ROW * row), meaning, size=20)

@@ -8,22 +8,40 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Mapping
 
     from basu.managers.base_manager import Ego, Frame, Live, Run
     from basu.output.hud.notices import Judgement
 
 GRAVITY_MPS2 = 9.81
 MPS_PER_KMH = 1.0 / 3.6
+SENSOR_WORDS = {
+    "lidar": "lidar",
+    "camera": "camera",
+    "radar": "radar",
+    "gnss": "GNSS",
+    "imu": "IMU",
+    "collision": "collision",
+    "lane_invasion": "lane",
+    "obstacle": "obstacle",
+}
 POINTS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 
 
 class Fix(NamedTuple):
     """GNSS."""
 
-    latitude_deg: float
+    latitude_deg: float  # on Earth, so it grows northwards, other than CARLA's
     longitude_deg: float
     altitude_m: float
+
+
+def degrees(fix: Fix, places: int) -> tuple[str, str]:
+    """Return latitude and longitude with their half of the Earth."""
+    return tuple(  # type: ignore[return-value]  # two
+        f"{abs(value):.{places}f}° {halves[value < 0.0]}"
+        for value, halves in ((fix.latitude_deg, "NS"), (fix.longitude_deg, "EW"))
+    )
 
 
 class Inertial(NamedTuple):
@@ -33,10 +51,30 @@ class Inertial(NamedTuple):
     spin_degps: tuple[float, float, float]
 
 
+class Setting(NamedTuple):
+    """What stays the same for a while: where and in what the agent drives, in words."""
+
+    town: str
+    route: str
+    weather: str
+    sensors: str
+
+
+class Rates(NamedTuple):
+    """How fast the run goes, over the last second or two of wall time."""
+
+    ticks_per_s: float  # steps of the server
+    pictures_per_s: float  # drawings of this window
+    real_time: float  # simulated seconds a second
+
+
 class Readings(NamedTuple):
     """All of one frame."""
 
     vehicle: str
+    setting: Setting
+    traffic: tuple[int, int]  # other vehicles and walkers in the world
+    rates: Rates
     manual: bool
     autopilot: bool  # the one who drives while a person lets it, in a run that is the person's
     tick: int
@@ -57,19 +95,30 @@ class Readings(NamedTuple):
     nearby: tuple[tuple[str, float], ...]  # blueprint id and distance in m, the nearest first
 
 
-def read(
-    run: Run, live: Live, frame: Frame, judgement: Judgement, nearby: Iterable[tuple[str, float]], wall_s: float
-) -> Readings:
+class Around(NamedTuple):
+    """What the window itself keeps for the instruments."""
+
+    setting: Setting
+    traffic: tuple[int, int]
+    rates: Rates
+    nearby: tuple[tuple[str, float], ...]
+    wall_s: float
+
+
+def read(run: Run, live: Live, frame: Frame, judgement: Judgement, around: Around) -> Readings:
     """Read everything; the server is not asked."""
     ego, person = frame.ego, live.agents.person
     limit_mps = float(run.vehicle.get_speed_limit()) * MPS_PER_KMH
     return Readings(
         vehicle=run.vehicle.type_id,
+        setting=around.setting,
+        traffic=around.traffic,
+        rates=around.rates,
         manual=live.agents.manual,
         autopilot=person is not None and person.drives_first and not live.agents.manual,
         tick=frame.tick,
         simulated_s=frame.tick * run.step_s,
-        wall_s=wall_s,
+        wall_s=around.wall_s,
         speed_mps=ego.speed_mps,
         limit_mps=limit_mps if limit_mps > 0.0 else None,
         gear=run.vehicle.get_control().gear,
@@ -82,7 +131,7 @@ def read(
         length_m=run.route.length_m,
         lateral_m=live.routes.progress.lateral_m,
         judgement=judgement,
-        nearby=tuple(nearby),
+        nearby=around.nearby,
     )
 
 
@@ -106,13 +155,68 @@ def felt(ego: Ego) -> Inertial:
     return Inertial((ahead, right, ego.acceleration_z_mps2 + GRAVITY_MPS2), (roll, pitch, yaw))
 
 
+def setting_of(run: Run, live: Live) -> Setting:
+    """Return where and in what the agent drives; asks the server for the weather."""
+    return Setting(
+        run.route.town, run.route.id, weather_words(run.world.get_weather()), sensor_words(live.sensors.types)
+    )
+
+
+def weather_words(weather: carla.WeatherParameters) -> str:
+    """Return the name of CARLA's preset, or the sun's height, rain and fog."""
+    for name, preset in vars(carla.WeatherParameters).items():
+        if isinstance(preset, carla.WeatherParameters) and preset == weather:
+            return str(name)
+    parts = [f"sun {weather.sun_altitude_angle:.0f}°"]
+    parts += [f"rain {weather.precipitation:.0f} %"] if weather.precipitation > 0.0 else []
+    parts += [f"fog {weather.fog_density:.0f} %"] if weather.fog_density > 0.0 else []
+    return ", ".join(parts)
+
+
+def sensor_words(types: Mapping[str, str]) -> str:
+    """Return a sensor set in words, by kind: "3 cameras, lidar, GNSS"."""
+    kinds = [
+        next((word for part, word in SENSOR_WORDS.items() if part in type_id), "other") for type_id in types.values()
+    ]
+    counted = {kind: kinds.count(kind) for kind in kinds}
+    return ", ".join(kind if number == 1 else f"{number} {kind}s" for kind, number in counted.items()) or "none"
+
+
+def true_latitude_deg(carla_map: carla.Map, latitude_deg: float, x_m: float, y_m: float) -> float:
+    """Return the latitude on Earth of what a client or a GNSS sensor of CARLA 0.9.16 measured at a place.
+
+    There latitude grows southwards: CARLA's y points south, and the client projects it as if it pointed north. The true
+    latitude is the one that it gives to the place mirrored at the map's origin; noise is kept. A client that has this
+    right is left as it is.
+
+    Args:
+        carla_map: which projects places.
+        latitude_deg: as it was measured.
+        x_m: of the place, in CARLA's frame.
+        y_m: likewise; grows southwards.
+    """
+
+    def projected_deg(x_m: float, y_m: float) -> float:
+        return float(carla_map.transform_to_geolocation(carla.Location(x_m, y_m, 0.0)).latitude)
+
+    if projected_deg(0.0, -1000.0) > projected_deg(0.0, 0.0):
+        return latitude_deg
+    return latitude_deg + projected_deg(x_m, -y_m) - projected_deg(x_m, y_m)
+
+
 def _fix(run: Run, live: Live, ego: Ego) -> Fix:
     """The agent's GNSS where it has one, else where the map says the vehicle is."""
     for _, measured in live.sensors.data.values():
         if isinstance(measured, carla.GnssMeasurement):
-            return Fix(measured.latitude, measured.longitude, measured.altitude)
-    place = run.carla_map.transform_to_geolocation(carla.Location(ego.x_m, ego.y_m, ego.z_m))
-    return Fix(place.latitude, place.longitude, place.altitude)
+            return fix_of(run.carla_map, measured, measured.transform.location)
+    at = carla.Location(ego.x_m, ego.y_m, ego.z_m)
+    return fix_of(run.carla_map, run.carla_map.transform_to_geolocation(at), at)
+
+
+def fix_of(carla_map: carla.Map, measured: carla.GnssMeasurement | carla.GeoLocation, at: carla.Location) -> Fix:
+    """Return what was measured at a place, with the true latitude."""
+    latitude_deg = true_latitude_deg(carla_map, measured.latitude, at.x, at.y)
+    return Fix(latitude_deg, measured.longitude, measured.altitude)
 
 
 def _inertial(live: Live, ego: Ego) -> Inertial:

@@ -2,45 +2,68 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING
 
-from basu.output.report.measures_table import measured
-from basu.output.report.passengers_table import felt
+from basu.metrics.registry import NAME_WIDTH, built_in, shown
 from basu.output.report.scenarios.on_way import met
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from typing import Any
 
-def table(document: dict[str, Any]) -> str:
+    from basu.metrics.infraction import Evidence
+    from basu.metrics.result import Result
+
+SCORES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
+NOT_COMPARABLE = "NOT COMPARABLE"
+
+
+def table(result: Result) -> str:
     """A result as lines of text."""
-    lines = [f"{document['status']}: {document['message']}"]
-    scores = document["scores"]
-    if scores is None:
+    lines = [f"{result.outcome.status.value}: {result.outcome.message}"]
+    if result.scores is None:
         return "\n".join([*lines, "nothing was driven, so there is no score"])
-    names = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
-    lines += [f"{names[key]:<18}{scores[key]:8.3f}" for key in names]
-    lines += [f"{name:<18}{text:>8}" for name, text in _figures(document)]
-    lines += [f"  {row['t_s']:8.1f} s  {row['kind']:<21} {row['detail']}" for row in document["infractions"]]
-    signs = document["stop_signs"]
-    if signs:
-        stopped = sum(sign["stopped"] for sign in signs)
-        slowest = max(sign["lowest_speed_mps"] for sign in signs)
-        lines.append(f"stop signs        {stopped} of {len(signs)} stopped at, highest lowest speed {slowest:.3f} m/s")
-    stops = document["stops"]
-    if stops:
-        lines.append(f"service stops     {sum(stop['served'] for stop in stops)} of {len(stops)} served")
-    return "\n".join([*lines, *measured(document), *felt(document), *met(document.get("scenarios", ()))])
+    return "\n".join([*lines, *score_lines(result), *judgement(result), *met([dict(row) for row in result.scenarios])])
 
 
-def _figures(document: dict[str, Any]) -> list[tuple[str, str]]:
-    """The figures below the scores."""
-    reported, meta = document["reported"], document["meta"]
+def score_lines(result: Result) -> list[str]:
+    """The thesis's scores; those of a run that a failure ended are marked."""
+    assert result.scores is not None, "the caller asks"
+    mark = "" if result.is_comparable else f"  {NOT_COMPARABLE}: the run ended as {result.outcome.status.value}"
+    scores = result.scores._asdict()
+    return [f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()]
+
+
+def judgement(result: Result) -> list[str]:
+    """Infractions and metrics; a metric of nothing that happened takes no line."""
+    metrics = built_in()
+    figures = [metric for metric in metrics if metric.order <= 0]
     return [
-        ("infractions", str(len(document["infractions"]))),
-        ("lane invasions", f"{reported['lane_invasions']['total']} (reported, not scored)"),
-        ("driven", f"{reported['driven_m'] / 1000.0:.3f} km of {reported['planned_m'] / 1000.0:.3f} km"),
-        ("simulated", f"{meta['simulated_s']:.1f} s in {meta['wall_s']:.1f} s of wall time{_pace(meta)}"),
+        f"{'infractions':<{NAME_WIDTH}}{len(result.infractions):>8}",
+        *(line for metric in figures for line in metric.lines(result)),
+        *_simulated(result.meta),
+        *(line for found in result.infractions for line in _infraction(found)),
+        *(line for metric in metrics if metric.order > 0 for line in metric.lines(result)),
+        *(f"{own.title:<{NAME_WIDTH}}{written(own.value, own.unit, own.digits)}" for own in result.own.values()),
     ]
 
 
-def _pace(meta: dict[str, Any]) -> str:
-    """How many times as fast as real time it went; nothing for a run that was over at once."""
-    return f", {meta['simulated_s'] / meta['wall_s']:.2f}x real time" if meta["wall_s"] > 0.0 else ""
+def written(value: Any, unit: str, digits: int) -> str:  # noqa: ANN401 - the value of a user's metric
+    """The value of a user's metric as people read it."""
+    if value is None or (isinstance(value, float | int) and not isinstance(value, bool)):
+        return shown(value, unit, digits)
+    return str(value)
+
+
+def _infraction(found: Evidence) -> list[str]:
+    """An infraction, and for a collision the responsibility below it."""
+    lines = [f"  {found.t_s:8.1f} s  {found.kind.value:<21} {found.detail}"]
+    return lines if found.responsibility is None else [*lines, f"{'':36}{found.responsibility.sentence}"]
+
+
+def _simulated(meta: Mapping[str, Any]) -> list[str]:
+    """How long the run took; nothing for a record that was scored again."""
+    if "wall_s" not in meta:
+        return []
+    pace = f", {meta['simulated_s'] / meta['wall_s']:.2f}x real time" if meta["wall_s"] > 0.0 else ""
+    return [f"{'simulated':<{NAME_WIDTH}}{meta['simulated_s']:.1f} s in {meta['wall_s']:.1f} s of wall time{pace}"]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
+from basu.metrics.result import Result
 from basu.output.report.folder import CONFIG_FILE
 from basu.output.report.schema import read_result
 from basu.output.report.streets import read_streets
@@ -25,14 +26,14 @@ class RunRecord:
 
     name: str  # of its folder
     config: dict[str, Any]  # config.json
-    result: dict[str, Any]  # result.json
+    result: Result  # result.json
     history: History | None  # None where nothing was driven
     streets: list[Line]
 
     @property
     def agent(self) -> str:
         """Who drove, as its author called it."""
-        return str(self.result["meta"]["agent"]["name"])
+        return str(self.result.meta["agent"]["name"])
 
 
 def read_run(folder: Path) -> RunRecord:
@@ -46,7 +47,7 @@ def read_run(folder: Path) -> RunRecord:
     return RunRecord(
         name=folder.resolve().name,
         config=_document(folder / CONFIG_FILE),
-        result=read_result(folder),
+        result=Result.from_document(read_result(folder)),
         history=read_history(folder) if (folder / HISTORY_FILE).exists() else None,
         streets=read_streets(folder),
     )

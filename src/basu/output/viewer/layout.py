@@ -9,11 +9,11 @@ import numpy as np
 import rerun.blueprint as rrb
 
 from basu.output.viewer.frames import shown
-from basu.output.viewer.timeline import TIMELINE
 
 if TYPE_CHECKING:
     from basu.output.viewer.frames import Pose
 
+TIMELINE = "simulated_time"  # s since the run's first tick: the only one, so that one seed gives one recording
 BEHIND_M, ABOVE_M = 22.0, 14.0  # where one looks from, at the vehicle
 SIGNALS = {
     "speed": "speed and limit [m/s]",

@@ -9,7 +9,7 @@ import numpy as np
 import rerun as rr
 
 from basu.output.viewer.frames import Pose, about_the_vertical, shown, turned
-from basu.output.viewer.timeline import TIMELINE
+from basu.output.viewer.layout import TIMELINE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

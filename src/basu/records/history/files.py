@@ -16,15 +16,15 @@ import pyarrow.parquet as pq
 from basu.errors import UserError
 from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle
 from basu.records.history.route_json import route_from_json, route_to_json
+from basu.records.history.tables import to_arrow
 from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from numpy.typing import NDArray
-
 HISTORY_FILE, FACTS_FILE = "history.parquet", "route.json"
-FACTS_SCHEMA_VERSION = 2
+FACTS_SCHEMA_VERSION = 3
+WITHOUT_APPLIED = 2  # its records hold the requested control alone, which is read as the applied one too
 
 
 def write_history(folder: Path, history: History) -> None:
@@ -34,7 +34,7 @@ def write_history(folder: Path, history: History) -> None:
         UserError: the disk is full or the folder cannot be written.
     """
     buffer = io.BytesIO()
-    pq.write_table(_table(history), buffer, compression="zstd", store_schema=True)
+    pq.write_table(to_arrow(history), buffer, compression="zstd", store_schema=True)
     write_bytes(folder / HISTORY_FILE, buffer.getvalue())
     write_bytes(folder / FACTS_FILE, facts_to_json(history.facts).encode())
 
@@ -79,7 +79,7 @@ def facts_from_json(text: str) -> Facts:
     """Read what :func:`facts_to_json` wrote."""
     document = json.loads(text)
     version = document["schema_version"]
-    if version != FACTS_SCHEMA_VERSION:
+    if version not in (WITHOUT_APPLIED, FACTS_SCHEMA_VERSION):
         lacks = ", which lacks what the metrics ask for (lanes, lights, who drives)" if version == 1 else ""
         raise ValueError(
             f"{FACTS_FILE} has schema version {version}{lacks}, and this one reads {FACTS_SCHEMA_VERSION}; score it "
@@ -94,44 +94,12 @@ def facts_from_json(text: str) -> Facts:
     )
 
 
-def _table(history: History) -> pa.Table:
-    """One row a tick; what happens several times in a tick is a list in its row."""
-    ticks = len(history.frames)
-    columns = {name: pa.array(np.ascontiguousarray(history.frames[name])) for name in FRAME.names or ()}
-    columns["others"] = _lists(_structs(history.others), history.others["tick"], ticks)
-    contacts = pa.array(
-        [
-            {"other_id": c.other_id, "other_type": c.other_type, "impulse_ns": list(c.impulse_ns)}
-            for c in history.collisions
-        ],
-        type=pa.struct(
-            [("other_id", pa.uint32()), ("other_type", pa.string()), ("impulse_ns", pa.list_(pa.float64(), 3))]
-        ),
-    )
-    columns["collisions"] = _lists(contacts, [c.tick for c in history.collisions], ticks)
-    crossed = pa.array([list(e.markings) for e in history.lane_invasions], type=pa.list_(pa.string()))
-    columns["lane_invasions"] = _lists(crossed, [e.tick for e in history.lane_invasions], ticks)
-    return pa.table(columns)
-
-
-def _structs(others: NDArray[np.void]) -> pa.StructArray:
-    """The rows of OTHER without their tick, which the list they stand in tells."""
-    names = [name for name in OTHER.names or () if name != "tick"]
-    return pa.StructArray.from_arrays([pa.array(np.ascontiguousarray(others[name])) for name in names], names=names)
-
-
-def _lists(values: pa.Array, tick_of_value: NDArray[np.int64] | list[int], ticks: int) -> pa.ListArray:
-    """Values gathered into one list a tick; ``tick_of_value`` ascends."""
-    counts = np.bincount(np.asarray(tick_of_value, dtype=np.int64), minlength=ticks)
-    offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-    return pa.ListArray.from_arrays(pa.array(offsets), values)
-
-
 def _history(table: pa.Table, facts: Facts) -> History:
-    """The record in a table of :func:`_table`."""
+    """The record in a table of :func:`to_arrow`."""
     frames = np.zeros(table.num_rows, dtype=FRAME)
     for name in FRAME.names or ():
-        frames[name] = table[name].to_numpy()
+        kept = name if name in table.column_names else name.removeprefix("applied_")
+        frames[name] = table[kept].to_numpy()
     nearby = table["others"].combine_chunks()
     rows = nearby.flatten()
     others = np.zeros(len(rows), dtype=OTHER)

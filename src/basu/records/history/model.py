@@ -7,13 +7,14 @@ runs of one seed leave the same bytes whatever the server's own frame counter sa
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import pyarrow as pa
     from numpy.typing import NDArray
 
     from basu.routing import Route
@@ -38,11 +39,16 @@ FRAME = np.dtype(
         ("angular_velocity_x_radps", "<f8"),
         ("angular_velocity_y_radps", "<f8"),
         ("angular_velocity_z_radps", "<f8"),
-        ("throttle", "<f8"),  # what the agent answered in this frame; its last answer where it gave none
+        ("throttle", "<f8"),  # requested: the agent's answer in this frame; its last one where it gave none
         ("steer", "<f8"),
         ("brake", "<f8"),
         ("hand_brake", "<i1"),
         ("reverse", "<i1"),
+        ("applied_throttle", "<f8"),  # applied: what the vehicle was given, after a person and a scenario's effects
+        ("applied_steer", "<f8"),
+        ("applied_brake", "<f8"),
+        ("applied_hand_brake", "<i1"),
+        ("applied_reverse", "<i1"),
         ("speed_limit_mps", "<f8"),  # as the simulator posts it to the vehicle; 0 where it posts none
         (
             "traffic_light_state",
@@ -63,7 +69,10 @@ FRAME = np.dtype(
     ]
 )
 
-# Who was near, nearest first: at most NEAREST rows a tick.
+CONTROL = ("throttle", "steer", "brake", "hand_brake", "reverse")
+
+# Vehicles and walkers that were near, then things, each nearest first: at most NEAREST rows of each a tick. Places are
+# those of the middles of their boxes.
 OTHER = np.dtype(
     [
         ("tick", "<i8"),
@@ -77,7 +86,7 @@ OTHER = np.dtype(
     ]
 )
 NO_LIGHT = -1
-NEAREST, NEAR_M = 16, 60.0  # how many others are recorded, and out to which distance
+NEAREST, NEAR_M = 16, 60.0  # how many moving others and how many things are recorded, and out to which distance
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,6 +137,22 @@ class History:
     others: NDArray[np.void]  # (M,) of OTHER, ticks ascending
     collisions: tuple[Collision, ...]  # ticks ascending
     lane_invasions: tuple[LaneInvasion, ...]  # ticks ascending
+
+    def to_arrow(self) -> pa.Table:
+        """The record as an Arrow table, one row a tick, with the unit of each column in its field's metadata."""
+        from basu.records.history.tables import to_arrow  # noqa: PLC0415 - which knows this module
+
+        return to_arrow(self)
+
+    def to_pandas(self, what: str = "frames") -> Any:  # noqa: ANN401 - a DataFrame; pandas is optional
+        """The frames as a data frame, or the "others", "collisions" or "lane_invasions"; units in ``attrs["units"]``.
+
+        Raises:
+            UserError: there is no such table, or pandas is not installed.
+        """
+        from basu.records.history.tables import to_pandas  # noqa: PLC0415 - likewise
+
+        return to_pandas(self, what)
 
     def speed_mps(self) -> NDArray[np.float64]:
         """(T,) speed over ground."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion
+from basu.records.history.model import CONTROL, FRAME, OTHER, Collision, Facts, History, LaneInvasion
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -38,6 +38,16 @@ class Recorder:
         """Add a frame: one number a column of ``FRAME``, in order."""
         assert len(row) == len(_names(FRAME)), "a row has one number a column"
         self._frames.extend(row)
+
+    def applied(self, values: Sequence[float]) -> None:
+        """Set the applied control of the latest frame: one number for each of ``CONTROL``; may be called again."""
+        names = [f"applied_{name}" for name in CONTROL]
+        if len(self._frames):
+            first = len(self._frames) - len(_names(FRAME)) + _names(FRAME).index(names[0])
+            self._frames[first : first + len(names)] = array("d", values)
+        else:
+            for name, value in zip(names, values, strict=True):
+                self._packed[name][self._packed_ticks - 1] = value
 
     def others(self, rows: Iterable[Sequence[float]]) -> None:
         """Add who is near in the latest frame: one number a column of ``OTHER``, in order."""

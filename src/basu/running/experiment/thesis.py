@@ -90,13 +90,13 @@ def _row(folder: Path) -> Measured:
         UserError, SimulatorError, KeyboardInterrupt: the drive is none that can be compared.
     """
     result = read_run(folder).result
-    status = Status(result["status"])
+    status = result.outcome.status
     if status is Status.INTERRUPTED:
         raise KeyboardInterrupt
-    if result["scores"] is None or status.fault in {Fault.SETUP, Fault.SIMULATOR}:
+    if result.scores is None or status.fault in {Fault.SETUP, Fault.SIMULATOR}:
         kind = UserError if status.fault is Fault.SETUP else SimulatorError
         raise kind(
-            f"the experiment ends here, {folder.name} is not to be compared: {status.value}, {result['message']}"
+            f"the experiment ends here, {folder.name} is not to be compared: {status.value}, {result.outcome.message}"
         )
-    counts = Counter(Infraction(infraction["kind"]) for infraction in result["infractions"])
-    return measured(counts, result["scores"]["path_following"])
+    counts = Counter(Infraction(found.kind.value) for found in result.infractions)
+    return measured(counts, result.scores.path_following)

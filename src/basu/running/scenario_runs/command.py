@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import sys
 import time
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
 
-from basu.agents.loader import load_agent
+from basu.agents.process.remote_agent import find_agent
 from basu.errors import UserError
 from basu.outcome import Fault
 from basu.output.report.folder import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
@@ -21,6 +22,7 @@ from basu.running.scenario_runs.leave import leave
 from basu.running.scenario_runs.matrix import matrix_of
 from basu.running.scenario_runs.worker import Job, play
 from basu.scenarios.cases import cases_of, varied
+from basu.scenarios.characteristics import having
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.variation import Variation
 
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.running.scenario_runs.worker import Done
     from basu.scenarios.cases import Playable
@@ -45,7 +47,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
     """
     began, began_s = datetime.now(timezone.utc), time.perf_counter()
     playables = chosen(options)
-    agents = _loaded(options.agents)
+    agents = _loaded(options)
     names = [agent.name for agent in agents]
     folder = _folder(options, began)
     write_json(folder / CONFIG_FILE, run_config(options, agents))
@@ -72,6 +74,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
             matrix = matrix_of(options, names, playables, documents, began, wall_s)
             write_json(folder / MATRIX_FILE, matrix)
             leave(folder, matrix, options.junit)
+            print(f"repeat  basu scenario run --config {shlex.quote(str(folder / CONFIG_FILE))}")
     return Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
 
 
@@ -83,7 +86,8 @@ def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
     """
     variation = Variation(fixed=options.fixed, design=options.design, vary=options.vary)
     typology = list(Group)
-    by_group = sorted(cases_of(options.what, options.files), key=lambda each: typology.index(each.scenario.group))
+    cases = having(cases_of(options.what, options.files), options.where)
+    by_group = sorted(cases, key=lambda each: typology.index(each.scenario.group))
     return varied(by_group, variation)
 
 
@@ -100,13 +104,15 @@ def _exit_code(document: dict[str, Any]) -> int:
     return int(Fault[document["fault"].upper()].value)
 
 
-def _loaded(typed: Sequence[str]) -> list[LoadedAgent]:
+def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
     """The agents, loaded before anything begins, so that a wrong one is told at once.
 
     Raises:
         UserError: one cannot be had, or two have one name.
     """
-    agents = [load_agent(agent) for agent in typed]
+    agents = [
+        find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb) for agent in options.agents
+    ]
     names = [agent.name for agent in agents]
     for name in names:
         if names.count(name) > 1:

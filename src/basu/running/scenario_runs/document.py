@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from basu.options import STEP_S
 from basu.outcome import Outcome, Status
-from basu.running.scenario_runs.options import ScenarioOptions
+from basu.running.scenario_runs.options import CASES, ScenarioOptions
+from basu.scenarios.characteristics import measured
 from basu.scenarios.drawing import tree_of
 from basu.scenarios.verdict import judge
 from basu.settings.command_line import words_of
@@ -18,7 +19,7 @@ from basu.settings.option import fields_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
     from basu.scenarios.cases import Playable
@@ -29,7 +30,7 @@ SCHEMA_VERSION = 2
 
 def document_of(
     playable: Playable,
-    loaded: LoadedAgent,
+    loaded: FoundAgent,
     playing: Playing | None,
     judged: Judged,
     options: ScenarioOptions,
@@ -53,6 +54,7 @@ def document_of(
         "assessment": None if judged.assessment is None else judged.assessment.document(),
         "collisions": [collision._asdict() for collision in judged.collisions],
         "ended": judged.outcome.message,  # how the run ended, for judging it again
+        "measured": None if history is None or playing is None else _measured(playing, history),
         "phases_s": {} if playing is None else {k: round(t * STEP_S, 3) for k, t in playing.phase_ticks.items()},
         "judgements": [judgement._asdict() for judgement in judged.judgements],
         "margins": judged.margins,
@@ -67,7 +69,13 @@ def document_of(
     }
 
 
-def lost(playable: Playable, loaded: LoadedAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
+def _measured(playing: Playing, history: History) -> dict[str, Any] | None:
+    """Figures of the route and the drive where the conflict began; None where it never did."""
+    tick = playing.phase_ticks.get("conflict")
+    return None if tick is None or tick >= len(history.frames) else measured(history, tick)
+
+
+def lost(playable: Playable, loaded: FoundAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
     """The document of a case whose process died: nothing is known of it."""
     judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
     return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)
@@ -91,25 +99,17 @@ def command_of(options: ScenarioOptions) -> list[str]:
 
 def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> ScenarioOptions:
     """Return the options that play one case of a run alone; its id holds sample and parameters."""
-    return replace(
-        options,
-        what=(playable.case.name,),
-        files=options.all_files,
-        agents=(agent,),
-        sweep=None,
-        grid=None,
-        vary=(),
-        fixed=(),
-        seed=options.drive_seed,
-    )
+    chosen = {field.name: field.default for field in fields_of(ScenarioOptions) if field.option.group == CASES}
+    found = {"what": (playable.case.name,), "files": options.all_files, "agents": (agent,), "seed": options.drive_seed}
+    return replace(options, **{**chosen, **found})
 
 
-def case_config(playable: Playable, options: ScenarioOptions, loaded: LoadedAgent) -> dict[str, Any]:
+def case_config(playable: Playable, options: ScenarioOptions, loaded: FoundAgent) -> dict[str, Any]:
     """Return ``config.json`` of a case, which plays it alone again."""
     return run_config(options_again(playable, options, typed_name(options, loaded)), [loaded])
 
 
-def run_config(options: ScenarioOptions, agents: Sequence[LoadedAgent]) -> dict[str, Any]:
+def run_config(options: ScenarioOptions, agents: Sequence[FoundAgent]) -> dict[str, Any]:
     """Return ``config.json`` of a run of scenarios."""
     pairs = [(file, file.with_suffix(".xml" if file.suffix == ".py" else ".py")) for file in options.all_files]
     files = [*(agent.file for agent in agents if agent.file is not None), *(file for pair in pairs for file in pair)]
@@ -117,7 +117,7 @@ def run_config(options: ScenarioOptions, agents: Sequence[LoadedAgent]) -> dict[
     return config_document(SCENARIO_RUN, options, None, command_of(options), there)
 
 
-def typed_name(options: ScenarioOptions, loaded: LoadedAgent) -> str:
+def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
     """Return an agent's name as it was typed, with the class where its file has several."""
     file = loaded.file
     if file is None:

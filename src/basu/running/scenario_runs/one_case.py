@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
@@ -131,7 +131,7 @@ class _Attempt(NamedTuple):
     town: Town | None
 
 
-def perform(theatre: Theatre, loaded: LoadedAgent, playable: Playable, output: Path) -> Performed:
+def perform(theatre: Theatre, loaded: FoundAgent, playable: Playable, output: Path) -> Performed:
     """Play a case and write its folder below ``output``; whatever goes wrong becomes its verdict."""
     began_s = time.perf_counter()
     case, options = playable.case, theatre.options
@@ -163,7 +163,7 @@ def _judged(attempt: _Attempt, history: History | None) -> Judged:
     return attempt.playing.judged(history, attempt.outcome)
 
 
-def _attempt(theatre: Theatre, loaded: LoadedAgent, playable: Playable, draft: Path) -> _Attempt:
+def _attempt(theatre: Theatre, loaded: FoundAgent, playable: Playable, draft: Path) -> _Attempt:
     """Drive it, or know why not."""
     town = None
     try:
@@ -185,7 +185,7 @@ def _attempt(theatre: Theatre, loaded: LoadedAgent, playable: Playable, draft: P
     return _Attempt(driven, next(iter(scenes.playing), None), driven.outcome, town)
 
 
-def _sensors(agents: AgentsManager, loaded: LoadedAgent) -> SensorSet:
+def _sensors(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
     """What the agent senses with; those of our own read no sensors, theirs are for who looks on, as nobody does here.
 
     Raises:
@@ -227,11 +227,12 @@ def _driven(
             timeout_s=options.timeout_s,
             folder=folder,
             server_address=simulator.address,
+            own_simulator=simulator.own,
         )
         return drive(
             run,
             agents,
-            SensorsManager(*sensors, late=agents.late_sensors),
+            SensorsManager(*sensors, late=agents.late_sensors, listener=agents),
             TrafficManager(NOBODY),
             Scoring(),
             why_gone=simulator.why_gone,

@@ -8,7 +8,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from basu.errors import UserError
-from basu.options import AGENT, CONDITIONS, FOLDERS, Debug, Host, Port, RunOptions, StepLimit, Timeout
+from basu.options import (
+    AGENT,
+    CONDITIONS,
+    FOLDERS,
+    AgentMemory,
+    Debug,
+    Host,
+    InProcess,
+    Port,
+    RunOptions,
+    StepLimit,
+    Timeout,
+    check_agent_process,
+)
 from basu.settings.option import Option, Settings
 
 if TYPE_CHECKING:
@@ -46,6 +59,15 @@ class ScenarioOptions(Settings):
             is_file=True,
         ),
     ] = ()
+    where: Annotated[
+        tuple[tuple[str, str], ...],
+        Option(
+            help="only cases with this characteristic, such as lighting=dark; may be given several times",
+            group=CASES,
+            metavar="FIELD=VALUE",
+            style="pairs",
+        ),
+    ] = ()
     sweep: Annotated[
         int | None,
         Option(help="play N samples of each case (Latin hypercube)", group=CASES, metavar="N", rival="design"),
@@ -80,6 +102,8 @@ class ScenarioOptions(Settings):
         ),
     ] = ("basic",)
     step_limit_s: StepLimit = 10.0
+    in_process: InProcess = False
+    agent_memory_gb: AgentMemory = None
     debug: Debug = False
     seed: Annotated[
         int,
@@ -123,6 +147,7 @@ class ScenarioOptions(Settings):
         for name in ("what", "agents"):
             if not getattr(self, name):
                 raise UserError(f"{name} is empty; it must name at least one")
+        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
 
     @property
     def design(self) -> Design | None:
@@ -156,5 +181,7 @@ class ScenarioOptions(Settings):
             vehicle=self.vehicle,
             output=self.output,
             step_limit_s=self.step_limit_s,
+            in_process=self.in_process,
+            agent_memory_gb=self.agent_memory_gb,
             debug=self.debug,
         )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.agents.loader import load_agent
+from basu.agents.process.remote_agent import find_agent
 from basu.errors import BasuError
 from basu.outcome import Status
 from basu.output.report.folder import plain
@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
     from basu.running.scenario_runs.options import ScenarioOptions
 
-LEAVING = frozenset({Status.SIMULATOR_FAILED, Status.AGENT_TIMED_OUT, Status.BENCHMARK_FAILED})
-"""After these a process is not to be trusted: its simulator is gone, or an agent still runs in it."""
+LEAVING = frozenset({Status.SIMULATOR_FAILED, Status.BENCHMARK_FAILED})
+"""After these a process is not to be trusted: its simulator is gone, or something of ours is wrong."""
+LEAVING_IN_PROCESS = LEAVING | {Status.AGENT_TIMED_OUT}  # the agent may still run in it
 
 
 class Job(NamedTuple):
@@ -61,7 +62,10 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterato
         KeyboardInterrupt: the user interrupted a case; what came of it has been yielded.
     """
     library = open_library(options.all_files)
-    agents = {agent: load_agent(agent) for agent in options.agents}
+    agents = {
+        agent: find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb)
+        for agent in options.agents
+    }
     with simulator_for(options.run_options(options.agents[0])) as simulator:
         with asking("naming its towns"):
             theatre = Theatre(options, simulator, towns_of(simulator.client))
@@ -69,7 +73,7 @@ def play(options: ScenarioOptions, output: Path, jobs: Iterable[Job]) -> Iterato
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
             performed = perform(theatre, loaded, playable, output / plain(loaded.name))
-            leaves = performed.outcome.status in LEAVING
+            leaves = performed.outcome.status in (LEAVING_IN_PROCESS if options.in_process else LEAVING)
             yield Done(job.number, performed.document, str(performed.folder.relative_to(output)), leaves)
             if performed.outcome.status is Status.INTERRUPTED:
                 raise KeyboardInterrupt

@@ -1,12 +1,9 @@
-"""What scenarios do: one idea a file."""
+"""What scenarios do: lead vehicles and walkers, disturb the ego, change weather, road and lights."""
 
-from basu.scenarios.actions.action import Action
-from basu.scenarios.actions.arrival import ReachAtEgosArrival
-from basu.scenarios.actions.composition import Either, InTurn, Meanwhile, Together, Wait
-from basu.scenarios.actions.driving import DriveAlong
+from basu.scenarios.actions.composition import Action, Either, InTurn, Meanwhile, Together, Wait
+from basu.scenarios.actions.driving import DriveAlong, FollowEgo, ReachAtEgosArrival
 from basu.scenarios.actions.ego_controls import Bump, JitterControls, PullSteering
-from basu.scenarios.actions.following import FollowEgo
-from basu.scenarios.actions.lateral import ChangeLane, Drift
+from basu.scenarios.actions.maneuvers import Accelerate, Brake, ChangeLane, Drift, Hold
 from basu.scenarios.actions.moments import (
     CloseDoor,
     LetGo,
@@ -17,7 +14,6 @@ from basu.scenarios.actions.moments import (
     SetLight,
     SetWeather,
 )
-from basu.scenarios.actions.pedals import Accelerate, Brake, Hold
 from basu.scenarios.actions.puppet import Limits, Puppet
 from basu.scenarios.actions.walking import WalkAlong
 

@@ -1,16 +1,37 @@
-"""How behaviours are put together: in turn, together, whichever comes first, meanwhile; and waiting."""
+"""The base of actions, waiting, and the ways to put behaviours together: in turn, together, either, meanwhile."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from py_trees.common import ParallelPolicy
+from py_trees.common import ParallelPolicy, Status
 from py_trees.composites import Parallel, Sequence
 
-from basu.scenarios.actions.action import Action
+from basu.scenarios.tree import Node
 
 if TYPE_CHECKING:
     from py_trees.behaviour import Behaviour
+
+
+class Action(Node):
+    """The base of all: ``begin`` once, ``act`` each frame until it says in words what is done, ``leave`` once."""
+
+    def act(self) -> str | None:
+        """Do what belongs to this frame; say what is done, in words with figures, or None until then."""
+        raise NotImplementedError
+
+    def leave(self, *, broken_off: bool) -> None:
+        """What is handed back in the last frame; nothing for most."""
+
+    def done(self) -> str | None:
+        """Act."""
+        return self.act()
+
+    def terminate(self, new_status: Status) -> None:
+        """Leave, once: done, or broken off by others."""
+        super().terminate(new_status)
+        if self.status == Status.RUNNING or new_status == Status.SUCCESS:
+            self.leave(broken_off=new_status == Status.INVALID)
 
 
 class Wait(Action):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.scenarios.actions.action import Action
+from basu.scenarios.actions.composition import Action
 from basu.scenarios.stage import Door, Pose
 
 if TYPE_CHECKING:

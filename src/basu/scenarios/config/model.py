@@ -38,6 +38,9 @@ class Case:
     trigger: Pose | None = None  # None: the ego's place
     weather: Mapping[str, float] | None = None  # fields of carla.WeatherParameters that the file gives; None: ClearNoon
     values: Mapping[str, str] = field(default_factory=dict)  # of its parameters, as text
+    characteristics: Mapping[str, str] = field(
+        default_factory=dict
+    )  # stated in the file (`basu.scenarios.characteristics`)
     place: str = ""  # where it is, in words
     on_route: bool = False  # whether on the shuttle's route
     source: str = ""  # file and line, for sentences

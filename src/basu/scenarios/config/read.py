@@ -14,9 +14,9 @@
       </scenario>
     </scenarios>
 
-Theirs are <ego_vehicle>, <other_actor>, <weather>, <route> and values as elements of their own; ours are <place>,
-<via>, <stop> (a service stop), <destination> and <trigger_point>, and ``low``, ``high`` and ``among``, which narrow a
-parameter at its place. Coordinates are CARLA's: metres, y south, yaw in degrees clockwise.
+Theirs are <ego_vehicle>, <other_actor>, <weather>, <route> and values as elements of their own. Ours are <place>,
+<via>, <stop> (a service stop), <destination>, <trigger_point> and <characteristics>, and ``low``, ``high`` and
+``among``, which narrow a parameter at its place. Coordinates are CARLA's: metres, y south, yaw in degrees clockwise.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from basu.errors import ScenarioError
 from basu.routing.route_file import RoutePoint, StopMark
 from basu.scenarios.config.elements import (
     POINT_ATTRIBUTES,
+    attributes_of,
     complaint,
     ego_of,
     only,
@@ -51,7 +52,7 @@ if TYPE_CHECKING:
     from basu.scenarios.config.model import GivenActor
     from basu.scenarios.stage import Pose
 
-ONCE = ("ego_vehicle", "route", "destination", "trigger_point", "weather", "place")
+ONCE = ("ego_vehicle", "route", "destination", "trigger_point", "weather", "place", "characteristics")
 RESERVED = frozenset({*ONCE, "other_actor", "via", "stop"})  # no parameter can be called so
 NAME = re.compile(r"[A-Za-z0-9._-]+")  # of a case: it names a folder, and ':' begins what is sampled
 AT_THE_EGO_M = 2.0  # a first way point so near to the ego is where it stands
@@ -122,6 +123,7 @@ def _case(element: etree._Element, path: Path) -> Case:
             element, path, f"'{name}' has no <ego_vehicle x y z yaw model/>; it says where the drive begins"
         )
     driver = ego_of(ego, path)
+    stated = once["characteristics"]
     if trigger is not None:
         only(trigger, POINT_ATTRIBUTES, path)
     if place is not None:
@@ -137,6 +139,7 @@ def _case(element: etree._Element, path: Path) -> Case:
         trigger=None if trigger is None else pose_of(trigger, path, yaw=True),
         weather=None if weather is None else weather_of(weather, path),
         values=values_of([part for part in parts if part.tag not in RESERVED], path),
+        characteristics={} if stated is None else attributes_of(stated),
         place="" if place is None else text_of(place, "name", path),
         on_route=place is not None and _yes(place, "route", path),
         source=where(element, path),

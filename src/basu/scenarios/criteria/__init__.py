@@ -7,27 +7,31 @@ A scenario names them in ``criteria``::
     def criteria(self):
         return [NoCollision(), LeastDistance(0.5, to="child"), Arrives(), InTime()]
 
-Each takes ``deciding=False`` to tell without weighing. One of your own is a class with a ``name`` and a method
-``judge`` (see `Criterion`). Least distance, time to collision and post-encroachment time are told of every case,
-whether its scenario names them or not.
+Each takes ``deciding=False`` to report without weighing. One of your own is a class with a ``name`` and a method
+``judge`` (see `Criterion`). No collision, no near miss, least distance, time to collision and post-encroachment time
+are judged of every case, whether its scenario names them or not.
 """
 
 from basu.scenarios.criteria.comfort import Gentle
 from basu.scenarios.criteria.contact import NoCollision
-from basu.scenarios.criteria.criterion import Criterion, Judgement, Played, Thing
+from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played, Thing
 from basu.scenarios.criteria.going import Arrives, InTime, Reaches, ReachesPoint
 from basu.scenarios.criteria.lane import KeepsLane, Regains
-from basu.scenarios.criteria.margins.headway import KeepsHeadway
-from basu.scenarios.criteria.margins.least_distance import LeastDistance
-from basu.scenarios.criteria.margins.least_ttc import LeastTtc
-from basu.scenarios.criteria.margins.pet import Pet
 from basu.scenarios.criteria.signals import HeedsRedLights, HeedsStopSigns
 from basu.scenarios.criteria.speed import KeepsSpeed, MinimumSpeed
 from basu.scenarios.criteria.stopping import StoppedFor
-from basu.scenarios.criteria.told import margins_of, told_always
+from basu.scenarios.criteria.surrogate_measures import (
+    KeepsHeadway,
+    LeastDistance,
+    LeastTtc,
+    Pet,
+    margins_of,
+    reported_always,
+)
 
 __all__ = [
     "Arrives",
+    "Aspect",
     "Criterion",
     "Gentle",
     "HeedsRedLights",
@@ -49,5 +53,5 @@ __all__ = [
     "StoppedFor",
     "Thing",
     "margins_of",
-    "told_always",
+    "reported_always",
 ]

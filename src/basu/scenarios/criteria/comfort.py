@@ -10,7 +10,7 @@ from basu.metrics.passengers.causes import Kind, cause
 from basu.metrics.passengers.felt import felt
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2, harsh_stops
 from basu.scenarios.criteria.criterion import Criterion
-from basu.scenarios.criteria.margins.company import company
+from basu.scenarios.criteria.margin import present_in
 
 if TYPE_CHECKING:
     from basu.metrics.passengers.felt import Felt
@@ -44,7 +44,7 @@ class Gentle(Criterion):
         sensed = felt(played.history)
         if sensed is None:
             return self.says(played, None, "the drive was too short to feel anything", unit="m/s²", limit=limit)
-        record = company(played).history
+        record = present_in(played).history
         stops = [(s, cause(record, s)) for s in harsh_stops(sensed, self.harsh_mps2) if s.tick >= first]
         counting = [(s, why) for s, why in stops if why.kind is Kind.NOTHING or not self.phantom_only]
         if not counting:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from basu.metrics import arrival
 from basu.outcome import Status
 from basu.scenarios.criteria.criterion import Aspect, Criterion
-from basu.scenarios.triggers.along_route import ARRIVED_M, PARKED_M, PARKED_MPS
+from basu.scenarios.triggers.along_route import SLACK_M, SLACK_MPS
 
 if TYPE_CHECKING:
     from basu.records.history import History
@@ -16,10 +17,8 @@ if TYPE_CHECKING:
 
 
 def arrival_tick(history: History) -> int | None:
-    """The first frame in which the ego is at the end of its route, as `EgoArrives` has it; None where it never was."""
-    left_m = history.facts.route.length_m - history.frames["route_s_m"]
-    there = (left_m <= ARRIVED_M) | ((left_m <= PARKED_M) & (history.speed_mps() <= PARKED_MPS))
-    return int(np.argmax(there)) if there.any() else None
+    """The first frame in which the ego has arrived, with the slack of `EgoArrives`; None where it never has."""
+    return arrival.arrival_tick(history, slack_m=SLACK_M, slack_mps=SLACK_MPS)
 
 
 class Arrives(Criterion):

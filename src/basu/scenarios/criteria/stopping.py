@@ -10,8 +10,8 @@ from basu.errors import ScenarioError
 from basu.metrics.passengers.boxes import other_boxes, own_boxes
 from basu.metrics.stretches import stretches
 from basu.scenarios.criteria.criterion import Aspect, Criterion
-from basu.scenarios.criteria.margins.company import company
-from basu.scenarios.criteria.margins.gap import gap_m
+from basu.scenarios.criteria.margin import present_in
+from basu.scenarios.criteria.surrogate_measures import gap_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,9 +95,9 @@ class StoppedFor(Criterion):
         if self.s_m is not None:
             ahead_m: NDArray[np.float64] = self.s_m - history.frames["route_s_m"] - history.facts.vehicle.front_m
             return ahead_m
-        with_whom = company(played)
-        others = with_whom.history.others[with_whom.rows_of(self.what)]
+        present = present_in(played)
+        others = present.history.others[present.rows_of(self.what)]
         away_m = np.full(len(history.frames), np.nan)
         own = own_boxes(history.facts, history.frames)[others["tick"]]
-        away_m[others["tick"]] = gap_m(own, other_boxes(with_whom.history.facts, others))
+        away_m[others["tick"]] = gap_m(own, other_boxes(present.history.facts, others))
         return away_m

@@ -9,8 +9,8 @@ from py_trees.common import Status
 from py_trees.composites import Parallel, Selector
 from py_trees.composites import Sequence as Steps
 
-from basu.scenarios.node import BROKEN_OFF
-from basu.scenarios.triggers.trigger import Trigger
+from basu.scenarios.tree import BROKEN_OFF
+from basu.scenarios.triggers.motion import Trigger
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -93,7 +93,7 @@ def _judged(judgement: Judgement) -> TreeNode:
     """A criterion with what it said."""
     held = "" if judgement.limit in {"", "none"} else f" ({judgement.limit})"
     return TreeNode(
-        name=judgement.criterion if judgement.deciding else f"{judgement.criterion} (told only)",
+        name=judgement.criterion if judgement.deciding else f"{judgement.criterion} (reported only)",
         kind="criterion",
         status="not judged" if judgement.passed is None else "success" if judgement.passed else "failure",
         feedback=judgement.sentence + held,

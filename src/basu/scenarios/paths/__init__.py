@@ -1,8 +1,7 @@
 """Paths to be followed: from points, along lanes, beside and across the ego's route."""
 
-from basu.scenarios.paths.beside import parked_m, pavement_m
 from basu.scenarios.paths.crossings import Crossing, JunctionAhead, crossing, crossings, junctions, next_junction
-from basu.scenarios.paths.lanes import along_lane, lanes_apart_m, oncoming
+from basu.scenarios.paths.lanes import along_lane, lanes_apart_m, oncoming, parked_m, pavement_m
 from basu.scenarios.paths.path import OnPath, Path
 
 __all__ = [

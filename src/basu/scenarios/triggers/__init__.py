@@ -10,9 +10,8 @@ from basu.scenarios.triggers.along_route import (
     TimeToArrival,
     TimeToRest,
 )
-from basu.scenarios.triggers.motion import ClosesIn, EgoTouches, Elapsed, Faster, Slower, StandsStill
+from basu.scenarios.triggers.motion import ClosesIn, EgoTouches, Elapsed, Faster, Slower, StandsStill, Trigger
 from basu.scenarios.triggers.places import Circle, CrossesLine, EgoNear, InRegion, Near, NearPlace, Polygon, Stretch
-from basu.scenarios.triggers.trigger import Trigger
 
 __all__ = [
     "ActorTimeToArrival",

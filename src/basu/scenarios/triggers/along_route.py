@@ -5,15 +5,14 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from basu.scenarios.triggers.trigger import Trigger
+from basu.metrics.arrival import has_arrived
+from basu.scenarios.triggers.motion import Trigger
 
 if TYPE_CHECKING:
     from basu.scenarios.paths import Path
 
-# A run ends within 1 m of the route's end, or at rest (0.1 m/s) within 5 m of it: basu.managers.routes_manager. These
-# are wider by what a vehicle does in a frame, so that the tree knows no later than the run.
-ARRIVED_M = 2.0
-PARKED_M, PARKED_MPS = 5.0, 0.15
+# The tree has to know of an arrival no later than the run, so it allows for what a vehicle does in a frame.
+SLACK_M, SLACK_MPS = 1.0, 0.05
 COMFORT_MPS2 = 1.0  # with which an ego is taken to brake for a line: what standing passengers bear (Hoberock 1977)
 LEAST_MPS = 0.5  # an ego slower than this is not taken to arrive ever later
 AT_LINE_M = 3.0  # an ego that rests no farther than this before its place has come to it
@@ -43,7 +42,7 @@ class EgoArrives(Trigger):
         """When, once it is."""
         stage = self.stage
         left_m, speed_mps = stage.route.length_m - stage.ego_s_m, stage.ego.speed_mps
-        if left_m <= ARRIVED_M or (left_m <= PARKED_M and speed_mps <= PARKED_MPS):
+        if has_arrived(left_m, speed_mps, slack_m=SLACK_M, slack_mps=SLACK_MPS):
             return f"ego arrived after {stage.time_s:.1f} s"
         return None
 

@@ -1,11 +1,29 @@
-"""Triggers on motion, time and touch: speeds, standing still, closing in, elapsed time, contact."""
+"""The base of triggers, and triggers on motion, time and touch."""
 
 from __future__ import annotations
 
 import math
 
 from basu.scenarios.stage import EGO
-from basu.scenarios.triggers.trigger import Trigger, named
+from basu.scenarios.tree import Node
+
+
+def named(who: str) -> str:
+    """What the tree calls somebody."""
+    return "ego" if who == EGO else who
+
+
+class Trigger(Node):
+    """Asks ``has_come`` each frame, which says in words what has come true, or None."""
+
+    def has_come(self) -> str | None:
+        """What has come true, in words; None until then."""
+        raise NotImplementedError
+
+    def done(self) -> str | None:
+        """Ask."""
+        return self.has_come()
+
 
 STILL_MPS = 0.1  # slower than this stands
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.scenarios.stage import EGO
-from basu.scenarios.triggers.trigger import Trigger, named
+from basu.scenarios.triggers.motion import Trigger, named
 
 if TYPE_CHECKING:
     from basu.scenarios.paths import Path

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from linden.geometry import rotation_matrix
 from linden.physics.state import CURVE_POINTS, GEARS, VEHICLE_SPEC, WHEELS, Rows
 from linden.physics.vehicle.wheels import WHEEL_MASS_KG
 from linden.values.space import BoundingBox, Transform, Vector2D, Vector3D
-from linden.values.vehicles import UNKNOWN_UNDERCARRIAGE, Undercarriage, VehiclePhysicsControl, Wheel
+from linden.values.vehicles import UNKNOWN_UNDERCARRIAGE, Gear, Undercarriage, VehiclePhysicsControl, Wheel
 
 F64 = NDArray[np.float64]
 
@@ -57,6 +58,9 @@ def world_wheels(control: VehiclePhysicsControl, pose: Transform, offsets_m: Seq
     )
 
 
+_APART = ("forward_gears", "wheels", "position")  # parts with fields of their own, and a place in the world
+
+
 def axle_wheel(left: Wheel, right: Wheel) -> Wheel:
     """Return the one wheel of an axle on which CARLA's two-wheelers have two, side by side.
 
@@ -73,6 +77,31 @@ def axle_wheel(left: Wheel, right: Wheel) -> Wheel:
         lat_stiff_value=0.5 * (left.lat_stiff_value + right.lat_stiff_value),
         long_stiff_value=left.long_stiff_value + right.long_stiff_value,
     )
+
+
+class Bounds(NamedTuple):
+    """Least and greatest value, both included."""
+
+    least: float
+    most: float
+
+
+ANY_NUMBER = Bounds(-1e6, 1e6)
+"""Of a field without bounds of its own: what is far beyond any vehicle, and still moves by finite numbers."""
+
+BOUNDS = {
+    "mass": Bounds(1.0, 1e6),
+    "moi": Bounds(1e-3, 1e4),
+    "max_rpm": Bounds(1.0, 1e6),
+    "final_ratio": Bounds(-1e3, 1e3),
+    "ratio": Bounds(-1e3, 1e3),
+    "drag_coefficient": Bounds(-1e3, 1e3),
+    "radius": Bounds(1.0, 1e3),
+    "tire_friction": Bounds(-1e3, 1e3),
+    "max_brake_torque": Bounds(-1e8, 1e8),
+    "max_handbrake_torque": Bounds(-1e8, 1e8),
+}
+"""Of the fields of a vehicle physics control, its gears and wheels, in their units (a wheel's radius in cm)."""
 
 
 def check(control: VehiclePhysicsControl, wheel_count: int | None = None) -> None:
@@ -98,6 +127,19 @@ def check(control: VehiclePhysicsControl, wheel_count: int | None = None) -> Non
         )
     if any(wheel.radius <= 0.0 for wheel in control.wheels):
         raise Refusal("a wheel's radius must be positive (it is in cm)")
+    parts: tuple[VehiclePhysicsControl | Gear | Wheel, ...] = (control, *control.forward_gears, *control.wheels)
+    for part in parts:
+        _check_bounds(part)
+
+
+def _check_bounds(part: VehiclePhysicsControl | Gear | Wheel) -> None:
+    """Raise a Refusal where a number by which a body moves is out of its bounds; where a wheel lies is no such one."""
+    for name, value in zip(part._fields, part, strict=True):
+        least, most = BOUNDS.get(name, ANY_NUMBER)
+        for number in () if name in _APART else _numbers(value):
+            if not least <= number <= most:
+                whose = type(part).__name__
+                raise Refusal(f"{name} of a {whose} lies between {least:g} and {most:g}, not at {number:g}")
 
 
 def _numbers(value: object) -> list[float]:

@@ -10,8 +10,9 @@ import pytest
 from basu.agents.builtin.basic import BasicAgent
 from basu.agents.builtin.controls import CREEP_MPS, BlindAgent, CreeperAgent, StandingAgent
 from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
+from basu.agents.sight import Kind, Other, Sight
 
-OTHERS = ["a bus ahead"]
+OTHERS = [Other(2, Kind.VEHICLE, 20.0, 0.0, 0.0, 0.0, 0.0, 0.0, 6.0, 1.25)]
 
 
 class Recorder:
@@ -26,19 +27,22 @@ def made(kind: type[BasicAgent]) -> Any:
     """An agent under way, with eyes that see a bus and lights that answer."""
     agent: Any = kind()
     pose = carla.Transform()
+    box = carla.BoundingBox(carla.Location(0.0, 0.0, 1.4), carla.Vector3D(2.0, 1.0, 1.4))
     own = SimpleNamespace(get_transform=lambda: pose, get_velocity=carla.Vector3D)
     snapshot = SimpleNamespace(find=lambda _id: own, timestamp=SimpleNamespace(elapsed_seconds=1.0))
     agent.world = SimpleNamespace(get_snapshot=lambda: snapshot)
-    agent.vehicle = SimpleNamespace(id=1, get_control=carla.VehicleControl)
+    agent.vehicle = SimpleNamespace(id=1, bounding_box=box, get_control=carla.VehicleControl)
     agent.facts = SimpleNamespace(steering=SimpleNamespace(command=lambda _angle_rad, _speed_mps: 0.0))
     agent.driver = Recorder()
-    agent._perception = SimpleNamespace(others=lambda _snapshot, _ego: OTHERS)
+    agent._sees = Sight(agent.world, agent.vehicle, knowledge=agent.knowledge)
+    agent._sees._census = SimpleNamespace(near=lambda *_: OTHERS)
+    agent._sees._visible = lambda found, _pose: [True for _ in found]
     agent._lights = SimpleNamespace(shows="lights")
     return agent
 
 
 @pytest.mark.parametrize(("kind", "others"), [(BasicAgent, OTHERS), (BlindAgent, []), (CreeperAgent, [])])
-def test_blind_drivers_know_the_lights_and_no_other_actor(kind: type[BasicAgent], others: list[str]) -> None:
+def test_blind_drivers_know_the_lights_and_no_other_actor(kind: type[BasicAgent], others: list[Other]) -> None:
     agent = made(kind)
     assert agent.run_step({}).throttle == pytest.approx(0.4)
     assert (agent.driver.others, agent.driver.shows) == (others, "lights")

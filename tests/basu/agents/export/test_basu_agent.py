@@ -74,7 +74,7 @@ def loaded(base: str) -> Any:
 
 def config(folder: Path, **entries: str) -> str:
     (folder / "mine.py").write_text(AGENT)
-    path = folder / "guest.json"
+    path = folder / "basu_agent.json"
     path.write_text(json.dumps({"agent": str(folder / "mine.py"), **entries}))
     return str(path)
 
@@ -91,14 +91,14 @@ def test_the_leaderboard_finds_the_class_and_its_track(tmp_path: Path) -> None:
     assert agent.track.value == "MAP"
     assert [sensor["id"] for sensor in agent.sensors()] == ["GPS"]
     control = agent.run_step({"GPS": (9, np.array([39.9, -82.9, 1.0]))}, 0.05)
-    guest = agent._guest._agent
+    inside = agent._exported._agent
     assert control.throttle == pytest.approx(0.25)
-    assert guest.server_address == ("localhost", 4711)
-    assert (guest.seen["GPS"][0], guest.seen["GPS"][1].latitude) == (9, 39.9)
-    assert guest.route.length_m == pytest.approx(40.0, abs=0.5)
-    assert guest.vehicle.id == 7
+    assert inside.server_address == ("localhost", 4711)
+    assert (inside.seen["GPS"][0], inside.seen["GPS"][1].latitude) == (9, 39.9)
+    assert inside.route.length_m == pytest.approx(40.0, abs=0.5)
+    assert inside.vehicle.id == 7
     agent.destroy()
-    assert guest.ended
+    assert inside.ended
 
 
 def test_scenario_runner_finds_the_class_by_the_files_name(tmp_path: Path) -> None:
@@ -109,7 +109,7 @@ def test_scenario_runner_finds_the_class_by_the_files_name(tmp_path: Path) -> No
     assert len(agent._global_plan) < len(agent._plan)  # the host's base class thins its own
 
 
-def test_basus_own_agents_are_guests_by_name() -> None:
+def test_basus_own_agents_are_exported_by_name() -> None:
     module = loaded("srunner.autoagents.autonomous_agent")
     assert [sensor["type"] for sensor in module.BasuAgent("").sensors()] == ["sensor.other.gnss", "sensor.other.imu"]
 
@@ -117,7 +117,7 @@ def test_basus_own_agents_are_guests_by_name() -> None:
 def test_an_agent_that_was_never_bound_is_not_ended(tmp_path: Path) -> None:
     agent = loaded("srunner.autoagents.autonomous_agent").BasuAgent(config(tmp_path))
     agent.destroy()
-    assert not hasattr(agent._guest._agent, "ended")
+    assert not hasattr(agent._exported._agent, "ended")
 
 
 def test_a_host_without_a_plan_or_a_hero_gets_a_sentence(tmp_path: Path) -> None:
@@ -130,14 +130,14 @@ def test_a_host_without_a_plan_or_a_hero_gets_a_sentence(tmp_path: Path) -> None
         agent.run_step({}, 0.05)
 
 
-def test_an_agent_of_the_leaderboard_is_no_guest(tmp_path: Path) -> None:
+def test_an_agent_of_the_leaderboard_is_no_exported(tmp_path: Path) -> None:
     (tmp_path / "mine.py").write_text(
         "from leaderboard.autoagents.autonomous_agent import AutonomousAgent\n"
         "def get_entry_point(): return 'Mine'\nclass Mine(AutonomousAgent): pass\n"
     )
-    (tmp_path / "guest.json").write_text(json.dumps({"agent": str(tmp_path / "mine.py")}))
+    (tmp_path / "basu_agent.json").write_text(json.dumps({"agent": str(tmp_path / "mine.py")}))
     with pytest.raises(UserError, match="is one of the leaderboard's already; give it as --agent"):
-        loaded("srunner.autoagents.autonomous_agent").BasuAgent(str(tmp_path / "guest.json"))
+        loaded("srunner.autoagents.autonomous_agent").BasuAgent(str(tmp_path / "basu_agent.json"))
 
 
 def test_python_tells_where_the_file_is() -> None:

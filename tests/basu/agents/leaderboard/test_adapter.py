@@ -118,7 +118,7 @@ def begun(
 
 def inside(manager: AgentsManager) -> Any:
     """The agent of theirs."""
-    return manager._agent._agent
+    return manager._agent.agent._agent
 
 
 def test_the_calls_come_in_the_order_of_the_leaderboard() -> None:
@@ -166,7 +166,7 @@ def test_a_step_has_the_measurements_of_its_frame_and_the_time_since_the_beginni
     manager, world = begun(Told)
     manager.late_sensors()
     manager.perceive({"GPS": (500, "a fix")})
-    manager.tick(SimpleNamespace(tick=0))
+    manager.tick(SimpleNamespace(tick=0, server_frame=0))
     agent = inside(manager)
     assert agent.at == pytest.approx(0.05)
     assert agent.seen["GPS"] == (500, "a fix")
@@ -175,14 +175,14 @@ def test_a_step_has_the_measurements_of_its_frame_and_the_time_since_the_beginni
     assert agent.seen["MAP"] == (500, {"opendrive": TOWN.to_opendrive()})
     assert "OneRoad" in OPENDRIVE
     world.frame += 1
-    manager.tick(SimpleNamespace(tick=1))
+    manager.tick(SimpleNamespace(tick=1, server_frame=1))
     assert agent.at == pytest.approx(0.1)
 
 
 def test_gears_are_the_simulators_as_in_the_leaderboard() -> None:
     manager, _ = begun(Told)
     manager.late_sensors()
-    manager.tick(SimpleNamespace(tick=0))
+    manager.tick(SimpleNamespace(tick=0, server_frame=0))
     assert manager.control.throttle == pytest.approx(0.5)
     assert not manager.control.manual_gear_shift
 
@@ -192,7 +192,7 @@ def test_an_answer_that_is_no_control_is_the_agents(answer: Any) -> None:
     manager, _ = begun(type("Odd", (Told,), {"answer": answer}))
     manager.late_sensors()
     with pytest.raises(AgentInvalidControlError, match=r"run_step\(\) of Odd returned .* must return a carla"):
-        manager.tick(SimpleNamespace(tick=0))
+        manager.tick(SimpleNamespace(tick=0, server_frame=0))
 
 
 @pytest.mark.parametrize("method", ["__init__", "setup", "set_global_plan", "sensors", "run_step", "destroy"])
@@ -204,7 +204,7 @@ def test_whatever_raises_in_it_is_its_own(method: str, error: BaseException) -> 
     def live() -> None:
         manager, _ = begun(type("Bad", (Told,), {method: fail}))
         manager.late_sensors()
-        manager.tick(SimpleNamespace(tick=0))
+        manager.tick(SimpleNamespace(tick=0, server_frame=0))
         manager.close()
 
     with pytest.raises(AgentCrashedError, match=rf"\(\) of Bad raised {type(error).__name__}: .*test_adapter.py"):
@@ -269,11 +269,11 @@ def test_scenario_runners_own_provider_is_kept_up_to_date_from_when_it_is_loaded
     manager.late_sensors()
     module = SimpleNamespace(CarlaDataProvider=Theirs)
     monkeypatch.setitem(sys.modules, "srunner.scenariomanager.carla_data_provider", module)
-    manager.tick(SimpleNamespace(tick=0))
+    manager.tick(SimpleNamespace(tick=0, server_frame=0))
     assert list(Theirs._carla_actor_pool) == [7]
     Theirs._carla_actor_pool[9] = "spawned by the agent"
     world.frame += 1
-    manager.tick(SimpleNamespace(tick=1))
+    manager.tick(SimpleNamespace(tick=1, server_frame=1))
     manager.close()
     assert Theirs.ticks == 2
     assert Theirs.destroyed == [9]  # the vehicle under test is not the agent's to destroy
@@ -293,7 +293,7 @@ def test_bad_agents_of_all_kinds_never_end_in_anything_but_a_sentence(seed: int)
     try:
         manager, _ = begun(agent_class)
         manager.late_sensors()
-        manager.tick(SimpleNamespace(tick=0))
+        manager.tick(SimpleNamespace(tick=0, server_frame=0))
         manager.close()
     except (UserError, AgentCrashedError, AgentInvalidControlError) as error:
         failure = str(error)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from basu.metrics.passengers.felt import GRAVITY_MPS2, Place, felt
-from basu.metrics.passengers.lowpass import lowpass, moving_mean
+from basu.metrics.passengers.filters import lowpass, moving_mean
 from fakes.drives import STEP_S
 from fakes.rides import braked, circling, eastward, ride
 

@@ -1,6 +1,7 @@
 """Claims about near misses: times to collision and post-encroachment times of drives with known answers."""
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -71,3 +72,14 @@ def test_who_was_hit_was_not_missed() -> None:
 
 def test_alone_there_is_nobody_to_miss() -> None:
     assert near_misses(ride(1.0, eastward(lambda _: 10.0, 2.0))) == ()
+
+
+@pytest.mark.parametrize(("speed_mps", "is_near_miss"), [(2.5, False), (8.0, True)])
+def test_to_come_close_to_a_thing_slowly_is_no_near_miss(speed_mps: float, *, is_near_miss: bool) -> None:
+    """At 2.5 m/s, 1.2 s from it, 1.0 m/s² would do; at 8 m/s 3.3 m/s² would be needed."""
+    seconds = 3.0
+    ahead_m = speed_mps * (seconds + 1.2) + 2.0 + 2.0
+    history = ride(seconds, eastward(lambda _: speed_mps, 4.0), others=[(9, moving(ahead_m, 0.0, 0.0, 0.0))])
+    facts = replace(history.facts, actor_types={9: "static.prop.streetbarrier"})
+    parties = near_misses(replace(history, facts=facts))
+    assert any(party.is_near_miss for party in parties) is is_near_miss

@@ -6,10 +6,10 @@ import jsonschema
 import pytest
 
 from basu.errors import UserError
-from basu.metrics.passengers.as_json import passengers_to_json
 from basu.metrics.passengers.balance import balance
-from basu.metrics.passengers.comfort_score import ComfortWeights, comfort_score
+from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_score
 from basu.metrics.passengers.felt import felt
+from basu.metrics.passengers.metric import passengers_to_json
 from basu.metrics.passengers.verdict import Judged, judge
 from basu.metrics.score import Scoring, score
 from basu.output.report.schema import RESULT_SCHEMA, read_schema
@@ -20,7 +20,7 @@ WALKING_MPS = 7.1 * 0.44704
 
 
 def judged(history: History, weights: ComfortWeights | None = None) -> Judged:
-    found = judge(history, weights)
+    found = judge(history, weights, ended_early=True)
     assert found is not None
     return found
 
@@ -82,8 +82,14 @@ def test_having_to_step_now_and_then_costs_and_fails_nobody() -> None:
 def test_weights_are_proportions_and_a_part_that_is_not_there_weighs_nothing() -> None:
     measured = {"balance": 0.0, "vibration": 1.0}
     weights = ComfortWeights(balance=1.0, vibration=3.0, service=100.0)
-    assert comfort_score(measured, weights) == pytest.approx(0.75)
-    assert comfort_score(measured, ComfortWeights(balance=0.0, vibration=0.0)) is None
+    assert comfort_score(measured, weights, Harm()) == pytest.approx(0.6 + 0.4 * 0.75)
+    assert comfort_score(measured, ComfortWeights(balance=0.0, vibration=0.0), Harm()) is None
+
+
+def test_passed_stops_are_no_breach_for_passengers_to_whom_service_weighs_nothing() -> None:
+    measured = {"balance": 1.0, "service": 0.0}
+    assert comfort_score(measured, ComfortWeights(), Harm(stops_passed=1)) == pytest.approx(0.4 + 0.2 * 0.8)
+    assert comfort_score(measured, ComfortWeights(service=0.0), Harm(stops_passed=1)) == 1.0
 
 
 @pytest.mark.parametrize(

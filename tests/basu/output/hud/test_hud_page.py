@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from basu.agents.manual.devices import HELD_BY, STRUCK_BY
-from basu.output.hud.help_page import KEYS
+from basu.output.hud.panel import KEYS
 
 PAGE = Path(__file__).parents[4] / "docs" / "hud.md"
 

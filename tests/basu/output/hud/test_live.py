@@ -69,7 +69,10 @@ def run(simulator: RunningServer, tmp_path: Path, route_file: Path, monkeypatch:
     def at(agent: object, *options: str) -> tuple[int, dict[str, Any], History]:
         address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
         output = tmp_path / "runs"
-        code = main(["run", str(agent), *address, "--routes", str(route_file), "--output", str(output), *options])
+        # a striker posts events to this process's window; only there it can
+        where = ["--in-process"] if "striker" in str(agent) else []
+        words = [*address, "--routes", str(route_file), "--output", str(output), *where, *options]
+        code = main(["run", str(agent), *words])
         folder = output / "latest"
         return code, json.loads((folder / "result.json").read_text()), read_history(folder)
 
@@ -106,9 +109,9 @@ def test_p_takes_over_from_any_agent_and_gives_back(run: Runner, tmp_path: Path)
     _, result, history = run(striker(tmp_path, keys, end=30, human=False), "--hud", "map")
     manual = history.frames["manual"]
     assert np.flatnonzero(manual).tolist() == list(range(10, 20))
-    assert (history.frames["throttle"][10:19] == 0.0).all()
-    assert history.frames["brake"][12] > 0.5
-    assert history.frames["throttle"][25] == pytest.approx(0.9)
+    assert (history.frames["applied_throttle"][10:19] == 0.0).all()
+    assert history.frames["applied_brake"][12] > 0.5
+    assert history.frames["applied_throttle"][25] == pytest.approx(0.9)
     assert result["disengagements"]["number"] == 1
 
 
@@ -123,6 +126,33 @@ def test_escape_ends_the_run_and_all_is_written(run: Runner, tmp_path: Path) -> 
     assert shot.read_bytes().startswith(b"\x89PNG")
 
 
+def test_n_shows_the_agents_sensors_and_tab_the_map(run: Runner, tmp_path: Path) -> None:
+    sensors = tmp_path / "sensors.json"
+    sensors.write_text(
+        json.dumps(
+            [
+                {"type": "sensor.lidar.ray_cast", "id": "TOP", "z": 2.0, "points_per_second": 100000, "channels": 16},
+                {"type": "sensor.other.gnss", "id": "GPS"},
+            ]
+        )
+    )
+    shots: dict[str, bytes] = {}
+    for name, strikes in (("map", 0), ("lidar", 1), ("gnss", 2), ("map again", 3)):
+        shot = tmp_path / f"{name}.png"
+        keys = {5: [(DOWN, "n")] * strikes, 12: [(DOWN, "F12")], 13: [(DOWN, "ESCAPE")]}
+        agent = striker(tmp_path, keys, end=20, human=False)
+        agent.write_text(
+            agent.read_text().replace(
+                '"vehicle.tesla.model3"}', f'"vehicle.tesla.model3", "sensors": {str(sensors)!r}}}'
+            )
+        )
+        run(agent, "--hud", "map", "--hud-screenshot", str(shot))
+        window = pygame.image.load(str(shot))
+        shots[name] = pygame.image.tobytes(window.subsurface((260, 40, 690, 400)), "RGB")
+    assert len({shots["map"], shots["lidar"], shots["gnss"]}) == 3
+    assert shots["map again"] == shots["map"]
+
+
 def test_what_a_person_drives_can_be_recorded_and_played(run: Runner, tmp_path: Path) -> None:
     keys = {1: [(DOWN, "w")], 10: [(DOWN, "a")], 16: [(UP, "a")], 24: [(UP, "w"), (DOWN, "SPACE")], 28: [(UP, "SPACE")]}
     agent = striker(tmp_path, {**keys, 30: [(DOWN, "p")]}, end=34, human=True)
@@ -131,8 +161,8 @@ def test_what_a_person_drives_can_be_recorded_and_played(run: Runner, tmp_path: 
     _, _, played = run(agent, "--keys", str(session))
     assert live.frames.tobytes() == played.frames.tobytes()
     assert live.frames["manual"].tolist() == [1] * 30 + [0] * 5
-    assert live.frames["hand_brake"][24:28].all()
-    assert live.frames["steer"].min() == pytest.approx(-0.15)
+    assert live.frames["applied_hand_brake"][24:28].all()
+    assert live.frames["applied_steer"].min() == pytest.approx(-0.15)
     assert driven["meta"]["wall_s"] > 1.3, "with a person, time passes as it does"
 
 

@@ -8,7 +8,7 @@ from basu.metrics.score import Scores
 from basu.output.hud.canvas import RED
 from basu.output.hud.notices import Judgement
 from basu.output.hud.panel import Panel, driver_word
-from basu.output.hud.readings import Fix, Inertial, Readings
+from basu.output.hud.readings import Fix, Inertial, Rates, Readings, Setting
 
 
 class Paper:
@@ -29,6 +29,9 @@ class Paper:
 
 SHOWN = Readings(
     vehicle="vehicle.tesla.model3",
+    setting=Setting("Linden", "leap", "ClearSunset", "3 cameras, lidar, GNSS, IMU, collision, lane"),
+    traffic=(40, 12),
+    rates=Rates(21.4, 9.6, 1.07),
     manual=False,
     autopilot=False,
     tick=100,
@@ -66,11 +69,15 @@ def test_the_panel_says_what_there_is() -> None:
         "47 km/h",
         "REVERSE  HAND BRAKE  R",
         "44° NE",
-        "39.990000, -82.970000",
+        "39.990000° N, 82.970000° W",
+        "Linden, leap",
+        "ClearSunset",
+        "3 cameras, lidar, GNSS, IMU, col…",
+        "40 vehicles, 12 walkers",
+        "21, 10 fps (1.1x)",
         "120 of 770 m, -0.10 m off",
         "0.900",
-        "1:05.0",
-        "0:13.0  (5.0x)",
+        "1:05.0, 0:13.0",
         "audi.tt0",
         "5 m",
     ):
@@ -84,7 +91,7 @@ def test_the_limit_turns_red_where_it_is_exceeded() -> None:
 
 
 def test_neighbours_take_the_room_there_is() -> None:
-    few, many = (sum("audi" in word for word in written(SHOWN, height)) for height in (420, 900))
+    few, many = (sum("audi" in word for word in written(SHOWN, height)) for height in (430, 900))
     assert few < many == 5
 
 

@@ -106,7 +106,7 @@ def test_a_record_cut_short_is_refused_in_a_sentence(tmp_path: Path) -> None:
 def test_facts_of_another_version_are_refused_in_a_sentence(tmp_path: Path, version: int, sentence: str) -> None:
     write_history(tmp_path, eventful())
     text = (tmp_path / FACTS_FILE).read_text()
-    (tmp_path / FACTS_FILE).write_text(text.replace('"schema_version": 2', f'"schema_version": {version}'))
+    (tmp_path / FACTS_FILE).write_text(text.replace('"schema_version": 3', f'"schema_version": {version}'))
     with pytest.raises(UserError, match=sentence):
         read_history(tmp_path)
 

@@ -1,12 +1,14 @@
 """Claims about driving the experiment: in a live simulator as far as it is short, and what ends it."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from basu.cli import main
 from basu.options import RunOptions
+from basu.outcome import Outcome, Status
 from basu.output.report.folder import point_latest
 from basu.output.report.reading import RunRecord
 from basu.running.experiment import thesis
@@ -46,8 +48,7 @@ def test_a_drive_that_is_none_ends_it_with_its_own_exit_code(
 ) -> None:
     def failed(agent: str) -> RunRecord:
         run = record(None, agent=agent)
-        run.result["status"] = status
-        return run
+        return replace(run, result=replace(run.result, outcome=Outcome(Status(status), "so it ended")))
 
     monkeypatch.setattr(thesis, "run", leaving(failed))
     assert main(["experiment", "thesis", "--output", str(tmp_path)]) == code

@@ -11,7 +11,7 @@ from basu.cli import main
 from servers import RunningServer
 
 AGENTS = """
-import os, signal, time
+import os, random, signal, time
 import carla
 from basu.agents.autonomous_agent import AutonomousAgent
 
@@ -32,13 +32,21 @@ class Raises(Bad):
     def fail(self):
         raise ValueError("no idea")
 
+class Draws(Bad):
+    def fail(self):
+        raise ValueError(f"drew {random.random()}")
+
 class Hangs(Bad):
     def fail(self):
         time.sleep(60.0)
 
 class Dies(Bad):
     def fail(self):
-        os.kill(os.getpid(), signal.SIGKILL)
+        os._exit(1)
+
+class EndsTheWorker(Bad):
+    def fail(self):
+        os.kill(os.getppid(), signal.SIGKILL)
 
 class Senses(Bad):
     def config(self):
@@ -155,10 +163,11 @@ def test_config_and_command_repeat_a_sweep_and_each_of_its_cases(
 ) -> None:
     agent = tmp_path / "bad.py"
     agent.write_text(AGENTS, encoding="utf-8")
-    words = ("goes_well", "--scenarios", files, "--agent", f"{agent}:Raises", "--sweep", 2, "--seed", 7)
+    words = ("goes_well", "--scenarios", files, "--agent", f"{agent}:Draws", "--sweep", 2, "--seed", 7)
     run(simulator, tmp_path / "one", *words, "--step-limit", 2, "--vehicle", "vehicle.tesla.model3")
     wanted = drives(tmp_path / "one")
     assert len(wanted) == 2
+    assert all("drew 0." in result["message"] for _, result, _ in wanted.values()), "chance is a part of it"
     run(simulator, tmp_path / "two", "--config", tmp_path / "one" / "latest")
     assert drives(tmp_path / "two") == wanted
     name, alone = sorted(wanted.items())[1]
@@ -175,7 +184,9 @@ def test_config_and_command_repeat_a_sweep_and_each_of_its_cases(
     assert drives(tmp_path / "four") == {name: alone}
 
 
-@pytest.mark.parametrize(("agent", "status"), [("Raises", "AgentCrashed"), ("Hangs", "AgentTimedOut")])
+@pytest.mark.parametrize(
+    ("agent", "status"), [("Raises", "AgentCrashed"), ("Hangs", "AgentTimedOut"), ("Dies", "AgentCrashed")]
+)
 def test_an_agent_that_breaks_down_is_its_own_fault_and_the_next_case_is_played(
     simulator: RunningServer, files: Path, tmp_path: Path, agent: str, status: str
 ) -> None:
@@ -191,7 +202,7 @@ def test_an_agent_that_breaks_down_is_its_own_fault_and_the_next_case_is_played(
 def test_a_process_that_dies_costs_its_own_case_only(files: Path, tmp_path: Path) -> None:
     bad = tmp_path / "bad.py"
     bad.write_text(AGENTS, encoding="utf-8")
-    words = ["goes_well", "--scenarios", files, "--agent", f"{bad}:Dies", "--agent", "basic", "--workers", 2]
+    words = ["goes_well", "--scenarios", files, "--agent", f"{bad}:EndsTheWorker", "--agent", "basic", "--workers", 2]
     code = main(["scenario", "run", *map(str, (*words, "--output", tmp_path))])
     assert code == 70
     results = matrix(tmp_path)["cases"][0]["results"]
@@ -204,7 +215,7 @@ def test_ctrl_c_ends_the_run_and_what_was_played_is_written(
     simulator: RunningServer, files: Path, tmp_path: Path
 ) -> None:
     agent = tmp_path / "bad.py"
-    agent.write_text(AGENTS.replace("time.sleep(60.0)", "os.kill(os.getpid(), signal.SIGINT)"), encoding="utf-8")
+    agent.write_text(AGENTS.replace("time.sleep(60.0)", "os.kill(os.getppid(), signal.SIGINT)"), encoding="utf-8")
     words = ("goes_well:ahead=30", "goes_well", "--scenarios", files, "--agent", "basic", "--agent", f"{agent}:Hangs")
     assert run(simulator, tmp_path, *words) == 130
     results = [case["results"] for case in matrix(tmp_path)["cases"]]

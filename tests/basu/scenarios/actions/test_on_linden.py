@@ -11,7 +11,7 @@ from py_trees.common import Status
 
 from basu.managers.stage.puppets import Puppets
 from basu.scenarios.actions import Brake, DriveAlong, LetGo, WalkAlong
-from basu.scenarios.actions.action import Action
+from basu.scenarios.actions.composition import Action
 from basu.scenarios.paths import Path, along_lane
 from basu.scenarios.stage import Body, Pose
 from servers import RunningServer

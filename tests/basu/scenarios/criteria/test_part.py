@@ -2,8 +2,16 @@
 
 import pytest
 
-from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, KeepsSpeed, LeastDistance, NoCollision, told_always
-from basu.scenarios.criteria.part import part_of
+from basu.scenarios.criteria import (
+    Arrives,
+    HeedsStopSigns,
+    InTime,
+    KeepsSpeed,
+    LeastDistance,
+    NoCollision,
+    reported_always,
+)
+from basu.scenarios.criteria.records import part_of
 from fakes.drives import at, driven, hit, stop_sign, straight_route
 from fakes.played import played
 from fakes.rides import eastward, moving, ride
@@ -36,7 +44,7 @@ def test_margins_of_a_part_are_those_of_its_frames() -> None:
     assert LeastDistance().judge(whole).measured == pytest.approx(2.5 - 1.9)
     assert LeastDistance().judge(case).measured == pytest.approx(4.0 - 1.9)
     assert LeastDistance().judge(case).t_s == pytest.approx(12.0, abs=0.45)
-    assert all(one.judge(case).t_s is None or one.judge(case).t_s >= 8.0 for one in told_always())
+    assert all(one.judge(case).t_s is None or one.judge(case).t_s >= 8.0 for one in reported_always())
 
 
 def test_the_whole_is_its_own_part() -> None:

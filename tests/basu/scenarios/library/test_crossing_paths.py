@@ -8,7 +8,7 @@ import pytest
 from basu.errors import ScenarioError
 from basu.scenarios.library.crossing_paths.from_the_side import AcrossTheWay
 from basu.scenarios.library.crossing_paths.stream import Stream
-from basu.scenarios.library.motorists import run_up_m
+from basu.scenarios.library.road_users import run_up_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import next_junction
 from basu.scenarios.scenario import Scenario

@@ -1,7 +1,7 @@
 """A BASU agent as the CARLA leaderboard (1.0, 2.x) and ScenarioRunner want one: give either this file as ``--agent``.
 
 Which agent it is stands in the file of ``--agent-config`` (leaderboard) or ``--agentConfig`` (ScenarioRunner):
-``{"agent": "basic"}``, and see :class:`basu.agents.export.guest_config.GuestConfig`. ScenarioRunner finds the
+``{"agent": "basic"}``, and see :class:`basu.agents.export.exported_agent.ExportConfig`. ScenarioRunner finds the
 class by this file's name, the leaderboard by ``get_entry_point``.
 """
 
@@ -11,8 +11,7 @@ import importlib
 import sys
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.export.guest import Guest
-from basu.agents.export.guest_config import read_config
+from basu.agents.export.exported_agent import ExportedAgent, read_config
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -33,7 +32,7 @@ class BasuAgent(HOST.AutonomousAgent):  # type: ignore[misc]  # the base is foun
     """One of theirs, with one of BASU's inside."""
 
     _plan: Sequence[tuple[carla.Transform, Any]] = ()
-    _guest: Guest | None = None
+    _exported: ExportedAgent | None = None
     _address = ("127.0.0.1", 2000)
 
     def __init__(self, *arguments: Any) -> None:  # noqa: ANN401 - a path, or host, port and debug
@@ -44,14 +43,14 @@ class BasuAgent(HOST.AutonomousAgent):  # type: ignore[misc]  # the base is foun
     def setup(self, path_to_conf_file: str) -> None:
         """Make the agent that the file names."""
         config = read_config(path_to_conf_file)
-        self._guest = Guest(config)
+        self._exported = ExportedAgent(config)
         if hasattr(HOST, "Track"):
             self.track = HOST.Track(config.track)
 
     def sensors(self) -> list[dict[str, Any]]:
         """The agent's sensors in the host's fields."""
-        assert self._guest is not None  # setup came first
-        return self._guest.sensors()
+        assert self._exported is not None  # setup came first
+        return self._exported.sensors()
 
     def set_global_plan(
         self, global_plan_gps: Sequence[tuple[Any, Any]], global_plan_world_coord: Sequence[tuple[Any, Any]]
@@ -62,12 +61,12 @@ class BasuAgent(HOST.AutonomousAgent):  # type: ignore[misc]  # the base is foun
 
     def run_step(self, input_data: Mapping[str, tuple[int, Any]], timestamp: float) -> carla.VehicleControl:
         """One step of the agent; before the first one it is bound to the host's world."""
-        assert self._guest is not None  # setup came first
-        if not self._guest.bound:
-            self._guest.bind(self._plan, self._address)
-        return self._guest.step(input_data, timestamp)
+        assert self._exported is not None  # setup came first
+        if not self._exported.bound:
+            self._exported.bind(self._plan, self._address)
+        return self._exported.step(input_data, timestamp)
 
     def destroy(self) -> None:
         """Let the agent put its things away."""
-        if self._guest is not None:
-            self._guest.close()
+        if self._exported is not None:
+            self._exported.close()

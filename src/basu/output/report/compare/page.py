@@ -6,56 +6,45 @@ import os
 from typing import TYPE_CHECKING
 from urllib.parse import quote
 
-from basu.output.report.compare.table import HEADS, remarks, rows, shared_bounds
-from basu.output.report.html.page import REPORT_FILE, page
-from basu.output.report.markup import e, extended, figure
+from basu.output.report.compare.table import heads, remarks, rows, shared_bounds
+from basu.output.report.html.page import REPORT_FILE, legend, page
 from basu.output.report.plots import marks
 from basu.output.report.plots.chart import Line, chart
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.town_map import plain_map
 from basu.output.report.streets import bounds_of
+from basu.output.report.templates import render
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.compare.table import Row
     from basu.output.report.reading import RunRecord
     from basu.output.report.streets import Bounds
 
 
 def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path, more: Sequence[Element] = ()) -> bytes:
     """The page, to lie in the folder ``beside``; ``more`` stands below the table."""
-    found = rows(runs)
-    shared = shared_bounds(runs)
-    body = e("body", e("header", e("h1", "Comparison"), e("p", ", ".join(row.agent for row in found))))
-    extended(body, [e("p", remark) for remark in remarks(runs)])
-    body.append(_table(found, folders, beside))
-    extended(body, more)
-    pictures = e("div", class_="side-by-side")
-    for run, row in zip(runs, found, strict=True):
-        pictures.append(_picture(run, row, shared))
-    legend = e("p", class_="legends")
-    for style, words in (("planned", "planned path"), ("driven", "driven path")):
-        sample = e("svg", e("path", d="M0 5H26", class_=style), viewBox="0 0 26 10", class_="sample")
-        legend.append(e("span", sample, words, class_="legend"))
-    body.append(e("section", e("h2", "Paths and speeds"), legend, pictures))
+    compared, shared = rows(runs), shared_bounds(runs)
+    named, reports = heads(compared), [folder / REPORT_FILE for folder in folders]
+    body = render(
+        "compare/templates/compare.j2",
+        agents=[row.agent for row in compared],
+        remarks=remarks(runs),
+        heads=named,
+        rows=[
+            (_address(path, beside) if path.exists() else None, [row.cell(head) for head in named])
+            for row, path in zip(compared, reports, strict=True)
+        ],
+        more=more,
+        legend=legend(),
+        figures=[
+            (row.agent, row.cell("driving score"), row.ended, _pictures(run, shared))
+            for run, row in zip(runs, compared, strict=True)
+        ],
+    )
     return page("Comparison of runs", body)
-
-
-def _table(found: Sequence[Row], folders: Sequence[Path], beside: Path) -> Element:
-    """As table 5.1; each agent's name opens its report."""
-    body = e("tbody")
-    for row, folder in zip(found, folders, strict=True):
-        cells = row.cells()
-        report = folder / REPORT_FILE
-        name: Element | str = cells[0]
-        if report.exists():
-            name = e("a", cells[0], href=_address(report, beside))
-        body.append(e("tr", e("th", name, scope="row"), *(e("td", cell) for cell in cells[1:])))
-    head = e("thead", e("tr", *(e("th", head, scope="col") for head in HEADS)))
-    return e("section", e("h2", "Scores"), e("div", e("table", head, body), class_="wide"))
 
 
 def _address(report: Path, beside: Path) -> str:
@@ -63,21 +52,18 @@ def _address(report: Path, beside: Path) -> str:
     return quote(os.path.relpath(report.resolve(), beside.resolve()))
 
 
-def _picture(run: RunRecord, row: Row, shared: Bounds | None) -> Element:
-    """One run: its path and its speed."""
-    caption = e("figcaption", e("b", row.agent), f": driving score {figure(row.driving)}", e("br"), row.ended)
+def _pictures(run: RunRecord, shared: Bounds | None) -> list[Element]:
+    """One run: its path and its speed; none where nothing was driven."""
     if run.history is None:
-        return e("figure", caption, e("p", "Nothing was driven."))
+        return []
     felt = signals(run.history)
     curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
     bounds = shared or bounds_of(run.history)
     places = [
-        (marks.symbol(infraction["kind"], str(number)), infraction["x_m"], infraction["y_m"])
-        for number, infraction in enumerate(run.result["infractions"], start=1)
+        (marks.symbol(found.kind.value, str(number)), found.x_m, found.y_m)
+        for number, found in enumerate(run.result.infractions, start=1)
     ]
-    return e(
-        "figure",
-        caption,
+    return [
         plain_map(run.history, run.streets, bounds, places),
         chart(felt.t_s, curves, title="Speed", unit="m/s"),
-    )
+    ]

@@ -64,9 +64,9 @@ def _paths(axes: Axes, run: RunRecord, bounds: Bounds) -> None:
     axes.plot(plan[:, 0], plan[:, 1], color=PLANNED, linewidth=5.0, alpha=0.45, label="planned", zorder=2)
     axes.plot(frames["x_m"], frames["y_m"], color=DRIVEN, linewidth=1.4, label="driven", zorder=3)
     axes.plot(frames["x_m"][-1], frames["y_m"][-1], "s", color=DRIVEN, markersize=6, label="end of the drive", zorder=5)
-    for number, infraction in enumerate(run.result["infractions"]):
+    for number, infraction in enumerate(run.result.infractions):
         label = "infraction" if number == 0 else None
-        axes.plot(infraction["x_m"], infraction["y_m"], "X", color="black", markersize=8, label=label, zorder=6)
+        axes.plot(infraction.x_m, infraction.y_m, "X", color="black", markersize=8, label=label, zorder=6)
     for name, end in (("A", plan[0]), ("B", plan[-1])):
         axes.annotate(name, end[:2], fontweight="bold", xytext=(6, 6), textcoords="offset points", zorder=7)
     axes.set_xlim(bounds.west_m, bounds.east_m)

@@ -1,4 +1,4 @@
-"""The table of a comparison: the columns of table 5.1 of the thesis, and those that it had no need of."""
+"""The table of a comparison: the scores of table 5.1 of the thesis, and a column for each metric that has one."""
 
 from __future__ import annotations
 
@@ -7,58 +7,38 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.output.report.markup import figure
+from basu.metrics.registry import Column, built_in
+from basu.output.report.console import NOT_COMPARABLE, written
+from basu.output.report.markup import DASH, figure
 from basu.output.report.streets import bounds_of, union
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
+    from basu.metrics.result import Result
     from basu.output.report.reading import RunRecord
     from basu.output.report.streets import Bounds
     from basu.records.history import History
 
-HEADS = (
-    "agent",
-    "collisions",
-    "stop signs",
-    "red lights",
-    "speeding",
-    "infraction score",
-    "path following",
-    "driving score",
-    "leaderboard 2.1",
-    "passengers",
-    "ended",
-)
-
 
 class Row(NamedTuple):
-    """What is compared; scores are None where nothing was driven."""
+    """What is compared of one run."""
 
     agent: str
-    collisions: int
-    stop_signs: int
-    red_lights: int
-    speeding: int
-    infraction: float | None
-    path_following: float | None
-    driving: float | None
-    leaderboard: float | None  # driving score of version 2.1, 0..100
-    passengers: str  # passed, failed, or a dash
+    driving: float | None  # None where nothing was driven
     ended: str
+    is_comparable: bool
+    columns: tuple[Column, ...]
 
-    def cells(self) -> list[str]:
-        """As text, in the order of ``HEADS``."""
-        counts = (self.collisions, self.stop_signs, self.red_lights, self.speeding)
-        scores = (self.infraction, self.path_following, self.driving)
-        return [
-            self.agent,
-            *map(str, counts),
-            *map(figure, scores),
-            figure(self.leaderboard, 1),
-            self.passengers,
-            self.ended,
-        ]
+    def cell(self, head: str) -> str:
+        """The text under a head; a dash where this run does not have it."""
+        return next((column.text for column in self.columns if column.head == head), DASH)
+
+
+def heads(found: Sequence[Row]) -> tuple[str, ...]:
+    """The heads of all rows, in the order in which they first occur; how a run ended comes last."""
+    named = dict.fromkeys(column.head for row in found for column in row.columns if column.head != "ended")
+    return (*named, "ended")
 
 
 def rows(runs: Sequence[RunRecord]) -> list[Row]:
@@ -73,54 +53,52 @@ def rows(runs: Sequence[RunRecord]) -> list[Row]:
     return found
 
 
-def row(agent: str, document: dict[str, Any]) -> Row:
-    """The row of a result."""
-    counts = Counter(infraction["kind"] for infraction in document["infractions"])
-    scores = document["scores"] or {}
-    passengers = document.get("passengers")
-    return Row(
-        agent=agent,
-        collisions=sum(number for kind, number in counts.items() if kind.startswith("collision_")),
-        stop_signs=counts["stop_sign"],
-        red_lights=counts["red_light"],
-        speeding=counts["speeding"],
-        infraction=scores.get("infraction"),
-        path_following=scores.get("path_following"),
-        driving=scores.get("driving"),
-        leaderboard=((document.get("leaderboard") or {}).get("2.1") or {}).get("driving"),
-        passengers="\u2013" if not passengers else "passed" if passengers["passed"] else "failed",
-        ended=document["status"],
-    )
+def row(agent: str, result: Result) -> Row:
+    """The row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
+    scores = result.scores._asdict() if result.scores is not None else {}
+    driving = f"{figure(scores.get('driving'))}{'' if result.is_comparable else f' {NOT_COMPARABLE}'}"
+    columns = [
+        Column("agent", agent),
+        Column("driving score", driving),
+        Column("infraction score", figure(scores.get("infraction"))),
+        Column("path following", figure(scores.get("path_following"))),
+        *(column for metric in built_in() for column in metric.columns(result)),
+        *(Column(own.title, written(own.value, own.unit, own.digits)) for own in result.own.values()),
+        Column("ended", result.outcome.status.value),
+    ]
+    return Row(agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns))
 
 
 def text(found: Sequence[Row]) -> str:
     """The table for a console: heads in two lines, numbers to the right."""
-    lines = [[head.rpartition(" ")[0] for head in HEADS], [head.rpartition(" ")[2] for head in HEADS]]
-    lines += [each.cells() for each in found]
-    widths = [max(len(line[column]) for line in lines) for column in range(len(HEADS))]
-    written = [
+    named = heads(found)
+    lines = [[head.rpartition(" ")[0] for head in named], [head.rpartition(" ")[2] for head in named]]
+    lines += [[each.cell(head) for head in named] for each in found]
+    widths = [max(len(line[column]) for line in lines) for column in range(len(named))]
+    rows_written = [
         "  ".join(
-            cell.ljust(width) if column in {0, len(HEADS) - 1} else cell.rjust(width)
+            cell.ljust(width) if column in {0, len(named) - 1} else cell.rjust(width)
             for column, (cell, width) in enumerate(zip(line, widths, strict=True))
         ).rstrip()
         for line in lines
     ]
-    return "\n".join([*written[:2], "-" * (sum(widths) + 2 * (len(widths) - 1)), *written[2:]])
+    return "\n".join([*rows_written[:2], "-" * (sum(widths) + 2 * (len(widths) - 1)), *rows_written[2:]])
 
 
 def remarks(runs: Sequence[RunRecord]) -> list[str]:
     """What has to be said before these runs are compared: other routes, other rules."""
     found = []
-    routes = {
-        f"{run.result['meta']['route']} of {run.result['meta']['town']}" for run in runs if run.result.get("meta")
-    }
+    routes = {f"{run.result.meta['route']} of {run.result.meta['town']}" for run in runs if run.result.meta}
     if len(routes) > 1 or not on_one_route(runs):
         named = f" ({', '.join(sorted(routes))})" if len(routes) > 1 else ""
         found.append(
             f"These runs are on different routes{named}: each map shows its own, and their scores do not answer which "
             "agent drives better."
         )
-    if len({_rules(run.result["scoring"]) for run in runs}) > 1:
+    ended = [f"{run.agent} ({run.result.outcome.status.value})" for run in runs if not run.result.is_comparable]
+    if ended:
+        found.append(f"These runs were ended by a failure, and their scores are not comparable: {', '.join(ended)}.")
+    if len({_rules(run.result.scoring) for run in runs}) > 1:
         found.append("These runs were scored with different penalties or weights; `basu score` scores them alike.")
     return found
 
@@ -142,7 +120,7 @@ def shared_bounds(runs: Sequence[RunRecord]) -> Bounds | None:
     return union([bounds_of(history) for history in driven]) if driven and on_one_route(runs) else None
 
 
-def _rules(scoring: dict[str, Any]) -> tuple[object, ...]:
+def _rules(scoring: Mapping[str, Any]) -> tuple[object, ...]:
     """What made the scores, as something that can be compared."""
     rest = sorted((key, round(value, 9)) for key, value in scoring.items() if isinstance(value, float | int))
     return (*sorted(scoring["penalties"].items()), *rest)

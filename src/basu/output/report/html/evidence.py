@@ -1,4 +1,4 @@
-"""The evidence of each finding: the sentence, the figures, the place seen from above and the speed around it."""
+"""The evidence of each event: the sentence, the figures, the place seen from above and the speed around it."""
 
 from __future__ import annotations
 
@@ -7,63 +7,48 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.output.report.markup import DASH, TIMES, e, figure, number, words
+from basu.output.report.markup import DASH, TIMES, e, figure, number
 from basu.output.report.plots import marks
 from basu.output.report.plots.chart import Line, Mark, chart
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
+from basu.output.report.templates import render
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.findings import Finding
+    from markupsafe import Markup
+
+    from basu.output.report.events import Event
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
-PICTURED = 60  # findings that have pictures; a drive with more of them is told in words from there on
+PICTURED = 60  # events that have pictures; a drive with more of them is told in words from there on
 CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
 AROUND_S = 8.0  # of speed, before and after
 UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others whose size is not recorded
 
 
-def evidence(history: History, felt: Signals, found: Sequence[Finding]) -> list[Element]:
+def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
     """The infractions, and what is not scored, each one to be opened and linked to."""
-    scored = e("section", e("h2", "Infractions"), id="infractions")
-    rest = e("section", e("h2", "Seen, not scored"), id="events")
+    scored: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
+    rest: list[tuple[Event, Element, list[Element], list[tuple[str, str]]]] = []
     so_far = 1.0
-    for order, finding in enumerate(found):
-        so_far *= 1.0 if finding.factor is None else finding.factor
-        pictures = None
-        if order < PICTURED:
-            pictures = e("div", close_up(history, finding), _speed(felt, finding), class_="pictures")
-        (rest if finding.factor is None else scored).append(_one(finding, pictures, so_far))
-    for section in (scored, rest):
-        if len(section) == 1:
-            section.append(e("p", "None."))
-    return [scored, rest]
+    for order, event in enumerate(found):
+        so_far *= 1.0 if event.factor is None else event.factor
+        pictures = [close_up(history, event), _speed(felt, event)] if order < PICTURED else []
+        symbol = marks.symbol(event.kind, event.label, scored=event.factor is not None)
+        (rest if event.factor is None else scored).append((event, symbol, pictures, _facts(event, so_far)))
+    sections = [("Infractions", "infractions", scored), ("Seen, not scored", "events", rest)]
+    return render("html/templates/evidence.j2", sections=sections)
 
 
-def _one(finding: Finding, pictures: Element | None, so_far: float) -> Element:
-    """One of them, closed at first."""
-    symbol = marks.symbol(finding.kind, finding.label, scored=finding.factor is not None)
-    return e(
-        "details",
-        e("summary", symbol, e("b", words(finding.kind)), f" at {finding.t_s:.1f} s"),
-        e("p", finding.detail),
-        pictures,
-        _facts(finding, so_far),
-        class_="evidence",
-        id=finding.anchor,
-        data_t=finding.t_s,
-    )
-
-
-def close_up(history: History, finding: Finding) -> Element:
+def close_up(history: History, event: Event) -> Element:
     """The place from above: the vehicle under test, dark, and who was near it in that tick."""
-    x_m, y_m = finding.x_m, finding.y_m
+    x_m, y_m = event.x_m, event.y_m
     bounds = Bounds(x_m - CLOSE_M[0], y_m - CLOSE_M[1], x_m + CLOSE_M[0], y_m + CLOSE_M[1])
-    frame, vehicle = history.frames[finding.tick], history.facts.vehicle
+    frame, vehicle = history.frames[event.tick], history.facts.vehicle
     picture = e(
         "svg",
         e("title", f"The place from above, {2 * CLOSE_M[0]:g} m by {2 * CLOSE_M[1]:g} m, north is up"),
@@ -72,7 +57,7 @@ def close_up(history: History, finding: Finding) -> Element:
         viewBox=view(bounds),
         role="img",
     )
-    for other in history.others[history.others["tick"] == finding.tick]:
+    for other in history.others[history.others["tick"] == event.tick]:
         half_m = history.facts.actor_sizes.get(int(other["id"]), UNKNOWN_HALF_M)
         kind = history.facts.actor_types.get(int(other["id"]), "")
         picture.append(
@@ -105,32 +90,31 @@ def _body(
     return e("polygon", points=" ".join(places), class_=style)
 
 
-def _speed(felt: Signals, finding: Finding) -> Element:
+def _speed(felt: Signals, event: Event) -> Element:
     """Speed and limit around the moment."""
-    near = np.flatnonzero(np.abs(felt.t_s - finding.t_s) <= AROUND_S)
+    near = np.flatnonzero(np.abs(felt.t_s - event.t_s) <= AROUND_S)
     curves: Sequence[Line] = (
         Line("driven", felt.speed_mps[near], "first"),
         Line("limit", felt.limit_mps[near], "limit", steps=True),
     )
-    moment = Mark(finding.t_s, finding.label, finding.title, f"#{finding.anchor}", finding.factor is not None)
+    moment = Mark(event.t_s, event.label, event.title, f"#{event.anchor}", event.factor is not None)
     return chart(felt.t_s[near], curves, title="Speed", unit="m/s", marks=(moment,))
 
 
-def _facts(finding: Finding, so_far: float) -> Element:
-    """The figures in a line of terms."""
-    terms = [
-        ("time", f"{finding.t_s:.2f} s, tick {finding.tick}"),
-        ("speed", DASH if finding.speed_mps is None else f"{finding.speed_mps:.2f} m/s"),
-        ("along the route", f"{finding.route_s_m:.1f} m"),
-        ("place", f"x {finding.x_m:.2f} m, y {finding.y_m:.2f} m"),
-        ("other party", finding.other or "none"),
-        ("costs", _cost(finding.factor, so_far)),
+def _facts(event: Event, so_far: float) -> list[tuple[str, str]]:
+    """The figures, each with its name."""
+    return [
+        ("time", f"{event.t_s:.2f} s, tick {event.tick}"),
+        ("speed", DASH if event.speed_mps is None else f"{event.speed_mps:.2f} m/s"),
+        ("along the route", f"{event.route_s_m:.1f} m"),
+        ("place", f"x {event.x_m:.2f} m, y {event.y_m:.2f} m"),
+        ("other party", event.other or "none"),
+        ("costs", _cost(event.factor, so_far)),
     ]
-    return e("dl", *(e("div", e("dt", name), e("dd", text)) for name, text in terms))
 
 
 def _cost(factor: float | None, so_far: float) -> str:
-    """What a finding does to the score."""
+    """What an event does to the score."""
     if factor is None:
         return "nothing in the driving score"
     return f"{TIMES} {factor:g}; infraction score so far {figure(so_far)}"

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.findings import Finding
+    from basu.output.report.events import Event
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
@@ -30,7 +30,7 @@ RECOVERABLE = (
 FELT_KINDS = {"harsh_stop", "phantom_stop", "near_miss"}
 
 
-def charts(history: History, felt: Signals, found: Sequence[Finding]) -> Element:
+def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
     """All charts of a run."""
     by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
     return e(
@@ -87,6 +87,6 @@ def _offset(history: History, felt: Signals, by_hand: Sequence[Shade]) -> Elemen
     return chart(felt.t_s, curves, title=title, unit="m", id_="offset", shades=by_hand, least_range=(-0.5, 0.5))
 
 
-def _flags(found: Iterable[Finding]) -> list[Mark]:
+def _flags(found: Iterable[Event]) -> list[Mark]:
     """Flags that open the evidence."""
     return [Mark(f.t_s, f.label, f.title, f"#{f.anchor}", scored=f.factor is not None) for f in found]

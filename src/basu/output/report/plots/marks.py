@@ -10,7 +10,7 @@ from basu.output.report.markup import e, number
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.findings import Finding
+    from basu.output.report.events import Event
 
 CORNERS = {  # of a regular polygon, and its turn in degrees; a circle for every other kind
     "collision_pedestrian": (3, -90.0),
@@ -46,14 +46,14 @@ def symbol(kind: str, label: str = "", *, scored: bool = True) -> Element:
     return e("svg", outline, text, viewBox="-1 -1 26 26", class_=style, aria_hidden="true")
 
 
-def link(finding: Finding, style: str) -> Element:
+def link(event: Event, style: str) -> Element:
     """A mark that opens the evidence of what it marks; ``style`` places it."""
     return e(
         "a",
-        symbol(finding.kind, finding.label, scored=finding.factor is not None),
-        href=f"#{finding.anchor}",
+        symbol(event.kind, event.label, scored=event.factor is not None),
+        href=f"#{event.anchor}",
         class_="at mark",
-        title=finding.title,
-        aria_label=finding.title,
+        title=event.title,
+        aria_label=event.title,
         style=style,
     )

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
+from basu.metrics.arrival import near_stop
 from basu.output.report.markup import e, percent
 from basu.output.report.plots import marks
 from basu.output.report.plots.chart import share, times
@@ -15,12 +14,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.findings import Finding
+    from basu.output.report.events import Event
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
 CROWDED, LOWER_PX = 0.02, 14  # marks nearer than this share of the time are shown lower, by so much
-SERVED_M = 3.0  # as `report.result` judges service stops
 
 
 class Span(NamedTuple):
@@ -33,7 +31,7 @@ class Span(NamedTuple):
     title: str
 
 
-def timeline(history: History, felt: Signals, document: dict[str, Any], found: Sequence[Finding]) -> Element:
+def timeline(history: History, felt: Signals, document: dict[str, Any], found: Sequence[Event]) -> Element:
     """All rows; ``document`` is the run's result."""
     begin_s, end_s = float(felt.t_s[0]), max(float(felt.t_s[-1]), float(felt.t_s[0]) + 1e-3)
     rows = [
@@ -58,14 +56,14 @@ def timeline(history: History, felt: Signals, document: dict[str, Any], found: S
     return body
 
 
-def _marks(found: Sequence[Finding], begin_s: float, end_s: float) -> list[Element]:
+def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element]:
     """A mark for each, a link to its evidence."""
     placed, last_share, height = [], -1.0, 0
-    for finding in sorted(found, key=lambda finding: finding.t_s):
-        at = (finding.t_s - begin_s) / (end_s - begin_s)
+    for event in sorted(found, key=lambda event: event.t_s):
+        at = (event.t_s - begin_s) / (end_s - begin_s)
         height = (height + 1) % 3 if at - last_share < CROWDED else 0  # those at one time, one below the other
         last_share = at
-        placed.append(marks.link(finding, f"left:{percent(at)};--down:{height * LOWER_PX}px"))
+        placed.append(marks.link(event, f"left:{percent(at)};--down:{height * LOWER_PX}px"))
     return placed
 
 
@@ -89,7 +87,7 @@ def _services(history: History, felt: Signals) -> list[Span]:
     found = []
     standing = felt.speed_mps < STANDING_MPS
     for stop in history.facts.route.stops:
-        here = standing & (np.abs(history.frames["route_s_m"] - stop.s_m) <= SERVED_M)
+        here = standing & near_stop(history, stop.s_m)
         found += [
             Span(*s, "service", stop.id, _lasted(f"{stop.id}, {stop.name}", *s)) for s in stretches(here, felt.t_s)
         ]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.findings import Finding
+    from basu.output.report.events import Event
     from basu.output.report.streets import Bounds, Line
     from basu.records.history import History
 
@@ -33,7 +33,7 @@ CROWDED = 0.022  # marks nearer than this share of the map's larger side are sta
 STACKED_PX, SERVICE_PX = 22, 17
 
 
-def town_map(history: History, streets: Sequence[Line], found: Sequence[Finding]) -> Element:
+def town_map(history: History, streets: Sequence[Line], found: Sequence[Event]) -> Element:
     """The whole map; its lines have ids, so that close-ups use them again."""
     bounds = bounds_of(history)
     frame = e("div", class_="map", id="map", style=box(bounds))
@@ -148,12 +148,12 @@ def _signs(history: History, bounds: Bounds) -> list[Element]:
     ]
 
 
-def _marks(found: Sequence[Finding], bounds: Bounds) -> list[Element]:
-    """A mark for each finding, those at one place stacked, each a link to its evidence."""
-    heights = _stacked([(finding.x_m, finding.y_m) for finding in found], bounds)
+def _marks(found: Sequence[Event], bounds: Bounds) -> list[Element]:
+    """A mark for each event, those at one place stacked, each a link to its evidence."""
+    heights = _stacked([(event.x_m, event.y_m) for event in found], bounds)
     return [
-        marks.link(finding, f"{place(finding.x_m, finding.y_m, bounds)};--up:{STACKED_PX * height}px")
-        for finding, height in zip(found, heights, strict=True)
+        marks.link(event, f"{place(event.x_m, event.y_m, bounds)};--up:{STACKED_PX * height}px")
+        for event, height in zip(found, heights, strict=True)
     ]
 
 

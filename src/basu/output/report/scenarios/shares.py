@@ -7,7 +7,7 @@ from typing import Any
 
 from basu.scenarios.shares import CONTROL_DRIVERS
 
-WIDTH, NAME_WIDTH, AGENT_WIDTH = 110, 40, 16
+WIDTH, NAME_WIDTH, AGENT_WIDTH = 110, 34, 15
 LEAST_GROUPS = 2
 SHARES = {
     "share_of_cost": "crash cost",
@@ -71,10 +71,10 @@ def interval(estimate: dict[str, float] | None) -> str:
 
 def _table(shares: dict[str, dict[str, Any]]) -> str:
     """Some agents beside each other."""
-    lines = [_line("passed of the exercised (95 % interval)", [agent[: AGENT_WIDTH - 1] for agent in shares])]
+    lines = [_line("of the exercised, passed (95 %)", [agent[: AGENT_WIDTH - 1] for agent in shares])]
     lines += [_line(f"  {name}", [interval(share[key]) for share in shares.values()]) for key, name in SHARES.items()]
     measured = [percent_of(share["measured_of_cost"]) for share in shares.values()]
-    lines.append(_line("  in groups that make of all cost", measured))
+    lines.append(_line("  groups' part of all cost", measured))
     lines.append(_line("shown of all crash cost", [interval(share["shown_of_cost"]) for share in shares.values()]))
     lines.append(_line("cases not exercised", [str(share["not_exercised"]) for share in shares.values()]))
     lines.append(_line("collisions, at fault", [f"{s['collisions']}, {s['at_fault']}" for s in shares.values()]))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import InTurn, Together, Wait, WalkAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import STARTS_MPS2, across, ego_is_due, facing_deg, walking_s
+from basu.scenarios.library.road_users import STARTS_MPS2, across, ego_is_due, facing_deg, walking_s
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.scenario import Scenario
@@ -34,7 +34,7 @@ class DeerAtDusk(Scenario):
     The first crosses in time and is the warning. The second follows a second later, is dazzled, stands in the middle of
     the lane ``sight`` seconds before the ego would be there, and runs on after a moment. NHTSA 2007, scenario 10:
     animal, no prior vehicle maneuver. The hard one of its group. CARLA has no animals: walkers of a child's size run in
-    their place. BASU's own agents know who is where, and the dusk is none to them.
+    their place. It is the end of civil twilight: BASU's own agents see them in their low beams only, 30 m ahead.
     """
 
     group = Group.ANIMAL
@@ -47,7 +47,7 @@ class DeerAtDusk(Scenario):
         Choice("side", ("left", "right"), "from which they come"),
     )
     weather = {  # noqa: RUF012 - declared as a mapping that nobody changes
-        "sun_altitude_angle": -3.0,  # civil twilight
+        "sun_altitude_angle": -6.0,  # the end of civil twilight
         "sun_azimuth_angle": 250.0,
         "cloudiness": 40.0,
         "fog_density": 10.0,

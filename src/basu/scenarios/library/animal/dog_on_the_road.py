@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import InTurn, Wait, WalkAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import across, ego_is_due, facing_deg
+from basu.scenarios.library.road_users import across, ego_is_due, facing_deg
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import pavement_m

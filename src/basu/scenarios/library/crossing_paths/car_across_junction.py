@@ -5,9 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Wait
-from basu.scenarios.library.crossing_paths.from_the_side import LEAVES_M, NARROWLY, OTHER, AcrossTheWay
-from basu.scenarios.library.crossing_paths.lights import green_for_ego, has_light
-from basu.scenarios.library.motorists import SETS_OFF_MPS2
+from basu.scenarios.library.crossing_paths.from_the_side import (
+    LEAVES_M,
+    NARROWLY,
+    OTHER,
+    AcrossTheWay,
+    green_for_ego,
+    has_light,
+)
+from basu.scenarios.library.road_users import SETS_OFF_MPS2
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.triggers import Slower
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from basu.scenarios.library.crossing_paths.stream import LEAVES_M, NOTICE_S, Lane, Stream, Way
-from basu.scenarios.library.motorists import run_up_m
+from basu.scenarios.library.road_users import run_up_m
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, along_lane, crossing, next_junction
 

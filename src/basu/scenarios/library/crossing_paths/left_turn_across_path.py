@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from basu.scenarios.library.crossing_paths.from_the_side import AcrossTheWay
-from basu.scenarios.library.crossing_paths.lights import green_for_ego, has_light
+from basu.scenarios.library.crossing_paths.from_the_side import AcrossTheWay, green_for_ego, has_light
 from basu.scenarios.parameters import Choice, Number
 
 if TYPE_CHECKING:
@@ -21,15 +20,16 @@ class LeftTurnAcrossPath(AcrossTheWay):
     """A car that comes towards the ego turns left in front of it.
 
     NHTSA pre-crash scenarios 27 and 29, left turn across path from opposite directions. The ego goes straight on and
-    has the right of way; nothing in the other's way of driving tells that it will turn until it does, a little more
-    than two seconds before they meet. With a short ``notice`` it has waited in the junction and sets off late.
+    has the right of way; nothing in the other's way of driving tells that it will turn until it does. It turns as
+    slowly as one who does not look ahead: an ego that brakes at once keeps a second to a collision. With a short
+    ``notice`` it has waited in the junction and sets off late.
     """
 
     turn = "left"
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("kind", ("car", "van", "suv", "motorcycle"), "who turns"),
-        Number("speed", 5.0, 3.5, 7.0, "m/s", "of the other in its turn"),
-        Number("lateness", -1.0, -2.0, 0.5, "s", "after the ego at the place where they meet; negative: before it"),
+        Number("speed", 3.0, 2.5, 7.0, "m/s", "of the other in its turn"),
+        Number("lateness", -1.8, -3.0, 0.5, "s", "after the ego at the place where they meet; negative: before it"),
         Number("notice", 5.5, 3.0, 7.0, "s", "before the ego's arrival, when the other sets off"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 10.0, "sun_altitude_angle": 15.0}

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from basu.scenarios.library.crossing_paths.from_the_side import AcrossTheWay
-from basu.scenarios.library.crossing_paths.lights import green_for_ego
+from basu.scenarios.library.crossing_paths.from_the_side import AcrossTheWay, green_for_ego
 from basu.scenarios.parameters import Choice, Number
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
 from basu.scenarios.library.crossing_paths.from_the_side import NARROWLY, OTHER, SETTLED_S, AcrossTheWay
-from basu.scenarios.library.motorists import SETS_OFF_MPS2
+from basu.scenarios.library.road_users import SETS_OFF_MPS2
 from basu.scenarios.parameters import Choice, Number
 
 if TYPE_CHECKING:

@@ -9,22 +9,29 @@ import math
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
+from basu.metrics.stop_signs import AT_REST_MPS
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
 from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, NoCollision
+from basu.scenarios.criteria.margin import present_in
+from basu.scenarios.exercise import Finding
 from basu.scenarios.library.crossing_paths.from_the_side import NARROWLY, SETTLED_S, due
-from basu.scenarios.library.motorists import BLUEPRINTS, EGO_HALF_LENGTH_M, SETS_OFF_MPS2, run_up_m
+from basu.scenarios.library.road_users import BLUEPRINTS, EGO_HALF_LENGTH_M, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import next_junction
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
 from basu.scenarios.triggers import TimeToRest
+from basu.scenarios.triggers.along_route import AT_LINE_M
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from py_trees.behaviour import Behaviour
 
     from basu.scenarios.criteria import Criterion
+    from basu.scenarios.criteria.criterion import Played
     from basu.scenarios.paths import Crossing, JunctionAhead, Path
     from basu.scenarios.paths.lanes import Turn
     from basu.scenarios.place import Place
@@ -37,6 +44,7 @@ LOOKS_S, PULLS_MPS2, TURNS_MPS = 1.7, 0.85, 2.8  # a shuttle that drives off aga
 FIRST_S = 1.0  # after it, the first passes at the earliest
 SHORT_M = 0.5  # before the line, where a driver's bumper comes to rest
 LEAVES_M = 45.0
+MEETS_M, MOVES_MPS = 3.0, 0.5  # one that moves and is this near to its meeting place goes through it
 
 
 def rest_s_m(place: Place, junction: JunctionAhead) -> float | None:
@@ -50,6 +58,25 @@ def departs_s(way_m: float, turn: Turn) -> float:
     top_mps = math.inf if turn == "straight" else TURNS_MPS
     rising_m = min(way_m, 0.5 * top_mps * top_mps / PULLS_MPS2)
     return LOOKS_S + math.sqrt(2.0 * rising_m / PULLS_MPS2) + (way_m - rising_m) / top_mps
+
+
+def passed_a_resting_ego(played: Played, rest_s_m: float, meetings: Mapping[str, Pose]) -> Finding | None:
+    """The conflict at a stop sign: one of the others went through its meeting place while the ego rested at its line.
+
+    ``meetings`` has the places by the roles of the others; None means that no other did.
+    """
+    history, present = played.history, present_in(played)
+    frames, others = history.frames, present.history.others
+    rests = (history.speed_mps() < AT_REST_MPS) & (np.abs(frames["route_s_m"] - rest_s_m) <= AT_LINE_M)
+    for name, at in meetings.items():
+        rows = others[present.rows_of(name)]
+        near_m = np.hypot(rows["x_m"] - at.x_m, rows["y_m"] - at.y_m)
+        mps = np.hypot(rows["velocity_x_mps"], rows["velocity_y_mps"])
+        passed = rows["tick"][(near_m < MEETS_M) & (mps > MOVES_MPS) & rests[rows["tick"]]]
+        if len(passed):
+            at_s = float(frames["t_s"][passed[0]])
+            return Finding(True, f"{name} went through the crossing at {at_s:.2f} s, while the ego rested at its line")
+    return None
 
 
 class Way(NamedTuple):
@@ -138,6 +165,19 @@ class Stream(Scenario):
             ),
             name="they drive through",
         )
+
+    def exercised(self, played: Played) -> Finding:
+        """Those met, and at a stop sign those for whom the ego rested."""
+        if self.rest_s_m is not None:
+            meetings = {
+                name: lane.way.path.at(lane.way.meet_s_m)
+                for row, lane in enumerate(self.lanes)
+                for name in self._names(row)
+            }
+            found = passed_a_resting_ego(played, self.rest_s_m, meetings)
+            if found is not None:
+                return found
+        return super().exercised(played)
 
     def criteria(self) -> Sequence[Criterion]:
         """Nobody is touched, the sign is heeded where there is one, and the ego gets on when they are through."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn, Meanwhile, ReachAtEgosArrival
 from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.crossing_paths.stream import departs_s, rest_s_m
+from basu.scenarios.library.crossing_paths.stream import departs_s, passed_a_resting_ego, rest_s_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import crossing, next_junction
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from py_trees.behaviour import Behaviour
 
     from basu.scenarios.criteria import Criterion
+    from basu.scenarios.criteria.criterion import Played
+    from basu.scenarios.exercise import Finding
     from basu.scenarios.parameters import Parameter
     from basu.scenarios.paths import Crossing, JunctionAhead
     from basu.scenarios.paths.crossings import Side
@@ -99,6 +101,12 @@ class UnsignalizedIntersection(Scenario):
     def resolution(self) -> Behaviour:
         """The other drives away, and the ego passes the junction and arrives."""
         return Meanwhile(EgoArrives(), DriveAlong(OTHER, self.crossing.path, self.number("speed"), at_end="vanish"))
+
+    def exercised(self, played: Played) -> Finding:
+        """The other met, or one for which the ego rested at its line."""
+        rest_m, way = rest_s_m(self.place, self.junction), self.crossing
+        found = None if rest_m is None else passed_a_resting_ego(played, rest_m, {OTHER: way.path.at(way.meet_s_m)})
+        return found or super().exercised(played)
 
     def criteria(self) -> Sequence[Criterion]:
         """Stop at the sign, touch nobody, and pass; one metre to who has the right of way is near already."""

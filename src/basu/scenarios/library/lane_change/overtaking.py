@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import FollowEgo, Meanwhile, ReachAtEgosArrival
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
-from basu.scenarios.library.motorists import BLUEPRINTS, EGO_HALF_LENGTH_M, HALF_LENGTH_M
+from basu.scenarios.library.road_users import BLUEPRINTS, EGO_HALF_LENGTH_M, HALF_LENGTH_M
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import Path, lanes_apart_m
 from basu.scenarios.scenario import Scenario

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import DriveAlong, InTurn
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
-from basu.scenarios.library.motorists import BLUEPRINTS, EGO_HALF_LENGTH_M, HALF_LENGTH_M
+from basu.scenarios.library.road_users import BLUEPRINTS, EGO_HALF_LENGTH_M, HALF_LENGTH_M
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import Path

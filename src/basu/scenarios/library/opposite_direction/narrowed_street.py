@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar
 
-from basu.scenarios.library.motorists import BLUEPRINTS, HALF_LENGTH_M
 from basu.scenarios.library.opposite_direction.out_of_lane import OutOfLane
+from basu.scenarios.library.road_users import BLUEPRINTS, HALF_LENGTH_M
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import oncoming
 from basu.scenarios.stage import ActorSpec

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
 from basu.scenarios.criteria import Arrives, InTime, NoCollision
-from basu.scenarios.library.motorists import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
+from basu.scenarios.library.road_users import BLUEPRINTS, SETS_OFF_MPS2, run_up_m
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import Path, oncoming
 from basu.scenarios.scenario import Scenario

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import DriveAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import ego_is_due
 from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, EASY_MPS2, PASSING_M
+from basu.scenarios.library.road_users import ego_is_due
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path

@@ -9,8 +9,8 @@ import numpy as np
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import FRONT_M
 from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, SWAY_M
+from basu.scenarios.library.road_users import FRONT_M
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, next_junction

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, cast
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import FRONT_M, other_side
 from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, SWAY_M
+from basu.scenarios.library.road_users import FRONT_M, other_side
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import crossing, crossings, next_junction

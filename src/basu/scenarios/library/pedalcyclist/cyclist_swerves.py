@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import FRONT_M, ego_is_due
-from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, SWAY_M
-from basu.scenarios.library.pedalcyclist.car_door import HINGE_M, car_with_door, opens_and_shuts
+from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, HINGE_M, SWAY_M, car_with_door, opens_and_shuts
+from basu.scenarios.library.road_users import FRONT_M, ego_is_due
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, parked_m
@@ -35,7 +34,7 @@ class CyclistSwerves(Scenario):
 
     The ego comes up from behind, faster than they are: it must brake behind them, or have kept enough room. NHTSA 2007,
     scenario 14: pedalcyclist, no prior vehicle maneuver; what leads to it is a dooring. A hard one. The door is a sheet
-    of its size, as in ``car_door``; it is shut again before the ego comes to it.
+    of its size, as in ``bicycles``; it is shut again before the ego comes to it.
     """
 
     group = Group.PEDALCYCLIST

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together, Wait
 from basu.scenarios.criteria import Arrives, InTime, KeepsLane, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import FRONT_M, ego_is_due
-from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, SWAY_M
-from basu.scenarios.library.pedalcyclist.car_door import HINGE_M, car_with_door, opens_and_shuts
+from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, HINGE_M, SWAY_M, car_with_door, opens_and_shuts
+from basu.scenarios.library.road_users import FRONT_M, ego_is_due
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, parked_m
@@ -38,7 +37,7 @@ class Dooring(Scenario):
 
     The ego comes up from behind, faster than the cyclist. It must stop, and wait until the cyclist rides on and the
     door is shut. NHTSA 2007, scenario 14: pedalcyclist, no prior vehicle maneuver. In ``cyclist_swerves`` the cyclist
-    has room to ride round the door; here there is none. The door is a sheet of its size, as in ``car_door``.
+    has room to ride round the door; here there is none. The door is a sheet of its size, as in ``bicycles``.
     """
 
     group = Group.PEDALCYCLIST

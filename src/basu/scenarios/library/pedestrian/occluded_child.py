@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.scenarios.actions import WalkAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import across, ego_is_due, facing_deg, walking_s
 from basu.scenarios.library.pedestrian.pedestrian_crossing import SWAY_M
+from basu.scenarios.library.road_users import across, ego_is_due, facing_deg, walking_s
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import parked_m, pavement_m
@@ -35,15 +35,15 @@ HIDING = {
     "car": Parked("vehicle.lincoln.mkz_2020", 2.45, 0.92),
 }
 BEFORE_IT_M = 0.7  # from the bumper of what hides it to the child's way
+BEHIND_IT_M = 0.3  # its way begins so far within what hides it, as seen along the street: hidden from afar as well
 
 
 class OccludedChild(Scenario):
     """A child runs into the street from behind a parked van, sees the ego and freezes in its lane.
 
-    It comes from the pavement before the van's bonnet, so that a driver sees it only when it is past the van's side,
-    ``sight`` seconds before the ego would be there. It stands in the middle of the lane for a moment, then runs on.
-    NHTSA 2007, scenario 12: pedestrian, no prior vehicle maneuver. The hard one of its group. BASU's own agents know
-    who is where, and see the child through the van: they have the whole of its run to answer in.
+    It waits close before the van's bonnet, so that a driver sees it only when it is past the van's side, ``sight``
+    seconds before the ego would be there. It stands in the middle of the lane for a moment, then runs on. NHTSA 2007,
+    scenario 12: pedestrian, no prior vehicle maneuver. The hard one of its group.
     """
 
     group = Group.PEDESTRIAN
@@ -63,7 +63,8 @@ class OccludedChild(Scenario):
 
     @property
     def _from_m(self) -> float:
-        return pavement_m(self.place, self.number("ahead"), "right")
+        stands_m = self.number("ahead") - BEFORE_IT_M - self._parked.half_length_m
+        return parked_m(self.place, stands_m) + self._parked.half_width_m - BEHIND_IT_M
 
     def actors(self) -> Sequence[ActorSpec]:
         """The child on the pavement, and what hides it at the kerb."""

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import InTurn, WalkAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import across, ego_is_due, facing_deg, other_side, walking_s
 from basu.scenarios.library.pedestrian.pedestrian_crossing import SWAY_M, WALKERS
+from basu.scenarios.library.road_users import across, ego_is_due, facing_deg, other_side, walking_s
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import next_junction, pavement_m

@@ -15,7 +15,7 @@ from basu.scenarios.stage import ActorSpec
 from basu.scenarios.triggers import EgoBeyond, EgoNear, StandsStill
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
     from py_trees.behaviour import Behaviour
 
@@ -78,6 +78,10 @@ class LeadVehicleSwerves(Scenario):
         """The ego stands behind the car, or has gone round it."""
         stands = InTurn(EgoNear(STANDING, CLOSE_M), StandsStill(1.0), name="stands behind it")
         return Either(stands, EgoBeyond(STANDING, 1.0), name="stands behind it or is past it")
+
+    def partners(self) -> Collection[str]:
+        """Both: the ego has to see the standing car, and to keep off the van."""
+        return (LEADER, STANDING)
 
     def criteria(self) -> Sequence[Criterion]:
         """It stops behind the car or goes round it; nearer than 0.4 m, while it moves, would be luck."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import WalkAlong
 from basu.scenarios.criteria import Arrives, Gentle, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.on_foot import facing_deg
+from basu.scenarios.library.road_users import facing_deg
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
 from basu.scenarios.paths import Path, pavement_m

@@ -13,10 +13,11 @@ from fakes.run_records import crashing, record, written
 
 def test_the_table_counts_what_table_5_1_counts() -> None:
     bad, good = rows([record(crashing(), agent="bad"), record(driven(at(8.0, 25.0)), agent="good")])
-    assert (bad.collisions, bad.stop_signs, bad.speeding) == (1, 1, 1)
-    assert bad.infraction == pytest.approx(0.65 * 0.8 * 0.8)
-    assert (good.collisions, good.stop_signs, good.speeding, good.infraction) == (0, 0, 0, 1.0)
-    assert bad.passengers == "failed"
+    counted = ("collisions", "collisions at fault", "stop signs", "red lights", "speeding")
+    assert [bad.cell(head) for head in counted] == ["1", "1", "1", "0", "1"]
+    assert bad.cell("infraction score") == f"{0.65 * 0.8 * 0.8:.3f}"
+    assert [good.cell(head) for head in (*counted, "infraction score")] == ["0", "0", "0", "0", "0", "1.000"]
+    assert bad.cell("passengers") == "failed"
 
 
 def test_one_agent_twice_is_told_apart() -> None:
@@ -46,9 +47,19 @@ def test_routes_of_one_name_that_differ_are_told_of() -> None:
 
 def test_other_rules_are_told_of() -> None:
     other = record(crashing())
-    other.result["scoring"]["penalties"]["speeding"] = 0.5
+    other.result.scoring["penalties"]["speeding"] = 0.5
     (remark,) = remarks([record(crashing()), other])
     assert "different penalties or weights" in remark
+
+
+def test_the_command_writes_nothing_unless_a_folder_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    one, other = (written(tmp_path / name, record(crashing(), agent=name)) for name in ("one", "other"))
+    before = sorted(tmp_path.rglob("*"))
+    assert main(["compare", str(one), str(other)]) == 0
+    assert sorted(tmp_path.rglob("*")) == before
+    assert "no files were written; `-o DIR` writes compare.html and compare.png there" in capsys.readouterr().out
 
 
 def test_the_command_writes_page_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,6 +2,7 @@
 
 import re
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -42,14 +43,15 @@ def test_the_score_card_shows_how_the_score_came_about() -> None:
 def test_the_leaderboard_and_the_passengers_judge_the_same_drive_beside_it() -> None:
     run = record(crashing())
     page = report(run).decode()
-    assert f"{run.result['leaderboard']['2.1']['driving']:.3f}" in page
+    assert f"{run.result.metrics['leaderboard']['2.1']['driving']:.3f}" in page
     assert '<b class="status agent">failed</b>' in page
-    assert html(e("li", run.result["passengers"]["reasons"][0])) in page
+    assert html(e("li", run.result.metrics["passengers"]["reasons"][0])) in page
 
 
 def test_a_result_without_them_has_a_report_too() -> None:
     run = record(crashing())
-    run.result.update(leaderboard=None, passengers=None)
+    metrics = {**run.result.metrics, "leaderboard": None, "passengers": None}
+    run = replace(run, result=replace(run.result, metrics=metrics))
     assert b"Timeline" in report(run)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.output.report.findings import findings
+from basu.output.report.events import events
 from basu.output.report.markup import html
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.timeline import timeline
@@ -20,19 +20,19 @@ from fakes.run_records import STREETS, crashing, record
 def test_a_mark_stands_where_the_infraction_was() -> None:
     history = crashing()
     run = record(history)
-    page = html(town_map(history, STREETS, findings(run.result)))
+    page = html(town_map(history, STREETS, events(run.result)))
     bounds = bounds_of(history)
     found = re.search(r'<a href="#infraction-3"[^>]*style="left:([\d.]+)%;top:([\d.]+)%', page)
     assert found is not None
     x_m = bounds.west_m + float(found[1]) / 100.0 * bounds.width_m
-    assert x_m == pytest.approx(run.result["infractions"][2]["x_m"], abs=0.01)
+    assert x_m == pytest.approx(run.result.infractions[2].x_m, abs=0.01)
     assert float(found[2]) == pytest.approx(50.0)
 
 
 def test_marks_at_one_place_do_not_hide_each_other() -> None:
     history = crashing()
     run = record(history)
-    three = [findings(run.result)[0]] * 3
+    three = [events(run.result)[0]] * 3
     heights = re.findall(r"--up:(\d+)px", html(town_map(history, STREETS, three)).split('class="at mark"', 1)[1])
     assert heights == ["0", "22", "44"]
 
@@ -69,7 +69,7 @@ def test_the_union_holds_both() -> None:
 def test_the_timeline_tells_signs_run_standing_and_lines_crossed() -> None:
     history = crashing()
     run = record(history)
-    page = html(timeline(history, signals(history), run.result, findings(run.result)))
+    page = html(timeline(history, signals(history), run.result.document(), events(run.result)))
     assert "stop sign 7 run" in page
     assert "standing from 6.7 s to 26.6 s" in page
     assert 'href="#infraction-1"' in page
@@ -78,5 +78,5 @@ def test_the_timeline_tells_signs_run_standing_and_lines_crossed() -> None:
 def test_a_lane_line_crossed_is_a_stroke() -> None:
     history = driven(at(8.0, 25.0), lane_invasions=[LaneInvasion(tick=100, markings=("Solid/White",))])
     run = record(history)
-    page = html(timeline(history, signals(history), run.result, ()))
+    page = html(timeline(history, signals(history), run.result.document(), ()))
     assert 'title="Solid/White at 5.0 s"' in page

@@ -95,7 +95,7 @@ def test_a_sweep_tells_where_failing_begins() -> None:
 def test_control_drivers_stand_last_and_are_explained_and_without_them_is_said_how_to_play_them() -> None:
     document = matrix(agents=("blind", "basic"))
     text = matrix_text(document)
-    assert line_of(text, "passed of the exercised").split()[-2:] == ["basic", "blind"]
+    assert line_of(text, "of the exercised").split()[-2:] == ["basic", "blind"]
     assert "control drivers: blind ignores all others." in text
     assert "--agent blind --agent creeper --agent standing" in matrix_text(matrix(agents=("basic",)))
 

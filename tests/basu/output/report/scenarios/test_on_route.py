@@ -1,5 +1,6 @@
 """Claims about a route's report with scenarios on its way: a card for each that was reached, else a sentence."""
 
+from dataclasses import replace
 from typing import Any
 
 from basu.output.report.html.page import report
@@ -17,7 +18,7 @@ def on_way(**changes: Any) -> dict[str, Any]:
 
 def page_with(*scenarios: dict[str, Any]) -> str:
     run = record(crossing())
-    run.result["scenarios"] = list(scenarios)
+    run = replace(run, result=replace(run.result, scenarios=scenarios))
     return report(run).decode()
 
 

@@ -109,7 +109,7 @@ def _judgement(judgement: dict[str, Any]) -> Element:
         e("td", sign, class_=f"outcome {style if is_deciding else 'told'}"),
         e("th", judgement["criterion"], scope="row"),
         e("td", measured),
-        e("td", judgement["limit"] if is_deciding else "told only"),
+        e("td", judgement["limit"] if is_deciding else "reported only"),
     )
     sentence = e("tr", e("td"), e("td", judgement["sentence"], colspan=3), class_="why")
     return e("tbody", figures, sentence, class_=None if is_deciding else "told")
@@ -138,7 +138,18 @@ def _where(result: dict[str, Any]) -> Element:
         ("town", result["town"]),
         ("vehicle", result["vehicle"]),
         ("seed", str(result["seed"])),
+        *result.get("characteristics", {}).items(),
+        *_speeds(result.get("measured")),
         ("from", result["scenarios_file"]),
         ("simulated", f"{result['simulated_s']:.1f} s in {result['wall_s']:.1f} s"),
     ]
     return e("dl", *(e("div", e("dt", name), e("dd", text)) for name, text in terms))
+
+
+def _speeds(measured: dict[str, Any] | None) -> list[tuple[str, str]]:
+    """The posted speed and the ego's where the conflict began."""
+    if measured is None:
+        return []
+    posted_mps = measured["posted_mps"]
+    posted = "none" if posted_mps is None else f"{posted_mps:.1f} m/s"
+    return [("posted", posted), ("ego's speed at the conflict", f"{measured['travel_mps']:.1f} m/s")]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -31,6 +32,7 @@ HERE = Path(__file__).parent
 MOST_CARDS = 400  # in one page: those that were not passed first, then the narrowest
 MOST_BYTES = 8_000_000  # of cards; from there on they have no pictures
 PARAMETERS_SHOWN = 4  # beside a case's name
+MOST_OF_TITLE = 90  # characters of what was asked for
 
 
 class Cell(NamedTuple):
@@ -126,7 +128,8 @@ def _head(matrix: dict[str, Any]) -> Element:
     minutes, seconds = divmod(round(matrix["wall_s"]), 60)
     what = f"{counted(len(matrix['cases']), 'case')} with {', '.join(matrix['agents'])}: {counted(drives, 'drive')}"
     told = f"{what} in {minutes} min {seconds} s, started {matrix['started']}; {versions}"
-    return e("header", e("h1", f"Scenarios: {matrix['what']}"), e("p", told))
+    what = textwrap.shorten(matrix["what"], MOST_OF_TITLE, placeholder=" …")
+    return e("header", e("h1", f"Scenarios: {what}"), e("p", told))
 
 
 def _sweeps(matrix: dict[str, Any]) -> Iterator[Element]:

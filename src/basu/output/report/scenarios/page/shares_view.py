@@ -43,24 +43,33 @@ def shares_view(matrix: dict[str, Any]) -> Element | None:
 
 def _score(agent: str, share: dict[str, Any]) -> Element:
     """One agent's shares."""
-    rest = ", ".join(f"{interval(share[key])} of {name}" for key, name in list(SHARES.items())[1:])
     cost = share["share_of_cost"]
+    others = ", ".join(f"{interval(share[key])} of {name}" for key, name in list(SHARES.items())[1:])
+    part = percent_of(share["measured_of_cost"])
+    rest = "" if cost is None else f"{others}; the groups exercised make {part} of all cost. "
     return e(
         "div",
         e(
             "p",
             e("strong", percent_of(None if cost is None else cost["share"]), class_="score"),
             e("b", agent),
-            f" of crash cost in the exercised situations passed: {interval(cost)}",
+            f" {_words(cost)}",
         ),
         e(
             "p",
-            f"{interval(share['shown_of_cost'])} shown of all crash cost. {rest}; of the groups exercised, which make "
-            f"{percent_of(share['measured_of_cost'])} of all cost. {share['not_exercised']} cases not exercised; "
-            f"{share['collisions']} collisions, {share['at_fault']} at fault.",
+            f"{interval(share['shown_of_cost'])} shown of all crash cost. {rest}"
+            f"{share['not_exercised']} cases not exercised; {share['collisions']} collisions, {share['at_fault']} at "
+            "fault.",
             class_="note",
         ),
     )
+
+
+def _words(cost: dict[str, float] | None) -> str:
+    """What the figure beside an agent's name is, with its interval."""
+    if cost is None:
+        return "exercised no situation of the typology"
+    return f"passed, of the crash cost of exercised situations ({100.0 * cost['low']:.0f}-{100.0 * cost['high']:.0f} %)"
 
 
 def _table(shares: dict[str, dict[str, Any]]) -> Element:

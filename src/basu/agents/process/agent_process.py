@@ -1,0 +1,250 @@
+"""A process in which agents live, seen from the benchmark: started, asked within limits, and killed where it hangs."""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.agents.process.channel import POLL_S, BenchmarksEnd, ChannelClosedError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+GRACE_S = 0.25  # beyond a limit for the process to end the call by itself, with the line in which it was
+START_LIMIT_S = 60.0  # for Python and CARLA's client to be there, on a machine that is busy with other things
+PENDING_S = 1.0  # for a call to end that was left when the user interrupted the run
+CHILD = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from basu.agents.process.child import main; main()"
+HASH_SEED = "0"  # the order of a set of texts is part of what an agent does: the same in each process
+PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+GB = 1e9
+
+
+class Death(Exception):  # noqa: N818 - it becomes an error once it is known whose
+    """The process is gone or useless; the text is a half sentence that says what happened to it."""
+
+
+class OverLimitError(Exception):
+    """A call did not end in time, and the process was killed."""
+
+
+class CallError(Exception):
+    """What a call in the process raised: the kind of error, its sentence, and the traceback there."""
+
+    def __init__(self, kind: str, sentence: str, trace: str) -> None:
+        super().__init__(sentence)
+        self.kind, self.sentence, self.trace = kind, sentence, trace
+
+
+class Memory(NamedTuple):
+    """What a process may use."""
+
+    limit_gb: float
+
+    def excess(self, pid: int) -> str | None:
+        """Half a sentence where the process and all others of its group use more; None otherwise."""
+        used_gb = sum(map(_resident_bytes, _group(pid))) / GB
+        if used_gb <= self.limit_gb:
+            return None
+        return f"it used {used_gb:.2f} GB of memory, more than its limit of {self.limit_gb:g} GB"
+
+
+class AgentProcess:
+    """One process. It is its own group and session: Ctrl-C at the terminal does not reach it."""
+
+    def __init__(self, memory: Memory | None = None) -> None:
+        """Start it; it is asked for nothing yet."""
+        ours, theirs = socket.socketpair()
+        is_main = threading.current_thread() is threading.main_thread()
+        # the system ends a child with the thread that started it: only the main thread lives as long as the process
+        with theirs:
+            self._process = subprocess.Popen(  # noqa: S603 - our own command
+                [sys.executable, "-c", CHILD, json.dumps(sys.path), str(theirs.fileno()), str(int(is_main))],
+                stdin=subprocess.DEVNULL,
+                pass_fds=[theirs.fileno()],
+                start_new_session=True,
+                env={**os.environ, "PYTHONHASHSEED": HASH_SEED},
+            )
+        self._life = _life_of(self._process.pid)
+        self._channel = BenchmarksEnd(ours, self._life)
+        self._memory = memory
+        self._look_again_s = 0.0
+        self._number = 0
+        self._is_pending = False
+        self._own_kill = False
+        _running.add(self)
+
+    @property
+    def alive(self) -> bool:
+        """Whether it can be asked."""
+        return self._process.poll() is None and not self._own_kill
+
+    def call(self, operation: str, argument: Any, *, limit_s: float, begin_limit_s: float = START_LIMIT_S) -> Any:  # noqa: ANN401
+        """What an operation in the process returns.
+
+        Args:
+            operation: a method of the process's :class:`basu.agents.process.child.Child`.
+            argument: its argument, anything that can be pickled.
+            limit_s: wall time for the agent's part, from the moment the process says that it begins with it.
+            begin_limit_s: wall time until then.
+
+        Raises:
+            Death: the process is gone.
+            OverLimitError: the agent's part took longer; the process was killed.
+            CallError: the operation raised.
+        """
+        if self._is_pending:
+            begin_limit_s = PENDING_S
+        self._number += 1
+        deadline_s = time.monotonic() + begin_limit_s
+        has_begun = False
+        self._is_pending = True
+        try:
+            if not self._channel.send((self._number, operation, argument), deadline_s):
+                raise self._hung(begin_limit_s)
+            while True:
+                answer = self._answer(deadline_s)
+                if answer is None:
+                    if has_begun:
+                        self.kill()
+                        raise OverLimitError
+                    raise self._hung(begin_limit_s)
+                if answer[0] != self._number:
+                    continue  # of a call that was interrupted
+                if answer[1] == "begun":
+                    has_begun, deadline_s = True, time.monotonic() + limit_s + GRACE_S
+                    continue
+                self._is_pending = False
+                return _result(answer)
+        except (ChannelClosedError, LookupError, TypeError) as error:
+            raise self._dead() from error
+
+    def kill(self) -> None:
+        """End the process and all that it started in its group, at once."""
+        if self._own_kill:
+            return
+        self._own_kill = True
+        _running.discard(self)
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(PENDING_S)
+        self._channel.close()
+        if self._life is not None:
+            os.close(self._life)
+
+    def _answer(self, deadline_s: float) -> list[Any] | None:
+        """The next answer, None after the deadline.
+
+        Raises:
+            Death: the process ended, or used too much memory.
+        """
+        watched = self._memory is not None or self._life is None
+        while True:
+            until_s = min(deadline_s, time.monotonic() + POLL_S) if watched else deadline_s
+            answer = self._channel.receive(until_s)
+            self._check_memory()
+            if answer is not None:
+                return answer
+            if self._process.poll() is not None:
+                last = self._channel.receive(0.0)  # what it said before it ended
+                if last is not None:
+                    return last
+                raise self._dead()
+            if time.monotonic() >= deadline_s:
+                return None
+
+    def _check_memory(self) -> None:
+        """End a process that uses too much.
+
+        Raises:
+            Death: it did.
+        """
+        if self._memory is None or time.monotonic() < self._look_again_s or self._process.poll() is not None:
+            return
+        self._look_again_s = time.monotonic() + POLL_S
+        excess = self._memory.excess(self._process.pid)
+        if excess is not None:
+            self.kill()
+            raise Death(excess)
+
+    def _hung(self, limit_s: float) -> Death:
+        """The process is there and does not answer."""
+        self.kill()
+        return Death(f"its process did not answer within {limit_s:g} s, so it was ended")
+
+    def _dead(self) -> Death:
+        """What became of the process, which has closed its end."""
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            self._process.wait(PENDING_S)
+        code = self._process.poll()
+        self.kill()
+        return Death("its process broke off its connection" if code is None else ended_how(code))
+
+
+def ended_how(code: int) -> str:
+    """Half a sentence about the exit status of a process, negative for a signal as ``subprocess`` has it."""
+    if code >= 0:
+        return f"its process ended with exit status {code}"
+    name, meaning = signal.Signals(-code).name, signal.strsignal(-code)
+    because = ", as the system does when memory runs out" if -code == signal.SIGKILL else ""
+    return f"its process was ended by the signal {name} ({meaning}){because}"
+
+
+def _result(answer: list[Any]) -> Any:  # noqa: ANN401 - as the operation has it
+    """The value of an answer.
+
+    Raises:
+        CallError: the operation raised.
+    """
+    if answer[1] == "done":
+        return answer[2]
+    kind, sentence, trace = map(str, answer[2:5])
+    raise CallError(kind, sentence, trace)
+
+
+def _life_of(pid: int) -> int | None:
+    """A descriptor that turns readable when the process ends, whatever its own children hold open (Linux)."""
+    opened: Callable[[int], int] | None = getattr(os, "pidfd_open", None)
+    try:
+        return None if opened is None else opened(pid)
+    except OSError:
+        return None
+
+
+def _group(leader: int) -> list[int]:
+    """The processes of a group: an agent's process leads one, and what it starts belongs to it."""
+    found = []
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError, IndexError):
+            # the name of the program stands in brackets and may hold anything; state, parent and group follow
+            if int(stat.read_text().rpartition(")")[2].split()[2]) == leader:
+                found.append(int(stat.parent.name))
+    return found
+
+
+def _resident_bytes(pid: int) -> int:
+    """How much memory a process holds; 0 where it is gone."""
+    try:
+        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * PAGE_BYTES
+    except (OSError, IndexError):
+        return 0
+
+
+_running: set[AgentProcess] = set()
+
+
+@atexit.register
+def _kill_all() -> None:
+    """No agent outlives the benchmark."""
+    for process in list(_running):
+        process.kill()

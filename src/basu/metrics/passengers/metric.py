@@ -1,0 +1,284 @@
+"""The metric of the passengers: the key ``passengers`` of ``result.json``, its schema, events and lines."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from basu.metrics.json_schema import choice, flag, integer, listing, mapping, number, record, text
+from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
+from basu.metrics.passengers.causes import Kind
+from basu.metrics.passengers.near_misses import NEAR_S
+from basu.metrics.passengers.verdict import judge
+from basu.metrics.registry import Column, Drive, Metric, register
+from basu.outcome import Status
+
+if TYPE_CHECKING:
+    from basu.metrics.passengers.causes import Cause
+    from basu.metrics.passengers.harsh_stops import HarshStop
+    from basu.metrics.passengers.near_misses import Party
+    from basu.metrics.passengers.verdict import Judged
+    from basu.metrics.result import Result
+    from basu.records.history import History
+
+_PLACE = record(
+    about_="where somebody stands, from the vehicle's origin",
+    forward_m=number("m"),
+    right_m=number("m"),
+    up_m=number("m"),
+)
+_THRESHOLDS = record(
+    step_mps2=number("m/s²", low=0),
+    grip_mps2=number("m/s²", low=0),
+    harsh_stop_mps2=number("m/s²", low=0),
+    near_miss_s=number("s", low=0),
+)
+_LARGEST = record(
+    about_="filtered, as felt at the place",
+    braking_mps2=number("m/s²", low=0),
+    speeding_up_mps2=number("m/s²", low=0),
+    across_mps2=number("m/s²", low=0),
+    jerk_along_mps3=number("m/s³", low=0),
+    jerk_across_mps3=number("m/s³", low=0),
+)
+_BALANCE = record(
+    moving_s=number("s", low=0),
+    step_s=number("s", low=0),
+    step_share=number(low=0, high=1),
+    grip_s=number("s", low=0),
+    grip_share=number(low=0, high=1),
+    worst_mps2=number("m/s²", low=0),
+    worst_t_s=number("s", low=0),
+)
+_VIBRATION = record(
+    about_="ISO 2631-1, weighted r.m.s.",
+    along_mps2=number("m/s²", low=0),
+    across_mps2=number("m/s²", low=0),
+    up_mps2=number("m/s²", low=0),
+    total_mps2=number("m/s²", low=0),
+    transient_mps2=number("m/s²", low=0),
+    dose_mps175=number("m/s^1.75", low=0),
+    crest_factor=number(low=0),
+    sickness_dose_mps15=number("m/s^1.5", low=0),
+    reactions=listing(text()),
+)
+_CAUSE = record(
+    kind=choice([kind.value for kind in Kind]),
+    away_m=number("m", null=True),
+    needed_mps2=number("m/s²", low=0),
+    detail=text(),
+)
+_HARSH_STOP = record(
+    onset_tick=integer(),
+    tick=integer(),
+    end_tick=integer(),
+    t_s=number("s", low=0),
+    from_mps=number("m/s", low=0),
+    to_mps=number("m/s", low=0),
+    strongest_mps2=number("m/s²", low=0),
+    jerk_mps3=number("m/s³", low=0),
+    above_s=number("s", low=0),
+    to_rest=flag(),
+    x_m=number("m"),
+    y_m=number("m"),
+    route_s_m=number("m"),
+    cause=_CAUSE,
+)
+_NEAR_MISS = record(
+    name=text(),
+    ttc_s=number("s", low=0, null=True),
+    ttc_tick=integer(),
+    pet_s=number("s", low=0, null=True),
+    pet_tick=integer(),
+    is_near_miss=flag(),
+    detail=text(),
+    tick=integer(),
+    t_s=number("s", low=0),
+    x_m=number("m"),
+    y_m=number("m"),
+    route_s_m=number("m"),
+)
+_VISIT = record(
+    stop_id=text(),
+    name=text(),
+    served=flag(),
+    arrival_s=number("s", low=0, null=True),
+    departure_s=number("s", low=0, null=True),
+    dwell_s=number("s", low=0, null=True),
+    planned_arrival_s=number("s", low=0, null=True),
+    planned_departure_s=number("s", low=0, null=True),
+    delay_s=number("s", null=True),
+    headway_s=number("s", null=True),
+    on_time=flag(null=True),
+)
+
+
+@register
+class Passengers(Metric):
+    """The ride as its standing passengers would judge it."""
+
+    name = "passengers"
+    title = "passengers"
+    order = 95
+    schema = record(
+        null_=True,
+        about_="the ride as its standing passengers would judge it: docs/passengers.md",
+        passed=flag(),
+        reasons=listing(text()),
+        comfort_score=number(low=0, high=1, null=True),
+        comfort_parts=mapping(number(low=0, high=1)),
+        comfort_weights=mapping(number(low=0)),
+        harm=record(
+            about_="what goes before comfort",
+            contacts=integer(low=0),
+            completion=number(low=0, high=1),
+            near_misses=integer(low=0),
+            rules_broken=integer(low=0),
+            stops_passed=integer(low=0),
+            phantom_stops=integer(low=0),
+        ),
+        place=_PLACE,
+        thresholds=_THRESHOLDS,
+        largest=_LARGEST,
+        balance=_BALANCE,
+        vibration=_VIBRATION,
+        harsh_stops=listing(_HARSH_STOP, "brakings felt above the threshold, with what was ahead"),
+        near_misses=listing(_NEAR_MISS, "who came close, by time to collision or post-encroachment time"),
+        service=listing(_VISIT, "each stop against the timetable"),
+    )
+
+    def compute(self, drive: Drive) -> dict[str, Any] | None:
+        """The verdict with every figure behind it; None for a ride too short to be judged."""
+        scoring = drive.scoring
+        judged = judge(
+            drive.history,
+            scoring.comfort_weights,
+            scoring.standing_place,
+            scoring.harsh_stop_mps2,
+            tolerance_mps=scoring.speeding_tolerance_mps,
+            ended_early=drive.outcome.status is Status.SCENARIO_ENDED,
+        )
+        return passengers_to_json(drive.history, judged)
+
+    def events(self, value: Any) -> list[dict[str, Any]]:  # noqa: ANN401 - what `compute` returned
+        """Harsh stops at their onset, and near misses."""
+        if value is None:
+            return []
+        stops = [
+            {
+                **stop,
+                "kind": "phantom_stop" if stop["cause"]["kind"] == "nothing" else "harsh_stop",
+                "tick": stop["onset_tick"],
+                "speed_mps": stop["from_mps"],
+                "detail": f"from {stop['from_mps']:.2f} m/s, felt up to {stop['strongest_mps2']:.2f} m/s²: "
+                f"{stop['cause']['detail']}",
+            }
+            for stop in value["harsh_stops"]
+        ]
+        misses = [
+            {**party, "kind": "near_miss", "other": party["name"]}
+            for party in value["near_misses"]
+            if party["is_near_miss"]
+        ]
+        return [*stops, *misses]
+
+    def lines(self, result: Result) -> list[str]:
+        """The verdict with its reasons, and the figures behind the comfort score."""
+        value = result.metrics[self.name]
+        if value is None:
+            return []
+        comfort, largest = value["comfort_score"], value["largest"]
+        score = "" if comfort is None else f", comfort score {comfort:.3f} (0 to 1, not in the driving score)"
+        return [
+            f"passengers        {'passed' if value['passed'] else 'failed'}{score}",
+            *(f"                  {reason}" for reason in value["reasons"]),
+            (
+                f"                  up to {largest['braking_mps2']:.2f} m/s² braking, {largest['across_mps2']:.2f} "
+                f"across; one has to step {100.0 * value['balance']['step_share']:.1f} % of the time; "
+                f"{' or '.join(value['vibration']['reactions'])}"
+            ),
+            *_timetable(value["service"]),
+        ]
+
+    def columns(self, result: Result) -> list[Column]:
+        """Passed, failed, or a dash."""
+        value = result.metrics[self.name]
+        said = "\N{EN DASH}" if value is None else "passed" if value["passed"] else "failed"
+        return [Column("passengers", said)]
+
+
+def _timetable(visits: list[dict[str, Any]]) -> list[str]:
+    """How the timetable was kept."""
+    planned = [visit for visit in visits if visit["on_time"] is not None]
+    if not planned:
+        return []
+    delays = [visit["delay_s"] for visit in planned if visit["delay_s"] is not None]
+    worst = f", {min(delays):+.0f} to {max(delays):+.0f} s" if delays else ""
+    return [f"timetable         {sum(visit['on_time'] for visit in planned)} of {len(planned)} stops on time{worst}"]
+
+
+def passengers_to_json(history: History, judged: Judged | None) -> dict[str, Any] | None:
+    """The document; None for a ride too short to be judged."""
+    if judged is None:
+        return None
+    sensed = judged.felt
+    return {
+        "passed": judged.passed,
+        "reasons": list(judged.reasons),
+        "comfort_score": judged.comfort,
+        "comfort_parts": judged.parts,
+        "comfort_weights": judged.weights.named(),
+        "harm": judged.harm._asdict(),
+        "place": judged.place._asdict(),
+        "thresholds": {
+            "step_mps2": STEP_MPS2,
+            "grip_mps2": GRIP_MPS2,
+            "harsh_stop_mps2": judged.harsh_mps2,
+            "near_miss_s": NEAR_S,
+        },
+        "largest": {
+            "braking_mps2": max(0.0, -float(sensed.filtered_along_mps2.min())),
+            "speeding_up_mps2": max(0.0, float(sensed.filtered_along_mps2.max())),
+            "across_mps2": float(abs(sensed.filtered_across_mps2).max()),
+            "jerk_along_mps3": float(abs(sensed.jerk_along_mps3).max()),
+            "jerk_across_mps3": float(abs(sensed.jerk_across_mps3).max()),
+        },
+        "balance": judged.balance._asdict(),
+        "vibration": {**judged.vibration._asdict(), "reactions": list(judged.vibration.reactions)},
+        "harsh_stops": [_stop(history, stop, why) for stop, why in judged.stops],
+        "near_misses": [_party(history, party) for party in judged.parties],
+        "service": [visit._asdict() for visit in judged.visits],
+    }
+
+
+def _stop(history: History, stop: HarshStop, why: Cause) -> dict[str, Any]:
+    """One harsh stop with its evidence."""
+    frame = history.frames[stop.onset_tick]
+    return {
+        **stop._asdict(),
+        "x_m": float(frame["x_m"]),
+        "y_m": float(frame["y_m"]),
+        "route_s_m": float(frame["route_s_m"]),
+        "cause": {**why._asdict(), "kind": why.kind.value, "away_m": _finite(why.away_m)},
+    }
+
+
+def _party(history: History, party: Party) -> dict[str, Any]:
+    """Somebody who came close, and where the vehicle was when it was closest."""
+    tick = party.ttc_tick if party.ttc_s <= party.pet_s else party.pet_tick
+    frame = history.frames[tick]
+    return {
+        **party._asdict(),
+        "ttc_s": _finite(party.ttc_s),
+        "pet_s": _finite(party.pet_s),
+        "tick": tick,
+        "t_s": float(frame["t_s"]),
+        "x_m": float(frame["x_m"]),
+        "y_m": float(frame["y_m"]),
+        "route_s_m": float(frame["route_s_m"]),
+    }
+
+
+def _finite(value: float) -> float | None:
+    """JSON knows no inf and no nan."""
+    return value if math.isfinite(value) else None

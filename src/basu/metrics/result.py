@@ -1,0 +1,203 @@
+"""The result of a run as one object: scores, infractions, the value of each metric, outcome, meta. `judge` makes it.
+
+`Result.document` is ``result.json``, and `Result.from_document` reads it back. Report, console, comparisons and tables
+read the object. It is computed from the record alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from basu.metrics.infraction import Evidence, Incident, Infraction, OwnKind, counts, row_of
+from basu.metrics.path_following import path_following
+from basu.metrics.registry import Drive, Metric, built_in
+from basu.metrics.responsibility import CollisionKind, Responsibility, responsibilities
+from basu.metrics.score import Scores, Scoring, driving_score, in_order, infraction_score
+from basu.metrics.scoring_json import scoring_to_json
+from basu.outcome import Outcome, Status
+
+if TYPE_CHECKING:
+    from basu.records.history import History
+
+SCHEMA_VERSION = 3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OwnMetric:
+    """The value of a user's metric with what is needed to show it: a report does not load the user's file again."""
+
+    title: str
+    unit: str
+    digits: int
+    value: Any
+    penalties: Mapping[str, float]
+    events: tuple[Mapping[str, Any], ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Result:
+    """The judgement of one run.
+
+    Attributes:
+        scores: of the thesis; None where nothing was driven.
+        infractions: what entered the score, in order of time; collisions with their responsibility.
+        metrics: the value of each of BASU's metrics by name.
+        own: users' metrics by name.
+        scoring: the rules as plain values, as ``result.json`` has them.
+        meta: what was run.
+        scenarios: those on the way of the route.
+        history: the record; None where nothing was driven, and in a result read from its document.
+    """
+
+    outcome: Outcome
+    scores: Scores | None
+    infractions: tuple[Evidence, ...]
+    metrics: Mapping[str, Any]
+    own: Mapping[str, OwnMetric] = field(default_factory=dict)
+    scoring: Mapping[str, Any]
+    meta: Mapping[str, Any]
+    scenarios: tuple[Mapping[str, Any], ...] = ()
+    history: History | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def is_comparable(self) -> bool:
+        """Whether the score can be compared with others': the run was not ended by a failure."""
+        return self.outcome.status in COMPARABLE
+
+    @property
+    def collisions(self) -> tuple[Evidence, ...]:
+        """The infractions that are collisions."""
+        return tuple(found for found in self.infractions if found.responsibility is not None)
+
+    def events(self) -> list[Mapping[str, Any]]:
+        """What metrics report with place and time beside the infractions, in order of time."""
+        rows = [row for metric in built_in() for row in metric.events(self.metrics.get(metric.name))]
+        rows += [row for own in self.own.values() if not own.penalties for row in own.events]
+        return sorted(rows, key=lambda row: (row["t_s"], row["kind"]))
+
+    def document(self) -> dict[str, Any]:
+        """``result.json``."""
+        document = {
+            "schema_version": SCHEMA_VERSION,
+            "status": self.outcome.status.value,
+            "fault": self.outcome.status.fault.name.lower(),
+            "message": self.outcome.message,
+            "scores": None if self.scores is None else self.scores._asdict(),
+            "infractions": [row_of(found) for found in self.infractions],
+            **{metric.name: self.metrics.get(metric.name, metric.nothing) for metric in built_in()},
+            "metrics": {name: _own_to_json(own) for name, own in self.own.items()},
+            "scoring": dict(self.scoring),
+            "meta": dict(self.meta),
+        }
+        return {**document, "scenarios": [dict(row) for row in self.scenarios]} if self.scenarios else document
+
+    @classmethod
+    def from_document(cls, document: Mapping[str, Any]) -> Result:
+        """The result that :meth:`document` wrote, without its record."""
+        scores = document["scores"]
+        return cls(
+            outcome=Outcome(Status(document["status"]), document["message"]),
+            scores=None if scores is None else Scores(**scores),
+            infractions=tuple(_evidence_of(row) for row in document["infractions"]),
+            metrics={metric.name: document.get(metric.name, metric.nothing) for metric in built_in()},
+            own={
+                name: OwnMetric(**{**own, "events": tuple(own["events"])})
+                for name, own in document.get("metrics", {}).items()
+            },
+            scoring=document["scoring"],
+            meta=document["meta"],
+            scenarios=tuple(document.get("scenarios", ())),
+        )
+
+
+COMPARABLE = frozenset(
+    {
+        Status.COMPLETED,
+        Status.ROUTE_TIMEOUT,
+        Status.ROUTE_BLOCKED,
+        Status.ROUTE_DEVIATION,
+        Status.SCENARIO_ENDED,
+        Status.SCENARIO_TIMEOUT,
+    }
+)
+
+
+def judge(
+    outcome: Outcome,
+    history: History | None,
+    scoring: Scoring | None = None,
+    meta: Mapping[str, Any] | None = None,
+    *,
+    own: Sequence[Metric] = (),
+    scenarios: Sequence[Mapping[str, Any]] = (),
+) -> Result:
+    """Judge a run from its record; ``history`` is None where nothing was driven, ``own`` are users' metrics."""
+    scoring = scoring or Scoring()
+    rules = scoring_to_json(scoring)
+    rules["penalties"] |= {kind: factor for metric in own for kind, factor in metric.penalties.items()}
+    empty = Result(
+        outcome=outcome,
+        scores=None,
+        infractions=(),
+        metrics={metric.name: metric.nothing for metric in built_in()},
+        scoring=rules,
+        meta=meta or {},
+        scenarios=tuple(scenarios),
+        own={metric.name: _own(metric, metric.nothing, ()) for metric in own},
+    )
+    if history is None or len(history.frames) == 0:
+        return empty
+    drive = Drive(history=history, scoring=scoring, outcome=outcome)
+    found = {metric.name: metric.find(drive) for metric in (*built_in(), *own)}
+    scored = [event for metric in (*built_in(), *own) if metric.penalties for event in found[metric.name]]
+    extra = math.prod(
+        rules["penalties"][event.kind.value] for metric in own if metric.penalties for event in found[metric.name]
+    )
+    infraction = infraction_score(counts(tuple(scored)), scoring) * extra
+    path = path_following(history).score
+    blame = dict(responsibilities(history))
+    return replace(
+        empty,
+        scores=Scores(driving_score(infraction, path, scoring), infraction, path),
+        infractions=tuple(replace(each, responsibility=blame.get(each)) for each in in_order(scored)),
+        metrics={metric.name: metric.compute(drive) for metric in built_in()},
+        own={metric.name: _own(metric, metric.compute(drive), found[metric.name]) for metric in own},
+        history=history,
+    )
+
+
+def _evidence_of(row: Mapping[str, Any]) -> Evidence:
+    """The evidence that :func:`row_of` wrote."""
+    kinds = {kind.value: kind for kind in (*Infraction, *Incident)}
+    blame = row.get("responsibility")
+    if blame is not None:
+        blame = Responsibility(
+            at_fault=blame["at_fault"], kind=CollisionKind(blame["kind"]), sentence=blame["sentence"]
+        )
+    return Evidence(**{**row, "kind": kinds.get(row["kind"], OwnKind(row["kind"])), "responsibility": blame})
+
+
+def _own(metric: Metric, value: Any, events: Sequence[Evidence]) -> OwnMetric:  # noqa: ANN401 - as its schema says
+    """The value of a user's metric."""
+    return OwnMetric(
+        title=metric.title,
+        unit=metric.unit,
+        digits=metric.digits,
+        value=value,
+        penalties=dict(metric.penalties),
+        events=tuple(row_of(event) for event in events),
+    )
+
+
+def _own_to_json(own: OwnMetric) -> dict[str, Any]:
+    return {
+        "title": own.title,
+        "unit": own.unit,
+        "digits": own.digits,
+        "value": own.value,
+        "penalties": dict(own.penalties),
+        "events": [dict(row) for row in own.events],
+    }

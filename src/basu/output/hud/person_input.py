@@ -1,0 +1,102 @@
+"""The person's input in a run: devices or a recorded session of keys, and the window that belongs to it."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from basu.agents.manual.devices import Devices, check_display
+from basu.agents.manual.person import Person
+from basu.agents.manual.session import Played, Session, Setting, Tape, read_session, write_session
+from basu.errors import UserError
+from basu.managers.base_manager import BaseManager
+from basu.output.hud.hud import Hud
+from basu.utils.packaged import find
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from basu.agents.manual.inputs import InputSource
+    from basu.managers.base_manager import Frame, Live, Run
+    from basu.options import RunOptions
+
+
+def person_for(options: RunOptions, *, by_hand: bool) -> Person | None:
+    """Return the person at this run's window or recorded keys; None where an agent drives unwatched.
+
+    ``by_hand`` says whether the person drives at first.
+
+    Raises:
+        UserError: no window can be opened, or there is no such session.
+    """
+    for path in (options.record_keys, options.hud_screenshot):
+        if path is not None and not path.resolve().parent.is_dir():
+            raise UserError(f"{path} cannot be written: there is no folder {path.parent}; make it, or name another")
+    devices = None
+    if _has_window(options, by_hand=by_hand):
+        check_display()
+        devices = Devices()
+    source: InputSource
+    if options.keys is not None:
+        source = Played(read_session(find(options.keys, "session of keys")), devices)
+    elif devices is not None:
+        source = devices
+    elif options.record_keys is not None:
+        raise UserError("--record-keys records what a person does, and there is no window; add --hud")
+    else:
+        return None
+    return Person(
+        source if options.record_keys is None else Tape(source),
+        drives_first=by_hand,
+        taken_by_any_input=by_hand,
+        live=options.keys is None,
+    )
+
+
+def onlookers_for(options: RunOptions, live: Live) -> list[BaseManager]:
+    """Return the managers of the window and of the recorded keys."""
+    person = live.agents.person
+    if person is None:
+        return []
+    found: list[BaseManager] = []
+    if options.keys is not None or options.record_keys is not None:
+        found.append(KeysManager(person.source, options.record_keys))
+    if _has_window(options, by_hand=person.drives_first):
+        agent = PurePath(options.agent.partition(".py")[0]).name
+        found.append(Hud(live, person, options, agent))
+    return found
+
+
+def _has_window(options: RunOptions, *, by_hand: bool) -> bool:
+    """Whether there is one: a person at devices needs it."""
+    return options.hud is not None or (by_hand and options.keys is None)
+
+
+class KeysManager(BaseManager):
+    """Checks that a session of keys is played where it was recorded, and writes down one that is driven."""
+
+    def __init__(self, source: InputSource, path: Path | None) -> None:
+        """Take what a person does; ``path`` is where it is written, None for nowhere."""
+        self._path = path
+        self._tape = source if isinstance(source, Tape) else None
+        played = source if self._tape is None else self._tape.source
+        self._played = played.session if isinstance(played, Played) else None
+        self._here: Setting | None = None
+
+    def setup(self, run: Run) -> None:
+        """Compare where we are with where the session was recorded."""
+        self._here = here = Setting(
+            town=run.route.town, route=run.route.id, vehicle=run.vehicle.type_id, step_s=run.step_s
+        )
+        if self._played is not None:
+            self._played.check(here)
+
+    def tick(self, frame: Frame) -> None:
+        """The tape turns by itself."""
+
+    def close(self) -> None:
+        """Write the session, where one was recorded."""
+        if self._path is not None and self._here is not None and self._tape is not None:
+            with contextlib.suppress(UserError):  # a disk that is full by now is told of by what is written next
+                write_session(self._path, Session(setting=self._here, inputs=tuple(self._tape.inputs)))

@@ -1,0 +1,242 @@
+"""Characteristics of a case, after table 3.1 of the thesis: surroundings, road, junction, control device, view.
+
+Atmosphere, lighting and surface follow from the case's weather. The rest is known from the scenario's class, and a case
+may state any of them: ``<characteristics alignment="curve" obstruction="vehicle"/>``. A played case also has figures of
+its route and drive (`measured`). Driver characteristics of the table, such as age, have no meaning here.
+"""
+
+from __future__ import annotations
+
+import difflib
+import enum
+import math
+from dataclasses import asdict, dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from basu.errors import ScenarioError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from basu.records.history import History
+    from basu.scenarios.cases import Playable
+
+TWILIGHT_DEG = -6.0  # civil twilight: the sun's centre is up to 6 degrees below the horizon
+WET_PERCENT, FOG_PERCENT, CLOUDY_PERCENT = 20.0, 15.0, 50.0  # of carla.WeatherParameters, from there on
+BEND_RAD_PER_M = 1.0 / 100.0  # a radius of 100 m and less
+GRADE = 0.03  # 3 %, from there on a road is not level
+
+
+class Atmosphere(enum.Enum):
+    """Atmospheric conditions."""
+
+    CLEAR = "clear"
+    CLOUDY = "cloudy"
+    RAIN = "rain"
+    FOG = "fog"
+
+
+class Lighting(enum.Enum):
+    """Light of the sun."""
+
+    DAYLIGHT = "daylight"
+    DUSK = "dusk"
+    DARK = "dark"
+
+
+class Surface(enum.Enum):
+    """Roadway surface conditions."""
+
+    DRY = "dry"
+    WET = "wet"
+    SLIPPERY = "slippery"
+
+
+class Alignment(enum.Enum):
+    """Roadway alignment where the conflict is."""
+
+    STRAIGHT = "straight"
+    CURVE = "curve"
+
+
+class Junction(enum.Enum):
+    """Relation to a junction."""
+
+    NONE = "none"
+    APPROACH = "approach"
+    INTERSECTION = "intersection"
+    ROUNDABOUT = "roundabout"
+
+
+class Control(enum.Enum):
+    """Traffic control device on the ego's way at the conflict."""
+
+    NONE = "none"
+    STOP_SIGN = "stop-sign"
+    TRAFFIC_LIGHT = "traffic-light"
+
+
+class Obstruction(enum.Enum):
+    """What obscures the view of the conflict partner."""
+
+    NONE = "none"
+    VEHICLE = "vehicle"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Characteristics:
+    """The characteristics of one case."""
+
+    atmosphere: Atmosphere = Atmosphere.CLEAR
+    lighting: Lighting = Lighting.DAYLIGHT
+    surface: Surface = Surface.DRY
+    alignment: Alignment = Alignment.STRAIGHT
+    junction: Junction = Junction.NONE
+    control: Control = Control.NONE
+    obstruction: Obstruction = Obstruction.NONE
+
+    def document(self) -> dict[str, str]:
+        """The values by field."""
+        return {name: value.value for name, value in asdict(self).items()}
+
+
+KINDS: dict[str, type[enum.Enum]] = {
+    "atmosphere": Atmosphere,
+    "lighting": Lighting,
+    "surface": Surface,
+    "alignment": Alignment,
+    "junction": Junction,
+    "control": Control,
+    "obstruction": Obstruction,
+}
+assert list(KINDS) == [one.name for one in fields(Characteristics)]
+
+_AT_STOP_SIGN = {"junction": "intersection", "control": "stop-sign"}
+OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ from the defaults
+    "ControlLoss": {"surface": "slippery"},
+    "SlipperyStop": {"surface": "slippery", "junction": "approach", "control": "stop-sign"},
+    "BendDeparture": {"alignment": "curve"},
+    "OccludedChild": {"obstruction": "vehicle"},
+    "DynamicObject": {"obstruction": "vehicle"},
+    "LeadVehicleSwerves": {"obstruction": "vehicle"},
+    "PedestrianTurn": {"junction": "intersection"},
+    "CyclistAtRightTurn": {"junction": "intersection"},
+    "CyclistCrossing": {"junction": "intersection"},
+    "CutInBeforeStop": {"junction": "approach", "control": "stop-sign"},
+    "RightHook": {"junction": "approach"},
+    "FollowLeadingVehicle": {"junction": "approach"},
+    "FollowLeadingVehicleWithObstacle": {"junction": "approach"},
+    "CarAcrossJunction": {"junction": "intersection"},
+    "EgoTurnsLeft": {"junction": "intersection"},
+    "LeftTurnAcrossPath": {"junction": "intersection"},
+    "RedLightRunner": {"junction": "intersection", "control": "traffic-light"},
+    "RightTurnIntoPath": {"junction": "intersection"},
+    "Roundabout": {"junction": "roundabout", "alignment": "curve"},
+    "StopSignRunner": {"junction": "intersection"},
+    "StraightCrossingPaths": _AT_STOP_SIGN,
+    "TurnIntoTraffic": _AT_STOP_SIGN,
+    "UnsignalizedIntersection": {"junction": "intersection"},
+}
+
+
+def characteristics_of(playable: Playable) -> Characteristics:
+    """The characteristics of a case: of its weather, its class and its own statement, the later before the earlier.
+
+    Raises:
+        ScenarioError: the class or the case states a field or a value that does not exist.
+    """
+    case, scenario = playable.case, playable.scenario
+    weather = scenario.weather if case.weather is None else case.weather
+    stated = {
+        **OF_SCENARIO.get(scenario.__name__, {}),
+        **scenario.characteristics,
+        **case.characteristics,
+    }
+    values: dict[str, Any] = {**_of_weather(weather), **{name: value_of(name, text) for name, text in stated.items()}}
+    return Characteristics(**values)
+
+
+def value_of(field: str, text: str) -> enum.Enum:
+    """A field's value from its text.
+
+    Raises:
+        ScenarioError: there is no such field, or it has no such value.
+    """
+    if field not in KINDS:
+        raise ScenarioError(f"there is no characteristic '{field}'; {_meant(field, KINDS)}")
+    values = {value.value: value for value in KINDS[field]}
+    if text not in values:
+        raise ScenarioError(f"{field} has no value '{text}'; {_meant(text, values)}")
+    return values[text]
+
+
+def read_where(conditions: Iterable[tuple[str, str]]) -> dict[str, list[enum.Enum]]:
+    """The values asked for by field; a field that is given several times allows each of its values.
+
+    Raises:
+        ScenarioError: there is no such field, or it has no such value.
+    """
+    wanted: dict[str, list[enum.Enum]] = {}
+    for field, text in conditions:
+        wanted.setdefault(field, []).append(value_of(field, text))
+    return wanted
+
+
+def having(playables: Sequence[Playable], conditions: Sequence[tuple[str, str]]) -> tuple[Playable, ...]:
+    """The cases that have all characteristics asked for.
+
+    Raises:
+        ScenarioError: there is no such field or value, or no case has them all.
+    """
+    wanted = read_where(conditions)
+    found = tuple(one for one in playables if _has(characteristics_of(one), wanted))
+    if not found and playables:
+        said = " and ".join(f"{field}={text}" for field, text in conditions)
+        raise ScenarioError(f"none of the {len(playables)} cases has {said}; `basu scenario list --json` shows them")
+    return found
+
+
+def measured(history: History, first_tick: int) -> dict[str, Any]:
+    """Figures of a played case where its conflict began: posted speed, travel speed, grade, and whether in a bend."""
+    route = history.facts.route
+    s_m = float(history.frames["route_s_m"][first_tick])
+    at = min(int(np.searchsorted(route.s_m, s_m)), len(route.s_m) - 1)
+    limit_mps = float(route.speed_limit_mps[at])
+    ahead = (route.s_m >= s_m) & (route.s_m <= s_m + 50.0) & ~route.is_junction
+    bend = np.abs(np.gradient(np.unwrap(route.yaw_rad), route.s_m)) if len(route.s_m) > 1 else np.zeros(1)
+    rise = np.gradient(route.points_m[:, 2], route.s_m) if len(route.s_m) > 1 else np.zeros(1)
+    return {
+        "posted_mps": limit_mps if math.isfinite(limit_mps) else None,
+        "travel_mps": round(float(history.speed_mps()[first_tick]), 3),
+        "in_bend": bool((bend[ahead] >= BEND_RAD_PER_M).any()),
+        "level": bool((np.abs(rise[ahead]) < GRADE).all()),
+    }
+
+
+def _has(found: Characteristics, wanted: Mapping[str, Sequence[enum.Enum]]) -> bool:
+    """Whether a case has one of the values of each field."""
+    return all(getattr(found, field) in values for field, values in wanted.items())
+
+
+def _of_weather(weather: Mapping[str, float]) -> dict[str, enum.Enum]:
+    """What follows from the fields of carla.WeatherParameters; without them, CARLA's clear noon."""
+    rain = weather.get("precipitation", 0.0)
+    sun_deg = weather.get("sun_altitude_angle", 45.0)
+    if rain > 0.0:
+        atmosphere = Atmosphere.RAIN
+    elif weather.get("fog_density", 0.0) >= FOG_PERCENT:
+        atmosphere = Atmosphere.FOG
+    else:
+        atmosphere = Atmosphere.CLOUDY if weather.get("cloudiness", 0.0) >= CLOUDY_PERCENT else Atmosphere.CLEAR
+    wet = max(rain, weather.get("wetness", 0.0), weather.get("precipitation_deposits", 0.0)) >= WET_PERCENT
+    lighting = Lighting.DARK if sun_deg < TWILIGHT_DEG else Lighting.DUSK if sun_deg < 0.0 else Lighting.DAYLIGHT
+    return {"atmosphere": atmosphere, "lighting": lighting, "surface": Surface.WET if wet else Surface.DRY}
+
+
+def _meant(name: str, known: Iterable[str]) -> str:
+    """What may have been meant."""
+    names = list(known)
+    close = difflib.get_close_matches(name, names, 1)
+    return f"did you mean '{close[0]}'?" if close else f"it may be {', '.join(names)}"

@@ -1,0 +1,32 @@
+"""Claims about the exit code of ``basu scenario run``: that of the worst verdict."""
+
+from typing import Any
+
+import pytest
+
+from basu.running.scenario_runs.command import worst
+
+
+def document(verdict: str, fault: str = "nobody", *, completed: bool = True) -> dict[str, Any]:
+    """What the exit code reads of a case's result."""
+    return {"verdict": verdict, "fault": fault, "assessment": {"completed": {"holds": completed, "sentence": "so"}}}
+
+
+@pytest.mark.parametrize(
+    ("found", "code"),
+    [
+        (document("SUCCESS"), 0),
+        (document("FAILURE"), 1),
+        (document("AGENT_FAULT", "agent"), 1),
+        (document("SETUP_FAULT", "setup"), 2),
+        (document("SIMULATOR_FAULT", "simulator"), 3),
+        (document("NOT_EXERCISED"), 0),
+        (document("NOT_EXERCISED", completed=False), 1),
+    ],
+)
+def test_each_verdict_has_its_code(found: dict[str, Any], code: int) -> None:
+    assert worst(iter([document("SUCCESS"), found])) == code
+
+
+def test_a_driver_that_stands_through_every_case_does_not_pass_a_build() -> None:
+    assert worst(iter([document("NOT_EXERCISED", completed=False)] * 3)) == 1
