@@ -1,4 +1,4 @@
-"""A simulator to drive in: one of our own that ends with us, or somebody's at an address; its town, clock and weather.
+"""The connection to a simulator: a ``linden serve`` of our own that ends with us, or a server at an address.
 
 The benchmark knows two things of ``linden``: the command that starts it, and the line it prints when it is ready.
 """
@@ -24,7 +24,7 @@ import carla
 from basu.errors import SimulatorError, UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterator
     from typing import IO
 
     from basu.options import RunOptions
@@ -192,77 +192,3 @@ def connect(host: str, port: int, timeout_s: float) -> carla.Client:
             f"no simulator answers at {host}:{port}; start one with `linden serve`, or leave out --host ({error})"
         ) from error
     return client
-
-
-@contextlib.contextmanager
-def asking(what: str) -> Iterator[None]:
-    """Calls to the simulator; where it refuses or does not answer, that is told as its failure.
-
-    Raises:
-        SimulatorError: the client raised what the simulator said.
-    """
-    try:
-        yield
-    except RuntimeError as error:
-        raise SimulatorError(f"the simulator failed at {what}: {error}") from error
-
-
-def world_of(client: carla.Client, town: str) -> carla.World:
-    """The world with ``town`` in it, loaded where another one is."""
-    world = client.get_world()
-    return world if _short(world.get_map().name) == town else client.load_world(town, reset_settings=False)
-
-
-def check_towns(client: carla.Client, towns: Iterable[str]) -> None:
-    """See whether the simulator has all of these towns, before any of them is driven in.
-
-    Raises:
-        UserError: it lacks one.
-    """
-    names = towns_of(client)
-    missing = sorted(set(towns) - names)
-    if missing:
-        where = f"the route is in {missing[0]}" if len(missing) == 1 else f"routes are in {', '.join(missing)}"
-        raise UserError(
-            f"{where}, which this simulator does not have; it has {', '.join(sorted(names))}: "
-            "name another file with --routes, or choose routes with --routes-subset"
-        )
-
-
-def towns_of(client: carla.Client) -> frozenset[str]:
-    """The towns that a simulator has, the loaded one among them."""
-    return frozenset({_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())})
-
-
-def _short(map_name: str) -> str:
-    """`Carla/Maps/Linden` as people call it."""
-    return map_name.rsplit("/", maxsplit=1)[-1]
-
-
-@contextlib.contextmanager
-def ticked_by_us(world: carla.World, step_s: float) -> Iterator[None]:
-    """Synchronous mode with a fixed step; the settings that were there before come back afterwards."""
-    before = world.get_settings()
-    settings = world.get_settings()
-    settings.synchronous_mode = True
-    settings.fixed_delta_seconds = step_s
-    world.apply_settings(settings)
-    try:
-        yield
-    finally:
-        with contextlib.suppress(RuntimeError):  # where the simulator is gone, so are its settings
-            world.apply_settings(before)
-
-
-def weather_called(name: str) -> carla.WeatherParameters:
-    """One of CARLA's presets by its name.
-
-    Raises:
-        UserError: there is none of that name.
-    """
-    presets = {
-        key: value for key, value in vars(carla.WeatherParameters).items() if isinstance(value, carla.WeatherParameters)
-    }
-    if name not in presets:
-        raise UserError(f"there is no weather called '{name}'; there are {', '.join(sorted(presets))}")
-    return presets[name]

@@ -147,8 +147,8 @@ def draw_command(arguments: argparse.Namespace) -> int:
 def report_command(arguments: argparse.Namespace) -> int:
     """Make table, JUnit XML, page and maps of a run again, from what lies in its folder."""
     from basu.output.report.scenarios.page.records import read_matrix  # noqa: PLC0415 - brings in what draws
-    from basu.running.scenario_runs.leave import leave  # noqa: PLC0415 - likewise
+    from basu.running.scenario_runs.command import report_again  # noqa: PLC0415 - likewise
 
     folder: Path = arguments.folder.resolve()
-    leave(folder, read_matrix(folder), arguments.junit)
+    report_again(folder, read_matrix(folder), arguments.junit)
     return 0

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
+
+import carla
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    import carla
-
     from basu.agents.config import AgentConfig
+    from basu.agents.manual.person import Person
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
@@ -99,10 +100,23 @@ def ego_in(snapshot: carla.ActorSnapshot) -> Ego:
     )
 
 
-class Live(NamedTuple):
-    """The managers of a run, for whoever looks on while it lasts."""
+@dataclass(slots=True)
+class Driver:
+    """What drives: the last control, the agent's own answer, and whether a person gave the control.
 
-    agents: AgentsManager
+    Before the first control, the brake is on.
+    """
+
+    control: carla.VehicleControl = field(default_factory=lambda: carla.VehicleControl(brake=1.0))
+    requested: carla.VehicleControl = field(default_factory=lambda: carla.VehicleControl(brake=1.0))
+    manual: bool = False
+    person: Person | None = None
+
+
+class Live(NamedTuple):
+    """The managers of a run, for observers."""
+
+    agents: Driver | AgentsManager
     sensors: SensorsManager
     routes: RoutesManager
     metrics: MetricsManager

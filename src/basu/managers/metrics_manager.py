@@ -19,8 +19,7 @@ from basu.records.history.model import NO_LIGHT
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.managers.agents_manager import AgentsManager
-    from basu.managers.base_manager import Frame, Run
+    from basu.managers.base_manager import Driver, Frame, Run
     from basu.managers.routes_manager import RoutesManager
     from basu.metrics.infraction import Evidence
     from basu.metrics.score import Scores, Scoring
@@ -35,9 +34,7 @@ class MetricsManager(BaseManager):
     For that one the client reads the whole map, which of Linden's takes it 0.4 s in every world that it has begun anew.
     """
 
-    def __init__(
-        self, agents: AgentsManager, routes: RoutesManager, scoring: Scoring, *, lane_invasions: bool = True
-    ) -> None:
+    def __init__(self, agents: Driver, routes: RoutesManager, scoring: Scoring, *, lane_invasions: bool = True) -> None:
         self._agents, self._routes, self._lane_invasions = agents, routes, lane_invasions
         self._so_far, self._looked_at_ticks = SoFar(scoring), 0
         self._recorder = Recorder()
@@ -123,6 +120,10 @@ class MetricsManager(BaseManager):
         """The record until now."""
         self._take_events()
         return self._recorder.history(self._facts())
+
+    def others(self, frame: Frame) -> list[tuple[float, ...]]:
+        """Rows of ``history.OTHER`` for a frame, recorded or not yet, the nearest road user first."""
+        return self._neighbours.near(frame)
 
     def contacts_since(self, tick: int) -> tuple[Collision, ...]:
         """The messages of the collision sensor from a tick on; asked for the latest ones, it costs next to nothing."""

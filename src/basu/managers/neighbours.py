@@ -42,11 +42,18 @@ class Neighbours:
         self._world, self._ego_id = world, ego_id
         self._shapes: dict[int, _Shape] = {}
         self._count = -1
+        self._last: tuple[Frame | None, list[tuple[float, ...]]] = (None, [])
         self.met: dict[int, str] = {}
         self.sizes: dict[int, tuple[float, float]] = {}  # half the length and half the width, m
 
     def near(self, frame: Frame) -> list[tuple[float, ...]]:
         """Rows of ``history.OTHER``: vehicles and walkers, then things, the nearest of each first, ties by id."""
+        if self._last[0] is not frame:
+            self._last = (frame, self._found(frame))
+        return self._last[1]
+
+    def _found(self, frame: Frame) -> list[tuple[float, ...]]:
+        """The rows of a frame that was not asked for yet."""
         if len(frame.snapshot) != self._count or frame.tick % LOOK_AGAIN_TICKS == 0:
             self._look_again(len(frame.snapshot))
         moving: list[tuple[float, int, carla.ActorSnapshot]] = []

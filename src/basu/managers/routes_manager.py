@@ -1,4 +1,4 @@
-"""The route: parsed, laid on the map, followed, and the word when the run is over."""
+"""Progress along the route, its weather, and the outcome that ends a run."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class RoutesManager(BaseManager):
         self._limit_s = time_limit_s(run.route)
         self._world, self._weather = run.world, run.weather
         if self._weather:
-            self._let_weather(0.0)
+            self._set_weather(0.0)
 
     def tick(self, frame: Frame) -> None:
         """Advance along the route and judge."""
@@ -46,14 +46,21 @@ class RoutesManager(BaseManager):
         if speed_mps >= BLOCKED_MPS:
             self._moved_tick = frame.tick
         self.outcome = self._judge(frame.tick, speed_mps)
+
+    def change_weather(self, frame: Frame) -> None:
+        """Set the weather that the route file gives for this place, once a second of simulated time.
+
+        Raises:
+            SimulatorError: the simulator does not take it.
+        """
         if len(self._weather) > 1 and frame.tick % WEATHER_TICKS == 0:
-            self._let_weather(100.0 * self.progress.s_m / self._route.length_m)
+            self._set_weather(100.0 * self.progress.s_m / self._route.length_m)
 
     def close(self) -> None:
         """Nothing was taken."""
 
-    def _let_weather(self, percent: float) -> None:
-        """Let there be the weather that the route file has so far along the way."""
+    def _set_weather(self, percent: float) -> None:
+        """Set the weather that the route file has so far along the way."""
         weather = carla.WeatherParameters()
         for name, value in weather_at(self._weather, percent).items():
             setattr(weather, name, value)

@@ -12,17 +12,18 @@ import numpy as np
 
 from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import read_sensors
+from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.managers.agents_manager import AgentsManager
 from basu.output.hud.person_input import person_for
 from basu.routing.route_file import RouteDescription, read_routes
 from basu.routing.subset import subset
 from basu.scenarios.on_way import scenarios_on
-from basu.simulator import weather_called
 from basu.utils.packaged import find
 
 if TYPE_CHECKING:
     from basu.agents.config import AgentConfig
+    from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.options import RunOptions
@@ -57,13 +58,13 @@ class Plan:
     jobs: tuple[Job, ...]
 
 
-def prepare(options: RunOptions) -> Plan:
-    """Read everything that can be wrong before anything is started.
+def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
+    """Read everything that can be wrong before anything is started; ``given`` is an agent's class that is loaded.
 
     Raises:
         UserError, AgentError: nothing can be started like this.
     """
-    loaded = find_agent(
+    loaded = given or find_agent(
         options.agent, options.agent_config, in_process=options.in_process, memory_gb=options.agent_memory_gb
     )
     agents = new_agents(loaded, options, options.seed)

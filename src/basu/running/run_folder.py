@@ -96,7 +96,7 @@ def _files(
     options: RunOptions, loaded: FoundAgent, wishes: AgentConfig, description: RouteDescription
 ) -> Iterator[Path]:
     """Yield the files that decide over the run's outcome."""
-    if loaded.file is not None:
+    if loaded.file is not None and loaded.file.is_file():
         yield loaded.file
     names = (
         description.source,
@@ -116,6 +116,8 @@ def _files(
 
 def _notes(options: RunOptions, loaded: FoundAgent) -> list[str]:
     """Return what keeps a run from being repeated, in sentences."""
+    if loaded.file is not None and not loaded.file.is_file():
+        return [f"{loaded.name} is a class of a notebook or program; a run is repeatable with the agent in a file"]
     by_hand = options.hud is not None or loaded.is_human
     if by_hand and options.keys is None and options.record_keys is None:
         return ["a person could drive, and the keys were not recorded; --record-keys FILE makes such a run repeatable"]
@@ -144,8 +146,10 @@ def write_run_folder(
     config: dict[str, Any],
     scenarios: Sequence[dict[str, Any]] = (),
     own: Sequence[Metric] = (),
+    *,
+    quiet: bool = False,
 ) -> dict[str, Any]:
-    """Write the folder of a run, print its table and return the document of its result.
+    """Write the folder of a run, print its table unless ``quiet``, and return the document of its result.
 
     ``scenarios`` are those on the route, ``own`` are users' metrics.
     """
@@ -170,7 +174,8 @@ def write_run_folder(
     result = judge(driven.outcome, history, scoring, meta, scenarios=scenarios, own=own)
     document = result.document()
     text, lanes_m = table(result), lanes.streets()
-    print(text)
+    if not quiet:
+        print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
@@ -181,7 +186,7 @@ def write_run_folder(
     streets = [] if history is None else around(lanes_m, history)
     write_streets(folder, streets)
     write_report(folder, RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets))
-    if config["recording"] is not None:
+    if config["recording"] is not None and not quiet:
         print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return document
 

@@ -6,15 +6,18 @@ import shlex
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
+from basu.episode import Towns
+from basu.episode.world import check_towns
 from basu.errors import UserError
 from basu.outcome import Status
 from basu.output.report.folder import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.running.series import conditions, open_series
-from basu.simulator import asking, check_towns, simulator_for
+from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from basu.metrics.score import Scoring
@@ -64,34 +67,40 @@ def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | N
 
 
 def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Series | None, jobs: list[Job]) -> int:
-    """Run one job after the other in one simulator."""
+    """Run one job after the other in one simulator; the exit code of the worst."""
     worst = 0
     with simulator_for(options) as simulator:
-        with asking("naming its towns"):
-            check_towns(simulator.client, (job.description.town for job in jobs))
-        session = Session(options, scoring, prepared, simulator)
-        for nth, job in enumerate(jobs):
-            is_prepared = nth == 0 and job.seed == options.seed
-            agents = prepared.agents if is_prepared else new_agents(prepared.loaded, options, job.seed)
-            if series is not None:
-                print(f"run {job.number + 1} of {len(prepared.jobs)}")
-                done = run_one(session, agents, job, output=series.folder, name=series.name(job), fresh=nth > 0)
-                folder = series.publish(done.draft, job, done.document)
-            else:
-                name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
-                done = run_one(session, agents, job, output=options.output, name=name, fresh=nth > 0)
-                folder = publish(done.draft, name)
-            _told(done, folder, options.output)
+        session = Session(options, scoring, prepared, simulator, Towns(simulator))
+        for done, folder in runs(session, jobs, series):
+            print(f"result folder     {folder}")
+            print(f"to repeat         basu run --config {shlex.quote(str(folder / CONFIG_FILE))}")
+            if done.bug is not None:
+                raise done.bug
             worst = max(worst, done.outcome.status.fault.value)
-            if done.outcome.status in BREAKING_OFF:
-                break
     return worst
 
 
-def _told(done: Finished, folder: Path, output: Path) -> None:
-    """Say where a run lies; raise what was wrong with us."""
-    point_latest(folder, output)
-    print(f"result folder     {folder}")
-    print(f"to repeat         basu run --config {shlex.quote(str(folder / CONFIG_FILE))}")
-    if done.bug is not None:
-        raise done.bug
+def runs(session: Session, jobs: Sequence[Job], series: Series | None = None) -> Iterator[tuple[Finished, Path]]:
+    """Run one job after the other; each run with its folder, until a run is interrupted or loses the simulator.
+
+    Raises:
+        UserError, AgentError: a run cannot begin.
+        SimulatorError: the simulator failed before a run began.
+    """
+    options, prepared = session.options, session.plan
+    check_towns(session.towns.names, (job.description.town for job in jobs))
+    for nth, job in enumerate(jobs):
+        is_prepared = nth == 0 and job.seed == options.seed
+        agents = prepared.agents if is_prepared else new_agents(prepared.loaded, options, job.seed)
+        if series is not None:
+            print(f"run {job.number + 1} of {len(prepared.jobs)}")
+            done = run_one(session, agents, job, output=series.folder, name=series.name(job))
+            folder = series.publish(done.draft, job, done.document)
+        else:
+            name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
+            done = run_one(session, agents, job, output=options.output, name=name)
+            folder = publish(done.draft, name)
+        point_latest(folder, options.output)
+        yield done, folder
+        if done.outcome.status in BREAKING_OFF:
+            return

@@ -44,7 +44,18 @@ def test_runs_broken_off_three_times_are_all_there_and_counted_once(tmp_path: Pa
     attempts.mkdir()
 
     def basu(*options: str) -> "subprocess.CompletedProcess[str]":
-        series = ["--routes", str(route_file), "--repetitions", str(RUNS), "--series", "s", "--output", str(output)]
+        # in the benchmark's own process, which is to die and to run out of disk
+        series = [
+            "--in-process",
+            "--routes",
+            str(route_file),
+            "--repetitions",
+            str(RUNS),
+            "--series",
+            "s",
+            "--output",
+            str(output),
+        ]
         program = f"import sys; from basu.cli import main; sys.exit(main({['run', str(agent), *series, *options]!r}))"
         environment = {**os.environ, "ATTEMPTS": str(attempts)}
         return subprocess.run(

@@ -21,9 +21,9 @@ from typing import TypeGuard
 import carla
 import pytest
 
+from basu.episode.spec import description_of
 from basu.managers.laid_out import lay_out
 from basu.routing import plan
-from basu.running.scenario_runs.one_case import description_of
 from basu.scenarios.cases import by_id, cases_of
 from servers import RunningServer
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu.episode.world import ticked_by_us
 from basu.errors import SimulatorError, UserError
-from basu.simulator import OwnServer, connect, ticked_by_us
+from basu.simulator import OwnServer, connect
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

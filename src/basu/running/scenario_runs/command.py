@@ -7,7 +7,7 @@ import shutil
 import sys
 import time
 from datetime import datetime, timezone
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tqdm import tqdm
 
@@ -15,31 +15,77 @@ from basu.agents.process.remote_agent import find_agent
 from basu.errors import UserError
 from basu.outcome import Fault
 from basu.output.report.folder import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
+from basu.output.report.scenarios.console import matrix_text
+from basu.output.report.scenarios.junit import junit_xml
+from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, write_matrix_page
 from basu.output.report.scenarios.page.records import MATRIX_FILE
-from basu.running.scenario_runs.crew import Crew, Lost
+from basu.output.report.scenarios.sweep.study import studies
+from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.running.scenario_runs.document import lost, run_config
-from basu.running.scenario_runs.leave import leave
 from basu.running.scenario_runs.matrix import matrix_of
 from basu.running.scenario_runs.worker import Job, play
+from basu.running.scenario_runs.worker_pool import Lost, WorkerPool
 from basu.scenarios.cases import cases_of, varied
 from basu.scenarios.characteristics import having
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.variation import Variation
+from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.running.scenario_runs.worker import Done
     from basu.scenarios.cases import Playable
 
+TEXT_FILE, JUNIT_FILE = "matrix.txt", "junit.xml"
 TIMES = "%Y-%m-%dT%H-%M-%S"
 
 
+class MatrixRun(NamedTuple):
+    """What a run of scenarios has written."""
+
+    folder: Path
+    matrix: dict[str, Any] | None  # None where nothing was played
+    code: int  # the exit code of the worst verdict
+
+
 def run_scenarios(options: ScenarioOptions) -> int:
-    """Play everything that was asked for; the exit code is that of the worst verdict.
+    """Play everything that was asked for and show the matrix; the exit code is that of the worst verdict.
+
+    Raises:
+        UserError: nothing can be played like this.
+        SimulatorError: there is no simulator to play in.
+    """
+    played = play_matrix(options)
+    if played.matrix is not None:
+        _show(played.folder, played.matrix)
+        print(f"repeat  basu scenario run --config {shlex.quote(str(played.folder / CONFIG_FILE))}")
+    return played.code
+
+
+def report_again(folder: Path, matrix: dict[str, Any], junit: Path | None) -> None:
+    """Write the reports of a matrix into its folder again, and show it.
+
+    Raises:
+        UserError: the disk is full or the folder cannot be written.
+    """
+    _write_reports(folder, matrix, junit)
+    _show(folder, matrix)
+
+
+def _show(folder: Path, matrix: dict[str, Any]) -> None:
+    print(matrix_text(matrix, colour=sys.stdout.isatty()))
+    print(f"\nreport  {folder / PAGE_FILE}")
+
+
+def play_matrix(
+    options: ScenarioOptions, given: Mapping[str, LoadedAgent] | None = None, *, quiet: bool = False
+) -> MatrixRun:
+    """Play every case with every agent and write the folder; ``given`` are agents' classes that are loaded, by name.
 
     Raises:
         UserError: nothing can be played like this.
@@ -47,7 +93,7 @@ def run_scenarios(options: ScenarioOptions) -> int:
     """
     began, began_s = datetime.now(timezone.utc), time.perf_counter()
     playables = chosen(options)
-    agents = _loaded(options)
+    agents = _loaded(options) if given is None else list(given.values())
     names = [agent.name for agent in agents]
     folder = _folder(options, began)
     write_json(folder / CONFIG_FILE, run_config(options, agents))
@@ -56,9 +102,9 @@ def run_scenarios(options: ScenarioOptions) -> int:
         for number, (playable, agent) in enumerate((each, agent) for each in playables for agent in options.agents)
     ]
     documents: dict[int, tuple[dict[str, Any], str]] = {}
-    interrupted = False
+    interrupted, matrix = False, None
     try:
-        for answer in _played(options, folder, jobs):
+        for answer in _played(options, folder, jobs, given, quiet=quiet):
             if isinstance(answer, Lost):
                 playable, agent = playables[answer.number // len(agents)], agents[answer.number % len(agents)]
                 documents[answer.number] = (lost(playable, agent, answer.sentence, options), "")
@@ -73,9 +119,25 @@ def run_scenarios(options: ScenarioOptions) -> int:
             wall_s = time.perf_counter() - began_s
             matrix = matrix_of(options, names, playables, documents, began, wall_s)
             write_json(folder / MATRIX_FILE, matrix)
-            leave(folder, matrix, options.junit)
-            print(f"repeat  basu scenario run --config {shlex.quote(str(folder / CONFIG_FILE))}")
-    return Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
+            _write_reports(folder, matrix, options.junit)
+    code = Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
+    return MatrixRun(folder, matrix, code)
+
+
+def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> None:
+    """Write the matrix as text, page and success maps into ``folder``, and as JUnit XML, to ``junit`` as well.
+
+    Raises:
+        UserError: the disk is full or the folder cannot be written.
+    """
+    write_bytes(folder / TEXT_FILE, f"{matrix_text(matrix)}\n".encode())
+    for file in (folder / JUNIT_FILE, junit):
+        if file is not None:
+            write_bytes(file, junit_xml(matrix))
+    for study in studies(matrix):
+        name = f"success-{plain(study.scenario)}-{plain(study.agent)}.svg"
+        write_bytes(folder / name, sweep_map(matrix, study.agent, study.scenario).encode())
+    write_matrix_page(folder, matrix)
 
 
 def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
@@ -129,21 +191,28 @@ def _folder(options: ScenarioOptions, began: datetime) -> Path:
     return folder
 
 
-def _played(options: ScenarioOptions, folder: Path, jobs: Sequence[Job]) -> Iterator[Done | Lost]:
-    """What came of each job, as they end."""
-    with tqdm(total=len(jobs), unit="case", disable=None, file=sys.stderr) as bar:
-        if options.workers > 1 and options.host is None and len(jobs) > 1:
-            crew = Crew(options, folder, jobs)
+def _played(
+    options: ScenarioOptions,
+    folder: Path,
+    jobs: Sequence[Job],
+    given: Mapping[str, LoadedAgent] | None,
+    *,
+    quiet: bool,
+) -> Iterator[Done | Lost]:
+    """What came of each job, as they end. Classes that are given stay in this process: no other one has them."""
+    with tqdm(total=len(jobs), unit="case", disable=quiet or None, file=sys.stderr) as bar:
+        if options.workers > 1 and options.host is None and len(jobs) > 1 and given is None:
+            pool = WorkerPool(options, folder, jobs)
             try:
-                for answer in crew.play():
+                for answer in pool.play():
                     bar.update()
                     yield answer
             finally:
-                crew.end()
+                pool.end()
             return
         done = 0
         while done < len(jobs):
-            for answer in play(options, folder, jobs[done:]):
+            for answer in play(options, folder, jobs[done:], given):
                 done += 1
                 bar.update()
                 yield answer

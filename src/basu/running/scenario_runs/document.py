@@ -120,6 +120,6 @@ def run_config(options: ScenarioOptions, agents: Sequence[FoundAgent]) -> dict[s
 def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
     """Return an agent's name as it was typed, with the class where its file has several."""
     file = loaded.file
-    if file is None:
+    if file is None or loaded.name in options.agents:
         return loaded.name
     return next((each for each in options.agents if Path(f"{each.partition('.py')[0]}.py") == file), str(file))

@@ -5,13 +5,15 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING
 
+from basu.episode.spec import description_of
+from basu.episode.world import asking, towns_of, world_of
 from basu.managers.asked import asked
 from basu.managers.laid_out import lay_out
 from basu.routing import lane_graph, plan
-from basu.running.scenario_runs.one_case import check_town, description_of
+from basu.running.scenario_runs.one_case import check_town
 from basu.scenarios.cases import cases_of
 from basu.scenarios.drawing import draw
-from basu.simulator import asking, simulator_for, towns_of, world_of
+from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
     from basu.running.scenario_runs.options import ScenarioOptions

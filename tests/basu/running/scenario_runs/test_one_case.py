@@ -6,7 +6,7 @@ from pathlib import Path
 import carla
 import pytest
 
-from basu.running.scenario_runs.one_case import description_of
+from basu.episode.spec import description_of
 from basu.scenarios.cases import Playable, cases_of
 from basu.scenarios.config.model import Case, GivenActor
 from basu.scenarios.stage import Pose

@@ -9,8 +9,8 @@ import carla
 import pytest
 
 import linden
+from basu.episode.spec import description_of
 from basu.routing import Route, lane_graph, plan
-from basu.running.scenario_runs.one_case import description_of
 from basu.scenarios.cases import Playable, open_library
 from basu.scenarios.parameters import narrowed, read_values
 from basu.scenarios.paths import Path

@@ -1,14 +1,17 @@
-"""Several workers beside each other: each gets the next job when it is done with one, whoever dies is replaced."""
+"""A pool of worker processes: each plays one case after the other, and a worker that dies is replaced."""
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
+import subprocess
+import sys
 from collections import deque
 from multiprocessing.connection import wait
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import SimulatorError
-from basu.running.scenario_runs.worker import Done, Job, Ready, Refused, work
+from basu.running.scenario_runs.worker import Done, Job, Ready, Refused, main
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -17,48 +20,47 @@ if TYPE_CHECKING:
     from basu.running.scenario_runs.options import ScenarioOptions
 
 ATTEMPTS = 2  # at a job whose worker died
-GOING_S = 10.0  # for a worker to end by itself
+END_LIMIT_S = 10.0  # for a worker to end by itself
 
 
 class Lost(NamedTuple):
-    """A job that no worker lived through."""
+    """A job over which every worker died."""
 
     number: int
     sentence: str
 
 
 class _Worker:
-    """A process with its pipe and what it does."""
+    """A process with its pipe and its current job."""
 
     def __init__(self, options: ScenarioOptions, output: Path) -> None:
-        context = multiprocessing.get_context("spawn")  # a forked copy of the client's threads would not run
-        self.connection, theirs = context.Pipe()
-        self.process = context.Process(target=work, args=(theirs, options, output), daemon=True)
-        self.process.start()
+        self.connection, theirs = multiprocessing.Pipe()
+        # not multiprocessing's "spawn": it would run a user's script again, unless that guards its main part
+        self.process = subprocess.Popen(  # noqa: S603 - our own module
+            worker_command(theirs.fileno()), stdin=subprocess.DEVNULL, pass_fds=[theirs.fileno()]
+        )
         theirs.close()
         self.job: Job | None = None
         self.is_ready = False
+        self._send((options, output))
 
     def give(self, job: Job | None) -> None:
-        """The next job, or None: no more."""
+        """Send the next job; None ends the worker."""
         self.job = job
-        try:
-            self.connection.send(job)
-        except OSError:
-            return  # it is gone, which is seen at its pipe
+        self._send(job)
 
-    def says(self) -> Done | Ready | None:
-        """What it says; None where it is gone.
+    def answer(self) -> Done | Ready | None:
+        """Return its next answer; None where its process has ended.
 
         Raises:
             SimulatorError: it cannot work.
-            RuntimeError: it was gone before it had come into being.
+            RuntimeError: its process ended before it was ready.
         """
         try:
             answer: Done | Ready | Refused = self.connection.recv()
         except (EOFError, OSError):
             if not self.is_ready:
-                raise RuntimeError("a worker's process did not come into being; what it said stands above") from None
+                raise RuntimeError("a worker's process ended before it was ready; its error stands above") from None
             return None
         if isinstance(answer, Refused):
             raise SimulatorError(answer.sentence)
@@ -66,16 +68,26 @@ class _Worker:
         return answer
 
     def end(self) -> None:
-        """Wait until it has ended, and end it where it does not."""
+        """Wait until its process has ended; kill it after ``END_LIMIT_S``."""
         self.connection.close()
-        self.process.join(GOING_S)
-        if self.process.is_alive():
+        try:
+            self.process.wait(END_LIMIT_S)
+        except subprocess.TimeoutExpired:
             self.process.kill()
-            self.process.join()
+            self.process.wait()
+
+    def _send(self, message: object) -> None:
+        with contextlib.suppress(OSError):  # the process has ended, which its pipe shows
+            self.connection.send(message)
 
 
-class Crew:
-    """The workers of one command. ``play`` once, ``end`` in every case."""
+def worker_command(descriptor: int) -> list[str]:
+    """The command that starts a worker, which inherits its end of the pipe as ``descriptor``."""
+    return [sys.executable, "-c", f"from {main.__module__} import main; main()", str(descriptor)]
+
+
+class WorkerPool:
+    """The workers of one command. Call ``play`` once, and ``end`` in every case."""
 
     def __init__(self, options: ScenarioOptions, output: Path, jobs: Sequence[Job]) -> None:
         self._options, self._output = options, output
@@ -88,49 +100,49 @@ class Crew:
 
         Raises:
             SimulatorError: a worker cannot work.
-            RuntimeError: a worker's process does not come into being, which is a bug of ours.
+            RuntimeError: a worker's process ends before it is ready, which is a bug of ours.
         """
         for _ in range(min(self._options.workers, len(self._waiting))):
-            self._employ()
+            self._add()
         while self._workers:
             for connection in wait(list(self._workers)):
                 worker = self._workers[connection]
-                answer = worker.says()
+                answer = worker.answer()
                 if isinstance(answer, Ready):
                     continue
                 if answer is not None:
                     worker.job = None
                     yield answer
-                    if not answer.leaves:
+                    if not answer.ends_worker:
                         self._give(worker)
                         continue
-                lost = self._dismiss(worker)
+                lost = self._remove(worker)
                 if lost is not None:
                     yield lost
                 if self._waiting:
-                    self._employ()
+                    self._add()
 
     def end(self) -> None:
-        """End whoever still works."""
+        """Kill the workers that are left."""
         for worker in list(self._workers.values()):
             worker.process.kill()
             worker.end()
 
-    def _employ(self) -> None:
-        """One worker more."""
+    def _add(self) -> None:
+        """Start a worker."""
         worker = _Worker(self._options, self._output)
         self._workers[worker.connection] = worker
         self._give(worker)
 
     def _give(self, worker: _Worker) -> None:
-        """The next job, or the word that there is none."""
+        """Send the next job, or None where there is none left."""
         job = self._waiting.popleft() if self._waiting else None
         if job is not None:
             self._attempts[job.number] += 1
         worker.give(job)
 
-    def _dismiss(self, worker: _Worker) -> Lost | None:
-        """See a worker off; the job that it died over is tried once more, and then lost."""
+    def _remove(self, worker: _Worker) -> Lost | None:
+        """Remove a worker that has ended; a job that it died over is tried once more, and then lost."""
         del self._workers[worker.connection]
         worker.end()
         job = worker.job
@@ -140,5 +152,5 @@ class Crew:
             self._waiting.appendleft(job)
             return None
         return Lost(
-            job.number, f"the process that played it died {ATTEMPTS} times (exit status {worker.process.exitcode})"
+            job.number, f"the process that played it died {ATTEMPTS} times (exit status {worker.process.returncode})"
         )

@@ -1,0 +1,188 @@
+"""The world of an episode: its town with lanes, its clock, its weather, and the vehicle under test at the start."""
+
+from __future__ import annotations
+
+import contextlib
+import difflib
+from typing import TYPE_CHECKING, NamedTuple
+
+import carla
+
+from basu.errors import SimulatorError, UserError
+from basu.routing import lane_graph
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from basu.routing import Route
+    from basu.routing.lane_graph import LaneGraph
+    from basu.simulator import Simulator
+
+ROLE = "hero"  # as the leaderboard and CARLA's replayer call the vehicle under test
+DROP_M = 0.3  # above the road, so that no wheel begins inside of it
+SETTLE_TICKS = 20  # from the drop to rest
+
+
+@contextlib.contextmanager
+def asking(what: str) -> Iterator[None]:
+    """Turn the errors of the client into the simulator's failure at ``what``.
+
+    Raises:
+        SimulatorError: the client raised what the simulator said.
+    """
+    try:
+        yield
+    except RuntimeError as error:
+        raise SimulatorError(f"the simulator failed at {what}: {error}") from error
+
+
+class Town(NamedTuple):
+    """A town's map and its lanes. The client takes 0.4 s to read the map of Linden again, as long as a short drive."""
+
+    carla_map: carla.Map
+    lanes: LaneGraph
+    streets_m: list[NDArray[np.float64]]  # the lanes' centre lines, (K, 2) each
+
+
+class Towns:
+    """The towns of one simulator. Each is read once, where no other program can change it meanwhile."""
+
+    def __init__(self, simulator: Simulator) -> None:
+        """Ask the simulator for the names of its towns.
+
+        Raises:
+            SimulatorError: it does not answer.
+        """
+        self._simulator = simulator
+        with asking("naming its towns"):
+            self.names = towns_of(simulator.client)
+        self._read: dict[str, Town] = {}
+        self._loaded: str | None = None  # the town that we have loaded last
+        self._lanes: dict[str, tuple[LaneGraph, list[NDArray[np.float64]]]] = {}  # by OpenDRIVE text
+
+    def load(self, name: str, *, reload: bool | None = None) -> tuple[carla.World, Town]:
+        """Return the world with the town ``name`` in it, and the town.
+
+        ``reload`` begins the world anew. By default a simulator of our own does so from its second episode on, and
+        another one never does: its world may hold other programs' actors.
+
+        Raises:
+            SimulatorError: the simulator does not load it.
+        """
+        client, own = self._simulator.client, self._simulator.own
+        again = reload if reload is not None else own and self._loaded is not None
+        with asking(f"loading {name}"):
+            if again:
+                client.reload_world(reset_settings=False)
+            known = self._loaded == name and (own or again)
+            world = client.get_world() if known else world_of(client, name)
+            self._loaded = name
+            if not known or name not in self._read:
+                self._read[name] = self._town(world.get_map())
+        return world, self._read[name]
+
+    def _town(self, carla_map: carla.Map) -> Town:
+        """The lanes of a map; two maps with one OpenDRIVE text share them."""
+        text = carla_map.to_opendrive()
+        if text not in self._lanes:
+            lanes = lane_graph.build(carla_map)
+            self._lanes[text] = (lanes, lanes.streets())
+        return Town(carla_map, *self._lanes[text])
+
+
+def check_towns(names: frozenset[str], wanted: Iterable[str]) -> None:
+    """Check that a simulator with the towns ``names`` has all ``wanted``, before an episode begins in one of them.
+
+    Raises:
+        UserError: it lacks one.
+    """
+    missing = sorted(set(wanted) - names)
+    if missing:
+        where = f"the route is in {missing[0]}" if len(missing) == 1 else f"routes are in {', '.join(missing)}"
+        raise UserError(
+            f"{where}, which this simulator does not have; it has {', '.join(sorted(names))}: "
+            "name another file with --routes, or choose routes with --routes-subset"
+        )
+
+
+def towns_of(client: carla.Client) -> frozenset[str]:
+    """The towns that a simulator has, the loaded one among them."""
+    return frozenset({_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())})
+
+
+def world_of(client: carla.Client, town: str) -> carla.World:
+    """The world with ``town`` in it, loaded where another one is."""
+    world = client.get_world()
+    return world if _short(world.get_map().name) == town else client.load_world(town, reset_settings=False)
+
+
+def _short(map_name: str) -> str:
+    """The last part of a map's name: `Linden` of `Carla/Maps/Linden`."""
+    return map_name.rsplit("/", maxsplit=1)[-1]
+
+
+@contextlib.contextmanager
+def ticked_by_us(world: carla.World, step_s: float) -> Iterator[None]:
+    """Set synchronous mode with a fixed step; the settings that were there before come back afterwards."""
+    before = world.get_settings()
+    settings = world.get_settings()
+    settings.synchronous_mode = True
+    settings.fixed_delta_seconds = step_s
+    world.apply_settings(settings)
+    try:
+        yield
+    finally:
+        with contextlib.suppress(RuntimeError):  # where the simulator is gone, so are its settings
+            world.apply_settings(before)
+
+
+def weather_called(name: str) -> carla.WeatherParameters:
+    """One of CARLA's presets by its name.
+
+    Raises:
+        UserError: there is none of that name.
+    """
+    presets = {
+        key: value for key, value in vars(carla.WeatherParameters).items() if isinstance(value, carla.WeatherParameters)
+    }
+    if name not in presets:
+        raise UserError(f"there is no weather called '{name}'; there are {', '.join(sorted(presets))}")
+    return presets[name]
+
+
+@contextlib.contextmanager
+def vehicle_at_start(world: carla.World, route: Route, blueprint_id: str) -> Iterator[carla.Vehicle]:
+    """The vehicle at rest at the first point of ``route``; destroyed afterwards.
+
+    Raises:
+        UserError: there is no such vehicle, or the place is taken.
+    """
+    blueprint = _blueprint(world.get_blueprint_library(), blueprint_id)
+    blueprint.set_attribute("role_name", ROLE)
+    pose = route.waypoints[0].transform
+    pose.location.z += DROP_M
+    try:
+        vehicle = world.spawn_actor(blueprint, pose)
+    except RuntimeError as error:
+        raise UserError(f"{blueprint_id} cannot be put at the beginning of route '{route.id}': {error}") from error
+    try:
+        vehicle.apply_control(carla.VehicleControl(brake=1.0))
+        for _ in range(SETTLE_TICKS):
+            world.tick()
+        yield vehicle
+    finally:
+        with contextlib.suppress(RuntimeError):  # where the simulator is gone, so is the vehicle
+            vehicle.destroy()
+
+
+def _blueprint(library: carla.BlueprintLibrary, blueprint_id: str) -> carla.ActorBlueprint:
+    """A vehicle's blueprint by its whole id."""
+    known = [blueprint.id for blueprint in library.filter("vehicle.*")]
+    if blueprint_id not in known:
+        close = difflib.get_close_matches(blueprint_id, known, 1)
+        hint = f"did you mean '{close[0]}'?" if close else f"it has {', '.join(sorted(known))}"
+        raise UserError(f"the simulator has no vehicle '{blueprint_id}'; {hint}")
+    return library.find(blueprint_id)

@@ -1,0 +1,293 @@
+"""A gymnasium environment on the benchmark's own episode.
+
+After ``import basu.gym``, ``gymnasium.make("basu/Linden-v0")`` makes one.
+
+Action, ``Box(2)`` in -1..1: ``[pedals, steer]``. Positive pedals are the throttle, negative ones the brake; positive
+steer turns right. One step is 0.05 s of simulated time.
+
+Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to the right; m, m/s, rad):
+
+- ``ego`` (6,): speed; acceleration forward, m/s²; yaw rate, clockwise; offset from the route, positive to the right;
+  heading less the route's; posted limit, 0 where there is none.
+- ``route`` (10, 2): x, y of the route's points 5, 10, ..., 50 m ahead; the last point again behind its end.
+- ``others`` (8, 6): the nearest vehicles, walkers and things on the road within 60 m, nearest first: 1, x, y, heading
+  less ours, velocity x, y. Rows of zeros where there are fewer.
+
+The values are clipped to the boxes' bounds. Reward: see ``Reward``. ``terminated`` on arrival, on leaving the route, on
+standing still for too long, and at a scenario's end; ``truncated`` when the simulated time is used up. ``info`` has
+``route_s_m``, ``infractions`` (new in this step), and with the last step ``outcome`` and ``message``.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import weakref
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import carla
+import numpy as np
+
+from basu.agents.config import AgentConfig
+from basu.episode import Episode, EpisodeSpec, Towns, case_spec
+from basu.episode.world import weather_called
+from basu.errors import UserError
+from basu.options import STEP_S, RunOptions, Traffic
+from basu.outcome import Status
+from basu.routing.route_file import read_routes
+from basu.scenarios.cases import by_id
+from basu.scenarios.on_way import scenarios_on
+from basu.simulator import simulator_for
+from basu.utils.packaged import find
+
+try:
+    import gymnasium
+except ImportError as error:
+    raise UserError("basu.gym needs gymnasium; install it with `pip install linden[gym]`") from error
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from basu.episode import Observation, Step
+    from basu.outcome import Outcome
+    from basu.simulator import Simulator
+
+PREVIEW_POINTS, PREVIEW_M = 10, 5.0  # of the route ahead, and between them
+OTHERS = 8  # road users in an observation
+FASTEST_MPS, HARDEST_MPS2, FASTEST_TURN_RADPS = 40.0, 20.0, 4.0  # bounds of the boxes, beyond any shuttle's
+FARTHEST_M = 60.0  # likewise, of places
+TRUNCATED = frozenset({Status.ROUTE_TIMEOUT, Status.SCENARIO_TIMEOUT})
+FAILED = frozenset({Status.ROUTE_DEVIATION, Status.ROUTE_BLOCKED})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reward:
+    """What a step is worth: the sum of these."""
+
+    progress: float = 0.1  # for a metre along the route
+    time: float = -0.01  # for a second
+    infraction: float = -10.0  # for an infraction of the thesis's: collisions, lights, stop signs, speeding
+    arrival: float = 10.0  # for the end of the route
+    failure: float = -10.0  # for leaving the route, or standing still for too long
+
+
+class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.float32]"]):
+    """One vehicle on a route of Linden, or in one case of a scenario. The module's docstring has shapes and units."""
+
+    metadata: dict[str, Any] = {"render_modes": [], "render_fps": round(1.0 / STEP_S)}  # noqa: RUF012 - as the base has it
+
+    def __init__(
+        self,
+        *,
+        routes: str = "routes/linden_short.xml",
+        route_id: str | None = None,
+        case: str | None = None,
+        vehicle: str | None = None,
+        vehicles: int = 0,
+        walkers: int = 0,
+        weather: str = "ClearNoon",
+        with_scenarios: bool = True,
+        reward: Reward | None = None,
+        host: str | None = None,
+        port: int = 2000,
+        timeout_s: float = 20.0,
+        render_mode: str | None = None,
+    ) -> None:
+        """Start a simulator, or connect to the one at ``host``. ``case`` names a scenario's case in place of a route.
+
+        Raises:
+            UserError: there is no such route, case, vehicle or weather.
+            SimulatorError: there is no simulator.
+        """
+        if render_mode is not None:
+            raise UserError(f"there is no render mode '{render_mode}'; read the record, or watch with a CARLA client")
+        self.render_mode = None
+        self._reward = Reward() if reward is None else reward
+        options = RunOptions(host=host, port=port, timeout_s=timeout_s)
+        if case is not None:
+            self._spec = case_spec(by_id(case), vehicle=vehicle, timeout_s=timeout_s)
+        else:
+            self._spec = _route_spec(
+                routes, route_id, vehicle, Traffic(vehicles, walkers), weather, timeout_s, with_scenarios=with_scenarios
+            )
+        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
+        self.observation_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Dict({**_boxes()})
+        self._resources = contextlib.ExitStack()
+        simulator: Simulator = self._resources.enter_context(simulator_for(options))
+        self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
+        self._resources.callback(self.episode.close)
+        weakref.finalize(self, self._resources.close)  # also where close() is forgotten
+        self._s_m = 0.0
+        self._infractions = 0
+
+    def reset(
+        self,
+        *,
+        seed: int | None = None,
+        options: dict[str, Any] | None = None,  # noqa: ARG002 - gymnasium's signature
+    ) -> tuple[dict[str, NDArray[np.float32]], dict[str, Any]]:
+        """Begin an episode; all that is random in it comes from ``seed``, or from the last seed that was given.
+
+        Raises:
+            SimulatorError: the simulator failed.
+        """
+        super().reset(seed=seed)
+        drawn = seed if seed is not None else int(self.np_random.integers(2**31))
+        seen = self.episode.reset(drawn)
+        self._preview = _Preview(self.episode)
+        self._s_m, self._infractions = seen.progress.s_m, 0
+        return self._preview.of(seen), {"route_s_m": seen.progress.s_m, "infractions": ()}
+
+    def step(
+        self, action: NDArray[np.float32]
+    ) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
+        """Drive for 0.05 s.
+
+        Raises:
+            SimulatorError: the simulator failed.
+        """
+        pedals, steer = (float(value) for value in action)
+        control = carla.VehicleControl(throttle=max(0.0, pedals), brake=max(0.0, -pedals), steer=steer)
+        done = self.episode.step(control)
+        if done.outcome is None and done.ending is not None:  # the vehicle has arrived: its last frame is recorded
+            done = self.episode.step(control)
+        return self._answer(done)
+
+    def _answer(self, done: Step) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
+        """Observation, reward, terminated, truncated, info."""
+        seen, outcome = done.observation, done.outcome
+        found = self.episode.metrics.infractions_so_far()
+        new, self._infractions = found[self._infractions :], len(found)
+        reward = self._worth(seen.progress.s_m - self._s_m, len(new), outcome)
+        self._s_m = seen.progress.s_m
+        info: dict[str, Any] = {"route_s_m": self._s_m, "infractions": new}
+        if outcome is not None:
+            info |= {"outcome": outcome.status.value, "message": outcome.message}
+        truncated = outcome is not None and outcome.status in TRUNCATED
+        return self._preview.of(seen), reward, outcome is not None and not truncated, truncated, info
+
+    def _worth(self, driven_m: float, infractions: int, outcome: Outcome | None) -> float:
+        """The reward of a step."""
+        worth = self._reward
+        total = worth.progress * driven_m + worth.time * STEP_S + worth.infraction * infractions
+        if outcome is not None and outcome.status is Status.COMPLETED:
+            total += worth.arrival
+        if outcome is not None and outcome.status in FAILED:
+            total += worth.failure
+        return total
+
+    def close(self) -> None:
+        """End the episode, and the simulator where it is ours."""
+        self._resources.close()
+
+
+class _Preview:
+    """Turns frames of one episode into observations."""
+
+    def __init__(self, episode: Episode) -> None:
+        self.episode = episode
+        route = episode.run.route
+        self._s_m, self._xy_m = route.s_m, route.points_m[:, :2]
+        self._yaw_rad = np.unwrap(route.yaw_rad)
+        self._ahead_m = PREVIEW_M * np.arange(1, PREVIEW_POINTS + 1)
+        self._boxes = _boxes()
+
+    def of(self, seen: Observation) -> dict[str, NDArray[np.float32]]:
+        """The observation of a frame."""
+        ego = seen.frame.ego
+        cos, sin = math.cos(ego.yaw_rad), math.sin(ego.yaw_rad)
+        to_vehicle = np.array([[cos, -sin], [sin, cos]])  # world vector @ this = forward, right
+        s_m = seen.progress.s_m + self._ahead_m
+        ahead = np.column_stack([np.interp(s_m, self._s_m, self._xy_m[:, axis]) for axis in (0, 1)])
+        heading = math.remainder(ego.yaw_rad - float(np.interp(seen.progress.s_m, self._s_m, self._yaw_rad)), math.tau)
+        forward_mps2 = ego.acceleration_x_mps2 * cos + ego.acceleration_y_mps2 * sin
+        limit_mps = self.episode.run.vehicle.get_speed_limit() / 3.6
+        state = (
+            ego.speed_mps,
+            forward_mps2,
+            ego.angular_velocity_z_radps,
+            seen.progress.lateral_m,
+            heading,
+            limit_mps,
+        )
+        found = {
+            "ego": np.array(state),
+            "route": (ahead - (ego.x_m, ego.y_m)) @ to_vehicle,
+            "others": self._others(seen, to_vehicle),
+        }
+        return {name: _clipped(values, self._boxes[name]) for name, values in found.items()}
+
+    def _others(self, seen: Observation, to_vehicle: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(8, 6) the nearest road users."""
+        ego, table = seen.frame.ego, np.zeros((OTHERS, 6))
+        rows = self.episode.metrics.others(seen.frame)
+        if rows:
+            given = np.array([row[2:] for row in rows])  # x, y, z, yaw, velocity x, y
+            away_m = np.hypot(given[:, 0] - ego.x_m, given[:, 1] - ego.y_m)
+            given = given[np.argsort(away_m, kind="stable")[:OTHERS]]
+            turned = np.remainder(given[:, 3] - ego.yaw_rad + math.pi, math.tau) - math.pi
+            place = (given[:, :2] - (ego.x_m, ego.y_m)) @ to_vehicle
+            table[: len(given)] = np.column_stack([np.ones(len(given)), place, turned, given[:, 4:6] @ to_vehicle])
+        return table
+
+
+def _clipped(values: NDArray[np.float64], box: gymnasium.spaces.Box) -> NDArray[np.float32]:
+    """The values within the bounds of their box."""
+    clipped: NDArray[np.float32] = np.clip(values.astype(np.float32), box.low, box.high)
+    return clipped
+
+
+def _boxes() -> dict[str, gymnasium.spaces.Box]:
+    """The boxes that the module's docstring describes."""
+    turn, far = math.pi + 1e-3, FARTHEST_M
+    ego = [FASTEST_MPS, HARDEST_MPS2, FASTEST_TURN_RADPS, far, turn, FASTEST_MPS]
+    other = [1.0, far, far, turn, FASTEST_MPS, FASTEST_MPS]
+    return {
+        "ego": _symmetric(np.array(ego)),
+        "route": _symmetric(np.full((PREVIEW_POINTS, 2), far)),
+        "others": _symmetric(np.tile(other, (OTHERS, 1))),
+    }
+
+
+def _symmetric(high: NDArray[np.float64]) -> gymnasium.spaces.Box:
+    return gymnasium.spaces.Box((-high).astype(np.float32), high.astype(np.float32), dtype=np.float32)
+
+
+def _route_spec(
+    routes: str,
+    route_id: str | None,
+    vehicle: str | None,
+    traffic: Traffic,
+    weather: str,
+    timeout_s: float,
+    *,
+    with_scenarios: bool,
+) -> EpisodeSpec:
+    """The episode of one route of a file, the first where none is named.
+
+    Raises:
+        UserError: there is no such route.
+    """
+    found = read_routes(find(routes, "route file"))
+    chosen = [route for route in found if route_id in {None, route.id}]
+    if not chosen:
+        raise UserError(f"{routes} has no route '{route_id}'; it has {', '.join(route.id for route in found)}")
+    usual = AgentConfig()
+    return EpisodeSpec(
+        town=chosen[0].town,
+        route=chosen[0],
+        config=AgentConfig(vehicle=vehicle or usual.vehicle),
+        weather=weather_called(weather),
+        weather_along=chosen[0].weather,
+        traffic=traffic,
+        scenarios=scenarios_on(chosen[0]) if with_scenarios else (),
+        lane_invasions=False,  # no reward reads them
+        timeout_s=timeout_s,
+    )
+
+
+gymnasium.register(id="basu/Linden-v0", entry_point="basu.gym:ShuttleEnv")
+gymnasium.register(
+    id="basu/LindenTraffic-v0", entry_point="basu.gym:ShuttleEnv", kwargs={"vehicles": 20, "walkers": 10}
+)

@@ -1,0 +1,31 @@
+"""Claims about an episode's world: weathers and towns that are not there are refused in sentences."""
+
+from types import SimpleNamespace
+
+import carla
+import pytest
+
+from basu.episode.world import check_towns, towns_of, weather_called
+from basu.errors import UserError
+
+
+def test_a_weather_is_one_of_carlas_presets() -> None:
+    assert weather_called("ClearSunset") == carla.WeatherParameters.ClearSunset
+    with pytest.raises(UserError, match=r"no weather called 'Frogs'; there are .*ClearNoon.*WetSunset"):
+        weather_called("Frogs")
+
+
+class OneTown:
+    """A client of a simulator with a map of its own and one town."""
+
+    def get_world(self) -> SimpleNamespace:
+        return SimpleNamespace(get_map=lambda: SimpleNamespace(name="OpenDriveMap"))
+
+    def get_available_maps(self) -> list[str]:
+        return ["Carla/Maps/Linden"]
+
+
+def test_all_towns_that_are_missing_are_told_at_once() -> None:
+    check_towns(towns_of(OneTown()), ["Linden", "OpenDriveMap", "Linden"])
+    with pytest.raises(UserError, match=r"routes are in Town12, Town13, which .* it has Linden, OpenDriveMap: name"):
+        check_towns(towns_of(OneTown()), ["Town13", "Linden", "Town12", "Town13"])
