@@ -15,7 +15,8 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
 
 The values are clipped to the boxes' bounds. Reward: see ``Reward``. ``terminated`` on arrival, on leaving the route, on
 standing still for too long, and at a scenario's end; ``truncated`` when the simulated time is used up. ``info`` has
-``route_s_m``, ``infractions`` (new in this step), and with the last step ``outcome`` and ``message``.
+``route_s_m``, ``infractions`` (new ones, reported and rewarded at every tenth and the last step), and at the end
+``outcome`` and ``message``.
 """
 
 from __future__ import annotations
@@ -50,6 +51,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.episode import Observation, Step
+    from basu.metrics.infraction import Evidence
     from basu.outcome import Outcome
     from basu.simulator import Simulator
 
@@ -57,6 +59,7 @@ PREVIEW_POINTS, PREVIEW_M = 10, 5.0  # of the route ahead, and between them
 OTHERS = 8  # road users in an observation
 FASTEST_MPS, HARDEST_MPS2, FASTEST_TURN_RADPS = 40.0, 20.0, 4.0  # bounds of the boxes, beyond any shuttle's
 FARTHEST_M = 60.0  # likewise, of places
+JUDGED_TICKS = 10  # from one look for infractions to the next, which takes the time of half a step
 TRUNCATED = frozenset({Status.ROUTE_TIMEOUT, Status.SCENARIO_TIMEOUT})
 FAILED = frozenset({Status.ROUTE_DEVIATION, Status.ROUTE_BLOCKED})
 
@@ -157,8 +160,10 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
     def _answer(self, done: Step) -> tuple[dict[str, NDArray[np.float32]], float, bool, bool, dict[str, Any]]:
         """Observation, reward, terminated, truncated, info."""
         seen, outcome = done.observation, done.outcome
-        found = self.episode.metrics.infractions_so_far()
-        new, self._infractions = found[self._infractions :], len(found)
+        new: tuple[Evidence, ...] = ()
+        if outcome is not None or seen.frame.tick % JUDGED_TICKS == 0:
+            found = self.episode.metrics.infractions_so_far()
+            new, self._infractions = found[self._infractions :], len(found)
         reward = self._worth(seen.progress.s_m - self._s_m, len(new), outcome)
         self._s_m = seen.progress.s_m
         info: dict[str, Any] = {"route_s_m": self._s_m, "infractions": new}
