@@ -1,6 +1,7 @@
 """The table that CARLA publishes of its speed, made on our server: vehicles, physics and Traffic Manager off and on.
 
     python benchmarks/speed_table.py [--vehicles 0 1 10 ...] [--ticks 200]
+    python benchmarks/speed_table.py --split --vehicles 50 100 250     # what a tick consists of, from send to return
 
 A client in synchronous mode ticks a world of N vehicles and no sensor. Physics off is ``set_simulate_physics(False)``,
 and hybrid mode without a hero where the Traffic Manager drives, for else it turns physics on. CARLA's figures are those
@@ -12,8 +13,10 @@ fast, could give more ticks, for client and server take turns.
 """
 
 import argparse
+import json
 import os
 import statistics
+import tempfile
 import time
 from pathlib import Path
 from typing import NamedTuple
@@ -98,6 +101,25 @@ def timed(live: Live, world: carla.World, ticks: int) -> Figures:
     )
 
 
+def split(count: int, ticks: int) -> str:
+    """Return the row of a tick's parts in ms, with physics and Traffic Manager."""
+    with tempfile.TemporaryDirectory() as folder:
+        sums = Path(folder) / "sums.json"
+        watched = [str(Path(__file__).with_name("split_server.py")), str(sums), "--port", "0", "--sync"]
+        with server(watched) as live:
+            found = measure(live, count, ticks, physics=True, managed=True)
+            per_tick = json.loads(sums.read_text("utf-8"))
+    each_ms = 1000.0 / per_tick["frames"]
+    frame_ms, sensors_ms, cue_ms = (per_tick[name] * each_ms for name in ("frame_s", "sensors_s", "cue_s"))
+    tick_ms = 1000.0 / found.ticks_per_s
+    rest_ms = max(0.0, tick_ms - found.server_ms - cue_ms)
+    return (
+        f"{count:8}  {found.ticks_per_s:7.0f}  {tick_ms:6.2f}  {frame_ms - sensors_ms:6.2f}  {sensors_ms:7.2f}  "
+        f"{max(0.0, found.server_ms - frame_ms):11.2f}  {cue_ms:5.2f}  {rest_ms:13.2f}  "
+        f"{1000.0 / found.client_ms:7.0f}  {found.ticks_per_s * found.client_ms / 1000.0:8.0%}"
+    )
+
+
 def machine() -> str:
     """Name the processor."""
     lines = Path("/proc/cpuinfo").read_text("utf-8").splitlines()
@@ -109,8 +131,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--vehicles", type=int, nargs="+", default=list(CARLA_FPS))
     parser.add_argument("--ticks", type=int, default=100, help=f"in each of {ROUNDS} rounds (default: %(default)s)")
+    parser.add_argument("--split", action="store_true", help="print what a tick consists of, Traffic Manager on")
     arguments = parser.parse_args()
     print(f"{machine()}; other load of the last minute: {os.getloadavg()[0]:.1f}")
+    if arguments.split:
+        print("                    ms a tick")
+        print("vehicles  ticks/s  whole   frame  sensors  other calls    cue  client, socket  limit/s  of limit")
+        for count in arguments.vehicles:
+            print(split(count, arguments.ticks), flush=True)
+        return
     print("                                          ms of processor a tick    us of server")
     print("vehicles  physics   TM  ticks/s  CARLA  times  client  server   limit/s  a vehicle")
     for physics, managed in COLUMNS:

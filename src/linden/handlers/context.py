@@ -4,7 +4,7 @@ import logging
 import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from linden.handlers.complaints import Complaints
 from linden.navigation.library import MeshLibrary
@@ -28,6 +28,14 @@ class Frames(Protocol):
         ...
 
 
+class PendingLoad(NamedTuple):
+    """An episode that begins with the next call or frame, once the client that loads it knows the present one."""
+
+    begin: Callable[[], None]
+    client: int
+    """Number of the connection that loads."""
+
+
 @dataclass(slots=True)
 class Context:
     """One server's state as its handlers see it."""
@@ -45,6 +53,8 @@ class Context:
     """Number of the connection whose call is being served."""
     traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
+    pending_load: PendingLoad | None = None
+    """The load that has been answered and has not begun; see ``handlers.session.load_new_episode``."""
     frame_is_due: bool = False
     """Whether asynchronous mode's next frame shall not wait for the clock."""
     complaints: Complaints = field(default_factory=Complaints)
@@ -59,6 +69,12 @@ class Context:
             self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.simulation)))
         self.outbox.extend(self.frames.sensor_payloads(self.simulation, listened))
         return self.simulation.frame
+
+    def begin_pending_load(self) -> None:
+        """Begin the episode that a load has been answered for, if there is one."""
+        pending, self.pending_load = self.pending_load, None
+        if pending is not None:
+            pending.begin()
 
     def builds_the_scene(self) -> bool:
         """Whether what sensors look at is being built."""

@@ -121,9 +121,11 @@ def load_handlers() -> None:
 
 
 def advances(call: Call) -> bool:
-    """Whether a call may make frames."""
+    """Whether a call may make frames; a batch does where its last argument says so."""
     found = METHODS.get(call.method)
-    return found is not None and found.advances
+    if found is None or not found.advances:
+        return False
+    return call.method != "apply_batch" or call.args[-1:] != [False]
 
 
 class Unanswered:

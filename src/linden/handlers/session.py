@@ -4,16 +4,19 @@ Source of names and meanings: LibCarla 0.9.16 and ``CarlaServer.cpp``.
 """
 
 import logging
+from functools import partial
 from typing import NamedTuple
 
 from linden import CARLA_VERSION
 from linden.errors import Refusal
-from linden.handlers.context import Context
+from linden.handlers.context import Context, PendingLoad
 from linden.handlers.registry import Long, method
+from linden.simulation import Simulation
 from linden.values.enums import MapLayer
 from linden.values.episode import EpisodeSettings, MapInfo, OpendriveGenerationParameters
 from linden.wire.decode import U16, U32
 from linden.wire.stream import WORLD_OBSERVER_ID, Token
+from linden.world.maps import LoadedMap
 
 log = logging.getLogger("linden")
 
@@ -42,7 +45,12 @@ def get_available_maps(context: Context) -> list[str]:
 
 @method("load_new_episode")
 def load_new_episode(context: Context, name: str, reset_settings: bool, layers: U16) -> Long[None]:  # noqa: FBT001 - the wire's order
-    """Begin a new episode on a map, with some of its layers; an empty name is the map that is loaded now."""
+    """Begin a new episode on a map, with some of its layers; an empty name is the map that is loaded now.
+
+    The answer goes out first, and the episode begins with the next call or frame. LibCarla's ``LoadEpisode`` then makes
+    a new ``Episode`` by ``get_episode_info`` and resets its Traffic Managers only when a snapshot has another id than
+    that one: it must learn the id of the episode before. In CARLA it does, because a load takes seconds.
+    """
     simulation, maps = context.simulation, context.maps
     wanted = name or simulation.map_name
     ready = maps.ready(wanted)
@@ -51,6 +59,11 @@ def load_new_episode(context: Context, name: str, reset_settings: bool, layers: 
         maps.keep(ready)
     if ready is not simulation.episode.map:
         yield lambda: simulation.prepare(ready)
+    context.begin_pending_load()
+    context.pending_load = PendingLoad(partial(_begin, simulation, ready, reset_settings, layers), context.caller)
+
+
+def _begin(simulation: Simulation, ready: LoadedMap, reset_settings: bool, layers: int) -> None:  # noqa: FBT001
     simulation.load(ready, reset_settings=reset_settings)
     if layers != MapLayer.ALL:
         simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)
@@ -143,6 +156,8 @@ def destroy_traffic_manager(context: Context, port: U16) -> bool:
 
 def client_left(context: Context, connection: int) -> None:
     """Forget what only a client that has gone could have served: its Traffic Managers."""
+    if context.pending_load is not None and context.pending_load.client == connection:
+        context.begin_pending_load()
     gone = [port for port, (_, owner) in context.traffic_managers.items() if owner == connection]
     for port in gone:
         del context.traffic_managers[port]

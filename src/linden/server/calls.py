@@ -9,8 +9,10 @@ from linden.errors import ProtocolError
 from linden.handlers import registry
 from linden.handlers.context import Context
 from linden.handlers.registry import Unanswered
-from linden.server.cue import QUESTION, TICK, Cue, hear_question
+from linden.server.cue import QUESTION, TICK, Cue, bring_question_forward
+from linden.server.driven import BATCH, DESTROY, Driven
 from linden.server.expected import Expected
+from linden.server.handover import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
 from linden.server.subscribers import Subscribers
 from linden.wire.rpc import Call
@@ -28,8 +30,22 @@ SCENE_S = 0.8
 picture waits a little, rather than the tick all the time. CARLA's examples give a call two seconds, and two may
 stand in line, the Traffic Manager's behind the program's own."""
 
+OF_TRAFFIC = frozenset(
+    (
+        QUESTION,
+        "get_actor_bounding_box",
+        "get_vehicle_light_states",
+        "get_weather_parameters",
+        "set_actor_simulate_physics",
+        "get_traffic_light_state",
+        "set_traffic_light_state",
+    )
+)
+"""What a Traffic Manager's thread calls in a step, but for its batch."""
 ABOUT_TO_LISTEN = "get_sensor_token"
 LOAD = "load_new_episode"
+LOADING_S = 0.5
+"""How long an answered load waits for its client to ask which episode there is."""
 JOINING_S = 0.05
 """What the official client needs from beginning to listen until it may stop again. It drops its stream when it loads an
 episode, and a busy client that had asked for that stream just before ends its own process with ``bad_weak_ptr``:
@@ -70,7 +86,10 @@ class Calls:
         self.joined_s = -math.inf
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
+        self._driven: dict[RpcPeer, Driven] = {}  # of those too
         self._working: dict[RpcPeer, Unanswered] = {}  # whose call has work in the background
+        self._handovers: dict[RpcPeer, Handover] = {}  # of loads by those who run a Traffic Manager
+        self._load_until_s = math.inf  # when a pending load begins in any case
         self._held: dict[RpcPeer, tuple[bytes, float]] = {}  # answers that wait for the scene, and until when
 
     def forget(self, peer: RpcPeer) -> None:
@@ -78,8 +97,10 @@ class Calls:
         peer.calls.clear()
         self.unfinished.pop(peer, None)
         self._cues.pop(peer, None)
+        self._driven.pop(peer, None)
         self._working.pop(peer, None)  # what it asked for is made, and nobody gets it
         self._held.pop(peer, None)
+        self._handovers.pop(peer, None)
         self.expected.forget(peer.number)
 
     def carry_out(self, peer: RpcPeer) -> None:
@@ -92,7 +113,7 @@ class Calls:
         unsent_bytes = 0
         try:
             while peer.calls and len(answers) < CALLS_PER_TURN and not self.must_wait(peer, unsent_bytes):
-                if peer.calls[0].method in (QUESTION, TICK) and self._leads_traffic(peer):
+                if self._keeps_order(peer):
                     self._keep_order(peer, answers)
                 elif (answer := self._answer(peer)) is not None:
                     answers.append(answer)
@@ -113,12 +134,14 @@ class Calls:
             return
         self._watch(peer)
 
-    def _leads_traffic(self, peer: RpcPeer) -> bool:
-        owners = self._context.traffic_managers.values()
-        return self.is_synchronous() and any(owner == peer.number for _, owner in owners)
+    def _keeps_order(self, peer: RpcPeer) -> bool:
+        """Return whether a client's next call is a tick that waits, or a tick or question of one that leads traffic."""
+        if self._waiting_tick(peer) is not None:
+            return True
+        return peer.calls[0].method in (QUESTION, TICK) and self.is_synchronous() and self._traffic_managers(peer) > 0
 
     def _keep_order(self, peer: RpcPeer, answers: list[bytes]) -> None:
-        """Carry out a tick, or the question before it, of a client that runs a Traffic Manager; see ``server.cue``.
+        """Go on with a tick, or the question before it, of a client that runs a Traffic Manager; see ``server.cue``.
 
         Raises:
             OSError: the client is gone.
@@ -127,15 +150,20 @@ class Calls:
             peer.outgoing.send(b"".join(answers))
             answers.clear()
         cue = self._cues.setdefault(peer, Cue())
-        if peer.calls[0].method == TICK:
-            if cue.answered_s is None and hear_question(peer, self._clock):
-                return
-            cue.settle(self._clock)
-            if (answer := self._answer(peer)) is not None:
-                answers.append(answer)
+        is_question = bring_question_forward(peer) or peer.calls[0].method == QUESTION
+        if cue.tick and not is_question:
+            answers.append(self._done(peer, cue.finish()))
         elif (answer := self._answer(peer)) is not None:
-            peer.outgoing.send(answer)
-            cue.answered(self._clock())
+            if is_question:
+                peer.outgoing.send(answer)
+                cue.answered(self._clock())
+            else:
+                answers.append(answer)
+
+    def _waiting_tick(self, peer: RpcPeer) -> Cue | None:
+        """Return the cue that a client's tick waits for; None where its next call is no tick that is carried out."""
+        cue = self._cues.get(peer)
+        return cue if cue is not None and cue.tick else None
 
     def _answer(self, peer: RpcPeer) -> bytes | None:
         """Carry out a client's next call, or go on with it; None where the answer is not there yet.
@@ -144,6 +172,8 @@ class Calls:
         """
         if peer in self._held:
             return self._done(peer, self._held.pop(peer)[0])
+        if peer in self._handovers and (load := self._hand_over(peer)) is not None:
+            return load
         self._context.caller = peer.number
         frame, call = self._context.simulation.frame, peer.calls[0]
         if peer in self._working:
@@ -158,17 +188,107 @@ class Calls:
             self._working[peer] = answer
             answer.made.add_done_callback(lambda _: self._wake())
             return None
-        if not call.is_async and not registry.advances(call) and self._context.builds_the_scene():
-            self._held[peer] = answer, self._clock() + SCENE_S
+        if self._keep(peer, call, answer):
             return None
-        return self._done(peer, answer)
+        self._done(peer, answer)
+        return answer if not self._traffic_managers(peer) else self._with_driven(peer, call, answer)
+
+    def _with_driven(self, peer: RpcPeer, call: Call, answer: bytes) -> bytes | None:
+        """Return what is to be sent for a call of a client that runs Traffic Managers; see ``server.driven``."""
+        simulation = self._context.simulation
+        if call.method == BATCH and call.args:
+            ready = self._driven.setdefault(peer, Driven()).batch(call.args[0], simulation.frame)
+            return b"".join((answer, *ready))
+        if call.method != DESTROY or peer not in self._driven or call.is_async or not call.args:
+            return answer
+        frames_come = not self.is_synchronous() and not self._context.waits_for_the_scene()
+        waits = self._driven[peer].destroyed(
+            call.args[0], answer, self._clock(), simulation.frame, frames_come=frames_come
+        )
+        self._context.frame_is_due |= waits
+        return None if waits else answer
+
+    def send_overdue(self) -> None:
+        """Send the answers to destructions that no Traffic Manager has confirmed in time."""
+        now_s = self._clock()
+        for peer, driven in list(self._driven.items()):
+            if ready := driven.overdue(now_s):
+                try:
+                    peer.outgoing.send(b"".join(ready))
+                except OSError as error:
+                    log.info("%s is gone: %s", peer, error)
+                    self._close(peer)
+                    continue
+                self._watch(peer)
+
+    def _keep(self, peer: RpcPeer, call: Call, answer: bytes) -> bool:
+        """Return whether an answer has to wait, and keep it where it has."""
+        now_s = self._clock()
+        if call.method == TICK and self._keeps_order(peer):
+            self._cues[peer].ticked(answer, now_s)
+        elif call.method == LOAD and (threads := self._traffic_managers(peer)):
+            self._handovers[peer] = Handover(answer, threads, now_s + GATHERING_S)
+        elif self._leads_to_a_picture(peer, call) and self._context.builds_the_scene():
+            self._held[peer] = answer, now_s + SCENE_S
+        else:
+            return False
+        return True
+
+    def _leads_to_a_picture(self, peer: RpcPeer, call: Call) -> bool:
+        """Return whether an answer may wait for the scene.
+
+        A Traffic Manager's calls may not: its first step makes two for each car, and would take seconds. Cars that are
+        destroyed meanwhile end the client's process.
+        """
+        if call.is_async or registry.advances(call):
+            return False
+        if not self._traffic_managers(peer):
+            return True
+        return self.is_synchronous() and call.method not in OF_TRAFFIC
 
     def _prepare(self, peer: RpcPeer, call: Call) -> None:
         """Note what follows from a call before it is carried out."""
+        self._begin_load_before(peer, call)
         if call.method == LOAD:
             time.sleep(max(0.0, self.joined_s + JOINING_S - self._clock()))
+            self._load_until_s = math.inf
         if call.method == ABOUT_TO_LISTEN and call.args and self._is_stream(call.args[0]):
             self.expected.asked(call.args[0], peer.number, self._clock())
+
+    def _begin_load_before(self, peer: RpcPeer, call: Call) -> None:
+        """Begin an answered load before a call that has to find the new episode.
+
+        The client that loads asks for the version and the present episode first. Others go on in that episode
+        meanwhile, but not for long.
+        """
+        pending, now_s = self._context.pending_load, self._clock()
+        if pending is None:
+            return
+        is_due = self.load_is_due(now_s)
+        if peer.number != pending.client:
+            if is_due:
+                self._context.begin_pending_load()
+        elif call.method not in OF_A_LOAD:
+            self._context.begin_pending_load()
+        elif call.method == OF_A_LOAD[-1]:
+            self._load_until_s = now_s
+
+    def _hand_over(self, peer: RpcPeer) -> bytes | None:
+        """Return the answer to a load whose time has come, None where the client's next call is to be carried out."""
+        handover = self._handovers[peer]
+        if handover.phase is Phase.GATHERING:
+            return self._done(peer, handover.answered(self._clock()))
+        if handover.phase is Phase.SETTLING or not handover.bring_forward(peer, self._clock()):
+            del self._handovers[peer]
+        return None
+
+    def _traffic_managers(self, peer: RpcPeer) -> int:
+        return sum(owner == peer.number for _, owner in self._context.traffic_managers.values())
+
+    def hears(self, peer: RpcPeer) -> bool:
+        """Return whether to read on from a client although calls of its wait, since what they wait for is a call."""
+        waits = peer in self._handovers or self._waiting_tick(peer) is not None
+        return waits and len(peer.calls) < CALLS_PER_TURN
 
     def _is_stream(self, stream_id: object) -> bool:
         """Whether that is the number of a stream on which something will come."""
@@ -186,15 +306,31 @@ class Calls:
             return not self._working[peer].made.done()
         if peer in self._held:
             return self._context.builds_the_scene() and self._clock() < self._held[peer][1]
+        if peer in self._handovers:
+            return self._handovers[peer].waits(peer, self._clock())
+        if (cue := self._waiting_tick(peer)) is not None:
+            return cue.waits(peer, self._clock())
         return (
             peer.outgoing.waiting_bytes + unsent_bytes > UNREAD_ANSWERS_BYTES
             or self.waits_for_subscribers(peer)
             or (registry.advances(peer.calls[0]) and self._context.waits_for_the_scene())
         )
 
+    def load_is_due(self, now_s: float) -> bool:
+        """Return whether an answered load begins before the next frame that is made by the clock."""
+        if self._context.pending_load is None:
+            return False
+        if self._load_until_s == math.inf:
+            self._load_until_s = now_s + LOADING_S
+        return now_s >= self._load_until_s
+
     def held_s(self, now_s: float) -> float | None:
-        """Return how long the first of the answers that wait for the scene waits at most; None where none does."""
-        return min((max(0.0, until_s - now_s) for _, until_s in self._held.values()), default=None)
+        """Return how long the first of the answers that wait for the scene or a load waits at most; None for none."""
+        until_s = [until_s for _, until_s in self._held.values()]
+        until_s += [handover.until_s for handover in self._handovers.values()]
+        until_s += [one.until_s for driven in self._driven.values() for one in driven.waiting]
+        until_s += [cue.deadline_s for cue in self._cues.values() if cue.tick]
+        return max(0.0, min(until_s) - now_s) if until_s else None
 
     def waits_for_subscribers(self, peer: RpcPeer) -> bool:
         """Whether a client's next call makes a frame, for which somebody who lags behind or comes is not ready."""

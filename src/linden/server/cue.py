@@ -1,15 +1,16 @@
-"""The cue that a Traffic Manager's thread must not miss: its question comes before its client's tick.
+"""The cue that a Traffic Manager's thread must not miss: its question comes before its client's tick is answered.
 
 In synchronous mode that thread of the client asks ``get_episode_settings`` once a step, then sleeps until the thread
 that ticks has its new frame and wakes it. LibCarla 0.9.16 gives this signal without the lock: one that falls between
 the sleeper's last look and its sleep is lost, and both threads wait for each other for ever. CARLA's frames take so
 long that the sleeper is always first. Ours take half a millisecond: without this order, one tick in some thousands hung
 on a busy machine.
+
+The frame is made at once, and shown; only the answer to the tick waits, without which the client wakes no thread. The
+wait is a state of the server's loop: other clients are served meanwhile.
 """
 
-import selectors
-import time
-from collections.abc import Callable
+import math
 from dataclasses import dataclass
 
 from linden.server.peers import RpcPeer
@@ -18,19 +19,49 @@ QUESTION = "get_episode_settings"
 TICK = "tick_cue"
 
 PATIENCE_S = 0.02
-"""How long a tick waits for the question: a busy machine's time slices. Without load it is there before the tick."""
-SETTLING_S = 0.001
-"""What a thread needs from the answer to its sleep, with a margin; the frame's own time comes on top."""
+"""How long a tick's answer waits for the question: a busy machine's time slices. Else it is there before the tick."""
+SETTLING_S = 0.0005
+"""What a thread needs from the answer to its sleep: 0.1 ms, with a margin. The frame's own time is part of it."""
+MOST_LATE = 2
+"""Ticks in a row that waited in vain. Then none waits: the Traffic Manager is not in synchronous mode."""
+TRUSTED_AGAIN = 50
+"""Ticks in a row, each with its question before it, after which ticks wait for the question again."""
 
 
 @dataclass(slots=True)
 class Cue:
-    """How far the Traffic Manager's thread of one client is."""
+    """How far the Traffic Manager's thread of one client is. All times in s of one steady clock."""
 
     answered_s: float | None = None
     """When its question of this step was answered."""
     overdue: bool = False
-    """Whether a tick went ahead without a question: the next one belongs to that past step."""
+    """Whether a tick was answered without a question: the next one belongs to that past step."""
+    tick: bytes = b""
+    """The answer of a tick that is carried out and waits; empty where none does."""
+    until_s: float = -math.inf
+    """Until when that answer waits for the question."""
+    late: int = 0
+    on_time: int = 0
+
+    def ticked(self, answer: bytes, now_s: float) -> None:
+        """Note that the tick is carried out."""
+        self.tick = answer
+        self.until_s = now_s + PATIENCE_S if self.late < MOST_LATE else now_s
+
+    def waits(self, peer: RpcPeer, now_s: float) -> bool:
+        """Return whether there is nothing to do yet but wait; the tick is the first of the client's calls.
+
+        A question is to be answered. The tick is, where the Traffic Manager's thread stands in another call behind it:
+        a Traffic Manager in synchronous mode calls nothing between the end of its step and its question.
+        """
+        behind = [call.method for call in list(peer.calls)[1:] if not call.is_async]
+        has_come = QUESTION in behind if self.answered_s is not None else behind
+        return not has_come and now_s < self.deadline_s
+
+    @property
+    def deadline_s(self) -> float:
+        """When the present wait is over in any case."""
+        return self.until_s if self.answered_s is None else self.answered_s + SETTLING_S
 
     def answered(self, now_s: float) -> None:
         """Note that a question has been answered."""
@@ -39,35 +70,25 @@ class Cue:
         else:
             self.answered_s = now_s
 
-    def settle(self, clock: Callable[[], float]) -> None:
-        """Give the thread the time to go to sleep; the tick comes next."""
-        if self.answered_s is not None:
-            time.sleep(max(0.0, self.answered_s + SETTLING_S - clock()))
+    def finish(self) -> bytes:
+        """Return the tick's answer, for the client, and begin the next step."""
+        answer, self.tick = self.tick, b""
+        if self.answered_s is None:
+            self.overdue, self.on_time = True, 0
+            self.late = min(self.late + 1, MOST_LATE)
         else:
-            self.overdue = True
+            self.on_time += 1
+            if self.late < MOST_LATE or self.on_time >= TRUSTED_AGAIN:
+                self.late = 0
         self.answered_s = None
+        return answer
 
 
-def hear_question(peer: RpcPeer, clock: Callable[[], float]) -> bool:
-    """Read on from a client until its Traffic Manager has asked, and put the question before the waiting tick.
-
-    Returns:
-        Whether the question is there, as the next of the client's calls.
-
-    Raises:
-        OSError: the client is gone.
-    """
-    deadline_s = clock() + PATIENCE_S
-    with selectors.DefaultSelector() as selector:
-        selector.register(peer.socket, selectors.EVENT_READ)
-        while (question := next((call for call in peer.calls if call.method == QUESTION), None)) is None:
-            left_s = deadline_s - clock()
-            if peer.at_end or peer.connection.is_broken or left_s <= 0.0 or not selector.select(left_s):
-                return False
-            data = peer.read()
-            if data:
-                peer.calls.extend(peer.connection.receive(data))
-            peer.at_end = data == b""
+def bring_question_forward(peer: RpcPeer) -> bool:
+    """Put the Traffic Manager's question before the tick that waits; False where it is not there."""
+    question = next((call for call in peer.calls if call.method == QUESTION), None)
+    if question is None:
+        return False
     peer.calls.remove(question)
     peer.calls.appendleft(question)
     return True

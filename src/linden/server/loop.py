@@ -116,6 +116,7 @@ class Server:
             key.data(events)
         for peer in tuple(self._calls.unfinished):
             self._calls.carry_out(peer)
+        self._calls.send_overdue()
         self._make_due_frame()
         self._look_around()
 
@@ -157,7 +158,8 @@ class Server:
 
     def _watch(self, peer: Peer) -> None:
         """Let the selector watch for what can be done with a peer now."""
-        reads = not (isinstance(peer, RpcPeer) and (peer.calls or peer.at_end))
+        busy = isinstance(peer, RpcPeer) and peer.calls and not self._calls.hears(peer)
+        reads = not (busy or (isinstance(peer, RpcPeer) and peer.at_end))
         interest = (_READ if reads else 0) | (_WRITE if peer.outgoing.waiting_bytes else 0)
         if interest == peer.interest:
             return
@@ -258,6 +260,8 @@ class Server:
         if settings.synchronous_mode or waits or self.context.waits_for_the_scene():
             return
         try:
+            if self._calls.load_is_due(now_s):
+                self.context.begin_pending_load()
             self.context.advance()
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
             self.context.own_up(f"{_BUG % 'a frame'}.", error)

@@ -59,6 +59,10 @@ def test_an_opendrive_text_can_be_loaded_once_it_was_sent(context: Context) -> N
         carry_out(session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF))
     carry_out(session.copy_opendrive_to_file(context, EMPTY_MAP, OpendriveGenerationParameters()))
     carry_out(session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF))
+    assert (
+        session.get_map_info(context).name == "Carla/Maps/Plain"
+    )  # answered first: the episode begins with the next call
+    context.begin_pending_load()
     assert session.get_map_info(context).name == "Carla/Maps/OpenDriveMap"
 
 
@@ -103,3 +107,26 @@ def test_a_bug_of_ours_is_logged_however_many_kinds_of_warnings_clients_have_cal
     assert "a walker has no wheels" not in caplog.messages
     context.own_up("internal error in tick_cue")
     assert caplog.messages[-1] == "internal error in tick_cue"
+
+
+def test_a_load_is_answered_before_its_episode_begins(context: Context) -> None:
+    context.caller, before = 7, context.simulation.episode_id
+    carry_out(session.copy_opendrive_to_file(context, EMPTY_MAP, OpendriveGenerationParameters()))
+    carry_out(session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF))
+    assert session.get_episode_info(context).id == before
+    assert context.pending_load is not None
+    assert context.pending_load.client == 7
+    context.begin_pending_load()
+    assert session.get_episode_info(context).id != before
+    context.begin_pending_load()
+    assert context.pending_load is None
+
+
+def test_a_pending_load_begins_where_its_client_leaves(context: Context) -> None:
+    context.caller, before = 7, context.simulation.episode_id
+    carry_out(session.copy_opendrive_to_file(context, EMPTY_MAP, OpendriveGenerationParameters()))
+    carry_out(session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF))
+    session.client_left(context, 8)
+    assert context.simulation.episode_id == before
+    session.client_left(context, 7)
+    assert context.simulation.episode_id != before
