@@ -72,6 +72,8 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop("resume", None)
     if given.get("hud") is None:
         given.pop("hud_screenshot", None)
+    if given.get("in_process"):
+        given.pop("agent_memory_gb", None)  # there is no process whose memory could be limited
     return resolve(model, [Layer(given)])
 
 

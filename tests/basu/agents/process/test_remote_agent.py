@@ -45,6 +45,7 @@ def found(folder: Path, text: str = COMPLETE, **options: Any) -> AgentInProcess:
 
 
 def test_an_agent_is_loaded_elsewhere_and_not_here(tmp_path: Path) -> None:
+    sys.modules.pop("basu_agent_an_agent", None)  # another test of this process may have loaded one of that name
     agent = found(tmp_path)
     assert (agent.name, agent.class_name, agent.is_human) == ("an_agent", "Mine", False)
     assert "basu_agent_an_agent" not in sys.modules
