@@ -3,6 +3,7 @@
 Each client is a process of its own, because what fails here ends the process.
 """
 
+import os
 import socket
 import subprocess
 import sys
@@ -75,6 +76,7 @@ def client(server: RunningServer, mode: str, *loads: str) -> subprocess.Popen[st
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])},  # the program imports the ring map's maker
     )
 
 

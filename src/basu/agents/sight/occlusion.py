@@ -179,7 +179,8 @@ def _rows(world: carla.World, label: str) -> list[tuple[float, ...]]:
     """Return the boxes of one label that are large enough to hide a body."""
     rows: list[tuple[float, ...]] = []
     crown_m = CROWN_HALF_M if label == "Vegetation" else np.inf
-    for box in world.get_level_bbs(getattr(carla.CityObjectLabel, label)):
+    for thing in world.get_environment_objects(getattr(carla.CityObjectLabel, label)):  # without spawned actors
+        box = thing.bounding_box
         at, half = box.location, box.extent
         if max(half.x, half.y) >= LEAST_HALF_M and min(half.x, half.y) < crown_m:
             rows.append((at.x, at.y, at.z, half.x, half.y, half.z, np.radians(box.rotation.yaw)))

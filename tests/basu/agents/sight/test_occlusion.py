@@ -2,6 +2,7 @@
 
 import math
 import random
+from types import SimpleNamespace
 from typing import Any
 
 import carla
@@ -93,12 +94,13 @@ class Town:
     def get_names_of_all_objects(self) -> list[str]:
         return [self.name]
 
-    def get_level_bbs(self, label: Any) -> list[carla.BoundingBox]:
+    def get_environment_objects(self, label: Any) -> list[SimpleNamespace]:
         self.questions += 1
-        return [
+        boxes = [
             carla.BoundingBox(carla.Location(30.0, 0.0, 2.0), carla.Vector3D(*half))
             for half in self.boxes.get(str(label), [])
         ]
+        return [SimpleNamespace(bounding_box=box) for box in boxes]
 
 
 def test_a_town_is_asked_for_its_boxes_once() -> None:

@@ -59,10 +59,12 @@ class World:
     def get_names_of_all_objects(self) -> list[str]:
         return [str(house) for house in self.houses]
 
-    def get_level_bbs(self, label: Any) -> list[carla.BoundingBox]:
+    def get_environment_objects(self, label: Any) -> list[SimpleNamespace]:
         if str(label) != "Buildings":
             return []
-        return [carla.BoundingBox(carla.Location(x, y, 3.0), carla.Vector3D(2.0, 8.0, 3.0)) for x, y in self.houses]
+        half = carla.Vector3D(2.0, 8.0, 3.0)
+        boxes = [carla.BoundingBox(carla.Location(x, y, 3.0), half) for x, y in self.houses]
+        return [SimpleNamespace(bounding_box=box) for box in boxes]
 
 
 def sight_in(world: World, radius_m: float = RADIUS_M, knowledge: Knowledge = Knowledge.SEEN) -> Sight:
