@@ -126,7 +126,11 @@ class OwnServer:
         for reader in self._readers:
             reader.join(LAST_WORDS_S)
         last = f": {self._log[-1]}" if self._log else ""
-        return f"the simulator ended by itself (exit status {code}){last}"
+        if code >= 0:
+            return f"the simulator ended by itself (exit status {code}){last}"
+        name = signal.Signals(-code).name
+        because = " (as the system does when memory runs out)" if -code == signal.SIGKILL else ""
+        return f"the simulator was ended by the signal {name}{because}{last}"
 
     def end(self) -> None:
         """End it; in good order if it lets us."""

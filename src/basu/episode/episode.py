@@ -26,10 +26,12 @@ from basu.errors import (
 from basu.managers.base_manager import BaseManager, Driver, Frame, Live, Run, ego_in
 from basu.managers.conduct import ticked
 from basu.managers.metrics_manager import MetricsManager
+from basu.managers.neighbours import Neighbours
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.traffic_manager import TrafficManager
+from basu.managers.world_changes import WorldChanges, taken_away
 from basu.outcome import Outcome, Status
 from basu.routing import plan
 
@@ -188,6 +190,8 @@ class Episode:
             server_address=self._simulator.address,
             own_simulator=self._simulator.own,
             weather=spec.weather_along,
+            neighbours=Neighbours(world, vehicle.id),
+            changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
         )
         self._prepared = True
 
@@ -255,6 +259,7 @@ class Episode:
         applied = ground.scenarios.through(control)
         managers.metrics.applied(applied)
         run.vehicle.apply_control(applied)
+        run.changes.control = applied
         return Step(self._observe(frame), None, managers.routes.outcome)
 
     def _observe(self, before: Frame | None) -> Observation:
@@ -362,6 +367,9 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
         raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
     if ego is None:
         raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
+    gone = taken_away(run.changes, snapshot)
+    if gone is not None and run.own_simulator:
+        raise AgentCrashedError(f"the agent took {gone} out of the world before frame {snapshot.frame}")
     if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
         raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
+from basu.managers.world_changes import WorldChanges
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from basu.agents.manual.person import Person
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.metrics_manager import MetricsManager
+    from basu.managers.neighbours import Neighbours
     from basu.managers.routes_manager import RoutesManager
     from basu.managers.sensors_manager import SensorsManager
     from basu.routing import Route
@@ -39,6 +42,8 @@ class Run:
     server_address: tuple[str, int] = ("127.0.0.1", 2000)
     weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
     own_simulator: bool = False  # nothing but this run and its agent is connected to it
+    neighbours: Neighbours | None = None  # other actors near the vehicle, shared by record and checks
+    changes: WorldChanges = field(default_factory=WorldChanges)  # what the benchmark itself has changed
 
 
 class Ego(NamedTuple):

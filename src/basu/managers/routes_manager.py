@@ -34,7 +34,7 @@ class RoutesManager(BaseManager):
         self._route = run.route
         self._step_s = run.step_s
         self._limit_s = time_limit_s(run.route)
-        self._world, self._weather = run.world, run.weather
+        self._world, self._weather, self._changes = run.world, run.weather, run.changes
         if self._weather:
             self._set_weather(0.0)
 
@@ -66,6 +66,7 @@ class RoutesManager(BaseManager):
             setattr(weather, name, value)
         try:
             self._world.set_weather(weather)
+            self._changes.weather = weather
         except RuntimeError as error:
             raise SimulatorError(f"the simulator did not take the weather of the route: {error}") from error
 

@@ -13,6 +13,7 @@ import carla
 
 from basu.errors import ScenarioError
 from basu.managers.stage.weather import changed
+from basu.managers.world_changes import WorldChanges
 from basu.routing.route_weather import WEATHER_FIELDS
 
 if TYPE_CHECKING:
@@ -36,8 +37,9 @@ class Wish(NamedTuple):
 class SharedWorld:
     """One for a run; its scenarios are told apart by their names."""
 
-    def __init__(self, world: carla.World) -> None:
-        self._world = world
+    def __init__(self, world: carla.World, changes: WorldChanges | None = None) -> None:
+        """``changes`` are the run's: what the route sets is read there, and what scenarios set is written there."""
+        self._world, self.changes = world, changes or WorldChanges()
         self._weather: dict[str, dict[str, float]] = {}  # what each asks for, in the order of asking
         self._beneath: carla.WeatherParameters | None = None  # the weather without any scenario
         self._shown: carla.WeatherParameters | None = None  # what was set last
@@ -51,17 +53,15 @@ class SharedWorld:
         """
         changed(carla.WeatherParameters(), values)
         if not self._weather:
-            self._beneath = self._world.get_weather()
+            self._beneath = self.changes.weather or self._world.get_weather()
         self._weather.setdefault(who, {}).update(values)
         self._show_weather()
 
     def keep_up(self) -> None:
-        """Where somebody else has set the weather meanwhile, as a route's own does, lay the scenarios' over it."""
-        if self._weather:
-            now = self._world.get_weather()
-            if now != self._shown:
-                self._beneath = now
-                self._show_weather()
+        """Lay the scenarios' weather over that of the route, where the route has set it meanwhile."""
+        if self._weather and self.changes.weather is not self._shown:
+            self._beneath = self.changes.weather
+            self._show_weather()
 
     def ask_light(self, who: str, landmark_id: str, state: str) -> None:
         """Let a traffic light show a state; all lights stand still until they are given back, as CARLA's freeze has it.
@@ -74,6 +74,7 @@ class SharedWorld:
         light = self._world.get_traffic_light_from_opendrive_id(landmark_id)
         if light is None:
             raise ScenarioError(f"the map has no traffic light whose OpenDRIVE signal is '{landmark_id}'")
+        self.changes.lights += 1
         if not self._lights:
             light.freeze(True)
         wishes = self._lights.setdefault(who, {})
@@ -83,6 +84,7 @@ class SharedWorld:
     def give_back(self, who: str) -> None:
         """Take away what one of them asked for; where the simulator is gone, so is all this."""
         weather, lights = self._weather.pop(who, None), self._lights.pop(who, {})
+        self.changes.lights += bool(lights)
         with contextlib.suppress(RuntimeError):
             if weather is not None:
                 self._show_weather()
@@ -102,4 +104,4 @@ class SharedWorld:
         for values in self._weather.values():
             changed(weather, values)
         self._world.set_weather(weather)
-        self._shown = weather
+        self._shown = self.changes.weather = weather

@@ -43,6 +43,7 @@ class Surroundings:
             carla.Location(pose.x_m, pose.y_m, pose.z_m), carla.Rotation(yaw=math.degrees(pose.yaw_rad))
         )
         self._patches.append(self._world.spawn_actor(blueprint, place))
+        self._shared.changes.frictions.add(friction)
 
     def set_light(self, landmark_id: str, state: str) -> None:
         """Let a traffic light show a state and stay so.
