@@ -24,7 +24,7 @@ import carla
 from basu.errors import SimulatorError, UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from typing import IO
 
     from basu.options import RunOptions
@@ -61,7 +61,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         address = (options.host, options.port)
         yield Simulator(client, address, own=False, why_gone=lambda: _silence(client, options), ended=lambda: False)
         return
-    server = OwnServer(options.output if options.record else None)
+    server = OwnServer(options.output if options.record else None, options.maps)
     try:
         client = connect("127.0.0.1", server.port, options.timeout_s)
         yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone, ended=server.ended)
@@ -81,8 +81,10 @@ def _silence(client: carla.Client, options: RunOptions) -> str | None:
 class OwnServer:
     """A ``linden serve`` of our own, on ports that the system chose, still until the first tick."""
 
-    def __init__(self, recordings: Path | None = None) -> None:
-        """Start it and wait for its ready line; it may write logs below the folder ``recordings``.
+    def __init__(self, recordings: Path | None = None, maps: Sequence[Path] = ()) -> None:
+        """Start it and wait for its ready line.
+
+        It may write logs below the folder ``recordings``, and offers each .xodr file of the folders ``maps``.
 
         Raises:
             SimulatorError: it ended, or was not ready in time.
@@ -90,6 +92,7 @@ class OwnServer:
         command = [*linden_command(), "serve", "--port", "0", "--sync"]
         if recordings is not None:
             command += ["--recordings", str(recordings.resolve())]
+        command += [word for folder in maps for word in ("--maps", str(folder.resolve()))]
         self._process = subprocess.Popen(  # noqa: S603 - our own command, arguments of our own
             command,
             stdin=subprocess.DEVNULL,

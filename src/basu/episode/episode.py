@@ -212,7 +212,7 @@ class Episode:
         assert ground is not None, "likewise"
         self.history = self.outcome = self.bug = self.agent_error = None
         self._driver = Driver()
-        routes = RoutesManager()
+        routes = RoutesManager(self._spec.stop_after_s)
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import carla
@@ -24,7 +25,9 @@ WEATHER_TICKS = 20  # a second of simulated time, between two changes of weather
 class RoutesManager(BaseManager):
     """Follows the vehicle along the route and says when the run is over."""
 
-    def __init__(self) -> None:
+    def __init__(self, stop_after_s: float | None = None) -> None:
+        """``stop_after_s`` of simulated time ends the drive before its own end."""
+        self._stop_after_s = math.inf if stop_after_s is None else stop_after_s
         self.progress = Progress.at_start()
         self.outcome: Outcome | None = None  # None while the run goes on
         self._moved_tick = 0
@@ -75,6 +78,12 @@ class RoutesManager(BaseManager):
         remaining_m = self._route.length_m - self.progress.s_m
         if has_arrived(remaining_m, speed_mps):
             return Outcome(Status.COMPLETED, f"arrived after {tick * self._step_s:.1f} s")
+        if tick * self._step_s >= self._stop_after_s - self._step_s / 2.0:
+            return Outcome(
+                Status.STOPPED,
+                f"stopped after {self._stop_after_s:g} s at {self.progress.s_m:.0f} m of the route's "
+                f"{self._route.length_m:.0f} m, as --stop-after asks",
+            )
         if self.progress.distance_m > DEVIATION_M:
             return Outcome(
                 Status.ROUTE_DEVIATION,

@@ -8,9 +8,9 @@ so that a sensor measures from the first tick after ``listen()`` on. Knows no cl
 from collections import Counter
 from typing import NamedTuple
 
-PATIENCE_S = 0.5
-"""How long a frame waits for somebody who has asked and does not come. The official client takes a millisecond,
-and some hundreds of them where ten programs share a processor."""
+PATIENCE_S = 3.0
+"""How long a frame waits for a client that has asked and does not come. The official client takes a millisecond,
+and more than half a second where ten programs share a processor: a camera that is not waited for is never answered."""
 MOST_IN_VAIN = 3
 """How often frames wait for a client that does not come; then its questions hold up nobody, until it has come once."""
 
