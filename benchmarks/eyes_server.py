@@ -9,16 +9,16 @@ from collections.abc import Iterator
 
 from eyes_rows import CAR, OTHERS, THROTTLE, Figures, Row, Sensor
 
-from linden.casting.choose import check_device
-from linden.handlers import frames
-from linden.meshes.library import standing_of
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.vehicles import VehicleControl
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.control import VehicleControl
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.scenery.map_mesh_cache import standing_of
+from linden.sensors.casting.choose import check_device
+from linden.server import frames
+from linden.world import Simulation
 
 WARM_UP = 3
 

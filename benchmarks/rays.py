@@ -16,21 +16,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.crew import in_stretches, processors
-from linden.casting.embree import EmbreeCaster, arguments
-from linden.casting.embreex_caster import EmbreexCaster
-from linden.casting.packets import Packet, intersect, new_packet, occlude, put_rays
-from linden.casting.rays import Rays
 from linden.compiled import unlocked
-from linden.meshes.library import standing_of
-from linden.sensors.lidar.fan import Fan, aim, fire
-from linden.simulation import Simulation
-from linden.simulation.eyes import Now
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Transform, Vector3D
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Transform, Vector3D
+from linden.scenery.map_mesh_cache import standing_of
+from linden.sensors.casting.caster import Rays
+from linden.sensors.casting.embree import EmbreeCaster, arguments
+from linden.sensors.casting.embreex_caster import EmbreexCaster
+from linden.sensors.casting.packets import Packet, intersect, new_packet, occlude, put_rays
+from linden.sensors.casting.thread_pool import in_stretches, processors
+from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
+from linden.sensors.runtime.looking_sensors import Now
+from linden.world import Simulation
 
 FAR_M = 200.0
 COLUMNS = 22  # of a packet with its mask

@@ -13,14 +13,14 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from linden.recording.read import Recording
-from linden.simulation import Simulation
-from linden.simulation.replayer import Plan
-from linden.values.actors import ActorDescription
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Transform
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Transform
+from linden.replay.file.read import Recording
+from linden.replay.replayer import Plan
+from linden.world import Simulation
 
 SETTINGS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
 STEP_S = 0.05

@@ -4,14 +4,13 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.vehicles import VehicleControl
-from linden.values.walkers import WalkerControl
-from linden.world.actors import ActorRecord
-from linden.world.map_facts import derive
-from linden.world.maps import LoadedMap
+from linden.maps.facts import derive
+from linden.maps.library import LoadedMap
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.control import VehicleControl, WalkerControl
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.simulation.actor_table import ActorRecord
+from linden.world import Simulation
 from opendrive_texts import signal, street_through_junction
 
 STEP_S = 0.05

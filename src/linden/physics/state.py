@@ -150,7 +150,7 @@ BODY = np.dtype(
         ("constant_velocity_on", "?"),
         ("constant_velocity", "f8", 3),  # m/s in the body's frame
         ("ackermann_on", "?"),
-        ("ackermann", "f8", 5),  # the target; as linden.values.AckermannControl
+        ("ackermann", "f8", 5),  # the target; as linden.protocol.values.AckermannControl
         ("ackermann_gains", "f8", 6),
         ("ackermann_memory", "f8", 8),  # of its two controllers
     ],

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import part
-from linden.ground import Ground, surface_under
+from linden.maps.ground import Ground, surface_under
 from linden.physics.axes import body_axes, within_turn
 from linden.physics.state import Body, Spec
 

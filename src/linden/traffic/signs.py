@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import kernel
-from linden.traffic.triggers import REACH_M, TriggerGrid, boxes_touch, owners_over
-from linden.values.enums import TrafficLightState
+from linden.protocol.values.enums import TrafficLightState
+from linden.traffic.trigger_volumes import REACH_M, TriggerGrid, boxes_touch, owners_over
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]

@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from linden.maps.facts import derive
+from linden.maps.library import LoadedMap
 from linden.physics.step import CONTACT
-from linden.recording.read import Recording
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.enums import AttributeType
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.walkers import WalkerControl
-from linden.world.actors import ActorRefusal
-from linden.world.map_facts import derive
-from linden.world.maps import LoadedMap
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.control import WalkerControl
+from linden.protocol.values.enums import AttributeType
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.replay.file.read import Recording
+from linden.simulation.actor_table import ActorRefusal
+from linden.world import Simulation
 from opendrive_texts import street_through_junction
 
 DT_S = 0.05
@@ -171,7 +171,7 @@ def test_what_touches_a_corpse_when_it_goes_breaks_no_frame(
 
     simulation.recorder.start(tmp_path / "end.log", episode, "street", lambda: 0.0, additional_data=False)
     episode.walkers.die(episode, victim)
-    monkeypatch.setattr("linden.simulation.step.advance", touching)
+    monkeypatch.setattr("linden.world.advance", touching)
     collisions = 0
     while victim in episode.actors:
         simulation.step(DT_S)

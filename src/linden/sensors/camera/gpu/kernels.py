@@ -15,21 +15,21 @@ from typing import Any
 import numpy as np
 from numba import cuda as numba_cuda
 
-from linden.casting.rays import Hits, Rays
 from linden.compiled import fingerprint
 from linden.sensors.camera.labels import depth_loop, instance_loop, normals_loop, semantic_loop
-from linden.sensors.camera.motion import Eye, flow_loop
-from linden.sensors.camera.picture.develop import develop_loop, excess_loop
+from linden.sensors.camera.optical_flow import Eye, flow_loop
 from linden.sensors.camera.picture.edges import SAMPLES, mark_loop, mean_loop, split_loop
+from linden.sensors.camera.picture.film import develop_loop, excess_loop
 from linden.sensors.camera.picture.lamps import LampGrid
-from linden.sensors.camera.picture.noise import narrow
-from linden.sensors.camera.picture.relief import Relief
 from linden.sensors.camera.picture.rgb import BRIGHTEST
 from linden.sensors.camera.picture.shade import shade_loop
-from linden.sensors.camera.picture.shadows import facing_loop, gather_loop
-from linden.sensors.camera.picture.spots import Places
-from linden.sensors.camera.rays import aim_loop
-from linden.sensors.seen import Faces
+from linden.sensors.camera.picture.smooth_normals import Relief
+from linden.sensors.camera.picture.sun_shadows import facing_loop, gather_loop
+from linden.sensors.camera.picture.surface_points import Places
+from linden.sensors.camera.picture.texture_noise import narrow
+from linden.sensors.camera.pixel_rays import aim_loop
+from linden.sensors.casting.caster import Hits, Rays
+from linden.sensors.view import Faces
 
 Array = Any
 """An array of numba's on a GPU."""

@@ -7,8 +7,8 @@ import math
 from typing import NamedTuple
 
 from linden.compiled import shading_part
-from linden.meshes.mesh import Material
-from linden.sensors.camera.picture.noise import fraction, hashed, narrow, smooth_noise, whole
+from linden.scenery.mesh import Material
+from linden.sensors.camera.picture.texture_noise import fraction, hashed, narrow, smooth_noise, whole
 
 ASPHALT, CONCRETE, PAINT, GRASS = (
     int(Material.ASPHALT),
