@@ -21,11 +21,11 @@ from linden.sensors.camera.picture.film import developed
 from linden.sensors.camera.picture.sun_shadows import sunny, within
 from linden.sensors.camera.pixel_rays import aim, directions
 from linden.sensors.camera.spec import CameraSpec, Film
-from linden.world import Simulation
+from linden.world import World
 
 
 def stage_by_stage(rounds: int) -> None:
-    simulation = Simulation(MapLibrary([], MapCache.of_user().facts_of).load("Linden"))
+    simulation = World(MapLibrary([], MapCache.of_user().facts_of).load("Linden"))
     simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), simulation.spawn_points[3])
     simulation.step(0.05)
     seen = simulation.seeing.look(simulation.episode, simulation.frame)

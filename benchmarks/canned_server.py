@@ -8,10 +8,10 @@ from linden.server import frames
 from linden.server.loop import Server
 from linden.server.ports import open_ports, port_of
 from linden.server.rpc import registry
-from linden.world import Simulation
+from linden.world import World
 
 
-class StillWorld(Simulation):
+class StillWorld(World):
     """Time passes, and nothing else does."""
 
     def step(self, dt_s: float) -> None:

@@ -24,7 +24,7 @@ from linden.protocol.wire.stream import StreamTable
 from linden.server import frames
 from linden.server.rpc import registry
 from linden.server.rpc.context import Context
-from linden.world import Simulation
+from linden.world import World
 
 SETTINGS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
 SUBSTEPS = 5
@@ -32,7 +32,7 @@ SUBSTEPS = 5
 
 def stages(maps: MapLibrary, count: int) -> dict[str, Callable[[], object]]:
     """Return the stages of a tick with that many vehicles, to be called in this order."""
-    simulation = Simulation(maps.load(HOME_MAP), SETTINGS)
+    simulation = World(maps.load(HOME_MAP), SETTINGS)
     points = simulation.spawn_points
     model = ActorDescription(0, "vehicle.tesla.model3")
     ids = [simulation.spawn(model, point).id for point in points[:: len(points) // count][:count]]

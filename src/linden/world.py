@@ -31,7 +31,7 @@ _FRAMES_THAT_TELL_OF_A_NEW_MAP = 3
 """How many snapshots tell of a load; the client needs one, and may miss one while it connects."""
 
 
-class Simulation:
+class World:
     """A world in which time passes by calls of :meth:`step` only. Knows no clock, no network and no client.
 
     Attributes:

@@ -26,7 +26,7 @@ from linden.protocol.wire.stream import StreamTable
 from linden.server import frames
 from linden.server.rpc import registry
 from linden.server.rpc.context import Context
-from linden.world import Simulation
+from linden.world import World
 from servers import RunningServer
 
 SESSION = str(Path(__file__).parents[1] / "fakes" / "session.py")
@@ -50,7 +50,7 @@ def context() -> Context:
     registry.load_handlers()
     maps = MapLibrary((), MapCache.of_user().facts_of)
     return Context(
-        simulation=Simulation(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)),
+        simulation=World(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)),
         maps=maps,
         frames=frames,
         streams=StreamTable(2001),

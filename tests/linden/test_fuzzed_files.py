@@ -32,7 +32,7 @@ from linden.replay.file.track import track_of
 from linden.replay.replayer import Plan
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import signal, street_through_junction
 
 SEED = 20_261_122
@@ -91,7 +91,7 @@ def use_map(text: str, *, seen: bool) -> None:
     feet = walls_along(opendrive, facts.ground, 0.6)
     world_map = LoadedMap(name=GENERATED_MAP, text=text, walls=Walls(feet, 1.0), **vars(facts))
     scenery = scenery_of(world_map)
-    simulation = Simulation(world_map, EpisodeSettings())
+    simulation = World(world_map, EpisodeSettings())
     simulation.step(0.05)
     assert np.isfinite(simulation.episode.actors.pose[: len(simulation.episode.actors)]).all()
     if seen:
@@ -171,7 +171,7 @@ REPORTS: list[Callable[[Recording], str]] = [
 ]
 
 
-def use_recording(path: Path, simulation: Simulation) -> None:
+def use_recording(path: Path, simulation: World) -> None:
     """Do with a recording what a server does.
 
     Raises:
@@ -197,11 +197,11 @@ def street() -> LoadedMap:
 def test_a_changed_recording_is_used_or_refused_by_a_sentence(street: LoadedMap, tmp_path: Path) -> None:
     chance, used, content, path = random.Random(SEED), 0, whole(), tmp_path / "changed.log"
     path.write_bytes(content)
-    use_recording(path, Simulation(street, EpisodeSettings()))  # unchanged it is good
+    use_recording(path, World(street, EpisodeSettings()))  # unchanged it is good
     for number in range(RECORDINGS):
         path.write_bytes(changed_recording(chance, content))
         try:
-            use_recording(path, Simulation(street, EpisodeSettings()))
+            use_recording(path, World(street, EpisodeSettings()))
             used += 1
         except RecordingError as error:
             assert len(str(error)) > 20  # noqa: PT017 - it may be used as well

@@ -91,7 +91,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.server.ports import is_loopback, open_ports, port_of  # noqa: PLC0415 - see above
     from linden.server.rpc import registry  # noqa: PLC0415 - see above
     from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - see above
-    from linden.world import Simulation  # noqa: PLC0415 - see above
+    from linden.world import World  # noqa: PLC0415 - see above
 
     if arguments.device != CPU:
         from linden.sensors.casting.choose import check_device  # noqa: PLC0415 - see above
@@ -115,7 +115,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         warm_up()
         warm_rays()
         compile_once(cache)
-        simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
+        simulation = World(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
         simulation.episode.warm_up()
         simulation.seeing.device = arguments.device
         simulation.seeing.standing_on = partial(standing_of, cache=cache)

@@ -85,7 +85,7 @@ def _corners(vertices: ArrayLike, triangles: ArrayLike) -> F64:
 
 
 def _planes(corners_m: F64) -> F64:
-    """Return (T, 9) as :class:`Ground` holds them; triangles without area seen from above become ones nobody is in."""
+    """Return (T, 9) as :class:`Ground` holds them; triangles without area seen from above become empty ones."""
     origin, first, second = corners_m[:, 0], corners_m[:, 1] - corners_m[:, 0], corners_m[:, 2] - corners_m[:, 0]
     area = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
     wall = np.abs(area) < _LEAST_AREA_M2

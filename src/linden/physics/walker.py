@@ -1,4 +1,4 @@
-"""Walkers: they go where they are told, at the speed they are told, on the ground that they can step onto."""
+"""Walkers: motion in the direction and at the speed of their control, on ground that they can step onto."""
 
 import math
 

@@ -32,7 +32,7 @@ def standing_of(world_map: LoadedMap, scene: Scene, cache: MapCache) -> Mesh:
 
 
 def keep_standing(world_map: LoadedMap, scene: Scene, cache: MapCache) -> None:
-    """Have the mesh in the cache, so that whoever looks first need not wait until it is made."""
+    """Put the mesh into the cache, so that the first sensor need not wait for it."""
     cache.keep(_name(world_map, scene), lambda: _written(_made(world_map, scene)))
 
 

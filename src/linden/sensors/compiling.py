@@ -16,9 +16,9 @@ _COMPILED = ("sensors/**/*.py", "compiled.py")
 
 
 def compile_once(cache: MapCache) -> None:
-    """Take all steps, unless somebody has on this machine and what was compiled is still there.
+    """Compile everything, unless it was done on this machine and the compiled files are still there.
 
-    So a start compiles what is not compiled, and does not load what nobody has asked for yet.
+    So a start compiles what is not compiled, and does not load what no sensor needs yet.
     """
     name = _name()
     files = cache.kept(name, lambda: b"[]", _files_of)

@@ -17,7 +17,7 @@ from linden.sensors.camera.cameras import CAMERAS
 from linden.sensors.casting.caster import Instances, Rays
 from linden.sensors.casting.choose import caster_of
 from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
-from linden.sensors.devices.lidar.sensor import whose
+from linden.sensors.devices.lidar.sensor import owners_of
 from linden.sensors.devices.lidar.sweep import Chances, Losses, points_of, semantic_points_of
 from linden.sensors.view import Look, Seen, table_of
 
@@ -47,7 +47,7 @@ def warm_rays() -> None:
     hits = seen.caster.closest(rays, _FAN.range_m, coherent=True, outer=True)
     zero = np.zeros(fired.rays, np.float32)
     points_of(fired, number, hits, _LOSSES, Chances(zero, zero))
-    semantic_points_of(fired, rays.direction, hits, whose(seen))
+    semantic_points_of(fired, rays.direction, hits, owners_of(seen))
     seen.caster.blocked(Rays(*rays), _FAN.range_m)
 
 

@@ -37,7 +37,7 @@ from linden.sensors.devices.obstacle import Obstacle
 from linden.sensors.devices.radar import Detections
 from linden.sensors.runtime.measure import Measurement
 from linden.simulation.actor_table import ActorRecord
-from linden.world import Simulation
+from linden.world import World
 
 _KINDS = {
     "sensor.camera.depth": SensorType.CAMERA_DEPTH,
@@ -49,35 +49,35 @@ _KINDS = {
 }
 
 
-def image(_simulation: Simulation, _measurement: Measurement, reading: Image) -> tuple[SensorType, Parts]:
+def image(_simulation: World, _measurement: Measurement, reading: Image) -> tuple[SensorType, Parts]:
     """Encode a picture."""
     return _KINDS[reading.blueprint], image_payload(reading.pixels, reading.fov_deg)
 
 
-def events(_simulation: Simulation, _measurement: Measurement, reading: Events) -> tuple[SensorType, Parts]:
+def events(_simulation: World, _measurement: Measurement, reading: Events) -> tuple[SensorType, Parts]:
     """Encode the events of an event camera."""
     return SensorType.CAMERA_DVS, events_payload(reading.events, reading.width_px, reading.height_px, reading.fov_deg)
 
 
-Encode = Callable[[Simulation, Measurement, Any], tuple[SensorType, Parts]]
+Encode = Callable[[World, Measurement, Any], tuple[SensorType, Parts]]
 
 
-def _sweep(_simulation: Simulation, _measurement: Measurement, reading: Sweep) -> tuple[SensorType, Parts]:
+def _sweep(_simulation: World, _measurement: Measurement, reading: Sweep) -> tuple[SensorType, Parts]:
     return SensorType.LIDAR, lidar_payload(*reading)
 
 
-def _semantic(_simulation: Simulation, _measurement: Measurement, reading: SemanticSweep) -> tuple[SensorType, Parts]:
+def _semantic(_simulation: World, _measurement: Measurement, reading: SemanticSweep) -> tuple[SensorType, Parts]:
     return SensorType.LIDAR_SEMANTIC, lidar_payload(*reading)
 
 
-def _radar(_simulation: Simulation, _measurement: Measurement, reading: Detections) -> tuple[SensorType, Parts]:
+def _radar(_simulation: World, _measurement: Measurement, reading: Detections) -> tuple[SensorType, Parts]:
     packed = np.empty(len(reading.depth_m), RADAR_DETECTION)
     for name, column in zip(RADAR_DETECTION.names or (), reading, strict=True):
         packed[name] = column
     return SensorType.RADAR, radar_payload(packed)
 
 
-def _obstacle(simulation: Simulation, measurement: Measurement, reading: Obstacle) -> tuple[SensorType, Parts]:
+def _obstacle(simulation: World, measurement: Measurement, reading: Obstacle) -> tuple[SensorType, Parts]:
     actors = simulation.episode.actors
     other = described(actors.get(reading.actor_id)) if reading.actor_id else scenery(scenery_type(reading.tag))
     return SensorType.OBSTACLE, (msgpack.packb((described(measurement.sensor), other, reading.distance_m)),)
@@ -103,7 +103,7 @@ ENCODERS: dict[type, Encode] = {
 }
 
 
-def world_payload(simulation: Simulation) -> bytes:
+def world_payload(simulation: World) -> bytes:
     """Return the world snapshot: headers and one row for each actor.
 
     The platform's time stamp repeats the simulated time, for no clock's may be in it: two runs are equal byte by byte
@@ -122,12 +122,12 @@ def world_payload(simulation: Simulation) -> bytes:
     )
 
 
-def sensor_payloads(simulation: Simulation, listened: set[int]) -> list[tuple[int, bytes]]:
+def sensor_payloads(simulation: World, listened: set[int]) -> list[tuple[int, bytes]]:
     """Return (stream id, message) of everything that sensors measured in this frame for somebody who listens."""
     return [(item.sensor.stream_id, _payload(simulation, item)) for item in simulation.measure(listened)]
 
 
-def _payload(simulation: Simulation, measurement: Measurement) -> bytes:
+def _payload(simulation: World, measurement: Measurement) -> bytes:
     if (encode := ENCODERS.get(type(measurement.reading))) is not None:
         kind, parts = encode(simulation, measurement, measurement.reading)
     else:
@@ -137,7 +137,7 @@ def _payload(simulation: Simulation, measurement: Measurement) -> bytes:
     return b"".join((header, *parts))  # type: ignore[arg-type] # numpy's stubs know buffers from Python 3.12 on
 
 
-def _encoded(simulation: Simulation, measurement: Measurement) -> tuple[SensorType, object]:
+def _encoded(simulation: World, measurement: Measurement) -> tuple[SensorType, object]:
     """Return the sensor's index and the value that msgpack carries after the header."""
     reading = measurement.reading
     if isinstance(reading, Collision):

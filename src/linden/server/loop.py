@@ -24,7 +24,7 @@ from linden.server.rpc import session
 from linden.server.rpc.context import Context, Frames
 from linden.server.stall_log import Waiting
 from linden.server.subscribers import Subscribers
-from linden.world import Simulation
+from linden.world import World
 
 log = logging.getLogger("linden")
 
@@ -47,7 +47,7 @@ _BUG = "internal error in %s; the server goes on"
 class Server:
     """Listens on two ports and serves one simulation until it is told to stop."""
 
-    def __init__(self, simulation: Simulation, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
+    def __init__(self, simulation: World, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
         self._clock = time.monotonic
         self._pace = Pace(self._clock())
         self.context = Context(

@@ -141,7 +141,7 @@ def write_controls(
     manual: Flags,
     gear: I32,
 ) -> None:  # pragma: no cover - compiled
-    """Write the controls in force of vehicle i, whose body lies in ``slots[i]``, into ``rows[row_of[i]]``."""
+    """Write the controls in force of vehicle i with its body in ``slots[i]``, into ``rows[row_of[i]]``."""
     for i in range(len(slots)):
         row, slot = rows[row_of[i]], slots[i]
         _put_float(row, _THROTTLE, throttle[slot])
@@ -159,7 +159,7 @@ def write_surroundings(
 ) -> None:  # pragma: no cover - compiled
     """Write the limit (V,) in force and the light (V,) over each vehicle: an index into the next two, or -1.
 
-    ``at_sign`` (V,) is the colour of those who are under none.
+    ``at_sign`` (V,) is the colour for vehicles under no light.
     """
     for i in range(len(row_of)):
         row = rows[row_of[i]]

@@ -17,7 +17,7 @@ from linden.maps.facts import MapFacts, derive
 from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
 from linden.maps.opendrive.limits import MapError
 from linden.protocol.values.actors import ActorDescription
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import signal, street_through_junction
 
 LIGHT, LIMIT = signal("7", s=30.0, t=-5.0, kind="1000001"), signal("8", s=10.0, t=-5.0, kind="274")
@@ -67,7 +67,7 @@ def test_what_is_kept_of_linden_is_what_would_be_derived(
 
 def snapshots(facts: MapFacts) -> list[bytes]:
     """Drive every kind of body about a map and return every frame's rows."""
-    simulation = Simulation(LoadedMap(name="street", text=STREET, **vars(facts)))
+    simulation = World(LoadedMap(name="street", text=STREET, **vars(facts)))
     for number, model in enumerate(("vehicle.tesla.model3", "walker.pedestrian.0001", "vehicle.kawasaki.ninja")):
         simulation.spawn(ActorDescription(0, model), facts.spawn_points[number])
     frames = []

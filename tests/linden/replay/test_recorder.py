@@ -12,7 +12,7 @@ from linden.replay.file.layouts import SCENERY, PacketId, from_file
 from linden.replay.file.packets import Frame
 from linden.replay.file.read import Recording
 from linden.replay.frame_records import collisions
-from linden.world import Simulation
+from linden.world import World
 
 
 @pytest.fixture
@@ -217,5 +217,5 @@ def test_the_same_drive_gives_the_same_file(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written_is_told_and_nothing_is_recorded(drive: Drive, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         drive.record(tmp_path / "none" / "drive.log")
-    assert isinstance(drive.simulation, Simulation)
+    assert isinstance(drive.simulation, World)
     assert drive.simulation.recorder.path is None

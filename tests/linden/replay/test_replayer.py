@@ -16,7 +16,7 @@ from linden.replay.file.read import Recording
 from linden.replay.file.track import track_of
 from linden.replay.replayer import Plan
 from linden.simulation.doors import Door
-from linden.world import Simulation
+from linden.world import World
 
 FRAMES = 30
 ALL = Plan(start_s=0.0, duration_s=0.0, follow_id=0, offset=Transform(), replay_sensors=False)
@@ -60,7 +60,7 @@ class Recorded:
             simulation.destroy(self.third.id)
 
 
-def told(simulation: Simulation, *actor_ids: int) -> bytes:
+def told(simulation: World, *actor_ids: int) -> bytes:
     """What a snapshot tells of actors: where they are, and of vehicles all their controls; and their lamps."""
     actors = simulation.episode.actors
     parts = []
@@ -73,23 +73,23 @@ def told(simulation: Simulation, *actor_ids: int) -> bytes:
     return b"".join(parts)
 
 
-def light(simulation: Simulation) -> bytes:
+def light(simulation: World) -> bytes:
     actors = simulation.episode.actors
     row = actors.rows.view(TRAFFIC_LIGHT_ROW)[actors.row(simulation.episode.light_ids[0])]
     return b"".join(row[name].tobytes() for name in ("frozen", "state", "elapsed_time"))
 
 
-def start(simulation: Simulation, path: Path, plan: Plan = ALL) -> None:
+def start(simulation: World, path: Path, plan: Plan = ALL) -> None:
     simulation.replayer.start(simulation, track_of(Recording(path)), plan)
 
 
-def fresh(recorded: Recorded, plan: Plan = ALL) -> Simulation:
-    simulation = Simulation(recorded.map)
+def fresh(recorded: Recorded, plan: Plan = ALL) -> World:
+    simulation = World(recorded.map)
     start(simulation, recorded.path, plan)
     return simulation
 
 
-def x_of(simulation: Simulation, actor_id: int) -> float:
+def x_of(simulation: World, actor_id: int) -> float:
     return simulation.episode.transform(actor_id).location.x
 
 
@@ -116,7 +116,7 @@ def test_wheels_and_doors_stand_as_recorded(world_map: LoadedMap, tmp_path: Path
         shown.append((angles, drive.simulation.episode.doors.open.get(hero.id)))
     drive.simulation.recorder.stop()
     assert max(abs(steer_deg) for steer_deg, _ in shown[-2][0]) > 1.0
-    simulation = Simulation(world_map)
+    simulation = World(world_map)
     start(simulation, tmp_path / "drive.log")
     for angles, doors in shown[:-1]:  # with the last the replay ends, and physics has the wheels again
         simulation.step(STEP_S)
@@ -145,7 +145,7 @@ def test_actors_of_the_same_id_and_type_are_reused(recorded: Recorded) -> None:
 
 
 def test_an_id_that_somebody_else_has_is_not_taken(recorded: Recorded) -> None:
-    simulation = Simulation(recorded.map)
+    simulation = World(recorded.map)
     poses = [recorded.drive.along(-10.0 * n, 0.0) for n in range(3)]
     tenants = [spawned(simulation, "vehicle.mini.cooper_s", pose) for pose in poses]
     assert tenants[0].id == recorded.drive.hero.id
@@ -194,7 +194,7 @@ def test_angles_go_the_shorter_way_round(world_map: LoadedMap, tmp_path: Path) -
         made.frame(1, 0.0, made.added(car), made.positions((50, 0, 0, 100, 0, 0, 179))),
         made.frame(2, 0.1, made.positions((50, 100, 0, 100, 0, 0, -175)), duration_s=-1.0),
     )
-    simulation = Simulation(world_map)
+    simulation = World(world_map)
     start(simulation, path)
     simulation.step(STEP_S)
     simulation.step(STEP_S)
@@ -244,7 +244,7 @@ def test_while_they_are_replayed_nobody_runs_into_them(recorded: Recorded) -> No
 
 
 def test_the_hero_is_left_out_where_asked_for(recorded: Recorded) -> None:
-    simulation = Simulation(recorded.map)
+    simulation = World(recorded.map)
     own = spawned(simulation, HERO, recorded.drive.along(-20.0, 0.0), role="hero")
     assert own.id == recorded.drive.hero.id
     simulation.replayer.ignore_hero = True
@@ -272,7 +272,7 @@ def test_the_spectator_moves_only_where_asked_for(recorded: Recorded, tmp_path: 
         (True, Transform()),
         (False, Transform(Vector3D(5.0, 6.0, 7.0), Rotation(2.0, 3.0, 1.0))),
     ):
-        simulation = Simulation(recorded.map)
+        simulation = World(recorded.map)
         simulation.replayer.ignore_spectator = ignored
         start(simulation, path)
         simulation.step(STEP_S)
@@ -328,7 +328,7 @@ def test_what_the_library_lacks_is_left_out_and_told_once(
         made.actor(53, "traffic.traffic_light", 3, (9e6, 9e6, 0)),
     )
     path = made.write(tmp_path, made.header(), made.frame(1, 0.0, cast, duration_s=-1.0))
-    simulation = Simulation(world_map)
+    simulation = World(world_map)
     start(simulation, path)
     assert sum("vehicle.hover.board is left out" in line for line in caplog.messages) == 1
     assert "is spawned with its own color" in caplog.text
@@ -340,7 +340,7 @@ def test_what_the_library_lacks_is_left_out_and_told_once(
 
 
 def test_a_recording_without_a_frame_is_refused(world_map: LoadedMap, tmp_path: Path) -> None:
-    simulation = Simulation(world_map)
+    simulation = World(world_map)
     with pytest.raises(RecordingError, match="holds no whole frame"):
         start(simulation, made.write(tmp_path, made.header()))
     simulation.step(STEP_S)
@@ -391,7 +391,7 @@ def test_no_number_of_a_file_reaches_the_physics_unheld(world_map: LoadedMap, tm
         made.frame(1, 0.0, cast, *wild, duration_s=0.1),
         made.frame(2, 0.1, *wild[1:], duration_s=-1.0),
     )
-    simulation = Simulation(world_map)
+    simulation = World(world_map)
     start(simulation, path)
     for _ in range(6):
         simulation.step(STEP_S)
@@ -407,4 +407,4 @@ def test_no_number_of_a_file_reaches_the_physics_unheld(world_map: LoadedMap, tm
 def test_times_that_do_not_go_forward_are_refused(world_map: LoadedMap, tmp_path: Path, elapsed_s: float) -> None:
     path = made.write(tmp_path, made.header(), made.frame(1, 0.0), made.frame(2, elapsed_s))
     with pytest.raises(RecordingError, match="do not go forward"):
-        start(Simulation(world_map), path)
+        start(World(world_map), path)

@@ -13,7 +13,7 @@ from linden.protocol.values.episode import WeatherParameters
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.simulation.actor_table import ActorRecord
 from linden.simulation.friction import DRY, FRICTION_TRIGGER, PUDDLES, WET, road_grip
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import street_through_junction
 
 STREET = street_through_junction()
@@ -21,21 +21,21 @@ CAR = ActorDescription(0, "vehicle.tesla.model3")
 
 
 @pytest.fixture
-def simulation() -> Simulation:
-    return Simulation(LoadedMap(name="street", text=STREET, **vars(derive(STREET))))
+def simulation() -> World:
+    return World(LoadedMap(name="street", text=STREET, **vars(derive(STREET))))
 
 
 def at(x: float, z: float = 0.2) -> Transform:
     return Transform(Vector3D(x, 500.0, z), Rotation())
 
 
-def trigger(simulation: Simulation, x: float, friction: float, half_m: float = 2.0) -> ActorRecord:
+def trigger(simulation: World, x: float, friction: float, half_m: float = 2.0) -> ActorRecord:
     given = {"friction": friction, **{f"extent_{axis}": 100.0 * half_m for axis in "xyz"}}
     attributes = tuple(AttributeValue(name, AttributeType.FLOAT, str(value)) for name, value in given.items())
     return simulation.spawn(ActorDescription(0, FRICTION_TRIGGER, attributes), at(x))
 
 
-def friction_of(simulation: Simulation, vehicle: ActorRecord) -> float:
+def friction_of(simulation: World, vehicle: ActorRecord) -> float:
     return float(simulation.episode.bodies.friction_here[vehicle.slot])
 
 
@@ -56,7 +56,7 @@ def test_the_wetter_the_road_the_less_it_grips(weather: WeatherParameters, share
     assert road_grip(weather) == pytest.approx(share)
 
 
-def test_every_vehicle_feels_the_weather_whenever_it_came(simulation: Simulation) -> None:
+def test_every_vehicle_feels_the_weather_whenever_it_came(simulation: World) -> None:
     early = simulation.spawn(CAR, at(0.0))
     simulation.episode.weather = WeatherParameters(wetness=100.0)
     simulation.step(0.05)
@@ -69,7 +69,7 @@ def test_every_vehicle_feels_the_weather_whenever_it_came(simulation: Simulation
     assert grips[early.slot] == grips[late.slot] == 1.0
 
 
-def test_dry_roads_leave_every_bit_as_it_was(simulation: Simulation) -> None:
+def test_dry_roads_leave_every_bit_as_it_was(simulation: World) -> None:
     def outcome(weather: WeatherParameters) -> bytes:
         simulation.load(simulation.episode.map, reset_settings=False)
         simulation.episode.weather = weather
@@ -84,7 +84,7 @@ def test_dry_roads_leave_every_bit_as_it_was(simulation: Simulation) -> None:
     assert outcome(WeatherParameters(wetness=30.0)) != dry
 
 
-def test_of_two_triggers_over_one_another_the_later_decides_until_it_goes(simulation: Simulation) -> None:
+def test_of_two_triggers_over_one_another_the_later_decides_until_it_goes(simulation: World) -> None:
     car = simulation.spawn(CAR, at(0.0))
     trigger(simulation, 0.0, 1.5)
     later = trigger(simulation, 1.0, 0.5)
@@ -95,7 +95,7 @@ def test_of_two_triggers_over_one_another_the_later_decides_until_it_goes(simula
     assert friction_of(simulation, car) == 1.5
 
 
-def test_a_trigger_that_is_moved_takes_its_friction_along(simulation: Simulation) -> None:
+def test_a_trigger_that_is_moved_takes_its_friction_along(simulation: World) -> None:
     car = simulation.spawn(CAR, at(0.0))
     moved = trigger(simulation, 30.0, 0.5)
     simulation.step(0.05)
@@ -105,7 +105,7 @@ def test_a_trigger_that_is_moved_takes_its_friction_along(simulation: Simulation
     assert friction_of(simulation, car) == 0.5
 
 
-def test_who_comes_into_the_slot_of_one_inside_a_trigger_is_inside_too(simulation: Simulation) -> None:
+def test_who_comes_into_the_slot_of_one_inside_a_trigger_is_inside_too(simulation: World) -> None:
     first = simulation.spawn(CAR, at(0.0))
     trigger(simulation, 0.0, 0.5)
     simulation.step(0.05)
@@ -117,7 +117,7 @@ def test_who_comes_into_the_slot_of_one_inside_a_trigger_is_inside_too(simulatio
     assert friction_of(simulation, second) == 0.5
 
 
-def test_a_car_that_rests_on_a_slope_slides_once_a_trigger_takes_its_grip(simulation: Simulation) -> None:
+def test_a_car_that_rests_on_a_slope_slides_once_a_trigger_takes_its_grip(simulation: World) -> None:
     car = simulation.spawn(CAR, at(0.0))
     bodies = simulation.episode.bodies
     bodies.set_control(car.slot, VehicleControl(hand_brake=True))

@@ -11,7 +11,7 @@ from linden.protocol.values.enums import SemanticTag, TrafficLightState
 from linden.scenery.scene.objects import Kind
 from linden.scenery.scene.posts import POST_HALF_WIDTH_M, POST_HEIGHT_M
 from linden.simulation.surroundings import scenery_of
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import signal, street_through_junction
 
 PAVEMENT_M = 0.15
@@ -41,7 +41,7 @@ def test_lights_have_heads_and_signs_plates_out_of_a_walkers_way(street: LoadedM
 
 
 def test_a_map_loaded_again_has_the_same_scenery_and_lights_that_begin_anew(street: LoadedMap) -> None:
-    simulation = Simulation(street)
+    simulation = World(street)
     first, rows = simulation.episode, simulation.episode.actors.rows.tobytes()
     first.traffic.set_colour(0, TrafficLightState.OFF)
     first.traffic.set_time(0, TrafficLightState.GREEN, 99.0)

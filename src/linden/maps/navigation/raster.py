@@ -106,7 +106,7 @@ def close_gaps(kind: U8, z_m: F64) -> None:  # pragma: no cover - compiled
 def keep_clear(kind: U8, z_m: F64) -> None:  # pragma: no cover - compiled
     """Take away what lies within a cell of nothing, and give the pavement within a cell of the carriageway to its edge.
 
-    So a walker, whose middle the mesh holds, keeps its shoulders off walls and out of the traffic.
+    The mesh holds the middle of a walker. So a walker keeps its shoulders off walls and out of the traffic.
     """
     before = kind.copy()
     for row in range(1, kind.shape[1] - 1):

@@ -1,6 +1,6 @@
 """Optical flow: how far what a pixel shows has moved in the picture since the frame before.
 
-CARLA sends two floats a pixel. Its documentation wants them scaled with the picture's size; who measured found half of
+CARLA sends two floats a pixel. Its documentation wants them scaled with the picture's size; measurements found half of
 it (carla-simulator/carla, issues 4795 and 8492), as they come from Unreal's velocity in a view that is 2 wide and 2
 high, y upwards: pixels are x width / 2 to the right and y height / 2 up. So they are here.
 """

@@ -51,7 +51,7 @@ _ROWS_3X4 = 0x9134  # RTC_FORMAT_FLOAT3X4_ROW_MAJOR
 def asked(*, coherent: bool, outer: bool) -> NDArray[np.uint64]:
     """Return RTCIntersectArguments, all features, for rays that go side by side, as a camera's, and for others.
 
-    With ``outer``, those bodies whose geometry lets itself be filtered are met from outside only.
+    With ``outer``, bodies with a filter on their geometry are met from outside only.
     """
     flags = 1 << 16 if coherent else 0  # RTC_RAY_QUERY_FLAG_COHERENT
     return np.array([flags | 0xFFFF_FFFF << 32, 0, inner_sides.address() if outer else 0, 0, 0], np.uint64)
@@ -69,7 +69,7 @@ class Packet(NamedTuple):
 
 @part
 def new_packet(width: int) -> Packet:
-    """Return a packet whose rays have no mask, id, flags, start or time."""
+    """Return a packet of rays without mask, id, flags, start or time."""
     raw = np.zeros((_COLUMNS + 1) * width + 16, np.float32)
     skip = ((-raw.ctypes.data) % _ALIGNED) // 4
     floats = raw[skip : skip + (_COLUMNS + 1) * width]

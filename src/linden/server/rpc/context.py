@@ -11,7 +11,7 @@ from linden.maps.navigation.library import MeshLibrary
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.replay.file.folder import RecordingFolder
 from linden.server.rpc.warning_log import Complaints
-from linden.world import Simulation
+from linden.world import World
 
 log = logging.getLogger("linden")
 
@@ -19,11 +19,11 @@ log = logging.getLogger("linden")
 class Frames(Protocol):
     """What one frame looks like on the wire: :mod:`linden.server.frames`."""
 
-    def world_payload(self, simulation: Simulation) -> bytes:
+    def world_payload(self, simulation: World) -> bytes:
         """Return the world snapshot: headers and one row for each actor."""
         ...
 
-    def sensor_payloads(self, simulation: Simulation, listened: set[int]) -> Sequence[tuple[int, bytes]]:
+    def sensor_payloads(self, simulation: World, listened: set[int]) -> Sequence[tuple[int, bytes]]:
         """Return what this frame's sensors measured, by stream, for the streams that somebody reads."""
         ...
 
@@ -40,7 +40,7 @@ class PendingLoad(NamedTuple):
 class Context:
     """One server's state as its handlers see it."""
 
-    simulation: Simulation
+    simulation: World
     maps: MapLibrary
     frames: Frames
     streams: StreamTable

@@ -22,7 +22,7 @@ from linden.protocol.wire.stream import WORLD_OBSERVER_ID, Token
 from linden.server.rpc.context import Context, PendingLoad
 from linden.server.rpc.registry import Long, method
 from linden.simulation.walkers import mesh_file
-from linden.world import Simulation
+from linden.world import World
 
 log = logging.getLogger("linden")
 
@@ -69,7 +69,7 @@ def load_new_episode(context: Context, name: str, reset_settings: bool, layers: 
     context.pending_load = PendingLoad(partial(_begin, simulation, ready, reset_settings, layers), context.caller)
 
 
-def _begin(simulation: Simulation, ready: LoadedMap, reset_settings: bool, layers: int) -> None:  # noqa: FBT001
+def _begin(simulation: World, ready: LoadedMap, reset_settings: bool, layers: int) -> None:  # noqa: FBT001
     simulation.load(ready, reset_settings=reset_settings)
     if layers != MapLayer.ALL:
         simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)

@@ -10,7 +10,7 @@ from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.space import Transform, Vector3D
 from linden.sensors.devices.collision import Collision
 from linden.sensors.devices.imu import ImuMeasurement
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import street_through_junction
 
 DT_S = 0.05
@@ -19,12 +19,12 @@ MAP = LoadedMap(name="street", text=TEXT, **vars(derive(TEXT)))
 
 
 @pytest.fixture
-def simulation() -> Simulation:
-    return Simulation(MAP)
+def simulation() -> World:
+    return World(MAP)
 
 
 @pytest.mark.parametrize("links", [0, 1, 3])
-def test_a_gyroscope_on_a_thing_on_a_car_turns_with_the_car(simulation: Simulation, links: int) -> None:
+def test_a_gyroscope_on_a_thing_on_a_car_turns_with_the_car(simulation: World, links: int) -> None:
     car = simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), Transform(Vector3D(20.0, 1.75, 1.0)))
     bearer = car
     for _ in range(links):

@@ -17,7 +17,7 @@ from linden.scenery.mesh import LampOf, Mesh, join
 from linden.sensors.casting.caster import STATIC, Rays
 from linden.sensors.runtime.sensor_scene import Seeing
 from linden.sensors.runtime.visible_actors import matrices
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import street_through_junction
 
 STEP_S = 0.05
@@ -31,7 +31,7 @@ def world_map() -> LoadedMap:
 @pytest.fixture(scope="module")
 def seeing(world_map: LoadedMap) -> Seeing:
     """For all episodes: what stands is a floor, and a box for the last box of the scene."""
-    last = len(Simulation(world_map).episode.surroundings.scene.boxes) - 1
+    last = len(World(world_map).episode.surroundings.scene.boxes) - 1
     seeing = Seeing(BlueprintLibrary.load())
     seeing.standing_on = lambda _map, _scene: join(
         [floor(2000.0), box((1.0, 1.0, 1.0), centre_m=(0.0, 0.0, 500.0), thing=last)]
@@ -40,13 +40,13 @@ def seeing(world_map: LoadedMap) -> Seeing:
 
 
 @pytest.fixture
-def simulation(world_map: LoadedMap, seeing: Seeing) -> Simulation:
-    simulation = Simulation(world_map, EpisodeSettings())
+def simulation(world_map: LoadedMap, seeing: Seeing) -> World:
+    simulation = World(world_map, EpisodeSettings())
     simulation.seeing = seeing
     return simulation
 
 
-def look(simulation: Simulation):
+def look(simulation: World):
     return simulation.seeing.look(simulation.episode, simulation.frame)
 
 
@@ -58,7 +58,7 @@ def test_many_poses_make_the_matrices_that_one_by_one_makes() -> None:
         np.testing.assert_allclose(made[:, 3], pose[:3])
 
 
-def test_a_car_is_seen_where_it_is_with_all_its_wheels(simulation: Simulation) -> None:
+def test_a_car_is_seen_where_it_is_with_all_its_wheels(simulation: World) -> None:
     point = simulation.spawn_points[0]
     car = simulation.spawn(described("vehicle.tesla.model3", color="10,20,30"), point)
     simulation.step(STEP_S)
@@ -73,7 +73,7 @@ def test_a_car_is_seen_where_it_is_with_all_its_wheels(simulation: Simulation) -
     assert hits.distance_m[0] == pytest.approx(20.0 - 2.0 * car.box.extent.z, abs=0.1)
 
 
-def test_before_is_where_a_body_was_a_frame_earlier_if_somebody_looked_then(simulation: Simulation) -> None:
+def test_before_is_where_a_body_was_a_frame_earlier_if_somebody_looked_then(simulation: World) -> None:
     prop = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 0.0, 50.0)))
     simulation.step(STEP_S)
     simulation.seeing.follow(simulation.episode, simulation.frame)
@@ -89,7 +89,7 @@ def test_before_is_where_a_body_was_a_frame_earlier_if_somebody_looked_then(simu
     assert later.before.tolist() == later.pose.tolist()
 
 
-def test_who_comes_while_others_go_brings_nobody_elses_past(simulation: Simulation) -> None:
+def test_who_comes_while_others_go_brings_nobody_elses_past(simulation: World) -> None:
     first = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 0.0, 50.0)))
     second = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 30.0, 50.0)))
     simulation.step(STEP_S)
@@ -102,7 +102,7 @@ def test_who_comes_while_others_go_brings_nobody_elses_past(simulation: Simulati
     assert seen.before[:, 1, 3].tolist() == seen.pose[:, 1, 3].tolist()
 
 
-def test_what_is_attached_moves_as_its_bearer_does(simulation: Simulation) -> None:
+def test_what_is_attached_moves_as_its_bearer_does(simulation: World) -> None:
     car = simulation.spawn(described("vehicle.tesla.model3"), simulation.spawn_points[0])
     roof = Transform(Vector3D(0.0, 0.0, 3.0))
     box_on_it = simulation.spawn(described("static.prop.box01"), roof, parent_id=car.id)
@@ -116,7 +116,7 @@ def test_what_is_attached_moves_as_its_bearer_does(simulation: Simulation) -> No
     np.testing.assert_allclose(seen.velocity_mps[row], simulation.episode.bodies.velocity[slot], atol=0.3)
 
 
-def test_a_cars_lamps_shine_as_its_light_state_says_and_blinkers_blink(simulation: Simulation) -> None:
+def test_a_cars_lamps_shine_as_its_light_state_says_and_blinkers_blink(simulation: World) -> None:
     car = simulation.spawn(described("vehicle.tesla.model3"), simulation.spawn_points[0])
     car.light_state = 0x1 | 0x10  # position, right blinker
     seen_states = set()
@@ -127,7 +127,7 @@ def test_a_cars_lamps_shine_as_its_light_state_says_and_blinkers_blink(simulatio
     assert seen_states == {1 << LampOf.TAIL, 1 << LampOf.TAIL | 1 << LampOf.BLINKER_RIGHT}
 
 
-def test_lights_show_their_colour_and_are_known_by_their_actors_id(simulation: Simulation) -> None:
+def test_lights_show_their_colour_and_are_known_by_their_actors_id(simulation: World) -> None:
     episode = simulation.episode
     episode.traffic.freeze_all(frozen=True)
     episode.traffic.set_colour(0, TrafficLightState.GREEN)
@@ -141,14 +141,14 @@ def test_lights_show_their_colour_and_are_known_by_their_actors_id(simulation: S
         assert set(seen.object_lights[boxes].tolist()) == {1 << lens}
 
 
-def test_ids_of_objects_are_their_own_even_in_the_16_bits_that_a_picture_has(simulation: Simulation) -> None:
+def test_ids_of_objects_are_their_own_even_in_the_16_bits_that_a_picture_has(simulation: World) -> None:
     ids = look(simulation).object_id
     scenery = ids[ids >= 0x8000_0000]
     assert len(set((scenery & 0xFFFF).tolist())) == len(scenery)
     assert (scenery & 0xFFFF).min() >= 0x8000
 
 
-def test_objects_that_are_disabled_are_not_seen_and_come_back(simulation: Simulation) -> None:
+def test_objects_that_are_disabled_are_not_seen_and_come_back(simulation: World) -> None:
     scene = simulation.episode.surroundings.scene
     last, down = scene.objects[-1].id, Rays(np.float32([[0.0, 0.0, 510.0]]), np.float32([[0.0, 0.0, -1.0]]))
     distances = []
@@ -162,7 +162,7 @@ def test_objects_that_are_disabled_are_not_seen_and_come_back(simulation: Simula
 
 
 def test_nothing_is_built_before_a_sensor_that_looks_is_there(world_map: LoadedMap) -> None:
-    simulation = Simulation(world_map, EpisodeSettings())
+    simulation = World(world_map, EpisodeSettings())
 
     def never(_map: LoadedMap, _scene: object):
         pytest.fail("nobody looks")
@@ -175,7 +175,7 @@ def test_nothing_is_built_before_a_sensor_that_looks_is_there(world_map: LoadedM
 
 
 def test_building_begins_when_a_sensor_that_looks_is_spawned_and_is_waited_for(world_map: LoadedMap) -> None:
-    simulation = Simulation(world_map, EpisodeSettings())
+    simulation = World(world_map, EpisodeSettings())
     begun, may_go_on = Event(), Event()
 
     def late(_map: LoadedMap, _scene: object) -> Mesh:
@@ -191,9 +191,9 @@ def test_building_begins_when_a_sensor_that_looks_is_spawned_and_is_waited_for(w
     assert len(simulation.measure({lidar.stream_id})[0].reading.points) > 0
 
 
-def test_a_reading_is_the_same_whoever_listened_before(simulation: Simulation, world_map: LoadedMap) -> None:
+def test_a_reading_is_the_same_whoever_listened_before(simulation: World, world_map: LoadedMap) -> None:
     def sixth(listened_from: int) -> bytes:
-        running = Simulation(world_map, EpisodeSettings())
+        running = World(world_map, EpisodeSettings())
         running.seeing = simulation.seeing
         chosen = {"rotation_frequency": 7, "noise_stddev": 0.1, "range": 50}
         lidar = running.spawn(described("sensor.lidar.ray_cast", **chosen), Transform(Vector3D(0.0, 0.0, 3.0)))
@@ -214,7 +214,7 @@ def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedM
         return floor(9.0)
 
     seeing.standing_on = standing_on
-    simulation = Simulation(world_map, EpisodeSettings())
+    simulation = World(world_map, EpisodeSettings())
     seeing.prepare(simulation.episode)
     assert not seeing.wait(0.01)
     may_build.set()
@@ -224,7 +224,7 @@ def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedM
 
 
 def test_a_load_of_another_map_gives_up_what_was_being_built(world_map: LoadedMap) -> None:
-    simulation, begun, ended = Simulation(world_map, EpisodeSettings()), Event(), Event()
+    simulation, begun, ended = World(world_map, EpisodeSettings()), Event(), Event()
 
     def build_for_ever(_map: LoadedMap, _scene: object) -> Mesh:
         begun.set()

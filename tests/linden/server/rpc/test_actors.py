@@ -12,7 +12,7 @@ from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.protocol.wire.stream import StreamTable
 from linden.server.rpc import actors
 from linden.server.rpc.context import Context
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import street_through_junction
 
 STREET = street_through_junction()
@@ -21,7 +21,7 @@ HIGH_M = 60.0
 
 @pytest.fixture
 def context() -> Context:
-    simulation = Simulation(LoadedMap(name="street", text=STREET, **vars(derive(STREET))))
+    simulation = World(LoadedMap(name="street", text=STREET, **vars(derive(STREET))))
     return Context(simulation, FakeMaps(), FakeFrames(sensor_bytes=0), StreamTable(2001), lambda: 0.05)
 
 

@@ -16,7 +16,7 @@ from linden.protocol.wire.stream import StreamTable
 from linden.server.rpc.actors import set_actor_transform
 from linden.server.rpc.batch import apply_batch
 from linden.server.rpc.context import Context
-from linden.world import Simulation
+from linden.world import World
 from opendrive_texts import street_through_junction
 
 STREET = street_through_junction()
@@ -25,7 +25,7 @@ SEED = 11
 
 def crowd() -> tuple[Context, list[int]]:
     """A car, a walker and a prop for each of six places, and the ids of all."""
-    simulation = Simulation(LoadedMap(name="street", text=STREET, **vars(derive(STREET))))
+    simulation = World(LoadedMap(name="street", text=STREET, **vars(derive(STREET))))
     kinds = ("vehicle.tesla.model3", "walker.pedestrian.0001", "static.prop.trafficcone01")
     ids = []
     for place in range(18):

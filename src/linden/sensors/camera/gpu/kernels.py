@@ -78,8 +78,8 @@ def _build(built_of: int) -> SimpleNamespace:  # noqa: C901, PLR0915 - many smal
     ) -> None:
         i = cuda.grid(1)
         if i < count and built_of >= 0:
-            whose = first, actor_id, faces.tag, faces.object, object_id
-            instance_loop(hits.instance, hits.triangle, *whose, pixel, image, i, i + 1)
+            owner = first, actor_id, faces.tag, faces.object, object_id
+            instance_loop(hits.instance, hits.triangle, *owner, pixel, image, i, i + 1)
 
     @kernel
     def normals(hits: Hits, view: Array, pixel: Array, image: Array, count: int) -> None:

@@ -28,7 +28,7 @@ _STEP = np.float32(0.06)
 
 
 def edge_rays(spec: CameraSpec, hits: Hits, light: F32) -> NDArray[np.intp]:
-    """Return the rays whose pixels differ from one of their four neighbours, in order."""
+    """Return the rays of pixels that differ from one of their four neighbours, in order."""
     across, down = tile_counts(spec)
     edge = np.empty(len(light), np.bool_)
 

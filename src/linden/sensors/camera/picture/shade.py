@@ -46,7 +46,7 @@ Shade = Callable[[Rays, Hits, Floats, float, Faces, Relief, Places, Floats, Air,
 
 
 def single(values: Narrow) -> Narrow:
-    """Return a tuple whose floats are of 32 bits, as kernels want them."""
+    """Return a tuple with floats of 32 bits, as kernels want them."""
     fields: Iterable[Any] = values
     return values._replace(**dict(zip(values._fields, map(_single, fields), strict=True)))
 

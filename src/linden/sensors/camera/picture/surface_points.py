@@ -128,7 +128,7 @@ def colour_at(place: int, face: int, glow: float, faces: Columns, places: Places
 
 @shading_part
 def facing(nx: float, ny: float, nz: float, dx: float, dy: float, dz: float, bend: float) -> Three:
-    """Return a normal turned to who looks along (dx, dy, dz), and bent by what there is on a surface."""
+    """Return a normal turned against the direction (dx, dy, dz), and bent by what there is on a surface."""
     side = -1.0 if nx * dx + ny * dy + nz * dz > 0.0 else 1.0
     nx, ny, nz = side * nx, side * ny, side * nz
     if bend != 0.0:

@@ -13,9 +13,9 @@ from linden.sensors.devices.lidar.firing_pattern import F32, I32, aim, fire, rea
 from linden.sensors.devices.lidar.sweep import (
     Chances,
     Losses,
+    Owners,
     SemanticSweep,
     Sweep,
-    Whose,
     points_of,
     semantic_points_of,
 )
@@ -79,12 +79,12 @@ class SemanticLidar:
         self.skip(look.interval_s)
         rays = aim(fired, np.arange(fired.rays, dtype=np.int32), look.pose)
         hits = look.seen.caster.closest(rays, self._fan.range_m, coherent=True, outer=True)
-        found = semantic_points_of(fired, rays.direction, hits, whose(look.seen))
+        found = semantic_points_of(fired, rays.direction, hits, owners_of(look.seen))
         return SemanticSweep(math.radians(self._angle_deg), *found)
 
 
-def whose(seen: Seen) -> Whose:
+def owners_of(seen: Seen) -> Owners:
     """Return whose each face is; scenery has the id 0, as in CARLA."""
     faces = seen.faces
     first, actor = first_of_places(faces, seen.instances), id_of_places(seen.instances)
-    return Whose(first, actor, faces.tag, faces.object, actor_of_objects(seen))
+    return Owners(first, actor, faces.tag, faces.object, actor_of_objects(seen))

@@ -93,8 +93,8 @@ def _write(
     return made
 
 
-class Whose(NamedTuple):
-    """Whose a face is; see ``linden.sensors.view``."""
+class Owners(NamedTuple):
+    """The actor or object of each face; see ``linden.sensors.view``."""
 
     first: NDArray[np.int64]  # (1 + K,) the first face of each place
     actor: U32  # (1 + K,)
@@ -103,11 +103,11 @@ class Whose(NamedTuple):
     actor_of_thing: U32  # the last for what is no thing
 
 
-def semantic_points_of(fired: Fired, direction: F32, hits: Hits, whose: Whose) -> tuple[U32, NDArray[np.void]]:
+def semantic_points_of(fired: Fired, direction: F32, hits: Hits, owners: Owners) -> tuple[U32, NDArray[np.void]]:
     """Return how many points each channel has, and the points (M,) of SEMANTIC_POINT; all rays are asked for."""
     count, points = np.zeros(len(fired.up), np.uint32), np.empty(len(direction), SEMANTIC_POINT)
     columns = points.view(np.float32).reshape(-1, 6)
-    first, actor, tag, thing, actor_of_thing = whose
+    first, actor, tag, thing, actor_of_thing = owners
     made = _write_semantic(
         *fired, direction, *hits, first, actor, tag, thing, actor_of_thing, count, columns, columns.view(np.uint32)
     )
