@@ -93,7 +93,7 @@ def boxes_touch(
 def owners_over(
     grid: TriggerGrid, position_m: F64, rotation_rad: F64, box_centre_m: F64, half_extent_m: F64, slots: I32
 ) -> I32:  # pragma: no cover - compiled
-    """Return for each of ``slots`` (V,) the owner of the volume that the body touches, -1 for none, the nearest of several.
+    """Return for each of ``slots`` (V,) the owner of the nearest volume that the body touches, -1 for none.
 
     The columns are those of the bodies, (N, 3): the origin, pitch, yaw and roll, and the box in the body's frame.
     Boxes touch where they do so in the plane and in height.
