@@ -17,8 +17,8 @@ import numpy as np
 
 from basu.errors import AgentCrashedError, UserError
 from basu.managers.world_changes import LightsCheck, OthersCheck, agents_change, is_same_control
-from basu.metrics.passengers.boxes import touching
-from basu.routing.route_weather import WEATHER_FIELDS
+from basu.metrics.boxes import touching
+from basu.routing.weather import WEATHER_FIELDS
 
 if TYPE_CHECKING:
     import carla

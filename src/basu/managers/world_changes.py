@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from basu.managers.base_manager import Frame
-    from basu.managers.neighbours import Neighbours
+    from basu.managers.observations import Neighbours
     from basu.records.history import Collision
     from basu.routing import Route
 
