@@ -119,13 +119,13 @@ def parameters(found: Sequence[dict[str, Any]]) -> Element | None:
     if not found:
         return None
     pairs = [
-        e("div", e("dt", parameter["name"]), e("dd", _value(parameter), title=parameter["about"]))
+        e("div", e("dt", parameter["name"]), e("dd", value_text(parameter), title=parameter["about"]))
         for parameter in found
     ]
     return e("dl", *pairs, class_="parameters")
 
 
-def _value(parameter: dict[str, Any]) -> str:
+def value_text(parameter: dict[str, Any]) -> str:
     value = parameter["value"]
     text = value if isinstance(value, str) else f"{value:.4g}"
     return f"{text} {parameter['unit']}".rstrip()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -231,7 +232,8 @@ def _cases(matrix: dict[str, Any], cards: dict[str, list[Element]]) -> Element:
             shown = [case for case in row.cases if case["id"] in cards]
             if shown:
                 group.append(e("p", e("b", row.scenario), f" {row.title}", class_="scenario-title"))
-            group.extend(_case(case, cards[case["id"]]) for case in shown)
+            told = _headers(row.cases)
+            group.extend(_case(case, told[case["id"]], cards[case["id"]]) for case in shown)
             if len(shown) < len(row.cases):
                 left = len(row.cases) - len(shown)
                 group.append(
@@ -241,13 +243,27 @@ def _cases(matrix: dict[str, Any], cards: dict[str, list[Element]]) -> Element:
     return section
 
 
-def _case(case: dict[str, Any], cards: list[Element]) -> Element:
-    """A case with the cards of all agents, closed."""
+def _headers(cases: Sequence[dict[str, Any]]) -> dict[str, str]:
+    """What the header of each case says, by its id: the place, and for samples of one place their own values."""
+    by_place: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    for case in cases:
+        by_place[case["place"]].append(case)
+    told = {}
+    for place, there in by_place.items():
+        values = [{each["name"]: case_card.value_text(each) for each in case["parameters"]} for case in there]
+        for case, own in zip(there, values, strict=True):
+            sampled = [f"{name} {text}" for name, text in own.items() if any(other.get(name) != text for other in values)]
+            told[case["id"]] = ", ".join(sampled) or place
+    return told
+
+
+def _case(case: dict[str, Any], told: str, cards: list[Element]) -> Element:
+    """A case with the cards of all agents, closed; ``told`` stands in its header."""
     signs = [
         e("span", f"{LOOKS[result['verdict']].sign} {agent}", class_=f"chip {LOOKS[result['verdict']].style}")
         for agent, result in case["results"].items()
     ]
-    summary = e("summary", e("b", case["id"]), e("span", *signs, class_="chips"), e("small", case["place"]))
+    summary = e("summary", e("b", case["id"]), e("span", *signs, class_="chips"), e("small", told))
     return e("details", summary, parameters(case["parameters"]), e("div", *cards, class_="side"), class_="case")
 
 
