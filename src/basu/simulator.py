@@ -10,6 +10,7 @@ import ctypes
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -57,6 +58,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         SimulatorError: our own did not start.
     """
     if options.host is not None:
+        print(f"basu: connecting to the simulator at {options.host}:{options.port}", file=sys.stderr, flush=True)
         client = connect(options.host, options.port, options.timeout_s)
         address = (options.host, options.port)
         yield Simulator(client, address, own=False, why_gone=lambda: _silence(client, options), ended=lambda: False)
@@ -187,9 +189,17 @@ def _end_with_parent() -> None:
 def connect(host: str, port: int, timeout_s: float) -> carla.Client:
     """A client that has been answered.
 
+    A port that nothing listens at is refused at once: CARLA's client would ask it for the whole time-out.
+
     Raises:
         UserError: nobody answers there.
     """
+    try:
+        socket.create_connection((host, port), timeout_s).close()
+    except OSError as error:
+        raise UserError(
+            f"no simulator answers at {host}:{port}; start one with `linden serve`, or leave out --host ({error})"
+        ) from error
     try:
         client = carla.Client(host, port)
         client.set_timeout(timeout_s)

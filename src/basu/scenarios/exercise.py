@@ -49,7 +49,7 @@ ACCELERATE_MPS2, BRAKE_MPS2, LATERAL_MPS2 = (
     1.0,
     1.5,
     2.0,
-)  # comfortable in public transport: Hoberock 1977, 0.11 to 0.15 g along
+)  # BASU's own drivers for standing and seated passengers; sources and doubts: docs/decisions/0054-verdicts.md
 DWELL_S = 2.0  # at a stop sign: the stop, and the look to both sides
 MOVING_MPS = 0.5  # below this the ego stands; who comes near a standing ego has done so alone
 EFFECT_MPS = 2.5  # a disturbance of the ego's own driving is felt from this speed on

@@ -126,6 +126,7 @@ def parameters(found: Sequence[dict[str, Any]]) -> Element | None:
 
 
 def value_text(parameter: dict[str, Any]) -> str:
+    """A parameter's value with its unit."""
     value = parameter["value"]
     text = value if isinstance(value, str) else f"{value:.4g}"
     return f"{text} {parameter['unit']}".rstrip()

@@ -252,7 +252,9 @@ def _headers(cases: Sequence[dict[str, Any]]) -> dict[str, str]:
     for place, there in by_place.items():
         values = [{each["name"]: case_card.value_text(each) for each in case["parameters"]} for case in there]
         for case, own in zip(there, values, strict=True):
-            sampled = [f"{name} {text}" for name, text in own.items() if any(other.get(name) != text for other in values)]
+            sampled = [
+                f"{name} {text}" for name, text in own.items() if any(other.get(name) != text for other in values)
+            ]
             told[case["id"]] = ", ".join(sampled) or place
     return told
 
