@@ -36,7 +36,7 @@ def main() -> int:
     if not check:
         PAGE.write_text(after, "utf-8")
     elif after != before:
-        print("docs/how-to/runs.md is not what the code says; run `python scripts/make_options_tables.py`", file=sys.stderr)
+        print("docs/how-to/runs.md is out of date; run `python scripts/make_options_tables.py`", file=sys.stderr)
         return 1
     return 0
 

@@ -1,4 +1,4 @@
-"""Fill the tables and files of docs/reference/scenarios.md from the code: `python scripts/make_scenarios_page.py [--check]`.
+"""Fill the tables and files of docs/reference/scenarios.md from the code: `make_scenarios_page.py [--check]`.
 
 Each stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; what is outside is written by hand.
 """
@@ -46,7 +46,7 @@ def main() -> int:
         PAGE.write_text(after, "utf-8")
     elif after != before:
         print(
-            "docs/reference/scenarios.md is not what the code says; run `python scripts/make_scenarios_page.py`", file=sys.stderr
+            "docs/reference/scenarios.md is out of date; run `python scripts/make_scenarios_page.py`", file=sys.stderr
         )
         return 1
     return 0

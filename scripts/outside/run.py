@@ -1,8 +1,8 @@
 """Runs other people's CARLA programs, unmodified, against servers of ours, and prints what came of it.
 
 ``unshare --net --map-root-user python scripts/outside/run.py PROGRAMS TOWNS OSM SUMO_HOME OUT``, where
-docs/reference/outside-programs.md says what lies in those folders. A network of its own gives every program CARLA's own port
-2000, and a fresh server behind it.
+docs/reference/outside-programs.md says what lies in those folders. A network of its own gives every program CARLA's own
+port 2000, and a fresh server behind it.
 """
 
 import argparse
