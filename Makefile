@@ -31,8 +31,8 @@ bench:  ## the figures of benchmarks/README.md, anew
 	$(BIN)/python benchmarks/ticks.py
 
 docs: pages  ## the documentation site, in site/
-	$(BIN)/python -m mkdocs build --strict --quiet
-	@echo "open site/index.html"
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+	@echo "to read it, with search: $(BIN)/python -m http.server --directory site"
 
 pages:  ## the generated pages and tables of docs/
 	@scripts/setup dev

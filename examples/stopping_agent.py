@@ -8,11 +8,13 @@ BRAKING_MPS2 = 0.8  # standing passengers feel stronger braking
 
 
 class StoppingAgent(first_agent.FirstAgent):
+    """Stops with the front bumper 1 m before the line of each stop sign."""
+
     def setup(self):
         super().setup()
         signs = [control.s_m for control in self.route.controls if control.kind is ControlKind.STOP_SIGN]
         half_length_m = self.vehicle.bounding_box.extent.x
-        self.stops_m = [s_m - half_length_m - 1.0 for s_m in signs]  # front bumper 1 m before the line
+        self.stops_m = [s_m - half_length_m - 1.0 for s_m in signs]
 
     def run_step(self, sensor_data):
         control = super().run_step(sensor_data)
