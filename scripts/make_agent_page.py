@@ -166,7 +166,7 @@ def first_small(text: str) -> str:
 
 def code(text: str) -> str:
     """Return a type as code that does not end its cell."""
-    return f"`{text.strip()}`".replace("|", "\\|")
+    return f"`{text.strip()}`".replace(" | ", " or ")
 
 
 def table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
