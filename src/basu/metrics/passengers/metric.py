@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.json_schema import choice, flag, integer, listing, mapping, number, record, text
-from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.causes import Kind
+from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.near_misses import NEAR_S
 from basu.metrics.passengers.verdict import judge
 from basu.metrics.registry import Column, Drive, Metric, register
@@ -122,7 +122,7 @@ class Passengers(Metric):
     order = 95
     schema = record(
         null_=True,
-        about_="the ride as its standing passengers would judge it: docs/passengers.md",
+        about_="the ride as its standing passengers would judge it: docs/reference/passengers.md",
         passed=flag(),
         reasons=listing(text()),
         comfort_score=number(low=0, high=1, null=True),
