@@ -15,8 +15,7 @@ from pathlib import Path
 
 import griffe
 
-from basu.agents.autonomous_agent import AutonomousAgent
-from basu.agents.config import AgentConfig
+from basu.agents.autonomous_agent import AgentConfig, AutonomousAgent
 from basu.agents.sight import Other
 from basu.routing import Control, Route, Stop
 

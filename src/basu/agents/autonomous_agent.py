@@ -133,8 +133,8 @@ class AutonomousAgent(ABC):
         """Return the vehicles, walkers and props that the vehicle sees now or saw up to 2 s ago; call it once a tick.
 
         BASU's own agents know other actors by this list alone. It holds actors within 80 m with a line of sight from
-        the roof that is free of houses, trees, parked cars and other actors, within the range of light and weather. Each is
-        a :class:`basu.agents.sight.Other`, in CARLA's world frame. The place of an actor that is out of sight is
+        the roof that is free of houses, trees, parked cars and other actors, within the range of light and weather.
+        Each is a :class:`basu.agents.sight.Other`, in CARLA's world frame. The place of an actor that is out of sight is
         extrapolated. Use a :class:`basu.agents.sight.Sight` for another radius.
         """
         if self._sight is None:
