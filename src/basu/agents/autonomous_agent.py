@@ -134,7 +134,7 @@ class AutonomousAgent(ABC):
 
         BASU's own agents know other actors by this list alone. It holds actors within 80 m with a line of sight from
         the roof that is free of houses, trees, parked cars and other actors, within the range of light and weather.
-        Each is a :class:`basu.agents.sight.Other`, in CARLA's world frame. The place of an actor that is out of sight is
+        Each is a :class:`basu.agents.sight.Other`, in CARLA's world frame. The place of an actor out of sight is
         extrapolated. Use a :class:`basu.agents.sight.Sight` for another radius.
         """
         if self._sight is None:
