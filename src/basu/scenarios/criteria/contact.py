@@ -19,7 +19,7 @@ TOLD = 3  # contacts that the sentence tells of one by one
 
 
 class NoCollision(Criterion):
-    """The ego touches nobody and nothing.
+    """The ego touches no actor and no thing.
 
     ``except_with`` names roles that may be touched. Where ``standing_counts`` is False, a contact in which the ego
     stood (below 0.1 m/s in the frame before) is told and not held against it, as in the leaderboard 2.x. Messages of

@@ -172,7 +172,7 @@ SAME_WAY_RAD = math.radians(45.0)
 
 
 class KeepsHeadway(Margin):
-    """The time gap to who drives ahead stays at ``at_least`` s or more.
+    """The time gap to the vehicle ahead stays at ``at_least`` s or more.
 
     From the ego's front bumper to the leader's rear along the ego's heading, over the ego's speed (the time gap of ISO
     15622). Ahead is who overlaps the ego's width and heads the same way within 45 degrees. Frames count in which the

@@ -151,7 +151,7 @@ def lanes_apart_m(place: Place, ahead_m: float) -> float:
 
 
 PAVEMENT_M = 5.6  # from the middle of the lane to the pavement's, where the map knows of none
-PARKING_M = 1.05  # from the edge of the lane to the middle of who is parked there, likewise
+PARKING_M = 1.05  # from the edge of the lane to the middle of a parked vehicle, likewise
 LANES = 12  # no street has more beside one another
 STANDS_IN = (carla.LaneType.Parking, carla.LaneType.Shoulder)
 
@@ -163,7 +163,7 @@ def pavement_m(place: Place, ahead_m: float, side: str) -> float:
 
 
 def parked_m(place: Place, ahead_m: float) -> float:
-    """How far to the right of the route somebody parked at the kerb has its middle."""
+    """Return the distance from the route to the middle of a vehicle that is parked at the kerb on the right."""
     return _away_m(place, ahead_m, "right", STANDS_IN) or place.width_m(ahead_m) / 2.0 + PARKING_M
 
 

@@ -142,7 +142,7 @@ def _painted(text: str, colour_code: str, *, colour: bool) -> str:
 def _key(matrix: dict[str, Any]) -> str:
     """What the parts of a cell are, as far as they occur."""
     verdicts = {result["verdict"] for case in matrix["cases"] for result in case["results"].values()}
-    told = ["passed of judged; of those passed, the least distance to anybody, and the least time to a collision."]
+    told = ["passed of judged; for those passed, the least distance to any actor and the least time to a collision."]
     if "AGENT_FAULT" in verdicts:
         told.append("! the agent itself broke down: judged, and not passed.")
     if "NOT_EXERCISED" in verdicts:

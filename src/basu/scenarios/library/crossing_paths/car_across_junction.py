@@ -29,7 +29,7 @@ STOPS_M = 6.0  # it brakes over the last of its way
 
 
 class CarAcrossJunction(AcrossTheWay):
-    """Somebody from the side gets stuck in the junction, across the ego's way, and drives on after a while.
+    """A vehicle from the side gets stuck in the junction, across the ego's path, and drives on after a while.
 
     NHTSA pre-crash scenario 30, straight crossing paths. It stands there some seconds before the ego arrives, whose
     light is green or whose street has the right of way; the right of way is no reason to drive into anybody.

@@ -23,7 +23,7 @@ STREET_MPS = 9.0  # 20 mph
 
 
 class RightTurnIntoPath(AcrossTheWay):
-    """Somebody turns right out of a side street, just in front of the ego, and takes its time.
+    """A vehicle turns right out of a side street, just in front of the ego, and accelerates slowly.
 
     NHTSA pre-crash scenario 31, turning at a non-signalised junction. The other comes out of its stop street shortly
     before the ego is there and needs a while to get going: who does not slow down is in its boot.

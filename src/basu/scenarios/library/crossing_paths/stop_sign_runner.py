@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class StopSignRunner(AcrossTheWay):
-    """The ego has the right of way, and somebody from the side drives past a stop sign.
+    """The ego has the right of way, and a vehicle from the side runs a stop sign.
 
     NHTSA pre-crash scenario 5, running stop sign. The ego's street has no sign, the side street has; the other drives
     on as if it had none, straight on or, where the side street ends, to the left.

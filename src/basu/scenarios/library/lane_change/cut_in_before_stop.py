@@ -1,4 +1,4 @@
-"""Somebody overtakes and cuts in before a stop sign: NHTSA's "changing lanes, same direction"."""
+"""A vehicle overtakes and cuts in before a stop sign: NHTSA's "changing lanes, same direction"."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ RESTS_S = 4.0  # it looks to both sides: longer than an ego right behind it need
 
 
 class CutInBeforeStop(OvertakesEgo):
-    """Somebody overtakes the ego, cuts in closely and brakes for the stop sign ahead.
+    """A vehicle overtakes the ego, cuts in closely and brakes for the stop sign ahead.
 
     NHTSA pre-crash scenario 18, vehicles changing lanes, same direction. For a shuttle that keeps to 15 mph this is the
     day's business. Who keeps the distance that it loses stops behind; who does not is in the other's boot.

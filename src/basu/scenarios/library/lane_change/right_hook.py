@@ -1,4 +1,4 @@
-"""Somebody overtakes and turns right across the ego's nose: NHTSA's "turning, same direction"."""
+"""A vehicle overtakes and turns right in front of the ego: NHTSA's "turning, same direction"."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ EASES_M = 8.0  # behind the junction's beginning, before it speeds up again
 
 
 class RightHook(OvertakesEgo):
-    """Somebody overtakes the ego just before a side street, cuts in, brakes and turns right into it.
+    """A vehicle overtakes the ego just before a side street, cuts in, brakes and turns right into it.
 
     NHTSA pre-crash scenario 16, vehicles turning, same direction. The ego goes straight on. The other slows down to the
     speed of its turn right before the ego's nose.

@@ -22,7 +22,7 @@ CLEARS_M = 1.0  # it keeps to the parked ones' side before it goes back, from mi
 
 
 class NarrowedStreet(OutOfLane):
-    """Cars stand half in the opposite lane; who comes there drives round them, in the middle of the street.
+    """Cars stand half in the opposite lane; an oncoming vehicle drives around them in the middle of the street.
 
     NHTSA pre-crash scenario 20, vehicles from opposite directions, one making a maneuver. The other is between the
     parked cars before the ego is there. Only one can pass at a time: the ego has to wait in front of the narrow place,

@@ -1,4 +1,4 @@
-"""Somebody overtakes towards the ego: NHTSA's "opposite direction, making a maneuver"."""
+"""An oncoming vehicle overtakes: NHTSA's "opposite direction, making a maneuver"."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ CAR_HALF_M = HALF_LENGTH_M["car"]
 
 
 class OncomingOvertaker(OutOfLane):
-    """A driver who comes towards the ego overtakes somebody slow and gets back into its lane late.
+    """An oncoming vehicle overtakes a slow one and returns to its lane late.
 
     NHTSA pre-crash scenario 20, vehicles from opposite directions, one making a maneuver. The overtaker is fully in
     the ego's lane until it is past the slow one, and not before: who keeps up its speed meets it there.

@@ -16,7 +16,7 @@ BACK_S = 1.6  # who wakes up steers back in about this time
 
 
 class StrayingOncoming(OutOfLane):
-    """A driver who comes towards the ego strays over the middle of the street, and wakes up late.
+    """An oncoming vehicle strays over the middle of the street, and its driver wakes up late.
 
     NHTSA pre-crash scenario 21, vehicles from opposite directions, no maneuver. It drifts into the ego's lane over
     some seconds and jerks back at a place of its own: who has braked by then has not come to that place yet.

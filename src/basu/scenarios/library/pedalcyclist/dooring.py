@@ -33,7 +33,7 @@ BACK_M = 14.0  # the way back to the edge
 
 
 class Dooring(Scenario):
-    """A door opens right before a cyclist, who dodges it and comes to rest in the ego's lane.
+    """A door opens right before a cyclist; the cyclist dodges it and comes to rest in the ego's lane.
 
     The ego comes up from behind, faster than the cyclist. It must stop, and wait until the cyclist rides on and the
     door is shut. NHTSA 2007, scenario 14: pedalcyclist, no prior vehicle maneuver. In ``cyclist_swerves`` the cyclist

@@ -25,7 +25,7 @@ EARLY_S = 4.5  # they are across so long before an ego of steady speed is there
 
 
 class PedestrianTurnsBack(Scenario):
-    """A pedestrian who has crossed the ego's lane turns back into it.
+    """A pedestrian crosses the ego's lane and then turns back into it.
 
     They walk over in good time, stand in the other lane, as who has dropped something, and turn back when the ego is
     ``notice`` seconds away. NHTSA 2007, scenario 12: pedestrian, no prior vehicle maneuver. Hard for who takes those on

@@ -30,7 +30,7 @@ LOOK_M = 7.0  # from the leader's middle to the one who steps out, when it brake
 
 
 class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
-    """The vehicle ahead brakes hard for somebody who crosses, then drives on to the next junction.
+    """The vehicle ahead brakes hard for a crossing pedestrian or animal, then drives on to the next junction.
 
     As FollowLeadingVehicle, and a child, an adult or a dog crosses before the leader, which stands until the way is
     free. NHTSA pre-crash scenario: lead vehicle decelerating. Fair: the leader brakes no harder than a careful
