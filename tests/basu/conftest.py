@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.leaderboard.modules import step_back
+from basu.agents.adapters.replacement_modules import step_back
 from servers import RunningServer, running_server
 from tracing import untraced
 

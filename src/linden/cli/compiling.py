@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from linden.errors import UserError
 
 if TYPE_CHECKING:
-    from linden.world.map_cache import MapCache
+    from linden.maps.cache import MapCache
 
 NICE = 10
 """Priority of a process that compiles while the server serves."""
@@ -40,7 +40,7 @@ def contacts() -> None:
 
 def rays() -> None:
     """Compile rays: those that clients cast, and those of lidars and radars."""
-    from linden.scene.rays import warm_up  # noqa: PLC0415 - as in driving
+    from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
     from linden.sensors.warming import warm_rays  # noqa: PLC0415 - as in driving
 
     warm_up()
@@ -56,41 +56,41 @@ def cameras() -> None:
 
 def scenery() -> None:
     """Make the meshes that sensors see on the default map."""
-    from linden.meshes.bodies_library import keep_bodies  # noqa: PLC0415 - as in driving
-    from linden.meshes.library import keep_standing  # noqa: PLC0415 - as in driving
-    from linden.simulation import Simulation  # noqa: PLC0415 - as in driving
-    from linden.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - as in driving
-    from linden.world.maps import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
+    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
+    from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
+    from linden.scenery.actors.actor_meshes_cache import keep_bodies  # noqa: PLC0415 - as in driving
+    from linden.scenery.map_mesh_cache import keep_standing  # noqa: PLC0415 - as in driving
+    from linden.world import World  # noqa: PLC0415 - as in driving
 
     cache = MapCache.of_user()
-    simulation = Simulation(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
     keep_bodies(simulation.library, cache)
     keep_standing(simulation.episode.map, simulation.episode.surroundings.scene, cache)
 
 
 def world() -> None:
     """Compile what a world needs beside the physics, and derive what is kept of the default map."""
-    from linden.handlers import registry  # noqa: PLC0415 - as in driving
-    from linden.navigation.library import MeshLibrary  # noqa: PLC0415 - as in driving
-    from linden.simulation import Simulation  # noqa: PLC0415 - as in driving
-    from linden.simulation.walking_mesh import mesh_file  # noqa: PLC0415 - as in driving
-    from linden.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - as in driving
-    from linden.world.maps import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
+    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
+    from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - as in driving
+    from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
+    from linden.server.rpc import registry  # noqa: PLC0415 - as in driving
+    from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - as in driving
+    from linden.world import World  # noqa: PLC0415 - as in driving
 
     registry.load_handlers()
     cache = MapCache.of_user()
-    simulation = Simulation(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
     simulation.episode.warm_up()
     mesh_file(simulation.episode, MeshLibrary(cache))
 
 
 def frame() -> None:
     """Compile the frame of physics, whose parts are compiled already, and note that it is."""
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
     from linden.physics.warming import warm_up  # noqa: PLC0415 - as in driving
     from linden.sensors.compiling import OF_PHYSICS, note_compiled  # noqa: PLC0415 - as in driving
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - as in driving
 
     warm_up()
     note_compiled(OF_PHYSICS, MapCache.of_user())
@@ -98,8 +98,8 @@ def frame() -> None:
 
 def sensors() -> None:
     """Note that the kernels of sensors are compiled: those of rays and of cameras are already."""
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
     from linden.sensors.compiling import compile_once  # noqa: PLC0415 - as in driving
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - as in driving
 
     compile_once(MapCache.of_user())
 
@@ -193,7 +193,7 @@ class FirstStart:
 
     def compile_sensors(self) -> bool:
         """Begin to compile what sensors need, in the background; return whether there is anything to compile."""
-        from linden.scene.rays import warm_up  # noqa: PLC0415 - as in driving
+        from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
         from linden.sensors.compiling import OF_SENSORS, is_compiled  # noqa: PLC0415 - as in driving
 
         if is_compiled(OF_SENSORS, self._cache):

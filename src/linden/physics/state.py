@@ -25,7 +25,7 @@ Work: TypeAlias = Any
 
 _HERE = Path(__file__).parent
 _WITH_KERNELS = [path for path in _HERE.rglob("*.py") if b"linden.compiled" in path.read_bytes()]
-SOURCES = fingerprint(*_WITH_KERNELS, _HERE.parent / "ground.py")
+SOURCES = fingerprint(*_WITH_KERNELS, _HERE.parent / "maps" / "ground.py")
 """Of all files with kernels of the physics, this one included: what is compiled across them is renewed with any."""
 
 NO_BODY, VEHICLE, WALKER, PROP = range(4)
@@ -139,7 +139,7 @@ BODY = np.dtype(
         ("asked", "f8", 4),  # throttle, steer, brake and hand brake as far as they have followed the driver
         ("given", "f8", 4),  # and as they have followed that: what engine, wheels and brakes get
         ("since_shift_s", "f8"),  # since the automatic last began to change
-        ("slow_s", "f8"),  # for how long the wheels have all but stood, nobody wanting to go
+        ("slow_s", "f8"),  # for how long the wheels have all but stood without throttle
         ("support_mps2", "f8"),  # force of the ground over mass
         ("target_gear", "i4"),
         ("shift_left_s", "f8"),
@@ -158,7 +158,7 @@ BODY = np.dtype(
         ("constant_velocity_on", "?"),
         ("constant_velocity", "f8", 3),  # m/s in the body's frame
         ("ackermann_on", "?"),
-        ("ackermann", "f8", 5),  # the target; as linden.values.AckermannControl
+        ("ackermann", "f8", 5),  # the target; as linden.protocol.values.AckermannControl
         ("ackermann_gains", "f8", 6),
         ("ackermann_memory", "f8", 8),  # of its two controllers
     ],

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import kept_part, kernel, part
-from linden.ground import Ground
+from linden.maps.ground import Ground
 from linden.physics.contact.impulses import JX, PX, TOUCHED, part_bodies
 from linden.physics.contact.pairs import find_pairs, is_fixed
 from linden.physics.contact.statics import Statics

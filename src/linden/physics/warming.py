@@ -10,7 +10,7 @@ import numba
 import numpy as np
 
 from linden.compiled import COMPILER_IS_OFF
-from linden.ground import Ground, surface_under
+from linden.maps.ground import Ground, surface_under
 from linden.physics.bodies import Bodies
 from linden.physics.contact.impulses import part_bodies
 from linden.physics.contact.pairs import find_pairs

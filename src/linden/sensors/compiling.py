@@ -10,7 +10,7 @@ from typing import NamedTuple
 from numba.core.dispatcher import Dispatcher
 
 from linden.compiled import COMPILER_IS_OFF, machine
-from linden.world.map_cache import MapCache
+from linden.maps.cache import MapCache
 
 _PACKAGE = Path(__file__).parent.parent
 
@@ -24,8 +24,8 @@ class Kernels(NamedTuple):
     """Beginnings of the names of their modules."""
 
 
-OF_SENSORS = Kernels(("sensors/**/*.py", "casting/*.py", "compiled.py"), ("linden.sensors", "linden.casting"))
-OF_PHYSICS = Kernels(("physics/**/*.py", "ground.py", "compiled.py"), ("linden.physics", "linden.ground"))
+OF_SENSORS = Kernels(("sensors/**/*.py", "compiled.py"), ("linden.sensors",))
+OF_PHYSICS = Kernels(("physics/**/*.py", "maps/ground.py", "compiled.py"), ("linden.physics", "linden.maps.ground"))
 
 
 def compile_once(cache: MapCache) -> None:
