@@ -66,7 +66,7 @@ class AutonomousAgent(ABC):
     server_address: tuple[str, int]
     manual: bool = False
     driven_by_person: bool = False  # whether a person drives at first, before a window; the human agent
-    gives_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
+    gives_sensors_late: bool = False  # ``sensors`` is called after ``setup``; for foreign agents
     _sight: Sight | None = None
 
     def bind(
@@ -132,7 +132,7 @@ class AutonomousAgent(ABC):
     def visible_actors(self) -> list[Other]:
         """Return the vehicles, walkers and props that the vehicle can see, or saw up to 2 s ago; call it once a tick.
 
-        It is what BASU's own agents know of others: actors within 80 m whose line of sight from the roof is free of
+        BASU's own agents know the same of other actors: within 80 m, with a line of sight from the roof free of
         houses, trees, parked cars and other actors, within the range of light and weather. Each is a
         :class:`basu.agents.sight.Other` with its box's centre, heading, velocity and size in CARLA's world frame (m,
         rad, m/s; x east, y south, yaw clockwise). ``unseen_s`` is 0, or the time since it was last seen; its place is

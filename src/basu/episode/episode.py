@@ -105,7 +105,7 @@ class Episode:
         observers: Callable[[Live], Sequence[BaseManager]] = lambda _live: (),
         folder: Path = Path(),
     ) -> None:
-        """Describe an episode; nothing is asked of the simulator yet.
+        """Describe an episode; the simulator gets no call yet.
 
         ``towns`` are shared by all episodes of a simulator. ``sensors`` makes the agent's sensors for one drive.
         ``participants`` are set up between the traffic and the sensors and are not ticked. ``observers`` makes managers
@@ -249,7 +249,7 @@ class Episode:
         self.outcome = managers.routes.outcome or ground.scenarios.outcome
         if self.outcome is not None:
             return Step(observation, self.outcome, self.outcome)
-        # A simulator that has ended is asked for no step: the Traffic Manager's thread in the official client would run
+        # A simulator that has ended gets no further step: the Traffic Manager's thread in the official client would run
         # into its own time-out meanwhile, and that ends the whole process.
         if self._simulator.ended():
             raise SimulatorError("the simulator ended")

@@ -27,7 +27,7 @@ MPS_PER_KMH = 1.0 / 3.6
 
 
 class MetricsManager(BaseManager):
-    """Records the run with a collision sensor of its own, and a lane-invasion sensor unless it is told not to.
+    """Records the run with a collision sensor of its own, and a lane-invasion sensor unless switched off.
 
     For that one the client reads the whole map, which of Linden's takes it 0.4 s in every world that it has begun anew.
     """

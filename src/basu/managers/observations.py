@@ -94,7 +94,7 @@ class RouteLights:
         self._lights = [(s_m, light) for s_m, light in found if light is not None]
 
     def next_state(self, route_s_m: float) -> int:
-        """The carla.TrafficLightState of the next light whose line is not ``BEHIND_M`` behind the rear, or NO_LIGHT."""
+        """The carla.TrafficLightState of the next light, until its line is ``BEHIND_M`` behind the rear; or NO_LIGHT."""
         for line_s_m, light in self._lights:
             if line_s_m >= route_s_m - self._rear_m - BEHIND_M:
                 return int(light.get_state())
@@ -103,9 +103,9 @@ class RouteLights:
 
 LOOK_AGAIN_TICKS = 20  # the list of actors is compared at least so often, and whenever the number of actors changes
 MOVING_KINDS = ("vehicle.", "walker.")
-THING_KINDS = ("static.prop.",)  # scenery is no actor; sensors, signs and friction triggers stand in nobody's way
-SMALLEST_M = 0.15  # half size of a body whose box the simulator leaves empty
-OVERHEAD_M = 3.0  # a thing whose box begins so far above the road is driven under
+THING_KINDS = ("static.prop.",)  # scenery is no actor; sensors, signs and friction triggers stand in no vehicle's way
+SMALLEST_M = 0.15  # half size of a body with an empty box from the simulator
+OVERHEAD_M = 3.0  # a thing that begins so far above the road is driven under
 
 
 class _Shape(NamedTuple):

@@ -41,9 +41,9 @@ if TYPE_CHECKING:
     from basu.scenarios.verdict import Judged
 
 NEAR_M = 100.0  # before its trigger point along the route, a scenario's actors come into the world
-LAST_CALL_M = 30.0  # until then, who finds no room, as others are on the road, is brought a moment later
+LAST_CALL_M = 30.0  # until then, an actor without room on a busy road is spawned a moment later
 AGAIN_TICKS = 10  # from one attempt to the next
-AFTERMATH_S = 1.0  # a scenario's own run goes on for so long after the ego has touched somebody
+AFTERMATH_S = 1.0  # a scenario's own run goes on for so long after the ego has touched an actor
 
 
 @dataclass(slots=True)
@@ -54,7 +54,7 @@ class Playing:
     scenario: Scenario
     composed: Composed
     stage: LiveStage
-    cast: Sequence[ActorSpec] | None = None  # None: nobody is in the world yet
+    cast: Sequence[ActorSpec] | None = None  # None: no actor is in the world yet
     armed_tick: int | None = None  # when it began
     touched_tick: int | None = None
     phase_ticks: dict[str, int] = field(default_factory=dict)  # when each phase began
@@ -83,17 +83,17 @@ class Playing:
 
     def judged(self, history: History, outcome: Outcome) -> Judged:
         """The verdict, by the record of the whole run; criteria that raise are the scenario's own fault."""
-        who = self.planned.case.name
+        name = self.planned.case.name
         try:
-            criteria = asked(who, self.scenario.criteria)
+            criteria = asked(name, self.scenario.criteria)
             played = self.played(history, outcome)
             exercised = self.scenario.exercised
-            return asked(who, lambda: judge(criteria, played, outcome, triggered=self.triggered, exercised=exercised))
+            return asked(name, lambda: judge(criteria, played, outcome, triggered=self.triggered, exercised=exercised))
         except UserError as error:
             return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=self.triggered)
 
     def actors(self) -> list[dict[str, Any]]:
-        """Everybody whom it brought, as plain values for a result."""
+        """All actors that it spawned, as plain values for a result."""
         types = self.stage.types
         return [{"id": actor, "role": role, "type": types[actor]} for actor, role in self.stage.roles.items()]
 
@@ -109,7 +109,7 @@ class ScenarioManager(BaseManager):
         self.outcome: Outcome | None = None
 
     def join(self, routes: RoutesManager, metrics: MetricsManager) -> None:
-        """Say whom it shares the run with; before ``setup``."""
+        """Set the managers that it shares the run with; before ``setup``."""
         self._routes, self._metrics = routes, metrics
 
     def setup(self, run: Run) -> None:
@@ -142,11 +142,11 @@ class ScenarioManager(BaseManager):
         """Bring every cast, and take it away at once: what has no place in this world is known before the run begins.
 
         Raises:
-            ScenarioError: somebody cannot be brought.
+            ScenarioError: an actor cannot be spawned.
         """
         for laid in self._laid:
-            who = laid.planned.case.name
-            cast = bring(client, world, asked(who, laid.scenario.actors), who)
+            name = laid.planned.case.name
+            cast = bring(client, world, asked(name, laid.scenario.actors), name)
             take_away(client, [member.actor for member in cast])
 
     def tick(self, frame: Frame) -> None:
@@ -182,7 +182,7 @@ class ScenarioManager(BaseManager):
         return True
 
     def through(self, control: carla.VehicleControl) -> carla.VehicleControl:
-        """What the ego is told after every disturbance; a control of its own where there is one."""
+        """The ego's control after every disturbance."""
         asked_for = now = Controls(control.throttle, control.steer, control.brake)
         for playing in self.playing:
             if not playing.over:
@@ -206,7 +206,7 @@ class ScenarioManager(BaseManager):
                 self._end(playing, None)
 
     def _bring(self, playing: Playing) -> None:
-        """Bring the cast; on a route, those whom the ego would come upon from behind come when it has passed."""
+        """Bring the cast; on a route, actors that the ego would reach from behind come when it has passed."""
         cast = asked(playing.planned.case.name, playing.scenario.actors)
         playing.stage.enter(
             cast if self._own else [spec for spec in cast if not is_behind(playing.scenario.place, spec)]
@@ -215,19 +215,19 @@ class ScenarioManager(BaseManager):
 
     def _begin(self, playing: Playing, tick: int) -> None:
         """Set the tree on its stage, and let the rest of the cast come."""
-        cast, stage, who = playing.cast or (), playing.stage, playing.planned.case.name
+        cast, stage, name = playing.cast or (), playing.stage, playing.planned.case.name
         playing.armed_tick = tick
         stage.begin(tick)
         if not self._own:
             stage.enter([spec for spec in cast if is_behind(playing.scenario.place, spec)])
         stage.set_off(cast)
-        asked(who, partial(set_on, playing.composed, stage))
+        asked(name, partial(set_on, playing.composed, stage))
 
     def _play(self, playing: Playing, frame: Frame) -> None:
         """One frame of one scenario."""
-        stage, root = playing.stage, playing.composed.root.root  # without the visitors that nobody has
+        stage, root = playing.stage, playing.composed.root.root  # without visitors, which no tree has
         stage.look(frame)
-        if not playing.things and frame.tick > (playing.armed_tick or 0):  # who has just come is in no frame yet
+        if not playing.things and frame.tick > (playing.armed_tick or 0):  # a new actor is in no frame yet
             playing.things = stage.things()
         asked(playing.planned.case.name, root.tick_once)
         for phase, node in playing.composed.phases.items():

@@ -52,7 +52,7 @@ def judged_on_the_way(playing: Playing, history: History, outcome: Outcome) -> J
 
 
 def _evidence(playing: Playing, judged: Judged | None, step_s: float) -> dict[str, Any]:
-    """When it was played, with whom, and what its criteria say."""
+    """When it was played, its actors, and the judgements of its criteria."""
     judgements = () if judged is None else judged.judgements
     return {
         "began_s": None if playing.armed_tick is None else round(playing.armed_tick * step_s, 3),

@@ -25,7 +25,7 @@ LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of
 def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Evidence, ...]:
     """One infraction for each episode: it begins ``tolerance_mps`` over and ends back at the limit.
 
-    Whose limit holds, :func:`limits_mps` says.
+    :func:`limits_mps` says which limit holds.
     """
     speed_mps, limit_mps = history.speed_mps(), limits_mps(history)
     found = []

@@ -66,7 +66,7 @@ class Route:
     lane_id: NDArray[np.int64]  # (N,)
     stops: tuple[Stop, ...] = ()  # in the order in which the route passes them
     controls: tuple[Control, ...] = ()  # likewise
-    timetable: Timetable | None = None  # when it is due at its stops; None where nobody said
+    timetable: Timetable | None = None  # when it is due at its stops; None without a timetable
     waypoints: tuple[carla.Waypoint, ...] = field(default=(), repr=False)  # (N,)
 
     @property

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class SensorSet(NamedTuple):
-    """The sensors of a run, and in words who gave them."""
+    """The sensors of a run, and their origin in words."""
 
     specs: tuple[SensorSpec, ...]
     source: str

@@ -68,7 +68,7 @@ def node_of(behaviour: Behaviour) -> TreeNode:
 
 
 def _status_before(behaviour: Behaviour, children: Sequence[TreeNode]) -> str:
-    """What became of a node that py_trees has reset: who breaks off a composite forgets what its parts had done."""
+    """What became of a node that py_trees has reset: an aborted composite forgets what its parts had done."""
     if children:
         return "waiting" if all(child["status"] == "waiting" for child in children) else "broken off"
     if not behaviour.feedback_message:

@@ -177,7 +177,7 @@ def test_of_all_ways_through_a_junction_only_those_are_given_that_meet_the_egos(
 
 
 def test_a_way_that_is_not_there_is_refused_with_those_that_are(westward: Place) -> None:
-    with pytest.raises(ScenarioError, match=r"nobody comes from the opposite going straight.*there are: left"):
+    with pytest.raises(ScenarioError, match=r"no path comes from the opposite going straight.*there are: left"):
         crossing(westward, "opposite", "straight")
 
 

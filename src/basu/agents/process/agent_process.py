@@ -29,7 +29,7 @@ PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 GB = 1e9
 
 
-class Death(Exception):  # noqa: N818 - it becomes an error once it is known whose
+class Death(Exception):  # noqa: N818 - it becomes an error of the agent or of the simulator
     """The process is gone or useless; the text is a half sentence that says what happened to it."""
 
 
@@ -62,7 +62,7 @@ class AgentProcess:
     """One process. It is its own group and session: Ctrl-C at the terminal does not reach it."""
 
     def __init__(self, memory: Memory | None = None) -> None:
-        """Start it; it is asked for nothing yet."""
+        """Start the process; no call is sent yet."""
         ours, theirs = socket.socketpair()
         is_main = threading.current_thread() is threading.main_thread()
         # the system ends a child with the thread that started it: only the main thread lives as long as the process

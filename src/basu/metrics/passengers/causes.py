@@ -1,6 +1,6 @@
 """What was ahead when a harsh stop began, found in the record: a line, a stop, an actor, a bend, or nothing.
 
-Looked for is whatever asks for less speed within the reach of a braking that nobody minds: a second to think, then
+A cause is anything that demands less speed within the reach of a comfortable braking: a second of reaction, then
 1.0 m/s² (`balance.STEP_MPS2`), and two metres to spare. What is farther away is no reason to brake harshly yet. A stop
 with no such reason is a phantom stop, as that of 20 February 2020 was. An actor is ahead where its box, moving on,
 touches the corridor that the vehicle is about to sweep.
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 MARGIN_M = 0.3  # beside the vehicle
 SPACING_M = 0.5
 HORIZON_S, LOOK_S = 3.0, 0.25  # how far ahead others are moved on, and how finely
-SLACK_S = 2.0  # who is at a place within this of the vehicle's own arrival is in its way
+SLACK_S = 2.0  # an actor at a place within this of the vehicle's own arrival is in its way
 OFF_ROUTE_M = 2.0  # beyond this the vehicle is taken to go straight on
 
 
 class InTheWay(NamedTuple):
-    """Somebody ahead."""
+    """An actor ahead."""
 
     name: str  # blueprint id and actor id
     away_m: float  # from the front bumper along the corridor
@@ -44,7 +44,7 @@ class InTheWay(NamedTuple):
 
 
 def in_the_way(history: History, tick: int, reach_m: float) -> Iterator[InTheWay]:
-    """All who stood or were about to be in the corridor within ``reach_m``, in the frame ``tick``."""
+    """All actors in the corridor within ``reach_m``, or about to be there, in the frame ``tick``."""
     facts, frame = history.facts, history.frames[tick]
     path_m = _corridor(history, frame, reach_m)
     near = history.others[history.others["tick"] == frame["tick"]]
@@ -59,7 +59,7 @@ def in_the_way(history: History, tick: int, reach_m: float) -> Iterator[InTheWay
             if blocked.any():
                 first = int(np.argmax(blocked))
                 yield InTheWay(
-                    name=f"{facts.actor_types.get(int(row['id']), 'somebody')} (actor {int(row['id'])})",
+                    name=f"{facts.actor_types.get(int(row['id']), 'an unknown type')} (actor {int(row['id'])})",
                     away_m=first * SPACING_M,
                     speed_mps=_along(path_m, first, float(row["velocity_x_mps"]), float(row["velocity_y_mps"])),
                 )
@@ -83,7 +83,7 @@ def _corridor(history: History, frame: np.void, reach_m: float) -> NDArray[np.fl
 
 
 def _along(path_m: NDArray[np.float64], index: int, velocity_x_mps: float, velocity_y_mps: float) -> float:
-    """The part of a velocity that goes the corridor's way, not below 0: who comes towards one is as good as a wall."""
+    """The part of a velocity that goes the corridor's way, not below 0: an oncoming actor counts as a wall."""
     first = min(index, len(path_m) - 2)
     ahead = path_m[first + 1] - path_m[first]
     length_m = float(np.hypot(*ahead))

@@ -7,7 +7,7 @@ C.2.3; motion sickness dose from annex D.
 It is a convention of this project, made of figures that are each defined by a source; the weights are adjustable.
 Harm goes before comfort: a ride falls into the first of these levels that holds, and no comfort lifts it out.
 
-    0             the vehicle touched somebody or something
+    0             the vehicle touched an actor or a thing
     0 .. 0.2      the ride did not arrive: 0.2 times the share of the route, times 0.6 for each near miss
     0.2 .. 0.4    near misses: 0.2 + 0.2 x 0.6 ** (n - 1)
     0.4 .. 0.6    breaches, which are rules broken, stops passed and phantom stops: 0.4 + 0.2 x 0.8 ** n

@@ -77,7 +77,7 @@ class Readings(NamedTuple):
     traffic: tuple[int, int]  # other vehicles and walkers in the world
     rates: Rates
     manual: bool
-    autopilot: bool  # the one who drives while a person lets it, in a run that is the person's
+    autopilot: bool  # whether the agent drives in a person's run
     tick: int
     simulated_s: float
     wall_s: float

@@ -206,7 +206,7 @@ class RunRecord:
 
     @property
     def agent(self) -> str:
-        """Who drove, as its author called it."""
+        """The agent's name, as its author gave it."""
         return str(self.result.meta["agent"]["name"])
 
 

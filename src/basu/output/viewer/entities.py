@@ -143,7 +143,7 @@ DRIVEN_COLOUR, WALKER_COLOUR, OTHER_COLOUR, INFRACTION_COLOUR = (
 )
 OTHER_HEIGHT_M = 1.6  # of the boxes that are drawn: records hold lengths and widths
 DRIVEN_ABOVE_M = 0.3  # the driven path, so that it lies over the planned one
-HALF_SIZE_M = (2.3, 0.95)  # of who has none in the record
+HALF_SIZE_M = (2.3, 0.95)  # of an actor without one in the record
 
 
 class Driving(NamedTuple):
@@ -158,7 +158,7 @@ class Driving(NamedTuple):
 
 
 class Other(NamedTuple):
-    """Somebody near; CARLA's frame."""
+    """An actor nearby; CARLA's frame."""
 
     id: int
     type_id: str

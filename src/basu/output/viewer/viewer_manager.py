@@ -80,7 +80,7 @@ class ViewerManager(BaseManager):
         self._say(f"viewer            {RRD_FILE} in the result folder ({stream.said}); `rerun {RRD_FILE}` opens it")
 
     def _others(self, frame: Frame) -> list[entities.Other]:
-        """Who is near, as the record has them."""
+        """The actors nearby, from the record."""
         return [
             entities.Other(
                 int(actor_id),

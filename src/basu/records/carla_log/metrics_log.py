@@ -1,6 +1,6 @@
 """Questions to a recording, under the names of ScenarioRunner's ``MetricsLog``, so that its metric classes run on it.
 
-Frames count from 1. Wherever an actor is asked for, its id or its role name will do. What the recording does not have
+Frames count from 1. An actor is named by its id or its role name. What the recording does not have
 is None. Where the answers differ from ScenarioRunner's, and why: docs/recording.md.
 """
 
@@ -68,7 +68,7 @@ class MetricsLog:
         ]
 
     def get_actor_collisions(self, actor_id: Actor) -> dict[int, list[int]]:
-        """Whom an actor touched, by frame."""
+        """The actors that an actor touched, by frame."""
         wanted, found = self._find.id(actor_id), dict[int, list[int]]()
         for contact in self.get_collisions():
             pair = (contact.actor_id, contact.other_id)
@@ -82,7 +82,7 @@ class MetricsLog:
     # --- the actors
 
     def get_ego_vehicle_id(self) -> int:
-        """The id of the first actor whose role is ``hero``."""
+        """The id of the first actor with the role ``hero``."""
         return self._find.id("hero")
 
     def get_actor_ids_with_role_name(self, role_name: str) -> list[int]:
@@ -162,7 +162,7 @@ class MetricsLog:
         return None if row is None else values.light_state(int(row["state"]))
 
     def is_traffic_light_frozen(self, traffic_light_id: Actor, frame: int) -> bool | None:
-        """Whether somebody stopped its cycle."""
+        """Whether a client stopped its cycle."""
         row = self._find.row(Kind.LIGHT_STATES, traffic_light_id, frame)
         return None if row is None else bool(row["frozen"])
 

@@ -165,7 +165,7 @@ def _exit_code(document: dict[str, Any]) -> int:
 
 
 def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
-    """The agents, loaded before anything begins, so that a wrong one is told at once.
+    """The agents, loaded before anything begins, so that a wrong one is refused at once.
 
     Raises:
         UserError: one cannot be had, or two have one name.

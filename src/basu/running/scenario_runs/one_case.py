@@ -161,7 +161,7 @@ def _streets(episode: Episode | None) -> list[NDArray[np.float64]]:
 
 
 def _sensors(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
-    """What the agent senses with; those of our own read no sensors, theirs are for who looks on, as nobody does here.
+    """The agent's sensors; built-in agents read none, and theirs serve observers, which a case has not.
 
     Raises:
         UserError: the agent asks for what is no sensor set.

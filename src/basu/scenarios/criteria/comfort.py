@@ -21,7 +21,7 @@ class Gentle(Criterion):
     """No braking is felt with ``harsh_mps2`` or more where one stands.
 
     With ``phantom_only`` only stops count for which nothing in the record was a reason: no line, no stop, no bend,
-    nobody and no thing of the scenario's ahead. ``since`` is a phase from which on it is judged.
+    no actor and no thing of the scenario's ahead. ``since`` is a phase from which on it is judged.
     """
 
     def __init__(

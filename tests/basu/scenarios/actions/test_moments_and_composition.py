@@ -72,7 +72,7 @@ def test_who_is_removed_is_gone_and_who_is_let_go_rolls_out() -> None:
 
 
 def test_an_action_on_nobody_is_refused_with_those_who_are_there() -> None:
-    with pytest.raises(ScenarioError, match="nobody on the stage is called 'lorry'; there are other, hero"):
+    with pytest.raises(ScenarioError, match="no actor on the stage is called 'lorry'; there are other, hero"):
         play(OpenDoor("lorry"), stage_with(somebody(50.0, 5.0)))
 
 

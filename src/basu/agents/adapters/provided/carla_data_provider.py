@@ -16,7 +16,7 @@ HERO = "hero"
 
 
 class _Surface(type):
-    """What is asked for and not there is ScenarioRunner's."""
+    """Refuse what only ScenarioRunner has."""
 
     def __getattr__(cls, name: str) -> NoReturn:
         raise AttributeError(

@@ -87,7 +87,7 @@ class Driver:
         limit_mps: float,
         asked: Iterable[Restriction] = (),
     ) -> Command:
-        """Meet everything that is asked for: path, rules, other people, and what the caller adds."""
+        """Meet all restrictions: of path, rules, other actors, and the caller's own."""
         restrictions = [
             Restriction(distance_m, speed_mps, Urgency.GENTLE, "bend or lower limit")
             for distance_m, speed_mps in self.profile.slowdowns(place.s_m, HORIZON_M)
@@ -132,8 +132,8 @@ def _in_sight(mark_s_m: float, s_m: float) -> bool:
 
 NEAR_M = 150.0  # rules look at those within this, 25 mph for 13 s; only passing has to look farther
 SIGHT_M = 350.0  # from standstill the cautious one needs some 21 s, in which one at 25 mph gets 240 m
-SOFTER = 0.7  # share of the usual comfort that is left of braking and its jerk while somebody is close behind
-HURRY_MPS = 1.0  # one who drives below the limit may be this much faster then, up to the limit as basic has it
+SOFTER = 0.7  # share of the usual braking and jerk while an actor is close behind
+HURRY_MPS = 1.0  # added to a speed below the limit then, up to the limit of basic
 
 
 class BehavioralDriver(Driver):
@@ -171,7 +171,7 @@ class BehavioralDriver(Driver):
         return self._drive(ego, place, near, shows, limit_mps, asked)
 
     def _choose_path(self, ego: Ego, place: Place, others: Sequence[Other], *, tailgated: bool) -> list[Restriction]:
-        """Keep to the lane, go round what stands in it, or make room for who is close behind."""
+        """Keep to the lane, pass an obstruction, or make room for a tailgater."""
         lane = self.task.path
         own = place if self.path is lane else lane.follow(ego.x_m, ego.y_m, place.near)
         asked: list[Restriction] = []

@@ -87,7 +87,7 @@ def report(run: RunRecord) -> bytes:
 
 
 def page(title: str, body: Element | Markup, script: str = "", style: str = "") -> bytes:
-    """A page that asks nobody for anything: the browser itself holds it to that, and runs no script but ours.
+    """A page without network requests: its policy makes the browser enforce this, and run no script but ours.
 
     ``style`` comes after that of every report. A body made by a template has the ``script`` in it already.
     """

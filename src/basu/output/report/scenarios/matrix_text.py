@@ -20,7 +20,7 @@ WIDTH = 110
 NAME_WIDTH, AGENT_WIDTH = 30, 24  # of a scenario and an agent; a longer name is cut
 GAP = "   "
 LATER = {"FAILURE": 1, "NOT_EXERCISED": 2}
-MOST_TOLD = 6  # cases of an agent whose end is told in a sentence
+MOST_TOLD = 6  # cases of an agent with a sentence on their end
 GREEN, RED, YELLOW, BOLD, DIM, PLAIN = "\x1b[32m", "\x1b[31m", "\x1b[33m", "\x1b[1m", "\x1b[2m", "\x1b[0m"
 
 
@@ -142,7 +142,7 @@ def _painted(text: str, colour_code: str, *, colour: bool) -> str:
 def _key(matrix: dict[str, Any]) -> str:
     """What the parts of a cell are, as far as they occur."""
     verdicts = {result["verdict"] for case in matrix["cases"] for result in case["results"].values()}
-    told = ["passed of judged; of those passed, the least distance to anybody, and the least time to a collision."]
+    told = ["passed of judged; of those passed, the least distance to any actor, and the least time to a collision."]
     if "AGENT_FAULT" in verdicts:
         told.append("! the agent itself broke down: judged, and not passed.")
     if "NOT_EXERCISED" in verdicts:

@@ -132,5 +132,5 @@ class AcrossTheWay(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, and the ego gets on afterwards."""
+        """No contact, and the ego goes on afterwards."""
         return [NoCollision(), Arrives(), InTime()]

@@ -24,7 +24,7 @@ LENS_PX, CAPTION_PX = (176.0, 136.0), 16.0
 EDGE_PX, HEAD_PX = 8.0, 26.0  # from the picture's edges; below its upper one is where north is written
 SHOWN_M = 15.0  # across the lens
 LARGE_ENOUGH = 9.0  # pixels a metre: a picture of this scale needs no lens
-NEAR_M = 6.0  # who was farther away would not be in it
+NEAR_M = 6.0  # an actor farther away would not be in it
 LANE_M = 3.4
 
 
@@ -36,7 +36,7 @@ class Lens(NamedTuple):
 
 
 def lens(story: Story, canvas: Canvas, streets: Sequence[Line]) -> Lens | None:
-    """The lens in the corner where it hides least; None where the picture is large enough, or nobody was near."""
+    """The lens in the corner where it hides least; None where the picture is large enough, or no actor was near."""
     met = story.met
     if met is None or met.distance_m > NEAR_M or canvas.pixels_per_m >= LARGE_ENOUGH:
         return None

@@ -87,7 +87,7 @@ def verdict_mark(verdict: str) -> Element:
 
 
 def anchor_of(case: str, agent: str) -> str:
-    """The name of a card in a page: what no address may hold is written as its number, so that all are told apart."""
+    """The name of a card in a page; characters that no address may hold are written as numbers, so that all differ."""
     return "case-" + re.sub(r"[^A-Za-z0-9_-]", lambda found: f".{ord(found[0]):x}.", f"{case}--{agent}")
 
 

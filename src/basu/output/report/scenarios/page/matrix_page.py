@@ -148,7 +148,7 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
 
 
 def chosen(matrix: dict[str, Any]) -> list[Cell]:
-    """Whose cards are in the page: all, or those that tell most."""
+    """The cases with cards in the page: all, or the most telling ones."""
     cells = [Cell(case, agent) for case in matrix["cases"] for agent in matrix["agents"] if agent in case["results"]]
     if len(cells) <= MOST_CARDS:
         return cells

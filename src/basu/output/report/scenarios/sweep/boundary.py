@@ -1,8 +1,8 @@
 """Where an agent begins to fail, in sentences with counts: the rule of one parameter that separates verdicts best.
 
-Of all thresholds and ranges between neighbouring values, the one whose table of counts is the least likely by chance:
-Fisher's exact test, one-sided, its probability multiplied by the number of rules that were tried (Bonferroni), so that
-a range has to be worth more than a threshold, and noise finds no rule.
+Of all thresholds and ranges between neighbouring values, the one with the table of counts that is the least likely by
+chance: Fisher's exact test, one-sided, its probability multiplied by the number of rules that were tried (Bonferroni),
+so that a range has to be worth more than a threshold, and noise finds no rule.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ BY_CHANCE = 0.05  # a rule more likely than this by chance is none
 MOST_CUTS = 200  # that ranges lie between; among more of them, these are spread evenly over the cases
 MOST_OPTIONS = 12  # of a choice; with more of them no rule is looked for
 MOST_DIGITS = 6
-EXACT = 12  # rules of a kind whose chance is computed: those with the greatest information gain
+EXACT = 12  # rules of a kind with a computed chance: those with the greatest information gain
 KINDS = 2  # thresholds and ranges
 
 

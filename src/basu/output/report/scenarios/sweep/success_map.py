@@ -169,7 +169,7 @@ def drawing(found: Boundary, head_px: float = 0.0) -> Element:
 
 
 def _title(found: Boundary) -> str:
-    """The map in a sentence, for who does not see it."""
+    """The map in a sentence, for screen readers."""
     study = found.study
     return f"{study.scenario} with {study.agent}: " + " ".join(sentences(found))
 
