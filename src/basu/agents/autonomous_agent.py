@@ -110,7 +110,7 @@ class AutonomousAgent(ABC):
 
     @abstractmethod
     def config(self) -> Mapping[str, Any]:
-        """Say what the agent wants to be driven in; asked once, before there is a world.
+        """Return the vehicle, weather and route that the agent wants; called once, before there is a world.
 
         Keys, all optional: ``routes`` (route XML), ``sensors`` (sensor JSON), ``vehicle`` (blueprint id), ``weather``
         (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO network). File names are looked for from the

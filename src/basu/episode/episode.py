@@ -367,7 +367,7 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
         raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:
         raise UserError(
-            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (asked for: {number}); "
+            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (requested: {number}); "
             "another program ticks it too, and a benchmark has to be the only one"
         )
     return Frame(0 if before is None else before.tick + 1, snapshot.frame, snapshot, ego_in(ego))

@@ -124,17 +124,17 @@ class MetricsManager(BaseManager):
         return self._neighbours.near(frame)
 
     def contacts_since(self, tick: int) -> tuple[Collision, ...]:
-        """The messages of the collision sensor from a tick on; asked for the latest ones, it costs next to nothing."""
+        """The messages of the collision sensor from a tick on; cheap for the latest ones."""
         self._take_events()
         return self._recorder.contacts_since(tick)
 
     def infractions_so_far(self) -> tuple[Evidence, ...]:
-        """Every infraction until now; may be asked each second of the longest run."""
+        """Every infraction until now; cheap enough for each second of the longest run."""
         self._look()
         return self._so_far.infractions
 
     def scores_so_far(self) -> Scores:
-        """The scores until now, the way ahead counted as not driven; may be asked as often."""
+        """The scores until now, the way ahead counted as not driven; as cheap."""
         self._look()
         return self._so_far.scores
 

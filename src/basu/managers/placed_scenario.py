@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import ActorSpec, Pose
 
 
-def asked(name: str, call: Callable[[], T]) -> T:
+def call_scenario(name: str, call: Callable[[], T]) -> T:
     """One call of a scenario's code; what goes wrong in it is the scenario's.
 
     Raises:
@@ -64,7 +64,7 @@ TURNED_RAD = math.radians(60.0)  # a trigger point turned by more than this look
 IN_THE_WAY_M = 2.5  # aside of the route, within which an actor stands in the ego's way
 
 
-class LaidOut(NamedTuple):
+class PlacedScenario(NamedTuple):
     """A scenario on its route."""
 
     planned: Playable
@@ -73,7 +73,7 @@ class LaidOut(NamedTuple):
     way: Route  # up to where the scenario's own part ends
 
 
-def lay_out(planned: Playable, route: Route, carla_map: carla.Map, *, own: bool) -> LaidOut:
+def place_scenario(planned: Playable, route: Route, carla_map: carla.Map, *, own: bool) -> PlacedScenario:
     """Lay a scenario on the ego's route, which is ``own`` or has others on it.
 
     Raises:
@@ -93,8 +93,8 @@ def lay_out(planned: Playable, route: Route, carla_map: carla.Map, *, own: bool)
                 f"point, and there are {place.left_m:.0f} m; move it back or let the route go on"
             )
         way = until(route, place.trigger_s_m + needs_m)
-    scenario = asked(case.name, partial(planned.scenario, place, planned.values))
-    return LaidOut(planned, scenario, asked(case.name, partial(compose, scenario)), way)
+    scenario = call_scenario(case.name, partial(planned.scenario, place, planned.values))
+    return PlacedScenario(planned, scenario, call_scenario(case.name, partial(compose, scenario)), way)
 
 
 def _trigger_s_m(planned: Playable, route: Route, *, own: bool) -> float:

@@ -1,4 +1,4 @@
-"""CARLA's own log of a run, written by the simulator: what a recorder file can be asked later, and replayed from."""
+"""CARLA's own log of a run, written by the simulator: the source of later queries and replays."""
 
 from __future__ import annotations
 

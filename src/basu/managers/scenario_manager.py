@@ -15,10 +15,10 @@ from py_trees.common import Status as NodeStatus
 
 from basu.errors import ScenarioError, UserError
 from basu.managers.base_manager import BaseManager
-from basu.managers.placed_scenario import asked, is_behind, lay_out
+from basu.managers.placed_scenario import call_scenario, is_behind, place_scenario
 from basu.managers.stage.environment import SharedWorld
 from basu.managers.stage.live_stage import LiveStage
-from basu.managers.stage.scenario_actors import bring, take_away
+from basu.managers.stage.scenario_actors import destroy_actors, spawn_actors
 from basu.outcome import Outcome, Status
 from basu.scenarios.criteria.criterion import Played, moved
 from basu.scenarios.scenario import set_on
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from basu.managers.base_manager import Frame, Run
     from basu.managers.metrics_manager import MetricsManager
-    from basu.managers.placed_scenario import LaidOut
+    from basu.managers.placed_scenario import PlacedScenario
     from basu.managers.routes_manager import RoutesManager
     from basu.records.history import History
     from basu.routing import Route
@@ -85,10 +85,12 @@ class Playing:
         """The verdict, by the record of the whole run; criteria that raise are the scenario's own fault."""
         name = self.planned.case.name
         try:
-            criteria = asked(name, self.scenario.criteria)
+            criteria = call_scenario(name, self.scenario.criteria)
             played = self.played(history, outcome)
             exercised = self.scenario.exercised
-            return asked(name, lambda: judge(criteria, played, outcome, triggered=self.triggered, exercised=exercised))
+            return call_scenario(
+                name, lambda: judge(criteria, played, outcome, triggered=self.triggered, exercised=exercised)
+            )
         except UserError as error:
             return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=self.triggered)
 
@@ -104,7 +106,7 @@ class ScenarioManager(BaseManager):
     def __init__(self, planned: Sequence[Playable], *, own: bool) -> None:
         """``own``: the run is the (one) scenario's, begins armed and ends with it."""
         self._planned, self._own = tuple(planned), own
-        self._laid: list[LaidOut] = []
+        self._placed: list[PlacedScenario] = []
         self.playing: list[Playing] = []
         self.outcome: Outcome | None = None
 
@@ -116,14 +118,14 @@ class ScenarioManager(BaseManager):
         """Lay every scenario on the route; the cast of a run's own scenario comes at once.
 
         Raises:
-            ScenarioError: one cannot be laid out.
+            ScenarioError: one cannot be placed.
         """
         self._step_s = run.step_s
         self._shared = SharedWorld(run.world)
         self.lay(run.route, run.carla_map)
-        for laid in self._laid:
-            stage = LiveStage(run, self._routes, self._metrics, laid.planned.case.name, self._shared, laid.way)
-            self.playing.append(Playing(laid.planned, laid.scenario, laid.composed, stage))
+        for placed in self._placed:
+            stage = LiveStage(run, self._routes, self._metrics, placed.planned.case.name, self._shared, placed.way)
+            self.playing.append(Playing(placed.planned, placed.scenario, placed.composed, stage))
         if self._own:
             for playing in self.playing:
                 self._bring(playing)
@@ -135,8 +137,8 @@ class ScenarioManager(BaseManager):
         Raises:
             ScenarioError: one has no place there.
         """
-        if len(self._laid) < len(self._planned):
-            self._laid = [lay_out(planned, route, carla_map, own=self._own) for planned in self._planned]
+        if len(self._placed) < len(self._planned):
+            self._placed = [place_scenario(planned, route, carla_map, own=self._own) for planned in self._planned]
 
     def try_out(self, client: carla.Client, world: carla.World) -> None:
         """Bring every cast, and take it away at once: what has no place in this world is known before the run begins.
@@ -144,10 +146,10 @@ class ScenarioManager(BaseManager):
         Raises:
             ScenarioError: an actor cannot be spawned.
         """
-        for laid in self._laid:
-            name = laid.planned.case.name
-            cast = bring(client, world, asked(name, laid.scenario.actors), name)
-            take_away(client, [member.actor for member in cast])
+        for placed in self._placed:
+            name = placed.planned.case.name
+            cast = spawn_actors(client, world, call_scenario(name, placed.scenario.actors), name)
+            destroy_actors(client, [member.actor for member in cast])
 
     def tick(self, frame: Frame) -> None:
         """Play a frame of every scenario that has begun."""
@@ -207,7 +209,7 @@ class ScenarioManager(BaseManager):
 
     def _bring(self, playing: Playing) -> None:
         """Bring the cast; on a route, actors that the ego would reach from behind come when it has passed."""
-        cast = asked(playing.planned.case.name, playing.scenario.actors)
+        cast = call_scenario(playing.planned.case.name, playing.scenario.actors)
         playing.stage.enter(
             cast if self._own else [spec for spec in cast if not is_behind(playing.scenario.place, spec)]
         )
@@ -221,7 +223,7 @@ class ScenarioManager(BaseManager):
         if not self._own:
             stage.enter([spec for spec in cast if is_behind(playing.scenario.place, spec)])
         stage.set_off(cast)
-        asked(name, partial(set_on, playing.composed, stage))
+        call_scenario(name, partial(set_on, playing.composed, stage))
 
     def _play(self, playing: Playing, frame: Frame) -> None:
         """One frame of one scenario."""
@@ -229,11 +231,11 @@ class ScenarioManager(BaseManager):
         stage.look(frame)
         if not playing.things and frame.tick > (playing.armed_tick or 0):  # a new actor is in no frame yet
             playing.things = stage.things()
-        asked(playing.planned.case.name, root.tick_once)
+        call_scenario(playing.planned.case.name, root.tick_once)
         for phase, node in playing.composed.phases.items():
             if phase not in playing.phase_ticks and node.status is not NodeStatus.INVALID:
                 playing.phase_ticks[phase] = frame.tick
-        asked(playing.planned.case.name, stage.carry_out)
+        call_scenario(playing.planned.case.name, stage.carry_out)
         if stage.ego_contacts and playing.touched_tick is None:
             playing.touched_tick = frame.tick
         end = self._judged(playing, frame.tick)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from basu.scenarios.verdict import Judged
 
 
-def told(scenarios: Sequence[Playing], history: History | None, outcome: Outcome) -> list[dict[str, Any]]:
+def results_of(scenarios: Sequence[Playing], history: History | None, outcome: Outcome) -> list[dict[str, Any]]:
     """Each scenario with its verdict and the evidence; ``outcome`` is the run's, ``history`` its whole record."""
     return [_told(playing, history, outcome) for playing in scenarios]
 

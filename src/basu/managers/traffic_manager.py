@@ -73,7 +73,7 @@ class TrafficManager(BaseManager):
         self.count = {"vehicles": 0, "walkers": 0}
 
     def setup(self, run: Run) -> None:
-        """Spawn everybody and hand them over to their leaders.
+        """Spawn all traffic and hand it over to Traffic Manager and crowd.
 
         Raises:
             UserError: there is no room for so many.
@@ -97,12 +97,12 @@ class TrafficManager(BaseManager):
         self.count = {"vehicles": len(vehicles), "walkers": len(walkers)}
 
     def tick(self, frame: Frame) -> None:
-        """The client itself leads everybody in each step."""
+        """The client itself leads all traffic in each step."""
 
     def close(self) -> None:
-        """Take everybody away, the leaders first, and end the Traffic Manager.
+        """Destroy all traffic, the walkers' controllers first, and end the Traffic Manager.
 
-        Where the simulator is gone, so is everybody; then the Traffic Manager is left as it is: its end asks the
+        Where the simulator is gone, so is the traffic; then the Traffic Manager is left as it is: its end asks the
         simulator, and the official client ends the whole process where no server answers there.
         """
         with contextlib.suppress(RuntimeError):
@@ -126,7 +126,7 @@ class TrafficManager(BaseManager):
             self._run.world.tick(self._timeout_s)
 
     def _wanted_vehicles(self) -> int:
-        """The number that was asked for, or that makes up the density that was."""
+        """The requested number, or the number that makes the requested density."""
         if self._traffic.density_per_km is None:
             return self._traffic.vehicles
         lanes = [w for w in self._run.carla_map.generate_waypoints(LANE_STEP_M) if not w.is_junction]
@@ -149,7 +149,7 @@ class TrafficManager(BaseManager):
             spawned += self._spawned([(_painted(dice.choice(models), dice), point, 0) for point in batch])
         if len(spawned) < count:
             raise UserError(
-                f"{count} vehicles were asked for, and {len(spawned)} found room on the {len(near)} spawn points "
+                f"{count} vehicles were requested, and {len(spawned)} found room on the {len(near)} spawn points "
                 f"that lie within {REACH_M:.0f} m of the route and {CLEAR_M:.0f} m away from its start; ask for fewer"
             )
         return spawned
@@ -167,7 +167,7 @@ class TrafficManager(BaseManager):
             if len(spawned) == count:
                 return spawned
         raise UserError(
-            f"{count} walkers were asked for, and {len(spawned)} found room on the pavements within {REACH_M:.0f} m of "
+            f"{count} walkers were requested, and {len(spawned)} found room on the pavements within {REACH_M:.0f} m of "
             "the route; ask for fewer"
         )
 
@@ -176,7 +176,7 @@ class TrafficManager(BaseManager):
         drawn = [self._run.world.get_random_location_from_navigation() for _ in range(max(count, 20))]
         if any(place is None for place in drawn):
             raise UserError(
-                f"walkers were asked for, and {self._run.route.town} has no mesh of pavements for them to walk on; "
+                f"walkers were requested, and {self._run.route.town} has no mesh of pavements for them to walk on; "
                 "run without --walkers"
             )
         poses = [carla.Transform(place + carla.Location(z=DROP_M)) for place in drawn]

@@ -1,4 +1,4 @@
-"""What can be held against a driver, what each costs, what is only told, and the evidence that all of it carries."""
+"""Infractions with their penalties, incidents without a penalty, and the evidence of both."""
 
 from __future__ import annotations
 

@@ -59,12 +59,12 @@ class OutsideLanes:
 def outside_lanes(history: History) -> OutsideLanes:
     """How far the vehicle went outside its lanes, one event for each stretch."""
     where = wheres(history)
-    told = [WORDS[way] for way in Where]
+    words = [WORDS[way] for way in Where]
     total = share_of(
         history,
         where >= 0,
         Incident.OUTSIDE_LANES,
-        lambda first, end: told[int(np.bincount(where[first:end]).argmax())],
+        lambda first, end: words[int(np.bincount(where[first:end]).argmax())],
     )
     pieces = chords(path_m(history.frames))
     at = where[pieces.end]

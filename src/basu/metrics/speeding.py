@@ -46,7 +46,7 @@ def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Ev
 
 
 def episode(history: History, first: int, *, top_mps: float, posted_mps: float, seconds: float) -> Evidence:
-    """The evidence for an episode that begins in frame ``first``; the speed told is where the excess is largest."""
+    """The evidence for an episode that begins in frame ``first``; its speed is that of the largest excess."""
     return evidence(
         history,
         Infraction.SPEEDING,

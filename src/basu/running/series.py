@@ -194,7 +194,7 @@ def _name(job: Job, agent: str) -> str:
 
 
 def _digest(data: bytes) -> str:
-    """Short for what is too long to be told."""
+    """Short for what is too long to be stored."""
     return f"sha256 {hashlib.sha256(data).hexdigest()[:16]}"
 
 
@@ -204,11 +204,11 @@ def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) ->
     Raises:
         UserError: names what is different.
     """
-    told = json.loads(json.dumps(now))  # as the file has it
+    stored = json.loads(json.dumps(now))  # as the file has it
     changed = [
-        f"{name} was {before.get(name)!r} and is {told.get(name)!r}"
-        for name in sorted({*before, *told})
-        if before.get(name) != told.get(name)
+        f"{name} was {before.get(name)!r} and is {stored.get(name)!r}"
+        for name in sorted({*before, *stored})
+        if before.get(name) != stored.get(name)
     ]
     if changed:
         raise UserError(

@@ -71,7 +71,7 @@ class NearMiss(NamedTuple):
 
 
 class NoNearMiss(Criterion):
-    """The moving ego keeps the policy's margins to everybody: 1.0 s to a collision, 1.0 s after another, 0.45 m."""
+    """The moving ego keeps the policy's margins to all actors: 1.0 s to a collision, 1.0 s after another, 0.45 m."""
 
     name = "no near miss"
     aspect = Aspect.SAFE
@@ -82,7 +82,7 @@ class NoNearMiss(Criterion):
         found = [miss for miss in (_ttc(present), _pet(present), _clearance(present)) if miss is not None]
         if not found:
             limit = f"{NEAR_TTC_S:g} s, {NEAR_M:g} m"
-            return self.says(played, True, "the moving ego kept its margins to everybody", limit=limit)
+            return self.says(played, True, "the moving ego kept its margins to all actors", limit=limit)
         worst = min(found)
         return self.says(
             played,

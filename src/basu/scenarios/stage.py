@@ -1,4 +1,4 @@
-"""What a scenario's tree sees of a frame and may do in it: a ``Stage``, played live or on paper (``rehearsal``).
+"""What a scenario's tree sees of a frame and may do in it: a ``Stage``, played live or offline (``basu.testing``).
 
 World coordinates are CARLA's: x east, y south, z up, yaw clockwise from above; m, s, rad.
 """
@@ -114,7 +114,7 @@ class Stage(Protocol):
         """Whether it is in the world: not any more once removed, and not yet where it comes later."""
 
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
-        """Let a vehicle have this velocity and turning until told otherwise; (0, 0, 0) holds it by its brakes."""
+        """Let a vehicle have this velocity and turning until the next command; (0, 0, 0) holds it by its brakes."""
 
     def walk(self, name: str, velocity_x_mps: float, velocity_y_mps: float) -> None:
         """Let a walker go, likewise."""

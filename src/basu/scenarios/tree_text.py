@@ -35,7 +35,7 @@ class TreeNode(TypedDict):
 
 
 def tree_of(composed: Composed, judgements: Sequence[Judgement] = (), criteria: Sequence[Criterion] = ()) -> TreeNode:
-    """The tree as it was left, with what the criteria said, or before a run with what they will be asked.
+    """The tree as it was left, with the criteria's judgements, or before a run with their names.
 
     Without either, there is no branch of criteria.
     """
@@ -103,7 +103,7 @@ def _judged(judgement: Judgement) -> TreeNode:
 
 
 def _of_all(judgements: Sequence[Judgement]) -> str:
-    """What those that decide said together."""
+    """The joint result of the deciding criteria."""
     said = [judgement.passed for judgement in judgements if judgement.deciding]
     if False in said:
         return "failure"

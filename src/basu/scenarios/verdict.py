@@ -108,10 +108,10 @@ def judge(
             f"nothing was recorded, though the run ended as {outcome.status.value}",
         )
         return Judged(verdict, message, (), margins_of(()), outcome, None)
-    asked = with_policy(criteria)
-    judgements = tuple(criterion.judge(played) for criterion in (*asked, *reported_always(asked)))
+    deciding = with_policy(criteria)
+    judgements = tuple(criterion.judge(played) for criterion in (*deciding, *reported_always(deciding)))
     begun = exercised(played) if triggered else Finding(False, "the ego never came to where the conflict begins")
-    assessment = assess(asked, judgements, outcome, begun)
+    assessment = assess(deciding, judgements, outcome, begun)
     verdict, message = (
         _fault(outcome)
         or _never_triggered(played, triggered=triggered)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import ActorSpec
 
 
-def paper_place(
+def offline_place(
     points: Sequence[Sequence[float]],
     *,
     trigger_s_m: float = 0.0,
@@ -39,8 +39,8 @@ def paper_place(
     for from_m, to_m in junctions_m:
         is_junction |= (s_m >= from_m) & (s_m <= to_m)
     route = Route(
-        id="paper",
-        town="paper",
+        id="offline",
+        town="offline",
         points_m=poses[:, :3],
         s_m=s_m,
         yaw_rad=poses[:, 3],
@@ -90,7 +90,7 @@ class Command(NamedTuple):
     details: tuple[object, ...]
 
 
-class PaperStage:
+class OfflineStage:
     """See ``basu.scenarios.stage.Stage``. ``advance`` carries a frame's commands out.
 
     The ego keeps to its route whatever is done to its controls; ``controls`` says what they would be. With
@@ -101,7 +101,7 @@ class PaperStage:
         self,
         place: Place,
         cast: Sequence[ActorSpec],
-        driver: Callable[[PaperStage], float],
+        driver: Callable[[OfflineStage], float],
         *,
         seed: int = 0,
         step_s: float = 0.05,
@@ -234,7 +234,7 @@ class PaperStage:
         return meant
 
     def advance(self) -> None:
-        """The next frame: everybody moves as told, the ego as its driver says, and touches are seen."""
+        """The next frame: all bodies move as commanded, the ego as its driver says; contacts are recorded."""
         speed_mps = max(0.0, self._driver(self))
         for name, led in list(self._led.items()):
             self._bodies[name], self._led[name] = self._moved(self._bodies[name], led)

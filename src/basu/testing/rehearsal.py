@@ -14,7 +14,7 @@ from basu.scenarios.actions.puppet import gap_ahead
 from basu.scenarios.paths import Path
 from basu.scenarios.scenario import compose, set_on
 from basu.scenarios.stage import EGO
-from basu.testing.offline_stage import PaperStage
+from basu.testing.offline_stage import OfflineStage
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from basu.testing.offline_stage import Command
 
 
-Driver = Callable[[PaperStage], float]
+Driver = Callable[[OfflineStage], float]
 START_MPS2 = 2.0  # how hard they accelerate
 
 
@@ -39,7 +39,7 @@ def waiting_at(
     """A speed, a lawful stop before ``s_m`` of the route for so long, and on."""
     stood_s = 0.0
 
-    def drive(stage: PaperStage) -> float:
+    def drive(stage: OfflineStage) -> float:
         nonlocal stood_s
         now_mps, left_m = stage.ego.forward_mps, s_m - stage.ego_s_m
         if stood_s >= seconds or left_m < -0.5:
@@ -57,7 +57,7 @@ def careful(speed_mps: float, brake_mps2: float = 5.0, keeps_m: float = 3.0) -> 
     """A speed, and braking for actors on its way, to stand ``keeps_m`` before them."""
     way: Path | None = None
 
-    def drive(stage: PaperStage) -> float:
+    def drive(stage: OfflineStage) -> float:
         nonlocal way
         way = way or Path.through(stage.route.points_m)
         now_mps, allowed_mps = stage.ego.forward_mps, speed_mps
@@ -108,7 +108,7 @@ def rehearse(
     turn_share: float = 1.0,
 ) -> Rehearsal:
     """Play it until its tree is done, at most as long as its time limit; the ego drives 6 m/s by default."""
-    stage = PaperStage(
+    stage = OfflineStage(
         scenario.place, scenario.actors(), driver or steady(EGO_MPS), seed=seed, step_s=step_s, turn_share=turn_share
     )
     tree = compose(scenario)

@@ -70,7 +70,7 @@ class BasicAgent(AutonomousAgent):
         }
 
     def _get_in(self, pose: carla.Transform) -> tuple[Driver, VehicleFacts]:
-        """Read the vehicle and lay out the route for it."""
+        """Read the vehicle and plan its task."""
         assert self.route is not None  # setup refuses
         facts = read_facts(self.vehicle, pose)
         task = make_task(self.route, facts.body, min(self.cruise_mps, facts.top_mps))

@@ -1,4 +1,4 @@
-"""A process in which agents live, seen from the benchmark: started, asked within limits, and killed where it hangs."""
+"""The process of agents, from the benchmark's side: start, calls within limits, and end of a hanging process."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class AgentProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it can be asked."""
+        """Whether it can take calls."""
         return self._process.poll() is None and not self._own_kill
 
     def call(self, operation: str, argument: Any, *, limit_s: float, begin_limit_s: float = START_LIMIT_S) -> Any:  # noqa: ANN401

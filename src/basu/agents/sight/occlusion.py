@@ -162,17 +162,17 @@ class StaticBoxes:
         return self._near
 
 
-_KEPT: dict[int, Boxes] = {}  # of the town that was asked for last, by a hash of its objects' names
+_BOXES_OF_TOWN: dict[int, Boxes] = {}  # of the last town, by a hash of its objects' names
 
 
 def static_boxes(world: carla.World) -> StaticBoxes:
     """Return what stands beside a town's streets; asks the server once per town and process."""
     key = hash(tuple(world.get_names_of_all_objects()))
-    if key not in _KEPT:
+    if key not in _BOXES_OF_TOWN:
         rows = [row for name in HIDING_LABELS for row in _rows(world, name)]
-        _KEPT.clear()
-        _KEPT[key] = make_boxes(np.array(rows, dtype=np.float64).reshape(-1, 7))
-    return StaticBoxes(_KEPT[key])
+        _BOXES_OF_TOWN.clear()
+        _BOXES_OF_TOWN[key] = make_boxes(np.array(rows, dtype=np.float64).reshape(-1, 7))
+    return StaticBoxes(_BOXES_OF_TOWN[key])
 
 
 def _rows(world: carla.World, label: str) -> list[tuple[float, ...]]:

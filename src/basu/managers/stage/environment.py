@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 
 from basu.errors import ScenarioError
-from basu.managers.stage.scenario_actors import take_away
+from basu.managers.stage.scenario_actors import destroy_actors
 from basu.routing.weather import WEATHER_FIELDS, changed
 
 if TYPE_CHECKING:
@@ -85,7 +85,7 @@ class SharedWorld:
         light.set_state(LIGHT_STATES[state])
 
     def give_back(self, scenario: str) -> None:
-        """Take away what one of them asked for; where the simulator is gone, so is all this."""
+        """Undo the changes of one of them; where the simulator is gone, so is all this."""
         weather, lights = self._weather.pop(scenario, None), self._lights.pop(scenario, {})
         with contextlib.suppress(RuntimeError):
             if weather is not None:
@@ -148,6 +148,6 @@ class Surroundings:
 
     def give_back(self) -> None:
         """Leave everything as it was; where the simulator is gone, so is all this."""
-        take_away(self._client, self._patches)
+        destroy_actors(self._client, self._patches)
         self._patches = []
         self._shared.give_back(self._scenario)

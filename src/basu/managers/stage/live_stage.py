@@ -11,7 +11,7 @@ import carla
 
 from basu.errors import ScenarioError
 from basu.managers.stage.environment import Surroundings
-from basu.managers.stage.scenario_actors import Puppets, bring, member_of, take_away
+from basu.managers.stage.scenario_actors import Puppets, destroy_actors, member_of, spawn_actors
 from basu.scenarios.criteria.criterion import Move, Thing
 from basu.scenarios.stage import EGO, Body
 
@@ -69,7 +69,7 @@ class LiveStage:
         Raises:
             ScenarioError: an actor cannot be spawned.
         """
-        for member, spec in zip(bring(self._run.client, self._run.world, specs, self._case), specs, strict=True):
+        for member, spec in zip(spawn_actors(self._run.client, self._run.world, specs, self._case), specs, strict=True):
             self._cast[spec.name] = member
             self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
             if member.kind == "vehicle":
@@ -111,7 +111,7 @@ class LiveStage:
         """Leave the world as it was before."""
         self._changes.clear()
         self._surroundings.give_back()
-        take_away(self._run.client, [member.actor for name, member in self._cast.items() if name != EGO])
+        destroy_actors(self._run.client, [member.actor for name, member in self._cast.items() if name != EGO])
         self._cast = {EGO: self._cast[EGO]}
         self._puppets.forget()
 
@@ -169,7 +169,7 @@ class LiveStage:
     # what a tree may do -------------------------------------------------------------------------------------------
 
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
-        """Let a vehicle have this velocity and turning until told otherwise."""
+        """Let a vehicle have this velocity and turning until the next command."""
         self._puppets.move(self._kind(name, "vehicle"), velocity_x_mps, velocity_y_mps, yaw_rate_radps)
 
     def walk(self, name: str, velocity_x_mps: float, velocity_y_mps: float) -> None:
@@ -191,7 +191,7 @@ class LiveStage:
         """Take an actor out of the world."""
         member = self._member(name)
         self._puppets.let_go(member)
-        take_away(self._run.client, [self._cast.pop(name).actor])
+        destroy_actors(self._run.client, [self._cast.pop(name).actor])
         self._moves.append(Move(name, self._next_s, None))
         self._bodies.pop(name, None)
 

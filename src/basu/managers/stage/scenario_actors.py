@@ -40,7 +40,7 @@ class Member(NamedTuple):
     half_width_m: float
 
 
-def bring(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], case: str) -> list[Member]:
+def spawn_actors(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], case: str) -> list[Member]:
     """Put all actors of ``specs`` into the world for a ``case``; all of them, or none.
 
     Raises:
@@ -54,14 +54,14 @@ def bring(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], 
     members: list[Member] = []
     try:
         for spec in specs:
-            members.append(_brought(world, library, spec, case))  # noqa: PERF401 - spawned actors go if one cannot come
+            members.append(_spawned(world, library, spec, case))  # noqa: PERF401 - spawned actors go if one cannot come
     except BaseException:
-        take_away(client, [member.actor for member in members])
+        destroy_actors(client, [member.actor for member in members])
         raise
     return members
 
 
-def take_away(client: carla.Client, actors: Iterable[carla.Actor]) -> None:
+def destroy_actors(client: carla.Client, actors: Iterable[carla.Actor]) -> None:
     """Take actors out of the world; where the simulator is gone, so are they.
 
     By commands: of an actor that no snapshot has shown yet, ``destroy`` now and then says that it is dead already, and
@@ -82,7 +82,7 @@ def member_of(actor: carla.Actor, name: str) -> Member:
     )
 
 
-def _brought(world: carla.World, library: carla.BlueprintLibrary, spec: ActorSpec, case: str) -> Member:
+def _spawned(world: carla.World, library: carla.BlueprintLibrary, spec: ActorSpec, case: str) -> Member:
     """One of them."""
     blueprint = _blueprint(library, spec, case)
     pose = carla.Transform(
@@ -170,7 +170,7 @@ class Puppets:
         self._vehicles: dict[int, tuple[carla.Actor, Motion]] = {}
         self._new: list[object] = []  # commands that are sent once
         self._held: set[int] = set()
-        self._walkers: dict[int, tuple[float, float]] = {}  # what each was told last, in m/s
+        self._walkers: dict[int, tuple[float, float]] = {}  # the last command of each, in m/s
 
     def move(self, member: Member, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Lead a vehicle."""

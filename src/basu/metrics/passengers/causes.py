@@ -126,7 +126,7 @@ class Cause(NamedTuple):
 
 
 def cause(history: History, stop: HarshStop) -> Cause:
-    """A contact, else the reason that asked for most, else `Kind.NOTHING` with what can be said about it."""
+    """A contact, else the reason with the largest demand, else `Kind.NOTHING` with its details."""
     contact = _contact(history, stop)
     if contact is not None:
         return contact
@@ -140,7 +140,7 @@ def reach_m(speed_mps: float) -> float:
 
 
 def _reasons(history: History, stop: HarshStop) -> Iterator[Cause]:
-    """Everything within reach that asked for less speed."""
+    """All reasons for less speed within reach."""
     yield from _lines(history, stop)
     yield from _halts(history, stop)
     yield from _slowdowns(history, stop)
@@ -152,7 +152,7 @@ def _reason(kind: Kind, stop: HarshStop, away_m: float, target_mps: float, name:
     """A reason to be no faster than ``target_mps`` after ``away_m``."""
     excess = max(0.0, stop.from_mps**2 - target_mps**2)
     needed_mps2 = excess / (2.0 * max(away_m, 0.5))
-    return Cause(kind, away_m, needed_mps2, f"{name} {away_m:.1f} m ahead asked for {needed_mps2:.2f} m/s²")
+    return Cause(kind, away_m, needed_mps2, f"{name} {away_m:.1f} m ahead demanded {needed_mps2:.2f} m/s²")
 
 
 def _contact(history: History, stop: HarshStop) -> Cause | None:
@@ -194,7 +194,7 @@ def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
     here_mps = float(limits_mps(history)[tick])
     if here_mps < stop.from_mps - SLOWER_MPS:
         needed_mps2 = (stop.from_mps**2 - here_mps**2) / (2.0 * reach_m(stop.from_mps))
-        detail = f"the limit of {here_mps:.1f} m/s, exceeded already, asked for {needed_mps2:.2f} m/s²"
+        detail = f"the limit of {here_mps:.1f} m/s, exceeded already, demanded {needed_mps2:.2f} m/s²"
         yield Cause(Kind.LIMIT, 0.0, needed_mps2, detail)
     ahead = np.flatnonzero((route.s_m > at_m) & (route.s_m <= at_m + reach_m(stop.from_mps)))
     for index in ahead.tolist():

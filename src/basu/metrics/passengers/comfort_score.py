@@ -15,7 +15,7 @@ Harm goes before comfort: a ride falls into the first of these levels that holds
 
 The parts, each in 0 .. 1:
 
-    balance       1 - share of the moving time in which one has to step / 0.1, at least 0; 0 once a step was not enough
+    balance       1 - share of the moving time with balancing steps / 0.1, at least 0; 0 once a step was not enough
     harsh_stops   0.7 for each harsh stop that had a cause, 0.4 for each that had none, multiplied
     vibration     1 where the total value is "not uncomfortable" (0.315 m/s²), 0 from "very uncomfortable" (1.25 m/s²)
     near_misses   0.6 for each party that was nearly hit, multiplied

@@ -194,7 +194,8 @@ class Passengers(Metric):
             *(f"                  {reason}" for reason in value["reasons"]),
             (
                 f"                  up to {largest['braking_mps2']:.2f} m/s² braking, {largest['across_mps2']:.2f} "
-                f"across; one has to step {100.0 * value['balance']['step_share']:.1f} % of the time; "
+                "across; standing passengers need a balancing step "
+                f"{100.0 * value['balance']['step_share']:.1f} % of the time; "
                 f"{' or '.join(value['vibration']['reactions'])}"
             ),
             *_timetable(value["service"]),

@@ -1,4 +1,4 @@
-"""The head-up display: looks on at a run, shows it in a window, and lets time pass as it does where a person drives.
+"""The head-up display: shows a run in a window, and lets time pass as it does where a person drives.
 
 Wall time decides when is drawn and how long is waited, and nothing else: the record of a run is the same without it.
 """

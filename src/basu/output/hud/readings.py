@@ -107,7 +107,7 @@ class Around(NamedTuple):
 
 
 def read(run: Run, live: Live, frame: Frame, judgement: Judgement, around: Around) -> Readings:
-    """Read everything; the server is not asked."""
+    """Read all instruments, without a call of the server."""
     ego, person = frame.ego, live.agents.person
     limit_mps = float(run.vehicle.get_speed_limit()) * MPS_PER_KMH
     return Readings(

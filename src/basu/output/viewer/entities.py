@@ -178,7 +178,7 @@ class Shower:
         self._told: set[tuple[str, int, str | None]] = set()
 
     def tick(self, t_s: float, ego: Pose, driving: Driving, others: Sequence[Other]) -> None:
-        """Show where everybody is and what is driven; what is shown later belongs to this time too."""
+        """Show all actors and the control; later entities belong to this time too."""
         self.recording.set_time(TIMELINE, duration=t_s)
         self._pose(ego)
         self._signals(ego, driving)

@@ -76,7 +76,7 @@ def _driving(run: ActorArrays, index: int) -> entities.Driving:
 
 
 def _others(log: Log, runs: dict[int, ActorArrays]) -> dict[int, list[entities.Other]]:
-    """Everybody but the hero, by frame."""
+    """All actors but the hero, by frame."""
     types = {actor.id: actor.type_id for actor in log.created}
     found: dict[int, list[entities.Other]] = {}
     for actor, run in runs.items():

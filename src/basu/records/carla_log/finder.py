@@ -39,9 +39,7 @@ class Finder:
         found = self._log.ids_of(role_name=actor)
         if not found:
             roles = sorted({dict(one.attributes).get("role_name", "") for one in self._log.created} - {""})
-            raise IndexError(
-                f"no actor of the recording has the role '{actor}'; it has {', '.join(roles) or 'none'}"
-            )
+            raise IndexError(f"no actor of the recording has the role '{actor}'; it has {', '.join(roles) or 'none'}")
         return found[0]
 
     def index(self, frame: int) -> int:
@@ -81,11 +79,11 @@ class Finder:
         return values.transform(self.locations_m[row], positions.rows["rotation_deg"][row])
 
     def physics(self, actor: Actor, frame: int) -> Physics | None:
-        """What a vehicle is made of, as last told until a frame."""
+        """A vehicle's parts, by the last record until a frame."""
         self.index(frame)
         wanted = self.id(actor)
-        told = [made_of for made_of in self._log.physics if made_of.id == wanted and made_of.frame <= frame]
-        return told[-1] if told else None
+        earlier = [made_of for made_of in self._log.physics if made_of.id == wanted and made_of.frame <= frame]
+        return earlier[-1] if earlier else None
 
     def over(
         self, ask: Callable[[Actor, int], Any], actor: Actor, first_frame: int | None, last_frame: int | None

@@ -33,7 +33,7 @@ class Collision(NamedTuple):
 
 
 class MetricsLog:
-    """A recording to be asked. ``log`` has its columns."""
+    """Queries of a recording. ``log`` has its columns."""
 
     def __init__(self, log: Log) -> None:
         self.log = log
@@ -145,12 +145,12 @@ class MetricsLog:
         return None if row is None else values.control(row)
 
     def get_vehicle_physics_control(self, vehicle_id: Actor, frame: int) -> carla.VehiclePhysicsControl | None:
-        """What a vehicle is made of, as last told until a frame."""
+        """A vehicle's parts, by the last record until a frame."""
         made_of = self._find.physics(vehicle_id, frame)
         return None if made_of is None else values.physics_control(made_of)
 
     def get_walker_speed(self, walker_id: Actor, frame: int) -> float | None:
-        """The speed a walker was told, m/s."""
+        """The commanded speed of a walker, m/s."""
         row = self._find.row(Kind.WALKER_SPEEDS, walker_id, frame)
         return None if row is None else float(row["speed_mps"])
 
@@ -174,7 +174,7 @@ class MetricsLog:
     def get_traffic_light_state_time(
         self, traffic_light_id: Actor, state: carla.TrafficLightState, frame: int
     ) -> float | None:
-        """How long a colour lasts, s, as last told until a frame."""
+        """How long a colour lasts, s, by the last record until a frame."""
         row = self._find.last(Kind.LIGHT_TIMES, traffic_light_id, frame)
         column = {"Green": "green_s", "Yellow": "yellow_s", "Red": "red_s"}.get(str(state))
         return None if row is None or column is None else float(row[column])

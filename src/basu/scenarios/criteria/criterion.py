@@ -88,7 +88,7 @@ class Judgement(NamedTuple):
     deciding: bool  # whether the verdict depends on it
     measured: float | None  # in `unit`; None where there is no figure
     unit: str
-    limit: str  # what it was held against, such as "at least 0.5 m"; "" for what is only told
+    limit: str  # what it was held against, such as "at least 0.5 m"; "" for a reported figure
     sentence: str  # time, place, other party, speed
     t_s: float | None = None  # of the moment that decided
     x_m: float | None = None  # of the ego then

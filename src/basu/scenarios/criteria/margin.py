@@ -186,7 +186,7 @@ class Margin(Criterion):
         )
 
     def _touched(self, played: Played, present: Present, row: int, limit: str) -> Judgement:
-        """The judgement of a contact; the speed told is that of the frame before."""
+        """The judgement of a contact; its speed is that of the frame before."""
         key, tick = int(present.history.others["id"][row]), int(present.history.others["tick"][row])
         before_mps = float(played.history.speed_mps()[max(0, tick - 1)])
         t_s = float(played.history.frames["t_s"][tick])

@@ -213,7 +213,7 @@ MARGINS: dict[str, type[Margin]] = {"distance_m": LeastDistance, "ttc_s": LeastT
 
 
 def reported_always(criteria: Sequence[Criterion] = ()) -> tuple[Criterion, ...]:
-    """The three margins to everybody, not deciding, without those that ``criteria`` have already."""
+    """The three margins to all actors, not deciding, without the ones that ``criteria`` already hold."""
     names = {criterion.name for criterion in criteria}
     return tuple(margin() for margin in MARGINS.values() if margin.called not in names)
 

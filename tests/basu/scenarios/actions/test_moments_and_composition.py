@@ -23,11 +23,11 @@ from basu.scenarios.actions import (
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, Door, Pose
 from basu.scenarios.triggers import EgoPasses
-from basu.testing import PaperStage
+from basu.testing import OfflineStage
 from fakes.paper import play, somebody, stage_with
 
 
-def noted(stage: PaperStage) -> list[tuple[object, ...]]:
+def noted(stage: OfflineStage) -> list[tuple[object, ...]]:
     return [(command.what, *command.details) for command in stage.commands]
 
 

@@ -194,7 +194,7 @@ class Overtaking:
 
 
 def _differs(planned: Detour, extent: Extent, offset_m: float) -> bool:
-    """Whether a way round is another than the one that was laid out before."""
+    """Whether a detour differs from the one planned before."""
     return any(
         abs(a - b) > SAME_M for a, b in zip((*planned.extent, planned.offset_m), (*extent, offset_m), strict=True)
     )

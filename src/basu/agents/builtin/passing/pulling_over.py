@@ -73,7 +73,7 @@ LONGER_M = 20.0  # added while an actor blocks the way back
 BEHIND_M, AHEAD_M = 20.0, 10.0  # no actor this near before and behind in the target lane
 DECIDES_M = 10.0  # before the way back begins it is seen whether it is clear
 LIKE_M = 0.3  # a lane that lies so much elsewhere is another lane
-SLOWEST_MPS = 3.0  # changes of lane are laid out for this speed at least
+SLOWEST_MPS = 3.0  # changes of lane are planned for this speed at least
 
 
 class PullingOver:

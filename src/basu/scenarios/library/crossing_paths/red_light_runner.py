@@ -33,5 +33,5 @@ class RedLightRunner(AcrossTheWay):
     aliases: ClassVar[Sequence[str]] = ("OppositeVehicleRunningRedLight",)
 
     def setup(self) -> Behaviour:
-        """Green for the ego, red for everybody else."""
+        """Green for the ego, red for all others."""
         return green_for_ego(self.place)

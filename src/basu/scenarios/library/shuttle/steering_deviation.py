@@ -1,4 +1,4 @@
-"""The wheels stray a little from where they were told to be."""
+"""The wheels deviate a little from their commanded angle."""
 
 from __future__ import annotations
 

@@ -114,7 +114,7 @@ def thing_boxes(result: dict[str, Any], t_s: float | None = None) -> list[tuple[
 
 
 def _beside(result: dict[str, Any], history: History, tick: int) -> list[tuple[str, Box]]:
-    """Everybody and everything near in a tick, by what it is called."""
+    """All actors and things near in a tick, by name."""
     roles, types = roles_of(result), history.facts.actor_types
     actors = [(roles.get(key, types.get(key, "an unknown type")), box) for key, box in boxes_at(history, tick)]
     return [*actors, *thing_boxes(result, float(history.frames["t_s"][tick]))]

@@ -50,8 +50,8 @@ def lens(story: Story, canvas: Canvas, streets: Sequence[Line]) -> Lens | None:
     extended(drawn, [_lanes(close, streets), *_bodies(story, close, met)])
     drawn.append(e("rect", y=seen_px, width=LENS_PX[0], height=CAPTION_PX, class_="below"))
     drawn.append(e("rect", x=0.75, y=0.75, width=LENS_PX[0] - 1.5, height=LENS_PX[1] - 1.5, class_="lens"))
-    told = f"{scale / canvas.pixels_per_m:.1f} times as large"
-    drawn.append(e("text", told, x=6, y=LENS_PX[1] - 4.5, class_="small"))
+    scale_text = f"{scale / canvas.pixels_per_m:.1f} times as large"
+    drawn.append(e("text", scale_text, x=6, y=LENS_PX[1] - 4.5, class_="small"))
     return Lens(corner, drawn)
 
 
@@ -62,7 +62,7 @@ def _lanes(close: Canvas, streets: Sequence[Line]) -> Element:
 
 
 def _bodies(story: Story, close: Canvas, met: Encounter) -> list[Element]:
-    """Everybody in it, and the distance between the two."""
+    """All actors in it, and the distance between the two."""
     t_s = float(story.history.frames["t_s"][met.tick])
     things = [block(box, close, "thing") for _, box in thing_boxes(story.result, t_s) if _is_in(box, close)]
     others = [

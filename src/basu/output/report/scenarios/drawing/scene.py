@@ -121,7 +121,7 @@ class Scene:
         return body(box, self._canvas, "ghost")
 
     def _gap(self, met: Encounter) -> list[Element]:
-        """The least distance, drawn and told."""
+        """The least distance, as a line and in words."""
         canvas = self._canvas
         ends = [canvas.at(*met.own_m), canvas.at(*met.theirs_m)]
         t_s = float(self._story.history.frames["t_s"][met.tick])

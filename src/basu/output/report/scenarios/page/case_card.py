@@ -92,7 +92,7 @@ def anchor_of(case: str, agent: str) -> str:
 
 
 def judgements(found: Sequence[dict[str, Any]]) -> Element:
-    """What each criterion said; those that decide first."""
+    """Each criterion's judgement, the deciding ones first."""
     head = e("tr", *(e("th", text, scope="col") for text in ("", "criterion", "measured", "limit")))
     ordered = sorted(found, key=lambda judgement: not judgement["deciding"])
     return e("table", e("thead", head), *(_judgement(judgement) for judgement in ordered), class_="judgements")

@@ -96,10 +96,10 @@ def _sign(case: dict[str, Any], agent: str, carded: Collection[str]) -> Element:
     """One case, a link to its card where there is one."""
     result = case["results"][agent]
     look, anchor = LOOKS[result["verdict"]], anchor_of(case["id"], agent)
-    told = f"{case['id']}, {agent}: {look.word}. {result['message']}"
+    sentence = f"{case['id']}, {agent}: {look.word}. {result['message']}"
     if anchor not in carded:
-        return e("i", look.sign, class_=f"chip {look.style}", title=told)
-    return e("a", look.sign, href=f"#{anchor}", class_=f"chip {look.style}", title=told, aria_label=told)
+        return e("i", look.sign, class_=f"chip {look.style}", title=sentence)
+    return e("a", look.sign, href=f"#{anchor}", class_=f"chip {look.style}", title=sentence, aria_label=sentence)
 
 
 PAGE_FILE = "matrix.html"
@@ -107,7 +107,7 @@ HERE = Path(__file__).parent
 MOST_CARDS = 400  # in one page: those that were not passed first, then the narrowest
 MOST_BYTES = 8_000_000  # of cards; from there on they have no pictures
 PARAMETERS_SHOWN = 4  # beside a case's name
-MOST_OF_TITLE = 90  # characters of what was asked for
+MOST_OF_TITLE = 90  # characters of the requested cases
 
 
 class Cell(NamedTuple):
@@ -202,9 +202,9 @@ def _head(matrix: dict[str, Any]) -> Element:
     versions = ", ".join(f"{name} {text}" for name, text in matrix["versions"].items())
     minutes, seconds = divmod(round(matrix["wall_s"]), 60)
     what = f"{counted(len(matrix['cases']), 'case')} with {', '.join(matrix['agents'])}: {counted(drives, 'drive')}"
-    told = f"{what} in {minutes} min {seconds} s, started {matrix['started']}; {versions}"
+    sentence = f"{what} in {minutes} min {seconds} s, started {matrix['started']}; {versions}"
     what = textwrap.shorten(matrix["what"], MOST_OF_TITLE, placeholder=" …")
-    return e("header", e("h1", f"Scenarios: {what}"), e("p", told))
+    return e("header", e("h1", f"Scenarios: {what}"), e("p", sentence))
 
 
 def _sweeps(matrix: dict[str, Any]) -> Iterator[Element]:
@@ -216,8 +216,8 @@ def _sweeps(matrix: dict[str, Any]) -> Iterator[Element]:
         for study in found:
             if study.scenario == scenario:
                 known = boundary_of(study)
-                told = e("ul", *(e("li", text[0].upper() + text[1:]) for text in sentences(known)))
-                maps.append(e("figure", e("figcaption", e("b", study.agent), told), drawing(known), class_="sweep"))
+                sentence = e("ul", *(e("li", text[0].upper() + text[1:]) for text in sentences(known)))
+                maps.append(e("figure", e("figcaption", e("b", study.agent), sentence), drawing(known), class_="sweep"))
         section.append(maps)
         yield section
 

@@ -49,8 +49,8 @@ def _one(
     streets: Sequence[Line],
 ) -> Element:
     """A scenario, closed at first; one that was not reached has no more than its sentence."""
-    told = f"{scenario['title']} Its trigger point lies {scenario['trigger_s_m']:.0f} m along the route."
-    name = (e("b", scenario["id"]), " ", e("small", told))
+    sentence = f"{scenario['title']} Its trigger point lies {scenario['trigger_s_m']:.0f} m along the route."
+    name = (e("b", scenario["id"]), " ", e("small", sentence))
     if scenario["verdict"] is None:
         return e("p", *name, e("br"), scenario["message"], class_="not-reached")
     case = {

@@ -37,7 +37,7 @@ class Pair(NamedTuple):
     x: Axis
     y: Axis
     right: int  # verdicts foretold, each from all others
-    asked: int
+    used: int
     commoner: int  # that one would have right by always saying the commoner verdict
     loss: float  # mean logarithmic loss, by which pairs are compared
     chance: float  # of the best of all pairs being as good with the same verdicts dealt out anew
