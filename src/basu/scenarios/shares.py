@@ -31,7 +31,7 @@ ASSUMPTIONS = (
     "A scenario that stands for none of the 37 weighs as much as the mean of its group's other scenarios.",
     "Our places stand for the nation's roads and our parameters for its traffic, however often each is met.",
     "The burden is that of people driving light vehicles, whatever drove here.",
-    "A failed case is taken to cost the mean of its group's crashes, whether it was a scratch or a near miss.",
+    "A failed case is charged the group's mean crash cost, whether it was a scratch or a near miss.",
     "NOT_EXERCISED counts for neither side in the first figure, and as not passed in the figure for all crashes.",
     "An agent that broke down has not passed; cases spoiled by simulator, set-up, benchmark or by hand are left out.",
     "Control loss and road departure have no other actor: a driver without perception passes them as well.",

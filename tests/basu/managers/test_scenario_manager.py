@@ -15,7 +15,7 @@ from basu.cli import main
 from basu.errors import ScenarioError
 from basu.managers.placed_scenario import is_behind, place_scenario
 from basu.managers.scenario_manager import Playing
-from basu.managers.scenario_results import told
+from basu.managers.scenario_results import results_of
 from basu.metrics.score import Scoring
 from basu.options import RunOptions
 from basu.outcome import Outcome, Status
@@ -140,7 +140,7 @@ def test_theirs_are_read_with_our_classes(tmp_path: Path) -> None:
     (found,) = scenarios_on(description)
     assert "DynamicObjectCrossing" in found.scenario.aliases
     assert found.case.name == "DynamicObjectCrossing_1"
-    assert found.unread == ("distance",)  # their class reads it, ours does not: told in the result
+    assert found.unread == ("distance",)  # their class reads it, ours does not: the result says so
 
 
 def test_scenarios_can_be_left_away(tmp_path: Path) -> None:
@@ -243,7 +243,7 @@ def test_what_was_not_reached_is_told_as_such() -> None:
     laid = place_scenario(waiting_at(12.0), WAY, TOWN, own=False)
     stage: Any = SimpleNamespace(route=laid.way, roles={}, types={})
     playing = Playing(laid.planned, laid.scenario, laid.composed, stage)
-    (row,) = told([playing], None, Outcome(Status.AGENT_CRASHED, "the agent raised KeyError"))
+    (row,) = results_of([playing], None, Outcome(Status.AGENT_CRASHED, "the agent raised KeyError"))
     assert (row["reached"], row["verdict"]) == (False, None)
     assert row["message"] == "it waits at 10 m of the route, and the run ended before: the agent raised KeyError"
     schema = read_schema(RESULT_SCHEMA)
