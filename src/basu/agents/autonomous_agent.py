@@ -55,8 +55,8 @@ class AutonomousAgent(ABC):
     time_step_s: float
     server_address: tuple[str, int]
     manual: bool = False
-    driven_by_person: bool = False
-    gives_sensors_late: bool = False
+    driven_by_person: bool = False  # whether a person drives at first, before a window; the human agent
+    gives_sensors_late: bool = False  # ``sensors`` is called after ``setup``; for foreign agents
     _sight: Sight | None = None
 
     def bind(
@@ -105,7 +105,7 @@ class AutonomousAgent(ABC):
 
     @abstractmethod
     def config(self) -> Mapping[str, Any]:
-        """Return the defaults of a run: route, sensors, vehicle and weather. BASU calls it before the world exists.
+        """Return the vehicle, weather and route that the agent wants; called once, before there is a world.
 
         All keys are optional: ``routes`` (route XML), ``sensors`` (sensor JSON), ``vehicle`` (blueprint id),
         ``weather`` (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO network; not used yet). BASU looks
@@ -132,10 +132,11 @@ class AutonomousAgent(ABC):
     def visible_actors(self) -> list[Other]:
         """Return the vehicles, walkers and props that the vehicle sees now or saw up to 2 s ago; call it once a tick.
 
-        BASU's own agents know other actors by this list alone. It holds actors within 80 m with a line of sight from
-        the roof that is free of houses, trees, parked cars and other actors, within the range of light and weather.
-        Each is a :class:`basu.agents.sight.Other`, in CARLA's world frame. The place of an actor out of sight is
-        extrapolated. Use a :class:`basu.agents.sight.Sight` for another radius.
+        BASU's own agents know the same of other actors: within 80 m, with a line of sight from the roof free of
+        houses, trees, parked cars and other actors, within the range of light and weather. Each is a
+        :class:`basu.agents.sight.Other` with its box's centre, heading, velocity and size in CARLA's world frame (m,
+        rad, m/s; x east, y south, yaw clockwise). ``unseen_s`` is 0, or the time since it was last seen; its place is
+        extrapolated since then. For another radius, hold a :class:`basu.agents.sight.Sight` of your own.
         """
         if self._sight is None:
             self._sight = Sight(self.world, self.vehicle)

@@ -65,9 +65,9 @@ class Route:
     road_id: NDArray[np.int64]  # (N,) OpenDRIVE road
     lane_id: NDArray[np.int64]  # (N,) OpenDRIVE lane; its sign gives the side of the road
     stops: tuple[Stop, ...] = ()  # in the order in which the route passes them
-    controls: tuple[Control, ...] = ()  # signs and lights, in the order in which the route passes them
-    timetable: Timetable | None = None  # departures and arrivals at the stops; None for a route without a timetable
-    waypoints: tuple[carla.Waypoint, ...] = field(default=(), repr=False)  # (N,) of the client's map, one a point
+    controls: tuple[Control, ...] = ()  # likewise
+    timetable: Timetable | None = None  # when it is due at its stops; None without a timetable
+    waypoints: tuple[carla.Waypoint, ...] = field(default=(), repr=False)  # (N,)
 
     @property
     def length_m(self) -> float:

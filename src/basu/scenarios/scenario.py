@@ -88,7 +88,7 @@ class Scenario(ABC):
         return value
 
     def actors(self) -> Sequence[ActorSpec]:
-        """Who is there besides the ego; put into the world before the first frame."""
+        """The actors besides the ego; they are spawned before the first frame."""
         return ()
 
     def setup(self) -> Behaviour | None:

@@ -32,7 +32,7 @@ from basu.scenarios.triggers import (
     TimeToArrival,
     along_route,
 )
-from basu.testing import PaperStage, steady, waiting_at
+from basu.testing import OfflineStage, steady, waiting_at
 from fakes.paper import play, somebody, stage_with
 
 FRAME_S = 0.051  # a frame, and what rounding adds
@@ -143,7 +143,7 @@ def test_speeds_of_the_ego_and_of_others() -> None:
 
 
 def test_standing_counts_only_without_a_break() -> None:
-    def driver(stage: PaperStage) -> float:
+    def driver(stage: OfflineStage) -> float:
         return 1.0 if stage.time_s < 2.0 or 3.0 <= stage.time_s < 4.0 else 0.0
 
     trigger = StandsStill(2.0)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import carla
 
 LOOK_AGAIN_TICKS = 10  # an actor may come in the tick in which another goes: then the number stays
-SMALLEST_M = 0.15  # half size of a body whose box the server leaves empty
+SMALLEST_M = 0.15  # half size of a body with an empty box from the server
 USUAL_HALF_HEIGHT_M = 0.75  # a car's, where no height is given
 
 

@@ -9,7 +9,7 @@ from basu.scenarios.tree_node import Node
 
 
 def named(actor: str) -> str:
-    """Return the name of an actor in the tree."""
+    """An actor's name in the tree."""
     return "ego" if actor == EGO else actor
 
 
@@ -29,7 +29,7 @@ STILL_MPS = 0.1  # slower than this stands
 
 
 class Faster(Trigger):
-    """The speed of an actor is ``speed_mps`` or more."""
+    """An actor is at least so fast."""
 
     def __init__(self, speed_mps: float, *, actor: str = EGO) -> None:
         super().__init__(f"{named(actor)} at {speed_mps:g} m/s or more")
@@ -42,7 +42,7 @@ class Faster(Trigger):
 
 
 class Slower(Trigger):
-    """The speed of an actor is ``speed_mps`` or less."""
+    """An actor is at most so fast."""
 
     def __init__(self, speed_mps: float, *, actor: str = EGO) -> None:
         super().__init__(f"{named(actor)} at {speed_mps:g} m/s or less")
@@ -55,7 +55,7 @@ class Slower(Trigger):
 
 
 class StandsStill(Trigger):
-    """An actor has stood for ``seconds`` without a break."""
+    """An actor has stood for so long, without a break."""
 
     def __init__(self, seconds: float, *, actor: str = EGO) -> None:
         super().__init__(f"{named(actor)} stands for {seconds:.3g} s")
@@ -109,14 +109,14 @@ class Elapsed(Trigger):
 
 
 class EgoTouches(Trigger):
-    """The ego has touched an actor; without ``actor``, any actor or thing."""
+    """The ego has touched an actor, or any actor."""
 
     def __init__(self, actor: str | None = None) -> None:
-        super().__init__(f"ego touches {actor or 'any actor'}")
+        super().__init__(f"ego touches {actor or 'an actor'}")
         self.actor = actor
 
     def has_come(self) -> str | None:
-        """Return the touched actors, once there is a contact."""
+        """The touched actors, once there is a contact."""
         touched = sorted(self.stage.ego_contacts)
         if not touched or (self.actor is not None and self.actor not in touched):
             return None

@@ -97,7 +97,7 @@ Region = Circle | Polygon | Stretch
 
 
 class InRegion(Trigger):
-    """The middle of an actor is in a region."""
+    """An actor's middle is in a region."""
 
     def __init__(self, region: Region, *, actor: str = EGO, what: str = "the region") -> None:
         super().__init__(f"{named(actor)} in {what}")
@@ -110,7 +110,7 @@ class InRegion(Trigger):
 
 
 class CrossesLine(Trigger):
-    """The front of an actor crosses the line through ``place`` at right angles to its heading, in that direction."""
+    """An actor's front crosses a line through ``place``, square to its heading, in the direction of that heading."""
 
     def __init__(self, place: Pose, half_width_m: float = 3.0, *, actor: str = EGO, what: str = "the line") -> None:
         super().__init__(f"{named(actor)} crosses {what}")

@@ -1,4 +1,4 @@
-"""A vehicle overtakes and turns right in front of the ego: NHTSA's "turning, same direction"."""
+"""A vehicle overtakes and turns right across the ego's nose: NHTSA's "turning, same direction"."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class RightHook(OvertakesEgo):
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "suv", "van"), "who overtakes"),
+        Choice("kind", ("car", "suv", "van"), "the overtaking vehicle"),
         Number("gap", 2.0, 0.5, 6.0, "m", "between the bumpers when it begins to cut in"),
         Number("passing", 6.0, 4.0, 8.0, "s", "that it takes to get past"),
         Number("turns_at", 3.0, 1.5, 5.0, "m/s", "its speed in the turn"),

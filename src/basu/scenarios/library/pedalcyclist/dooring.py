@@ -1,4 +1,4 @@
-"""A door opens before a cyclist, who ends up at rest in the ego's lane."""
+"""A door opens before a cyclist; the cyclist ends up at rest in the ego's lane."""
 
 from __future__ import annotations
 
@@ -115,6 +115,6 @@ class Dooring(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, the cyclist not nearly so; the ego stays on the street, and goes on."""
+        """No contact, no near miss of the cyclist; the ego stays on the street, and goes on."""
         apart = LeastDistance(SWAY_M, to="cyclist", while_moving=True)
         return [NoCollision(), apart, KeepsLane(passing=True), Arrives(), InTime()]
