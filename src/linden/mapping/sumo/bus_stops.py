@@ -31,7 +31,9 @@ def read_stops(path: Path) -> tuple[RouteStop, ...]:
     try:
         root = etree.parse(str(path)).getroot()
         return tuple(
-            RouteStop(stop.attrib["id"], str(stop.get("name", "")), float(stop.attrib["x"]), float(stop.attrib["y"]))
+            RouteStop(
+                str(stop.attrib["id"]), str(stop.get("name", "")), float(stop.attrib["x"]), float(stop.attrib["y"])
+            )
             for stop in root.iter("stop")
         )
     except (OSError, etree.XMLSyntaxError) as error:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import networkx
+import networkx as nx
 
 from linden.mapping.sumo.net import Net
 from linden.mapping.sumo.network import Converted
@@ -99,7 +99,11 @@ def _signs(converted: Converted) -> list[tuple[str, int, int]]:
         if edge is not None and edge.lanes[connection.start_lane].for_cars:
             states.setdefault(connection.start, set()).add(connection.state)
     rows = []
-    kinds = (("stop signs", controls.stops, "sw"), ("yield signs", controls.yields, "m"), ("lights", controls.lights, "oO"))
+    kinds = (
+        ("stop signs", controls.stops, "sw"),
+        ("yield signs", controls.yields, "m"),
+        ("lights", controls.lights, "oO"),
+    )
     for name, signals, wanted in kinds:
         ids = {signal.signal_id for signal in signals.values()}
         kept = {signal.signal_id for edge, signal in signals.items() if states.get(edge, set()) & set(wanted)}
@@ -114,11 +118,11 @@ def _is_of(name: str, kind: str, *, is_light: bool) -> bool:
 
 def _parts(net: Net) -> int:
     """How many groups of edges there are within which every edge reaches every other by car."""
-    graph = networkx.DiGraph()
+    graph: nx.DiGraph[str] = nx.DiGraph()
     graph.add_nodes_from(edge.id for edge in net.car_edges())
     for connection in net.connections:
         if connection.start in graph and connection.end in graph:
             start, end = net.edges[connection.start], net.edges[connection.end]
             if start.lanes[connection.start_lane].for_cars and end.lanes[connection.end_lane].for_cars:
                 graph.add_edge(connection.start, connection.end)
-    return networkx.number_strongly_connected_components(graph)
+    return nx.number_strongly_connected_components(graph)

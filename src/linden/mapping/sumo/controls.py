@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.mapping.sumo.net import Net
+from linden.mapping.sumo.net import Connection, Net
 from linden.opendrive.furniture import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.opendrive.model import OpenDrive
 from linden.opendrive.placed import AffectedLane, PlacedSignal
@@ -88,7 +88,7 @@ def node_types(net: Net, controls: Controls) -> dict[str, str]:
 
 
 def node_patch(types: dict[str, str]) -> bytes:
-    """netconvert's file of node types."""
+    """Return the file of node types for netconvert."""
     root = etree.Element("nodes")
     for node, kind in types.items():
         etree.SubElement(root, "node", {"id": node, "type": kind})
@@ -96,63 +96,76 @@ def node_patch(types: dict[str, str]) -> bytes:
 
 
 def edge_patch(net: Net, controls: Controls) -> bytes:
-    """netconvert's file of edge priorities."""
+    """Return the file of edge priorities for netconvert."""
     root = etree.Element("edges")
     for edge in net.car_edges():
         minor = edge.id in controls.stops or edge.id in controls.yields
-        etree.SubElement(
-            root, "edge", {"id": edge.id, "priority": str(MINOR_PRIORITY if minor else MAJOR_PRIORITY)}
-        )
+        etree.SubElement(root, "edge", {"id": edge.id, "priority": str(MINOR_PRIORITY if minor else MAJOR_PRIORITY)})
     return etree.tostring(root, pretty_print=True)
 
 
-def light_programs(net: Net, controls: Controls, order: dict[str, int], times_s: tuple[float, float, float]
-                   ) -> dict[str, "etree._Element"]:  # fmt: skip
+class _Links(NamedTuple):
+    """The links of one light, by their index."""
+
+    heads: dict[int, PlacedSignal]  # what governs each
+    ways: dict[int, Connection]
+    crossed: dict[int, tuple[str, ...]]  # the edges that a crossing leads over
+
+
+def light_programs(
+    net: Net, controls: Controls, order: dict[str, int], times_s: tuple[float, float, float]
+) -> dict[str, "etree._Element"]:
     """The server's own program for each light: one controller after the other is green, yellow, then all are red.
 
-    Args:
-        order: rank of each controller, in the order of their turns.
-        times_s: of red, yellow and green.
-
     Each link names the signal that governs it (``linkSignalID``), so that a client can pair it with the server's head.
+    ``order`` ranks the controllers in the order of their turns. ``times_s`` are of red, yellow and green.
     """
-    links: dict[str, dict[int, PlacedSignal | None]] = defaultdict(dict)
-    turning_left: dict[str, set[int]] = defaultdict(set)
+    lights: dict[str, _Links] = defaultdict(lambda: _Links({}, {}, {}))
     for connection in net.connections:
-        if connection.light is not None:
-            links[connection.light][connection.link] = controls.lights.get(connection.start)
-            if connection.direction in "lLt":
-                turning_left[connection.light].add(connection.link)
-    return {
-        light: _program(light, dict(sorted(heads.items())), turning_left[light], order, times_s)
-        for light, heads in sorted(links.items())
-    }
+        if connection.light is None:
+            continue
+        links = lights[connection.light]
+        links.ways[connection.link] = connection
+        if connection.end in net.crossed:
+            links.crossed[connection.link] = net.crossed[connection.end]
+        elif connection.start in controls.lights:
+            links.heads[connection.link] = controls.lights[connection.start]
+    return {light: _program(light, lights[light], order, times_s) for light in sorted(lights)}
 
 
-def _program(
-    light: str,
-    heads: dict[int, PlacedSignal | None],
-    turning_left: set[int],
-    order: dict[str, int],
-    times_s: tuple[float, float, float],
-) -> "etree._Element":
+def _program(light: str, links: _Links, order: dict[str, int], times_s: tuple[float, float, float]) -> "etree._Element":
     red_s, yellow_s, green_s = times_s
     root = etree.Element("tlLogic", {"id": light, "type": "static", "programID": "server", "offset": "0"})
-    controllers = sorted({_controller(head) for head in heads.values() if head}, key=lambda name: order.get(name, 0))
-    count = max(heads) + 1
+    controllers = sorted({_controller(head) for head in links.heads.values()}, key=lambda name: order.get(name, 0))
+    count = max(links.ways) + 1
     for controller in controllers:
-        of_turn = {link for link, head in heads.items() if head is not None and _controller(head) == controller}
-        several = len({heads[link].signal_id for link in of_turn if heads[link]}) > 1  # type: ignore[union-attr]
-        green = ["r"] * count
-        for link in of_turn:
-            green[link] = "g" if several and link in turning_left else "G"
-        yellow = ["y" if link in of_turn else "r" for link in range(count)]
-        for duration_s, state in ((green_s, green), (yellow_s, yellow), (red_s, ["r"] * count)):
-            etree.SubElement(root, "phase", {"duration": f"{duration_s:g}", "state": "".join(state)})
-    for link, head in heads.items():
-        if head is not None:
-            etree.SubElement(root, "param", {"key": f"linkSignalID:{link}", "value": head.signal_id})
+        turn = {link for link, head in links.heads.items() if _controller(head) == controller}
+        yellow = "".join("y" if link in turn else "r" for link in range(count))
+        for duration_s, state in ((green_s, _green(links, turn, count)), (yellow_s, yellow), (red_s, "r" * count)):
+            etree.SubElement(root, "phase", {"duration": f"{duration_s:g}", "state": state})
+    for link, head in sorted(links.heads.items()):
+        etree.SubElement(root, "param", {"key": f"linkSignalID:{link}", "value": head.signal_id})
     return root
+
+
+def _green(links: _Links, turn: set[int], count: int) -> str:
+    """The state while the links of ``turn`` are green.
+
+    People cross the approaches that are red. Who turns into a street that people cross gives way (``g``), and so does
+    who turns left where two heads are green at once.
+    """
+    state = ["r"] * count
+    approaches = {links.ways[link].start for link in turn}
+    walked = {link: edges for link, edges in links.crossed.items() if approaches.isdisjoint(edges)}
+    for link in walked:
+        state[link] = "G"
+    occupied = {edge for edges in walked.values() for edge in edges}
+    several = len({links.heads[link].signal_id for link in turn}) > 1
+    for link in turn:
+        way = links.ways[link]
+        gives_way = way.end in occupied or (several and way.direction in "lLt")
+        state[link] = "g" if gives_way else "G"
+    return "".join(state)
 
 
 def _controller(signal: PlacedSignal) -> str:

@@ -67,6 +67,7 @@ class Net:
     connections: tuple[Connection, ...]
     node_types: MappingProxyType[str, str]
     lights: frozenset[str]
+    crossed: MappingProxyType[str, tuple[str, ...]]  # the edges that a crossing leads over, by the crossing's id
     offset_m: tuple[float, float]
 
     @cached_property
@@ -115,6 +116,13 @@ def read_net(path: Path) -> Net:
             }
         ),
         lights=frozenset(str(light.get("id")) for light in root.iter("tlLogic")),
+        crossed=MappingProxyType(
+            {
+                str(edge.get("id")): tuple(str(edge.get("crossingEdges", "")).split())
+                for edge in root.iter("edge")
+                if edge.get("function") == "crossing"
+            }
+        ),
         offset_m=(x_m, y_m),
     )
 
