@@ -23,10 +23,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the folder, print how network and map compare; return 1 where they do not fit."""
-    from linden.mapping.sumo.bus_stops import read_stops  # noqa: PLC0415 - `linden --help` does not pay for it
-    from linden.mapping.sumo.check import compare  # noqa: PLC0415 - see above
-    from linden.mapping.sumo.demand import Demand  # noqa: PLC0415 - see above
-    from linden.mapping.sumo.folder import write_folder  # noqa: PLC0415 - see above
+    from linden.authoring.sumo.bus_stops import read_stops  # noqa: PLC0415 - `linden --help` does not pay for it
+    from linden.authoring.sumo.check import compare  # noqa: PLC0415 - see above
+    from linden.authoring.sumo.demand import Demand  # noqa: PLC0415 - see above
+    from linden.authoring.sumo.folder import write_folder  # noqa: PLC0415 - see above
 
     stops = () if arguments.stops is None else read_stops(arguments.stops)
     demand = Demand(arguments.hour, arguments.duration, arguments.scale, arguments.seed)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.mapping.sumo import programs
-from linden.mapping.sumo.controls import (
+from linden.authoring.sumo import programs
+from linden.authoring.sumo.controls import (
     Controls,
     controls_of,
     edge_patch,
@@ -15,10 +15,10 @@ from linden.mapping.sumo.controls import (
     node_patch,
     node_types,
 )
-from linden.mapping.sumo.net import Net, read_net
-from linden.opendrive.model import OpenDrive
-from linden.opendrive.parse import parse
-from linden.opendrive.signals import place
+from linden.authoring.sumo.net import Net, read_net
+from linden.maps.opendrive.model import OpenDrive
+from linden.maps.opendrive.parse import parse
+from linden.maps.opendrive.signals import place
 from linden.traffic.cycle import TIMES_S
 
 LANE_TYPES = """<types>

@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from linden.authoring.sumo.bus_stops import RouteStop, stops_file
+from linden.authoring.sumo.demand import Demand, check, draw, trips_file
+from linden.authoring.sumo.network import Converted, convert
+from linden.authoring.sumo.vehicle_types import types_file
 from linden.errors import UserError
-from linden.mapping.sumo.bus_stops import RouteStop, stops_file
-from linden.mapping.sumo.demand import Demand, check, draw, trips_file
-from linden.mapping.sumo.network import Converted, convert
-from linden.mapping.sumo.vehicle_types import types_file
 
 STEP_S = 0.05  # as a benchmark's tick
 

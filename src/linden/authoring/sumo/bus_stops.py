@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from linden.authoring.sumo.net import Net, NetLane
 from linden.errors import UserError
-from linden.mapping.sumo.net import Net, NetLane
 
 LENGTH_M = 12.0  # of a bus stop: the shuttle's 4 m twice, and room to pull in
 REACH_M = 8.0  # from a stop's place to the middle of its lane

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from linden.authoring.sumo.net import Net, NetEdge
+from linden.authoring.sumo.vehicle_types import MIX
 from linden.errors import UserError
-from linden.mapping.sumo.net import Net, NetEdge
-from linden.mapping.sumo.vehicle_types import MIX
 
 BUSY_TRIPS_PER_KM = 14.0
 """Trips that begin in the busiest hour for each km of lane: an estimate, which gives Linden some 1,100 an hour."""

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import networkx as nx
 
-from linden.mapping.sumo.net import Net
-from linden.mapping.sumo.network import Converted
-from linden.opendrive.model import OpenDrive
-from linden.values.enums import LaneType
+from linden.authoring.sumo.net import Net
+from linden.authoring.sumo.network import Converted
+from linden.maps.opendrive.model import OpenDrive
+from linden.protocol.values.enums import LaneType
 
 LENGTH_SHARE = 0.02  # of the whole length that netconvert may cut off or add at joints of lanes
 SPEED_MPS = 0.05  # SUMO writes two decimals
