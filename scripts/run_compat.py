@@ -4,9 +4,9 @@ As many files at a time as WORKERS says (2); one at a time while the process run
 
 That client's threads race each other: when it drops a stream that it has just asked for it may end its process
 (``bad_weak_ptr``), and its Traffic Manager may miss the wake-up of a tick and stand still for ever, where no time-out
-of Python's reaches it. docs/traffic.md and benchmarks/soak.py have the evidence. So a file whose process was ended by
-a signal, or stood still, is run once more, and is said to have been; the second time counts. A test that fails has
-failed.
+of Python's reaches it. docs/explanation/traffic.md and benchmarks/soak.py have the evidence. So a file whose process
+was ended by a signal, or stood still, is run once more, and is said to have been; the second time counts. A test that
+fails has failed.
 """
 
 import os
