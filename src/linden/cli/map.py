@@ -7,7 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.cli import map_pointcloud
+from linden.cli import map_convert, map_pointcloud
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
 
@@ -25,6 +25,7 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
     check_parser = _add(actions, "check", check, "report what a careful reader finds wrong; exit 1 if anything is")
     _add_file(check_parser)
+    check_parser.add_argument("--against", metavar="MAP", help="the OpenDRIVE map that a Lanelet2 file was made of")
     check_parser.add_argument("--notes", action="store_true", help="tell also what is odd but allowed")
 
     show_parser = _add(actions, "show", show, "draw a map")
@@ -37,6 +38,9 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
     info_parser = _add(actions, "info", info, "count roads, junctions, signals, lanes")
     _add_file(info_parser)
+
+    convert_parser = _add(actions, "convert", map_convert.run, map_convert.HELP)
+    map_convert.add_arguments(convert_parser)
 
     cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
     map_pointcloud.add_arguments(cloud_parser)
@@ -60,6 +64,8 @@ def build(arguments: argparse.Namespace) -> int:
 
 def check(arguments: argparse.Namespace) -> int:
     """Print the findings, one a line, and a summary; return 1 if there are any."""
+    if Path(arguments.file).suffix == ".osm":
+        return map_convert.check(Path(arguments.file), arguments.against)
     # here, not above: the server's start does not pay for it
     from linden.opendrive.check import Severity  # noqa: PLC0415 - see above
     from linden.opendrive.check import check as findings_of  # noqa: PLC0415 - see above

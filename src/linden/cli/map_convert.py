@@ -1,0 +1,114 @@
+"""``linden map convert`` and the check of what it wrote: Lanelet2 (.osm) and Aisan (a folder of .csv)."""
+
+import argparse
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linden.cli.map_source import bytes_of, opendrive_of
+from linden.errors import UserError
+
+if TYPE_CHECKING:
+    from linden.vector_map.lanelet2.convert import Converted
+
+HELP = "turn a map into Lanelet2 (.osm) or an Aisan vector map (a folder), for Autoware"
+_PROJECTOR = "map_projector_info.yaml"
+
+
+def add_arguments(command: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
+    command.add_argument("file", help="an OpenDRIVE file, the name of a built-in map, or a Lanelet2 file (for Aisan)")
+    command.add_argument("-o", "--output", type=Path, required=True, help="a file that ends in .osm, or a folder")
+    command.add_argument(
+        "--transverse-mercator",
+        action="store_true",
+        help="let map_projector_info.yaml name the map's own projection instead of Local",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the map in the format that the output's name asks for."""
+    started = time.perf_counter()
+    if arguments.output.suffix == ".osm":
+        _to_lanelet2(arguments)
+    elif arguments.output.suffix:
+        raise UserError(f"{arguments.output} is neither a .osm file nor a folder; name one of these")
+    else:
+        raise UserError("Aisan is not written yet")
+    _say(f"{time.perf_counter() - started:.1f} s")
+    return 0
+
+
+def _to_lanelet2(arguments: argparse.Namespace) -> None:
+    from linden.vector_map.lanelet2.convert import convert  # noqa: PLC0415 - `linden --help` does not pay for it
+    from linden.vector_map.lanelet2.osm import osm_bytes, projector_info  # noqa: PLC0415 - see above
+    from linden.vector_map.output import write_file  # noqa: PLC0415 - see above
+
+    converted = convert(opendrive_of(arguments.file))
+    info = projector_info(converted.lanelet_map, transverse_mercator=arguments.transverse_mercator)
+    write_file(arguments.output, osm_bytes(converted.lanelet_map))
+    write_file(arguments.output.with_name(_PROJECTOR), info)
+    report(arguments.output, converted)
+
+
+def report(path: Path, converted: "Converted") -> None:
+    """Print what a Lanelet2 map has, what was left out, and what was assumed."""
+    from linden.vector_map.lanelet2.bounds import STATED_ERROR_M  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.vector_map.lanelet2.convert import UNKNOWN_SPEED_KMH, counts  # noqa: PLC0415 - see `_to_lanelet2`
+
+    lanelet_map = converted.lanelet_map
+    _say(
+        f"{path}: {len(lanelet_map.nodes):,} nodes, {len(lanelet_map.ways):,} ways, "
+        f"{len(lanelet_map.relations):,} relations; bounds within {100 * STATED_ERROR_M:g} cm of the OpenDRIVE curves"
+    )
+    for name, count in sorted(counts(lanelet_map).items()):
+        _say(f"{count:8,} {name}")
+    for reason, count in sorted(converted.network.left_out.items()):
+        _say(f"left out: {count} {reason}")
+    if not lanelet_map.geo_reference.strip():
+        _say(
+            "the map has no <geoReference>: its origin is written as latitude 0, longitude 0; local_x and local_y hold"
+        )
+    if converted.without_limit:
+        _say(f"{converted.without_limit} road lanelets have no limit in the map: {UNKNOWN_SPEED_KMH:g} km/h is assumed")
+    if converted.lost_links:
+        _say(f"{converted.lost_links} links are lost: the lanes' ends lie too far apart; linden map check names them")
+    if converted.signals_without_lane:
+        _say(f"{converted.signals_without_lane} signs and lights speak to no driving lane, and are left out")
+
+
+def check(path: Path, against: str | None) -> int:
+    """Print what a Lanelet2 file lacks, by second readers; return 1 if anything."""
+    from linden.vector_map.lanelet2.checking import compare, reach  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.vector_map.lanelet2.osm import read_osm  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.vector_map.lanelet2.second_reader import routes_of  # noqa: PLC0415 - see `_to_lanelet2`
+
+    opendrive = None if against is None else opendrive_of(against)
+    lanelet_map = read_osm(bytes_of(path), str(path), "" if opendrive is None else opendrive.geo_reference)
+    routes = routes_of(lanelet_map)
+    wrong = [*routes.errors, *routes.complaints]
+    for line in wrong:
+        _say(f"error lanelet2: {line}")
+    _say(
+        f"lanelet2 reads {routes.lanelets:,} lanelets; vehicles pass {len(routes.passable):,}, "
+        f"{len(routes.following):,} pairs follow each other, lanes change between {len(routes.lane_changes):,}"
+    )
+    if opendrive is None:
+        _say("not compared with an OpenDRIVE map; name it by --against")
+        return 1 if wrong else 0
+    lost = 0
+    for row in compare(lanelet_map, opendrive):
+        lost += row.is_lost
+        unit = f" {row.unit}" if row.unit else ""
+        before, after = (f"{value:.3f}" if row.unit else f"{value:.0f}" for value in (row.before, row.after))
+        _say(f"{row.name:28} OpenDRIVE {before}{unit}, Lanelet2 {after}{unit}{'  LOST' if row.is_lost else ''}")
+    pairs = reach(opendrive, routes)
+    _say(f"{pairs.both:,} pairs of driving lanes lead into each other in both maps")
+    for name, found in (("missing", pairs.missing), ("added", pairs.added)):
+        for pair in found:
+            _say(f"error {name}: {pair}")
+    return 1 if wrong or pairs.missing or pairs.added or lost else 0
+
+
+def _say(line: str) -> None:
+    print(line)  # noqa: T201 - what a command says to its user
