@@ -66,6 +66,8 @@ def check(arguments: argparse.Namespace) -> int:
     """Print the findings, one a line, and a summary; return 1 if there are any."""
     if Path(arguments.file).suffix == ".osm":
         return map_convert.check(Path(arguments.file), arguments.against)
+    if Path(arguments.file).is_dir():
+        return map_convert.check_folder(Path(arguments.file))
     # here, not above: the server's start does not pay for it
     from linden.opendrive.check import Severity  # noqa: PLC0415 - see above
     from linden.opendrive.check import check as findings_of  # noqa: PLC0415 - see above

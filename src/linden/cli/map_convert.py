@@ -10,6 +10,7 @@ from linden.errors import UserError
 
 if TYPE_CHECKING:
     from linden.vector_map.lanelet2.convert import Converted
+    from linden.vector_map.lanelet2.model import LaneletMap
 
 HELP = "turn a map into Lanelet2 (.osm) or an Aisan vector map (a folder), for Autoware"
 _PROJECTOR = "map_projector_info.yaml"
@@ -34,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
     elif arguments.output.suffix:
         raise UserError(f"{arguments.output} is neither a .osm file nor a folder; name one of these")
     else:
-        raise UserError("Aisan is not written yet")
+        _to_aisan(arguments)
     _say(f"{time.perf_counter() - started:.1f} s")
     return 0
 
@@ -49,6 +50,39 @@ def _to_lanelet2(arguments: argparse.Namespace) -> None:
     write_file(arguments.output, osm_bytes(converted.lanelet_map))
     write_file(arguments.output.with_name(_PROJECTOR), info)
     report(arguments.output, converted)
+
+
+def lanelets_of(name: str) -> "LaneletMap":
+    """Return the Lanelet2 map of a .osm file, or of an OpenDRIVE file or built-in map."""
+    if Path(name).suffix == ".osm":
+        from linden.vector_map.lanelet2.osm import read_osm  # noqa: PLC0415 - see `_to_lanelet2`
+
+        return read_osm(bytes_of(Path(name)), name)
+    from linden.vector_map.lanelet2.convert import convert  # noqa: PLC0415 - see `_to_lanelet2`
+
+    return convert(opendrive_of(name)).lanelet_map
+
+
+def _to_aisan(arguments: argparse.Namespace) -> None:
+    from linden.vector_map.aisan.convert import convert  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.vector_map.aisan.reading import complaints, read_folder  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.vector_map.output import write_folder  # noqa: PLC0415 - see `_to_lanelet2`
+
+    if arguments.transverse_mercator:
+        raise UserError("an Aisan vector map has no map_projector_info.yaml; leave --transverse-mercator out")
+    vectors = convert(lanelets_of(arguments.file))
+    write_folder(arguments.output, vectors.tables.files())
+    for name, rows in vectors.tables.rows.items():
+        if rows:
+            _say(f"{len(rows):8,} {name}.csv")
+    if vectors.lost_links:
+        _say(f"{vectors.lost_links} links are lost: a row has room for four before and four after it")
+    if vectors.without_limit:
+        _say(f"{vectors.without_limit} lanelets have no speed limit: 50 km/h is assumed")
+    found = complaints(read_folder(arguments.output))
+    for line in found:
+        _say(f"error {line}")
+    _say(f"{arguments.output}: read back by the rules of Autoware's nodes, {len(found)} complaints")
 
 
 def report(path: Path, converted: "Converted") -> None:
@@ -108,6 +142,18 @@ def check(path: Path, against: str | None) -> int:
         for pair in found:
             _say(f"error {name}: {pair}")
     return 1 if wrong or pairs.missing or pairs.added or lost else 0
+
+
+def check_folder(path: Path) -> int:
+    """Print what Autoware's nodes would stumble over in an Aisan folder; return 1 if anything."""
+    from linden.vector_map.aisan.reading import complaints, read_folder  # noqa: PLC0415 - see `_to_lanelet2`
+
+    folder = read_folder(path)
+    found = complaints(folder)
+    for line in found:
+        _say(f"error {line}")
+    _say(f"{path}: {len(folder['lane']):,} rows of lanes in {len(folder)} files, {len(found)} complaints")
+    return 1 if found else 0
 
 
 def _say(line: str) -> None:

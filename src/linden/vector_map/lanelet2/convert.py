@@ -16,7 +16,7 @@ from linden.vector_map.lanelet2.crosswalks import crossed, crosswalks_of
 from linden.vector_map.lanelet2.draft import Draft
 from linden.vector_map.lanelet2.kerbs import loose_kerbs
 from linden.vector_map.lanelet2.markings import KERB, tags_of_sides
-from linden.vector_map.lanelet2.model import Bounds, LaneletMap, Member, Relation, Way
+from linden.vector_map.lanelet2.model import DIGITS, Bounds, LaneletMap, Member, Node, Relation, Way
 from linden.vector_map.lanelet2.movements import Movement, movements_of
 from linden.vector_map.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, Network, Side, Stretch, network_of
 
@@ -234,7 +234,10 @@ def _line_before(draft: Draft, lines: list[int], outline: F64) -> int:
 
 
 def _finish(draft: Draft) -> None:
-    """Write the relations of all lanelets, after their regulatory elements are known."""
+    """Write the relations of all lanelets, now that their elements are known; round places as files have them."""
+    nodes = draft.target.nodes
+    for node, place in nodes.items():
+        nodes[node] = Node(round(place[0], DIGITS), round(place[1], DIGITS), round(place[2], DIGITS), place.tags)
     elements = dict(draft.target.relations)
     draft.target.relations.clear()
     for lanelet, stretch in zip(draft.lanelet_of, draft.network.stretches, strict=True):

@@ -22,6 +22,10 @@ ID_BITS = 48
 """Ids are positive, fit 64 bits with a sign, and a double keeps them exactly."""
 
 
+DIGITS = 4
+"""Of a place in m: a tenth of a millimetre, in memory as in files, so that both are the same map."""
+
+
 class Node(NamedTuple):
     """A point in m."""
 

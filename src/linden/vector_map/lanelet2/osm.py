@@ -10,7 +10,7 @@ from lxml import etree
 
 from linden.errors import UserError
 from linden.opendrive.evaluate.pieces import F64
-from linden.vector_map.lanelet2.model import LaneletMap, Member, Node, Relation, Way
+from linden.vector_map.lanelet2.model import DIGITS, LaneletMap, Member, Node, Relation, Way
 from linden.vector_map.lanelet2.projection import NOWHERE, Projection, projection_of
 
 FORMAT_VERSION = "1"
@@ -30,8 +30,8 @@ def osm_bytes(lanelet_map: LaneletMap) -> bytes:
     ]
     for (number, node), lat, lon in zip(lanelet_map.nodes.items(), latitude, longitude, strict=True):
         lines.append(f'  <node id="{number}" lat="{lat:.11f}" lon="{lon:.11f}">')
-        x, y, z = (value + 0.0 for value in (round(node.x_m, 4), round(node.y_m, 4), round(node.z_m, 4)))
-        lines.append(f'    <tag k="ele" v="{z:.4f}"/><tag k="local_x" v="{x:.4f}"/><tag k="local_y" v="{y:.4f}"/>')
+        x, y, z = (f"{round(value, DIGITS) + 0.0:.{DIGITS}f}" for value in node[:3])  # no negative zeros
+        lines.append(f'    <tag k="ele" v="{z}"/><tag k="local_x" v="{x}"/><tag k="local_y" v="{y}"/>')
         lines += [f"    <tag k={quoteattr(key)} v={quoteattr(value)}/>" for key, value in node.tags.items()]
         lines.append("  </node>")
     for number, way in lanelet_map.ways.items():
