@@ -21,7 +21,7 @@ from basu.managers.sensors_manager import SensorsManager
 from basu.routing import plan
 from basu.routing.route_file import read_routes
 from basu.simulator import OwnServer, connect
-from basu.utils.packaged import find
+from basu.files import find
 
 STEP_S, TIMEOUT_S, WARM_UP_TICKS = 0.05, 60.0, 20
 

@@ -13,9 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from linden.cli import main as linden
-from linden.handlers import frames
-from linden.handlers.context import Context
+from linden.server import frames
 from linden.server.cue import Cue
+from linden.server.rpc.context import Context
 
 WRITTEN_EACH = 50
 """Frames."""

@@ -51,7 +51,7 @@ def unlocked(function: Function) -> Function:
 def shading(function: Function) -> Function:
     """Compile as :func:`unlocked` does, and let sums be reordered: for light and colour, never for what is measured.
 
-    It makes no arrays, so that numba need not count who uses those it is given: that took as long as all the rest.
+    It makes no arrays, so that numba need not count their references: that took as long as all the rest.
     Numbers written in it are of 32 bits (see :func:`shading_part`).
     """
     compiled = numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True, **_UNCOUNTED)
@@ -76,7 +76,7 @@ def shading_stage(function: Function) -> Function:
 
 
 def _single(function: Callable[..., object]) -> Callable[..., object]:
-    """Return a function whose literal floats are of 32 bits."""
+    """Return the function with literal floats of 32 bits."""
     given = cast("FunctionType", function)
     code = given.__code__
     written = cast("tuple[object, ...]", _narrowed(code.co_consts))

@@ -9,8 +9,8 @@ from every_method.observe import PROCESSES, rows
 from every_method.outcome import RECORD, Kind, Outcome, from_json
 from every_method.parent import observe_all
 from every_method.surface import surface
-from linden.handlers import registry
-from linden.wire.vocabulary import CARLA_FUNCTIONS
+from linden.protocol.wire.client_functions import CARLA_FUNCTIONS
+from linden.server.rpc import registry
 from servers import running_server
 
 pytestmark = pytest.mark.slow

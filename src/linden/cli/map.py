@@ -49,7 +49,7 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 def build(arguments: argparse.Namespace) -> int:
     """Write the OpenDRIVE map of a file of streets."""
     try:
-        from linden.mapping.build import build as opendrive_of  # noqa: PLC0415 - an optional part, and slow to load
+        from linden.authoring.streets.build import build as opendrive_of  # noqa: PLC0415 - an optional part, and slow to load
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("linden"):
             raise
@@ -69,8 +69,8 @@ def check(arguments: argparse.Namespace) -> int:
     if Path(arguments.file).is_dir():
         return map_convert.check_folder(Path(arguments.file))
     # here, not above: the server's start does not pay for it
-    from linden.opendrive.check import Severity  # noqa: PLC0415 - see above
-    from linden.opendrive.check import check as findings_of  # noqa: PLC0415 - see above
+    from linden.authoring.checks.check import Severity  # noqa: PLC0415 - see above
+    from linden.authoring.checks.check import check as findings_of  # noqa: PLC0415 - see above
 
     findings = findings_of(opendrive_of(arguments.file))
     wrong = [finding for finding in findings if finding.severity is not Severity.NOTE]
@@ -84,7 +84,7 @@ def check(arguments: argparse.Namespace) -> int:
 
 def show(arguments: argparse.Namespace) -> int:
     """Write a drawing of the map."""
-    from linden.opendrive.draw import svg  # noqa: PLC0415 - the server's start does not pay for it
+    from linden.authoring.drawing.svg import svg  # noqa: PLC0415 - the server's start does not pay for it
 
     _write(arguments.output, svg(opendrive_of(arguments.file)).encode())
     _say(f"{arguments.output}: drawn")
@@ -93,10 +93,10 @@ def show(arguments: argparse.Namespace) -> int:
 
 def export(arguments: argparse.Namespace) -> int:
     """Write the standing mesh of the map as binary glTF."""
-    from linden.meshes.gltf import glb  # noqa: PLC0415 - the server's start does not pay for it
-    from linden.meshes.standing import standing  # noqa: PLC0415 - see above
-    from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
-    from linden.simulation.scenery import scenery_of  # noqa: PLC0415 - see above
+    from linden.authoring.gltf import glb  # noqa: PLC0415 - the server's start does not pay for it
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
+    from linden.scenery.map_mesh import standing  # noqa: PLC0415 - see above
+    from linden.simulation.surroundings import scenery_of  # noqa: PLC0415 - see above
 
     world_map = world_map_of(arguments.file)
     mesh = standing(parse(world_map.text), world_map, scenery_of(world_map).scene)
@@ -107,7 +107,7 @@ def export(arguments: argparse.Namespace) -> int:
 
 def info(arguments: argparse.Namespace) -> int:
     """Print what the map has, one count a line."""
-    from linden.opendrive.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
+    from linden.authoring.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
 
     for name, value in count(opendrive_of(arguments.file))._asdict().items():
         _say(f"{name.replace('_', ' '):24} {f'{value:.2f}' if isinstance(value, float) else value}")

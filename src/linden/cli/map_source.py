@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from linden.errors import UserError
 
 if TYPE_CHECKING:
-    from linden.opendrive.model import OpenDrive
-    from linden.world.maps import LoadedMap
+    from linden.maps.library import LoadedMap
+    from linden.maps.opendrive.model import OpenDrive
 
 
 def opendrive_of(name: str) -> "OpenDrive":
@@ -17,7 +17,7 @@ def opendrive_of(name: str) -> "OpenDrive":
     Raises:
         UserError: there is neither, or it cannot be read.
     """
-    from linden.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
 
     return parse(_content(name))
 
@@ -28,8 +28,8 @@ def world_map_of(name: str) -> "LoadedMap":
     Raises:
         UserError: there is no such map, or it cannot be read.
     """
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - `linden --help` does not pay for it
-    from linden.world.maps import LoadedMap  # noqa: PLC0415 - see above
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - `linden --help` does not pay for it
+    from linden.maps.library import LoadedMap  # noqa: PLC0415 - see above
 
     try:
         text = _content(name).decode("utf-8")

@@ -10,8 +10,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linden.cli.process import Ending, allow_connections, give_up_stdout, write_log
-from linden.values.episode import EpisodeSettings
+from linden.cli.process import Ending, allow_connections, background_work_ended, give_up_stdout, write_log
+from linden.protocol.values.episode import EpisodeSettings
 
 if TYPE_CHECKING:
     from linden.server.loop import Server
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     write_log(arguments.log_level.upper())
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start one a core, and they spin; we are one thread
     allow_connections()
-    with Ending() as ending:
+    with background_work_ended(), Ending() as ending:
         with _collector_paused():
             server = _make_server(arguments)
         ending.ask_first(server.stop)
@@ -75,25 +75,26 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _make_server(arguments: argparse.Namespace) -> "Server":
     # here, not above: these bring in the compiler, which other commands of this program do not need
-    from linden.casting.rays import CPU  # noqa: PLC0415 - see above
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
-    from linden.handlers import frames, registry  # noqa: PLC0415 - see above
-    from linden.meshes.bodies_library import bodies_of, keep_bodies  # noqa: PLC0415 - see above
-    from linden.meshes.library import keep_standing, standing_of  # noqa: PLC0415 - see above
-    from linden.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - see above
+    from linden.maps.library import MapLibrary  # noqa: PLC0415 - see above
+    from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
     from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
-    from linden.recording.folder import RecordingFolder  # noqa: PLC0415 - see above
-    from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
+    from linden.replay.file.folder import RecordingFolder  # noqa: PLC0415 - see above
+    from linden.scenery.actors.actor_meshes_cache import bodies_of, keep_bodies  # noqa: PLC0415 - see above
+    from linden.scenery.map_mesh_cache import keep_standing, standing_of  # noqa: PLC0415 - see above
+    from linden.scenery.ray_query import warm_up as warm_rays  # noqa: PLC0415 - see above
+    from linden.sensors.casting.caster import CPU  # noqa: PLC0415 - see above
     from linden.sensors.compiling import compile_once  # noqa: PLC0415 - see above
+    from linden.server import frames  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import is_loopback, open_ports, port_of  # noqa: PLC0415 - see above
-    from linden.simulation import Simulation  # noqa: PLC0415 - see above
-    from linden.simulation.walking_mesh import mesh_file  # noqa: PLC0415 - see above
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
-    from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
+    from linden.server.rpc import registry  # noqa: PLC0415 - see above
+    from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - see above
+    from linden.world import World  # noqa: PLC0415 - see above
 
     if arguments.device != CPU:
-        from linden.casting.choose import check_device  # noqa: PLC0415 - see above
+        from linden.sensors.casting.choose import check_device  # noqa: PLC0415 - see above
 
         check_device(arguments.device)
     registry.load_handlers()
@@ -114,7 +115,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         warm_up()
         warm_rays()
         compile_once(cache)
-        simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
+        simulation = World(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
         simulation.episode.warm_up()
         simulation.seeing.device = arguments.device
         simulation.seeing.standing_on = partial(standing_of, cache=cache)

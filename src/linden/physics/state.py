@@ -131,7 +131,7 @@ BODY = np.dtype(
         ("asked", "f8", 4),  # throttle, steer, brake and hand brake as far as they have followed the driver
         ("given", "f8", 4),  # and as they have followed that: what engine, wheels and brakes get
         ("since_shift_s", "f8"),  # since the automatic last began to change
-        ("slow_s", "f8"),  # for how long the wheels have all but stood, nobody wanting to go
+        ("slow_s", "f8"),  # for how long the wheels have all but stood without throttle
         ("support_mps2", "f8"),  # force of the ground over mass
         ("target_gear", "i4"),
         ("shift_left_s", "f8"),
@@ -150,7 +150,7 @@ BODY = np.dtype(
         ("constant_velocity_on", "?"),
         ("constant_velocity", "f8", 3),  # m/s in the body's frame
         ("ackermann_on", "?"),
-        ("ackermann", "f8", 5),  # the target; as linden.values.AckermannControl
+        ("ackermann", "f8", 5),  # the target; as linden.protocol.values.AckermannControl
         ("ackermann_gains", "f8", 6),
         ("ackermann_memory", "f8", 8),  # of its two controllers
     ],

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import fingerprint, kernel, part
-from linden.ground import Ground
+from linden.maps.ground import Ground
 from linden.physics.contact.impulses import JX, JZ, PX, PZ, TOUCHED, part_bodies
 from linden.physics.contact.pairs import find_pairs, is_fixed
 from linden.physics.contact.statics import Statics
@@ -145,7 +145,7 @@ def _build(sources: int) -> _Advance:
 
 _HERE = Path(__file__).parent
 _WITH_KERNELS = [path for path in _HERE.rglob("*.py") if b"linden.compiled" in path.read_bytes()]
-_advance = _build(fingerprint(*_WITH_KERNELS, _HERE / "state.py", _HERE.parent / "ground.py"))
+_advance = _build(fingerprint(*_WITH_KERNELS, _HERE / "state.py", _HERE.parent / "maps" / "ground.py"))
 
 
 def advance(

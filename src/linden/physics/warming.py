@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linden.ground import Ground, surface_under
+from linden.maps.ground import Ground, surface_under
 from linden.physics.bodies import Bodies
 from linden.physics.contact.statics import Statics
 from linden.physics.step import advance

@@ -9,16 +9,16 @@ from pathlib import Path
 from numba.core.dispatcher import Dispatcher
 
 from linden.compiled import machine
-from linden.world.map_cache import MapCache
+from linden.maps.cache import MapCache
 
 _PACKAGE = Path(__file__).parent.parent
-_COMPILED = ("sensors/**/*.py", "casting/*.py", "compiled.py")
+_COMPILED = ("sensors/**/*.py", "compiled.py")
 
 
 def compile_once(cache: MapCache) -> None:
-    """Take all steps, unless somebody has on this machine and what was compiled is still there.
+    """Compile everything, unless it was done on this machine and the compiled files are still there.
 
-    So a start compiles what is not compiled, and does not load what nobody has asked for yet.
+    So a start compiles what is not compiled, and does not load what no sensor needs yet.
     """
     name = _name()
     files = cache.kept(name, lambda: b"[]", _files_of)
@@ -52,7 +52,7 @@ def _name() -> str:
 
 def _compiled_files() -> list[str]:
     """Return the files of machine code beside those of the kernels that were loaded or compiled."""
-    modules = [module for name, module in sys.modules.items() if name.startswith(("linden.sensors", "linden.casting"))]
+    modules = [module for name, module in sys.modules.items() if name.startswith("linden.sensors")]
     kernels = [thing for module in modules for thing in vars(module).values() if isinstance(thing, Dispatcher)]
     folders = {kernel.stats.cache_path for kernel in kernels}
     return sorted(str(file) for folder in folders if folder for file in Path(folder).glob("*.nb[ci]"))

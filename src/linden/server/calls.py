@@ -6,17 +6,16 @@ import time
 from collections.abc import Callable
 
 from linden.errors import ProtocolError
-from linden.handlers import registry
-from linden.handlers.context import Context
-from linden.handlers.registry import Unanswered
+from linden.protocol.wire.rpc import Call
+from linden.protocol.wire.stream import WORLD_OBSERVER_ID
 from linden.server.cue import QUESTION, TICK, Cue, bring_question_forward
-from linden.server.driven import BATCH, DESTROY, Driven
-from linden.server.expected import Expected
-from linden.server.handover import GATHERING_S, OF_A_LOAD, Handover, Phase
+from linden.server.driven_vehicles import BATCH, DESTROY, Driven
+from linden.server.load_answers import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
-from linden.server.subscribers import Subscribers
-from linden.wire.rpc import Call
-from linden.wire.stream import WORLD_OBSERVER_ID
+from linden.server.rpc import registry
+from linden.server.rpc.context import Context
+from linden.server.rpc.registry import Unanswered
+from linden.server.subscribers import Expected, Subscribers
 
 log = logging.getLogger("linden")
 
@@ -87,6 +86,7 @@ class Calls:
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
         self._driven: dict[RpcPeer, Driven] = {}  # of those too
+        self._shown_frame = context.simulation.frame
         self._working: dict[RpcPeer, Unanswered] = {}  # whose call has work in the background
         self._handovers: dict[RpcPeer, Handover] = {}  # of loads by those who run a Traffic Manager
         self._load_until_s = math.inf  # when a pending load begins in any case
@@ -195,16 +195,13 @@ class Calls:
 
     def _with_driven(self, peer: RpcPeer, call: Call, answer: bytes) -> bytes | None:
         """Return what is to be sent for a call of a client that runs Traffic Managers; see ``server.driven``."""
-        simulation = self._context.simulation
         if call.method == BATCH and call.args:
-            ready = self._driven.setdefault(peer, Driven()).batch(call.args[0], simulation.frame)
+            ready = self._driven.setdefault(peer, Driven()).batch(call.args[0])
             return b"".join((answer, *ready))
         if call.method != DESTROY or peer not in self._driven or call.is_async or not call.args:
             return answer
         frames_come = not self.is_synchronous() and not self._context.waits_for_the_scene()
-        waits = self._driven[peer].destroyed(
-            call.args[0], answer, self._clock(), simulation.frame, frames_come=frames_come
-        )
+        waits = self._driven[peer].destroyed(call.args[0], answer, self._clock(), frames_come=frames_come)
         self._context.frame_is_due |= waits
         return None if waits else answer
 
@@ -220,6 +217,16 @@ class Calls:
                     self._close(peer)
                     continue
                 self._watch(peer)
+
+    def traffic_wait_s(self, now_s: float) -> float:
+        """Return how long asynchronous mode's next frame waits at most for Traffic Managers; 0 where it need not.
+
+        A frame that lacks a car must not come while a Traffic Manager works on the car; see ``server.driven``.
+        """
+        if not self._driven:
+            return 0.0
+        actors = self._context.simulation.episode.actors
+        return max(one.frame_wait_s(now_s, actors.__contains__) for one in self._driven.values())
 
     def _keep(self, peer: RpcPeer, call: Call, answer: bytes) -> bool:
         """Return whether an answer has to wait, and keep it where it has."""
@@ -352,6 +359,10 @@ class Calls:
 
     def publish(self) -> None:
         """Send what the last call or frame left in the outbox."""
+        if self._context.simulation.frame != self._shown_frame:
+            self._shown_frame = self._context.simulation.frame
+            for driven in self._driven.values():
+                driven.shown()
         if not self._context.outbox:
             return
         now_s = self._clock()

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from linden.maps.cache import MapCache
 from linden.sensors import compiling, warming
 from linden.sensors.compiling import compile_once
-from linden.world.map_cache import MapCache
 
 
 @pytest.fixture

@@ -3,7 +3,7 @@
 import math
 
 from linden.compiled import part
-from linden.ground import Ground
+from linden.maps.ground import Ground
 from linden.physics.axes import plane_axes, within_turn
 from linden.physics.state import Body, Spec, Work
 from linden.physics.vehicle.chassis import move_body, push_tyres, stands, stop

@@ -11,8 +11,8 @@ from linden.errors import Refusal
 from linden.geometry import rotation_matrix
 from linden.physics.state import CURVE_POINTS, GEARS, VEHICLE_SPEC, WHEELS, Rows
 from linden.physics.vehicle.wheels import WHEEL_MASS_KG
-from linden.values.space import BoundingBox, Transform, Vector2D, Vector3D
-from linden.values.vehicles import UNKNOWN_UNDERCARRIAGE, Gear, Undercarriage, VehiclePhysicsControl, Wheel
+from linden.protocol.values.control import UNKNOWN_UNDERCARRIAGE, Gear, Undercarriage, VehiclePhysicsControl, Wheel
+from linden.protocol.values.space import BoundingBox, Transform, Vector2D, Vector3D
 
 F64 = NDArray[np.float64]
 

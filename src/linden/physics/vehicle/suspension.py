@@ -7,7 +7,7 @@ body that bounces at ``BOUNCE_RADPS``; a force only ever pushes up, so a vehicle
 import math
 
 from linden.compiled import part
-from linden.ground import Ground, surface_under, triangle_under
+from linden.maps.ground import Ground, surface_under, triangle_under
 from linden.physics.state import Body, Spec, Work
 
 BOUNCE_RADPS = 10.0  # both as recorded: a car that is dropped settles so to half a millimetre (docs/fidelity.md)
