@@ -9,8 +9,8 @@ from linden.cli.map_source import bytes_of, opendrive_of
 from linden.errors import UserError
 
 if TYPE_CHECKING:
-    from linden.vector_map.lanelet2.convert import Converted
-    from linden.vector_map.lanelet2.model import LaneletMap
+    from linden.authoring.lanelet2.convert import Converted
+    from linden.authoring.lanelet2.model import LaneletMap
 
 HELP = "turn a map into Lanelet2 (.osm) or an Aisan vector map (a folder), for Autoware"
 _PROJECTOR = "map_projector_info.yaml"
@@ -41,9 +41,9 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _to_lanelet2(arguments: argparse.Namespace) -> None:
-    from linden.vector_map.lanelet2.convert import convert  # noqa: PLC0415 - `linden --help` does not pay for it
-    from linden.vector_map.lanelet2.osm import osm_bytes, projector_info  # noqa: PLC0415 - see above
-    from linden.vector_map.output import write_file  # noqa: PLC0415 - see above
+    from linden.authoring.lanelet2.convert import convert  # noqa: PLC0415 - `linden --help` does not pay for it
+    from linden.authoring.lanelet2.osm import osm_bytes, projector_info  # noqa: PLC0415 - see above
+    from linden.authoring.output import write_file  # noqa: PLC0415 - see above
 
     converted = convert(opendrive_of(arguments.file))
     info = projector_info(converted.lanelet_map, transverse_mercator=arguments.transverse_mercator)
@@ -55,18 +55,18 @@ def _to_lanelet2(arguments: argparse.Namespace) -> None:
 def lanelets_of(name: str) -> "LaneletMap":
     """Return the Lanelet2 map of a .osm file, or of an OpenDRIVE file or built-in map."""
     if Path(name).suffix == ".osm":
-        from linden.vector_map.lanelet2.osm import read_osm  # noqa: PLC0415 - see `_to_lanelet2`
+        from linden.authoring.lanelet2.osm import read_osm  # noqa: PLC0415 - see `_to_lanelet2`
 
         return read_osm(bytes_of(Path(name)), name)
-    from linden.vector_map.lanelet2.convert import convert  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.convert import convert  # noqa: PLC0415 - see `_to_lanelet2`
 
     return convert(opendrive_of(name)).lanelet_map
 
 
 def _to_aisan(arguments: argparse.Namespace) -> None:
-    from linden.vector_map.aisan.convert import convert  # noqa: PLC0415 - see `_to_lanelet2`
-    from linden.vector_map.aisan.reading import complaints, read_folder  # noqa: PLC0415 - see `_to_lanelet2`
-    from linden.vector_map.output import write_folder  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.aisan.convert import convert  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.aisan.reading import complaints, read_folder  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.output import write_folder  # noqa: PLC0415 - see `_to_lanelet2`
 
     if arguments.transverse_mercator:
         raise UserError("an Aisan vector map has no map_projector_info.yaml; leave --transverse-mercator out")
@@ -87,8 +87,8 @@ def _to_aisan(arguments: argparse.Namespace) -> None:
 
 def report(path: Path, converted: "Converted") -> None:
     """Print what a Lanelet2 map has, what was left out, and what was assumed."""
-    from linden.vector_map.lanelet2.bounds import STATED_ERROR_M  # noqa: PLC0415 - see `_to_lanelet2`
-    from linden.vector_map.lanelet2.convert import UNKNOWN_SPEED_KMH, counts  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.bounds import STATED_ERROR_M  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.convert import UNKNOWN_SPEED_KMH, counts  # noqa: PLC0415 - see `_to_lanelet2`
 
     lanelet_map = converted.lanelet_map
     _say(
@@ -113,9 +113,9 @@ def report(path: Path, converted: "Converted") -> None:
 
 def check(path: Path, against: str | None) -> int:
     """Print what a Lanelet2 file lacks, by second readers; return 1 if anything."""
-    from linden.vector_map.lanelet2.checking import compare, reach  # noqa: PLC0415 - see `_to_lanelet2`
-    from linden.vector_map.lanelet2.osm import read_osm  # noqa: PLC0415 - see `_to_lanelet2`
-    from linden.vector_map.lanelet2.second_reader import routes_of  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.checking import compare, reach  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.osm import read_osm  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.second_reader import routes_of  # noqa: PLC0415 - see `_to_lanelet2`
 
     opendrive = None if against is None else opendrive_of(against)
     lanelet_map = read_osm(bytes_of(path), str(path), "" if opendrive is None else opendrive.geo_reference)
@@ -146,7 +146,7 @@ def check(path: Path, against: str | None) -> int:
 
 def check_folder(path: Path) -> int:
     """Print what Autoware's nodes would stumble over in an Aisan folder; return 1 if anything."""
-    from linden.vector_map.aisan.reading import complaints, read_folder  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.aisan.reading import complaints, read_folder  # noqa: PLC0415 - see `_to_lanelet2`
 
     folder = read_folder(path)
     found = complaints(folder)

@@ -1,1 +1,0 @@
-"""Vector maps for Autoware, made from OpenDRIVE: Lanelet2 (.osm) and Aisan (.csv)."""
