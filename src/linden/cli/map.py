@@ -7,7 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.cli import map_convert, map_pointcloud
+from linden.cli import map_convert, map_package, map_pointcloud
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
 
@@ -30,6 +30,10 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
     show_parser = _add(actions, "show", show, "draw a map")
     _add_file(show_parser)
+    show_parser.add_argument("--over", metavar="MAP", help="the OpenDRIVE map to draw below a Lanelet2 or Aisan one")
+    show_parser.add_argument(
+        "--window", nargs=3, type=float, metavar=("X", "Y", "SIDE"), help="draw a square of a Lanelet2 or Aisan map, m"
+    )
     show_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .svg file")
 
     export_parser = _add(actions, "export", export, "write all that stands on a map as glTF, for any 3D viewer")
@@ -41,6 +45,9 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
     convert_parser = _add(actions, "convert", map_convert.run, map_convert.HELP)
     map_convert.add_arguments(convert_parser)
+
+    package_parser = _add(actions, "package", map_package.run, map_package.HELP)
+    map_package.add_arguments(package_parser)
 
     cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
     map_pointcloud.add_arguments(cloud_parser)
@@ -86,6 +93,11 @@ def show(arguments: argparse.Namespace) -> int:
     """Write a drawing of the map."""
     from linden.authoring.drawing.svg import svg  # noqa: PLC0415 - the server's start does not pay for it
 
+    drawn = map_convert.drawing(arguments)
+    if drawn is not None:
+        _write(arguments.output, drawn.encode())
+        _say(f"{arguments.output}: drawn")
+        return 0
     _write(arguments.output, svg(opendrive_of(arguments.file)).encode())
     _say(f"{arguments.output}: drawn")
     return 0

@@ -156,5 +156,24 @@ def check_folder(path: Path) -> int:
     return 1 if found else 0
 
 
+def drawing(arguments: argparse.Namespace) -> str | None:
+    """Return the drawing of a Lanelet2 file or an Aisan folder, None for anything else."""
+    path = Path(arguments.file)
+    is_lanelet2 = path.suffix == ".osm"
+    if not is_lanelet2 and not path.is_dir():
+        if arguments.over or arguments.window:
+            raise UserError("--over and --window are for Lanelet2 and Aisan maps; name a .osm file or a folder")
+        return None
+    from linden.authoring.drawing.vector_maps import Window, aisan_svg, lanelet2_svg  # noqa: PLC0415 - see above
+
+    under = None if arguments.over is None else opendrive_of(arguments.over)
+    window = None if arguments.window is None else Window(*arguments.window)
+    if is_lanelet2:
+        return lanelet2_svg(lanelets_of(arguments.file), under, window)
+    from linden.authoring.aisan.reading import read_folder  # noqa: PLC0415 - see above
+
+    return aisan_svg(read_folder(path), under, window)
+
+
 def _say(line: str) -> None:
     print(line)  # noqa: T201 - what a command says to its user

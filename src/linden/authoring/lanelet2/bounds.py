@@ -33,6 +33,7 @@ class Edge(NamedTuple):
     section: int  # over the whole map
     start_m: float
     end_m: float
+    lifted: bool = True  # by the lane's own height above the road
 
 
 class Laid(NamedTuple):
@@ -80,7 +81,7 @@ def edges_of_stretch(before: I64, stretch: Stretch) -> dict[Side, tuple[Edge, ..
 def evaluate(tables: Tables, sides: Iterable[tuple[Edge, ...]]) -> list[F64]:
     """Return the points (N, 3) along each side in ascending s, no two at the same place."""
     places = _places(tables)
-    rows, outer, s_m, probe_m, counts = [], [], [], [], []
+    rows, outer, lifted, s_m, probe_m, counts = [], [], [], [], [], []
     for edges in sides:
         count = 0
         for edge in edges:
@@ -92,16 +93,17 @@ def evaluate(tables: Tables, sides: Iterable[tuple[Edge, ...]]) -> list[F64]:
             probe_m.append(places.probe_m[np.clip(np.arange(begin - 1, end + 1), low, max(low, end - 1))])
             rows.append(np.full(end - begin + 2, edge.row))
             outer.append(np.full(end - begin + 2, edge.outer))
+            lifted.append(np.full(end - begin + 2, edge.lifted))
             count += end - begin + 2
         counts.append(count)
     if not counts:
         return []
-    points = _points(tables, *(np.concatenate(column) for column in (rows, outer, s_m, probe_m)))
+    points = _points(tables, *(np.concatenate(column) for column in (rows, outer, lifted, s_m, probe_m)))
     lines = np.split(points, np.cumsum(counts)[:-1])
     return [_without_repeats(line) for line in lines]
 
 
-def _points(tables: Tables, row: I64, outer: F64, s_m: F64, probe_m: F64) -> F64:
+def _points(tables: Tables, row: I64, outer: F64, lifted: F64, s_m: F64, probe_m: F64) -> F64:
     road = tables.lanes["road"][row].astype(np.int64)
     pose = tables.curves.pose(road, s_m, probe_m)
     sides = tables.lane_sides(row, s_m, probe_m)
@@ -112,7 +114,7 @@ def _points(tables: Tables, row: I64, outer: F64, s_m: F64, probe_m: F64) -> F64
         [
             pose.x_m - np.sin(pose.heading_rad) * t_m,
             pose.y_m + np.cos(pose.heading_rad) * t_m,
-            tables.elevation.value(road, s_m, probe_m) + lift,
+            tables.elevation.value(road, s_m, probe_m) + np.where(lifted, lift, 0.0),
         ],
         axis=1,
     )

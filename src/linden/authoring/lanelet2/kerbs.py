@@ -9,7 +9,7 @@ from linden.maps.opendrive.model import Lane
 
 
 def loose_kerbs(tables: Tables, network: Network) -> dict[Side, tuple[Edge, ...]]:
-    """Return every edge between a paved lane and a raised one that is no side of a lanelet."""
+    """Return every edge of a raised lane, beside a paved one or at the road's edge, that is no side of a lanelet."""
     taken = {
         (side.road, piece[0], piece[1])
         for stretch in network.stretches
@@ -23,13 +23,21 @@ def loose_kerbs(tables: Tables, network: Network) -> dict[Side, tuple[Edge, ...]
         for number, section in enumerate(road.sections):
             for boundary in {lane.id for lane in section.lanes}:
                 pair = [section.lane(lane_id) for lane_id in beside_boundary(boundary)]
-                paved = next((lane for lane in pair if _is_paved(lane)), None)
-                if paved is None or (index, number, boundary) in taken or not is_step(pair):
+                lane = next((lane for lane in pair if _is_paved(lane)), None) or _alone(pair)
+                if lane is None or (index, number, boundary) in taken or not is_step(pair):
                     continue
-                row = tables.lane_row[index, number, paved.id]
-                edge = Edge(row, paved.id == boundary, int(before[index]) + number, section.s_m, section.end_m)
+                row = tables.lane_row[index, number, lane.id]
+                at = int(before[index]) + number
+                outer = lane.id == boundary
+                edge = Edge(row, outer, at, section.s_m, section.end_m, lifted=_is_paved(lane))
                 found[Side(index, "road", ((number, boundary, section.s_m, section.end_m),))] = (edge,)
     return found
+
+
+def _alone(pair: list[Lane | None]) -> Lane | None:
+    """Return the raised lane at a road's own edge, as round the corners of junctions and on islands."""
+    beside = [lane for lane in pair if lane is not None and lane.id != 0]
+    return beside[0] if len(beside) == 1 and len(pair) == 2 and None in pair else None
 
 
 def _is_paved(lane: Lane | None) -> bool:

@@ -65,9 +65,9 @@ def beside_boundary(boundary: int) -> tuple[int, int]:
 
 
 def is_step(beside: list[Lane | None]) -> bool:
-    """Return whether one of two lanes lies higher than the other."""
-    heights = [max((height.inner_m for height in lane.heights), default=0.0) for lane in beside if lane]
-    return len(heights) == 2 and abs(heights[0] - heights[1]) >= KERB_M
+    """Return whether one of two lanes lies higher than the other; where there is one only, than the road."""
+    heights = [max((height.inner_m for height in lane.heights), default=0.0) if lane else 0.0 for lane in beside]
+    return abs(heights[0] - heights[1]) >= KERB_M
 
 
 def _is_between(roads: list[Stretch]) -> bool:
