@@ -102,7 +102,7 @@ def test_lidar_rays_meet_the_kerbs_where_the_lanelet_bounds_are(linden, linden_l
 
 
 def _kerbs(lanelet_map):
-    """Return straight kerbs of more than 20 m along road lanelets outside junctions: 1 where the road is to the left."""
+    """Return straight kerbs of more than 20 m along road lanelets; 1 where the road lies to the left."""
     found = []
     for _, lanelet in lanelet_map.lanelets("road"):
         way = lanelet_map.ways[lanelet.refs("right")[0]]

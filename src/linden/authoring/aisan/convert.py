@@ -11,6 +11,7 @@ from linden.authoring.aisan.lanes import Course, curvatures, headings, junction_
 from linden.authoring.aisan.tables import STRAIGHT_R, Tables
 from linden.authoring.lanelet2.model import LaneletMap
 from linden.errors import UserError
+from linden.maps.opendrive.evaluate.pieces import F64
 
 _LANE_TYPES = {"straight": 0, "left": 1, "right": 2}
 _DEFAULT_KMH = 50
@@ -109,32 +110,54 @@ def _add_rows(draft: Draft, nth: int, ids: list[tuple[int, int]], facts: _Facts)
     """Add the rows of lane.csv and dtlane.csv of a course."""
     course, graph = draft.courses[nth], draft.graph
     first, last = draft.first_row[nth], draft.first_row[nth] + course.rows - 1
+    before = [_ends(draft, graph.predecessors[nth], last=True)] + [(row, 0, 0, 0) for row in range(first, last)]
+    after = [(row, 0, 0, 0) for row in range(first + 1, last + 1)] + [_ends(draft, graph.successors[nth], last=False)]
+    flags = [0] * course.rows
+    for at in {0, course.rows - 1}:
+        flags[at] = junction_flag(draft.courses, graph, nth, first=at == 0, last=at == course.rows - 1)
+    lanes = (0, 0) if facts.junction else (graph.lane_count[nth], graph.number[nth])
+    section = graph.section[nth]
+    same = (
+        f"{lanes[0]},{lanes[1]},{facts.lane_type},{facts.limit_kmh},{facts.limit_kmh},"
+        f"{0 if facts.junction else section},{0 if graph.changes[nth] else 1},{facts.way_area}"
+    )
     step = np.diff(course.middle, axis=0)
-    span = np.hypot(step[:, 0], step[:, 1])
-    dist = np.concatenate([[0.0], np.cumsum(span)])
-    slope = 100.0 * step[:, 2] / np.maximum(span, 1e-6)
-    curvature, heading = curvatures(course), headings(course)
-    lanes, details = [], []
-    for at in range(course.rows):
-        row = first + at
-        before = _ends(draft, graph.predecessors[nth], last=True) if row == first else (row - 1, 0, 0, 0)
-        after = _ends(draft, graph.successors[nth], last=False) if row == last else (row + 1, 0, 0, 0)
-        flag = junction_flag(draft.courses, graph, nth, first=row == first, last=row == last)
-        in_junction = facts.junction > 0
-        lanes.append(
-            f"{row},{row},{before[0]},{after[0]},{ids[at][0]},{ids[at + 1][0]},{flag},"
-            f"{before[1]},{before[2]},{before[3]},{after[1]},{after[2]},{after[3]},{facts.junction},{span[at]:.3f},"
-            f"{0 if in_junction else graph.count[nth]},{0 if in_junction else graph.number[nth]},{facts.lane_type},"
-            f"{facts.limit_kmh},{facts.limit_kmh},{0 if in_junction else graph.section[nth]},"
-            f"{0 if graph.changes[nth] else 1},{facts.way_area}"
-        )
-        radius = f"{1.0 / curvature[at]:.4f}" if curvature[at] else str(STRAIGHT_R)
-        details.append(
-            f"{row},{dist[at]:.3f},{ids[at][1]},{heading[at]:.8f},0,{radius},{slope[at]:.4f},"
-            f"{course.cant_percent[at]:.4f},{course.left_m[at]:.4f},{course.right_m[at]:.4f}"
-        )
-    draft.tables.extend("lane", lanes)
-    draft.tables.extend("dtlane", details)
+    spans = np.hypot(step[:, 0], step[:, 1])
+    rows = range(first, last + 1)
+    draft.tables.extend(
+        "lane",
+        (
+            f"{row},{row},{b[0]},{a[0]},{start[0]},{end[0]},{flag},{b[1]},{b[2]},{b[3]},{a[1]},{a[2]},{a[3]},"
+            f"{facts.junction},{span:.3f},{same}"
+            for row, b, a, start, end, flag, span in zip(
+                rows, before, after, ids[:-1], ids[1:], flags, spans.tolist(), strict=True
+            )
+        ),
+    )
+    _add_details(draft, course, rows, ids, step, spans)
+
+
+def _add_details(draft: Draft, course: Course, rows: range, ids: list[tuple[int, int]], step: F64, spans: F64) -> None:
+    """Add the rows of dtlane.csv of a course."""
+    columns = (
+        np.concatenate([[0.0], np.cumsum(spans)[:-1]]),
+        headings(course),
+        curvatures(course),
+        100.0 * step[:, 2] / np.maximum(spans, 1e-6),
+        course.cant_percent[:-1],
+        course.left_m[:-1],
+        course.right_m[:-1],
+    )
+    draft.tables.extend(
+        "dtlane",
+        (
+            f"{row},{dist:.3f},{place[1]},{heading:.8f},0,{f'{1.0 / bend:.4f}' if bend else STRAIGHT_R},"
+            f"{slope:.4f},{cant:.4f},{left:.4f},{right:.4f}"
+            for row, place, (dist, heading, bend, slope, cant, left, right) in zip(
+                rows, ids[:-1], zip(*(column.tolist() for column in columns), strict=True), strict=True
+            )
+        ),
+    )
 
 
 def _ends(draft: Draft, others: tuple[int, ...], *, last: bool) -> tuple[int, int, int, int]:

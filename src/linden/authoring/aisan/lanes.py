@@ -41,7 +41,7 @@ class Graph(NamedTuple):
     successors: tuple[tuple[int, ...], ...]
     predecessors: tuple[tuple[int, ...], ...]
     number: tuple[int, ...]  # of the lane from the left, from 1
-    count: tuple[int, ...]  # of lanes beside each other
+    lane_count: tuple[int, ...]  # of lanes beside each other
     section: tuple[int, ...]  # the same for lanes beside each other, from 1
     changes: tuple[bool, ...]  # whether the lane may be left to either side
     lost: int  # links beyond the four that a row has room for

@@ -77,7 +77,12 @@ def _ordered(pair: F64, axis: F64) -> F64:
 def crossed(target: LaneletMap, sides: dict[int, Bounds], walks: list[Crosswalk]) -> list[list[int]]:
     """Return for each crosswalk the lanelets whose middle runs through it."""
     numbers, lines = [], []
+    spots = np.array([walk.outline.mean(axis=0)[:2] for walk in walks]).reshape(-1, 2)
     for number, bounds in sides.items():
+        corners = np.array([target.nodes[node][:2] for side in bounds for node in side])
+        low, high = corners.min(axis=0) - _REACH_M, corners.max(axis=0) + _REACH_M
+        if not ((spots > low) & (spots < high)).all(axis=1).any():
+            continue
         left, right = (_resampled(np.array([target.nodes[n][:3] for n in side])) for side in bounds)
         count = max(len(left), len(right))
         line = (_to(left, count) + _to(right, count)) / 2.0
