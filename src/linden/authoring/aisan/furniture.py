@@ -99,8 +99,8 @@ def _add_controls(draft: Draft) -> None:
             before[draft.courses[following].lanelet].append(draft.courses[nth].lanelet)
     referring: dict[int, list[int]] = defaultdict(list)
     for number, lanelet in draft.source.lanelets("road"):
-        for element in lanelet.refs("regulatory_element"):
-            referring[element].append(number)
+        for ref in lanelet.refs("regulatory_element"):
+            referring[ref].append(number)
     lines: dict[int, int] = {}
     for number, element in draft.source.elements("traffic_light", "traffic_sign"):
         is_light = element.tags["subtype"] == "traffic_light"
