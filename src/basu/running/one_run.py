@@ -150,4 +150,5 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
         scenarios=waiting,
         scoring=session.scoring,
         timeout_s=options.timeout_s,
+        stop_after_s=options.stop_after_s,
     )
