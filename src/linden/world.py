@@ -1,8 +1,6 @@
 """The running world: an episode, its sensors, the recorder, the replayer, and the step that makes the next frame.
 
-The running world: an episode, the settings that rule its time, and the step that makes the next frame.
-
-One step of the world, stage after stage: lights, bodies, then what the snapshot shows of them.
+A step advances the lights, then the bodies, then the snapshot's rows. The replayer and the recorder follow.
 """
 
 import math
@@ -45,7 +43,7 @@ class World:
     """
 
     def __init__(self, world_map: LoadedMap, settings: EpisodeSettings = EpisodeSettings()) -> None:  # noqa: B008 - frozen
-        """Begin the first episode on ``world_map``. Nothing is random but sensors' noise, whose seeds clients give."""
+        """Begin the first episode on ``world_map``. Only the noise of sensors is random; clients give its seeds."""
         self.library = BlueprintLibrary.load()
         self.settings = settings
         self.frame = 0
@@ -156,7 +154,7 @@ class World:
 
 
 def step(episode: Episode, dt_s: float, substeps: int) -> None:
-    """Let ``dt_s`` pass in an episode; the physics takes it in ``substeps`` equal parts."""
+    """Advance an episode by ``dt_s``; the physics takes ``substeps`` equal parts."""
     episode.actors.turn_page()
     episode.traffic.step(dt_s)
     episode.grip.update(episode)

@@ -100,8 +100,8 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     registry.load_handlers()
     if not is_loopback(arguments.host):
         log.warning(
-            "every machine that reaches %s can control this server, for nothing in CARLA's protocol asks who calls; "
-            "name 127.0.0.1 with --host, or let a firewall choose who comes",
+            "every machine that reaches %s can control this server, for CARLA's protocol has no login; "
+            "name 127.0.0.1 with --host, or restrict access with a firewall",
             arguments.host,
         )
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
@@ -168,7 +168,7 @@ def _told_of_compiling() -> Iterator[None]:
 
 
 def _say(line: str) -> None:
-    """Print a line that programs read, at once; a server whose output nobody reads any more serves all the same."""
+    """Print a line for programs, at once. A server with closed output goes on serving."""
     try:
         print(line, flush=True)  # noqa: T201 - what a command says to its user
     except OSError as error:  # a closed pipe, a full disk

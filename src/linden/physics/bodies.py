@@ -78,7 +78,7 @@ class Bodies(Cockpits):
         return slot
 
     def add_walker(self, pose: Transform, box: BoundingBox, mass_kg: float) -> int:
-        """Add a walker, whose origin is the middle of its body; return its slot."""
+        """Add a walker and return its slot. Its origin is the middle of its body."""
         slot = self._add(WALKER, pose, box, mass_kg)
         self.state["yaw_inertia_kgm2"][slot] = math.inf
         return slot

@@ -26,7 +26,7 @@ Indices = NDArray[np.int64]
 
 
 class _Found(NamedTuple):
-    """Which rows of a list concern somebody who plays, and who that is."""
+    """The rows of a list that belong to replayed actors, and these actors."""
 
     rows: Indices
     actor_ids: Indices
@@ -35,14 +35,14 @@ class _Found(NamedTuple):
 
 
 class Stage:
-    """Puts those who play where they belong."""
+    """Moves replayed actors to their recorded poses."""
 
     def __init__(self, simulation: ReplayedWorld, cast: Cast) -> None:
         self._simulation, self._cast = simulation, cast
         self._kept: dict[str, tuple[tuple[bytes, int, int], _Found]] = {}
 
     def put(self, where: Places) -> None:
-        """Put everybody in their places."""
+        """Move the actors to their recorded places."""
         bodies, found = self._simulation.episode.bodies, self._players("places", where.id)
         embodied = found.slots != NO_BODY
         rows, slots = found.rows[embodied], found.slots[embodied]
@@ -130,9 +130,9 @@ class Stage:
         episode.traffic.restore(lights, colour, elapsed_s, shown["frozen"] != 0)
 
     def _players(self, name: str, ids: NDArray[np.uint32], *kinds: Kind) -> _Found:
-        """Return who plays those of ``ids`` that somebody plays, of some kinds or any; kept while nobody comes or goes.
+        """Return the replayed actors among ``ids``, of some kinds or any; cached until the set of actors changes.
 
-        Whom a client has destroyed meanwhile plays no more.
+        Actors that a client has destroyed meanwhile are left out.
         """
         actors = self._simulation.episode.actors
         key = (ids.tobytes(), self._cast.version, actors.version)
@@ -143,7 +143,7 @@ class Stage:
             record = actors.find(self._cast.of.get(recorded_id, 0))
             if record is None or (kinds and record.kind not in kinds):
                 continue
-            if record.kind in _EMBODIED and kinds and record.slot == NO_BODY:  # one that is attached to somebody
+            if record.kind in _EMBODIED and kinds and record.slot == NO_BODY:  # an attached one
                 continue
             rows.append(row)
             found.append((record.id, record.slot))

@@ -1,4 +1,4 @@
-"""Replays a recording in the running episode: after each step everybody is put where the recording had them.
+"""Replays a recording in the running episode: after each step the actors take their recorded poses.
 
 The first frame after the start shows the moment asked for, and each one after it a step (times the time factor) later;
 so a recording of N steps is replayed by N steps of the same length. Source of the rules: ``CarlaReplayer.cpp``.
@@ -29,7 +29,7 @@ class Plan(NamedTuple):
     """What of a recording is replayed.
 
     ``start_s`` counts from the recording's end where it is negative. ``duration_s`` 0 is all that follows. The
-    spectator follows the actor ``follow_id`` of the recording at ``offset`` to it; 0 is nobody.
+    spectator follows the actor ``follow_id`` of the recording at ``offset`` to it; 0 is no actor.
     """
 
     start_s: float
@@ -70,9 +70,9 @@ class Replayer:
         return self._run.span
 
     def stop(self, *, keep_actors: bool) -> None:
-        """End the replay under way, if there is one: everybody stops, and physics has them again.
+        """End the replay under way, if there is one: the actors stop, and physics moves them again.
 
-        Without ``keep_actors`` those go whom the rest of the recording would have taken away.
+        Without ``keep_actors`` the actors that the rest of the recording would remove are destroyed.
         """
         if self._run is None:
             return
@@ -86,7 +86,7 @@ class Replayer:
             self._run = None
 
     def after_step(self, simulation: ReplayedWorld, delta_s: float) -> None:
-        """Put everybody in their places; a recording that turns out damaged ends here, and the log says where."""
+        """Apply the poses of this frame; a recording that turns out damaged ends here, and the log says where."""
         if self._run is None:
             return
         try:
@@ -142,7 +142,7 @@ class _Run:
         self._follow()
 
     def _places(self, at: int, now_s: float) -> Places:
-        """Return where everybody is ``now_s``, which is in frame ``at``."""
+        """Return the places of all actors at ``now_s``, which is in frame ``at``."""
         here = places(self._frame(at))
         since_s = now_s - float(self._elapsed_s[at])
         if since_s <= _SAME_MOMENT_S or at + 1 == len(self._frames):
@@ -158,7 +158,7 @@ class _Run:
         return self._known[at]
 
     def _take_in(self, frame: Frame | RecordingError) -> None:
-        """Let those come and go who do so in a frame, and switch the lamps that were switched in it.
+        """Add and remove the actors of a frame, and switch the lamps that were switched in it.
 
         Raises:
             RecordingError: the frame is damaged.

@@ -45,7 +45,7 @@ _BUG = "internal error in %s; the server goes on"
 
 
 class Server:
-    """Listens on two ports and serves one simulation until it is told to stop."""
+    """Listens on two ports and serves one world until :meth:`stop` is called."""
 
     def __init__(self, simulation: World, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
         self._clock = time.monotonic
@@ -83,7 +83,7 @@ class Server:
                 self._selector.unregister(key.fileobj)
                 if isinstance(key.fileobj, socket.socket):
                     key.fileobj.close()
-            for peer in self._clients:  # those who wait are not in the selector
+            for peer in self._clients:  # waiting peers are not in the selector
                 peer.socket.close()
             self._selector.close()
             self._wake_writer.close()
@@ -222,7 +222,7 @@ class Server:
             self._subscribers.add(peer, peer.subscription.stream_id)
             self._calls.joined_s = self._clock()
             self._calls.expected.came(peer.subscription.stream_id)
-            if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # whoever joins between two ticks sees the world too
+            if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # also between two ticks
                 payload = self.context.frames.world_payload(self.context.simulation)
                 self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.is_synchronous())
 

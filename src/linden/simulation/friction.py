@@ -54,7 +54,7 @@ def trigger(description: ActorDescription) -> Trigger:
 
 
 class Grip:
-    """Who is in which trigger; to be brought up to date before each step."""
+    """The vehicles inside friction triggers; to be updated before each step."""
 
     def __init__(self) -> None:
         self._triggers: dict[int, Trigger] = {}
@@ -69,7 +69,7 @@ class Grip:
         self._triggers.pop(actor_id, None)
 
     def update(self, episode: EpisodeState) -> None:
-        """Give every vehicle the friction of where it is; wakes those for whom it changes."""
+        """Give every vehicle the friction of its place; wakes vehicles with changed friction."""
         bodies = episode.bodies
         here = road_grip(episode.weather)
         changed = np.flatnonzero(bodies.alive & (bodies.road_grip != here))

@@ -110,7 +110,7 @@ class EpisodeState(ABC):
         return carrier
 
     def forget_contacts(self, slot: int) -> None:
-        """Forget what a body has touched, for it is leaving; whoever looks for it later finds nobody there."""
+        """Drop the contacts of a body that leaves the world."""
         if len(self.contacts):
             self.contacts = self.contacts[(self.contacts["a"] != slot) & (self.contacts["b"] != slot)]
 

@@ -67,7 +67,7 @@ def drive(built: Built, route: Route) -> Driven:
     """Return the lanes of a route. A closed route begins and ends at its first stop.
 
     Raises:
-        UserError: the route leaves the streets, turns where nobody may, or misses a stop.
+        UserError: the route leaves the streets, turns where turning is not allowed, or misses a stop.
     """
     samples = _samples(_strands(built, route, _edges(built, route)))
     known = {stop.id: stop for stop in built.facts.stops}
@@ -185,7 +185,9 @@ def _link(built: Built, route: Route, come: tuple[End, int], go: End) -> tuple[_
                 if one.kind == "driving" and one.successor == lane and one.predecessor is not None:
                     return _Strand(way.record, one.id, total_m, 0.0), one.predecessor
     street, after = built.network.edges[end.edge].street, built.network.edges[go.edge].street
-    raise UserError(f"route {route.id}: nobody may turn from {street.name} into {after.name} as the route does")
+    raise UserError(
+        f"route {route.id}: turning from {street.name} into {after.name} is not allowed; choose another street"
+    )
 
 
 def _samples(strands: list[_Strand]) -> tuple[Sample, ...]:

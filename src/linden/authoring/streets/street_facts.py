@@ -46,7 +46,7 @@ class Street(NamedTuple):
 
 
 class Intersection(NamedTuple):
-    """Where streets meet, and who must wait there. ``stops`` holds names of streets."""
+    """A place where streets meet, and the streets that must wait there. ``stops`` holds names of streets."""
 
     id: str
     name: str

@@ -99,7 +99,7 @@ class Cockpits(Columns):
         self.state["sticky"][slot] = sticky
 
     def set_autopilot(self, slot: int, *, on: bool) -> None:
-        """Take note of who drives; a change takes feet and hands off, unless a control has come since the last frame.
+        """Note the kind of control of a vehicle; a change releases the pedals, unless a control came in this frame.
 
         After CARLA's AWheeledVehicleAIController: a client's own control goes before.
         """

@@ -1,7 +1,7 @@
 """The land between and beyond the streets: it begins where the outermost lanes end and follows the ground's heights.
 
-Corners lie densely along the edges of the roads and thinly elsewhere; the triangles between them are Delaunay's, which
-keep to an edge whose corners are closer to each other than to any other corner.
+Corners lie densely along the edges of the roads and thinly elsewhere; the triangles between them are Delaunay's. Such
+triangles keep an edge if its corners are closer to each other than to any other corner.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ _HIGH_M = 1e6
 
 def land(laid: Laid, ground: Ground, floors: Floors) -> Mesh:
     """Return the land of a map; flat and empty where the map has no roads."""
-    from matplotlib.tri import Triangulation  # noqa: PLC0415 - a server whose maps are kept never pays for it
+    from matplotlib.tri import Triangulation  # noqa: PLC0415 - a server with cached maps never needs it
 
     edges = _edges(laid, ground)
     if not len(edges):

@@ -25,7 +25,7 @@ class Image(NamedTuple):
 
 
 def darkroom(look: Look) -> "Darkroom":
-    """Return where pictures are made; who never looks does not load what makes them."""
+    """Return the renderer; it is imported when the first camera needs it."""
     from linden.sensors.camera.renderer import darkroom_of  # noqa: PLC0415 - see above
 
     return darkroom_of(look.seen.caster)
@@ -136,7 +136,7 @@ class EventCamera:
         return Events(spec.width_px, spec.height_px, spec.fov_deg, found) if len(found) else None
 
     def skip(self, _interval_s: float) -> None:
-        """Forget the last picture: to remember one that nobody listens to would mean to make it."""
+        """Forget the last picture: without subscribers the picture of this frame is not rendered."""
         self._retina = None
 
 

@@ -91,7 +91,7 @@ class Gpu:
         """Have an array copied to the host once all work before is done; return what waits for the copy and returns it.
 
         It lies in memory that the device writes to by itself, which takes long to get; so it is used again when
-        nobody holds the copy any more.
+        the copy is not referenced any more.
         """
         size, waiting = array.nbytes, self._frames[array.nbytes]
         frame = waiting.pop() if waiting else wp.empty(size, dtype=wp.uint8, device="cpu", pinned=True)

@@ -1,6 +1,6 @@
 """The caster for a GPU: NVIDIA's Warp, the same answers as Embree's. Needs the extra ``gpu``.
 
-What stands is one mesh. All bodies together are another, whose corners are moved each tick and whose tree is then
+What stands is one mesh. All bodies together are another; its corners are moved each tick and its tree is then
 refitted, for Warp knows no instances. Of two surfaces at one distance what stands answers.
 """
 
@@ -197,7 +197,7 @@ class WarpCaster:
         self.trees += 1  # there is one less
 
     def pose(self, instances: Instances) -> None:
-        """Put the bodies where they are now; who is not among them is not there."""
+        """Move the bodies to their present poses; other bodies are hidden."""
         if not np.array_equal(instances.mesh, self._mesh):
             self._assemble(instances.mesh)
         if not len(self._triangles):

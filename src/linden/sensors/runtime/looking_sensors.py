@@ -1,4 +1,4 @@
-"""The sensors that look around: which there are, and what they see in a frame."""
+"""The sensors that cast rays: their constructors, their schedules, their readings in a frame."""
 
 from collections.abc import Callable, Container, Hashable
 from typing import TYPE_CHECKING
@@ -26,11 +26,11 @@ MAKERS: dict[str, Callable[[ActorDescription], LookingSensor]] = {
     "sensor.other.obstacle": ObstacleDetector,
     "sensor.other.radar": Radar,
 }
-"""What makes a sensor of a complete description, by its blueprint."""
+"""The constructor of each ray-casting sensor by its blueprint."""
 
 
 class Eye:
-    """A sensor that looks, between two frames."""
+    """A ray-casting sensor and its state between two frames."""
 
     def __init__(self, description: ActorDescription) -> None:
         self.sensor = MAKERS[description.id](description)
@@ -86,7 +86,7 @@ def eye_of(description: ActorDescription) -> Eye | None:
 def look_around(
     eyes: dict[int, Eye], episode: "Episode", now: Now, listened: Container[int]
 ) -> list[tuple[ActorRecord, Transform, object]]:
-    """Return what is due of the sensors whose streams somebody reads: sensor, its pose, reading."""
+    """Return the readings that are due and have subscribers: sensor, its pose, reading."""
     sensors = [(episode.actors.get(sensor_id), eye) for sensor_id, eye in eyes.items()]
     if any(sensor.stream_id in listened for sensor, _ in sensors):
         now.seeing.follow(episode, now.frame)

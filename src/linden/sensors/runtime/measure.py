@@ -35,11 +35,11 @@ NOT_YET = {
     "sensor.other.v2x": "it would need a model of the radio channel between vehicles",
     "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
 }
-"""Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
+"""Blueprints without a sensor behind them, by the beginning of their ids, and the reason."""
 
 
 def refuse_idle(blueprint_id: str) -> None:
-    """Refuse a blueprint that the library lists, as CARLA's does, but behind which nothing is.
+    """Refuse a blueprint that the library lists, as CARLA's does, without a sensor behind it.
 
     Raises:
         Refusal: CARLA has it, this server not yet.
@@ -79,7 +79,7 @@ class EpisodeSensors:
         self.looking.pop(actor_id, None)
 
     def remove_destroyed(self, actors: ActorTable) -> None:
-        """Drop the sensors whose actors are gone."""
+        """Drop the sensors of destroyed actors."""
         for actor_id in [*self.instruments, *self.looking]:
             if actor_id not in actors:
                 self.remove(actor_id)

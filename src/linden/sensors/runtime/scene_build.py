@@ -1,7 +1,7 @@
-"""What sensors that look around need once for a map: the mesh of what stands, the faces of all meshes, the caster.
+"""The build of a sensor scene: the mesh of the map, the table of all faces, the ray caster.
 
-Building it takes a second. So it begins in the background when such a sensor is spawned; whoever looks waits for what
-is left of it. What is built is the same whenever it began.
+Building it takes a second. So it begins in the background when a sensor that needs it is spawned. The first
+measurement waits for the rest of it. The result does not depend on the time of the start.
 """
 
 from functools import cache as once
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Stage(NamedTuple):
-    """What is built once and asked often, and what it was built for."""
+    """A scene for sensors, cached as long as the map's scene and its present boxes (``statics``) stay the same."""
 
     scene: Scene
     statics: Statics
@@ -34,7 +34,7 @@ class Stage(NamedTuple):
 
 
 class Wanted(NamedTuple):
-    """What a stage is built for: what stands on a map, and which boxes of it are there."""
+    """The input of a build, and the key of the cached result: the map, its scene, and the boxes that are present."""
 
     world_map: LoadedMap
     scene: Scene
@@ -55,7 +55,7 @@ class Wanted(NamedTuple):
 
 def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
     """Return the stage: the caster built beside the rest of it, which a colour picture needs."""
-    # here, not above: a server that nobody looks with does without
+    # here, not above: a server without such sensors does not need it
     from linden.sensors.camera.picture.rgb import looks_of  # noqa: PLC0415 - see above
     from linden.sensors.casting.choose import caster_of  # noqa: PLC0415 - see above
 

@@ -1,4 +1,4 @@
-"""What the sensors of a simulation look at: the caster of the map, built when somebody first looks, and its bodies."""
+"""The scene that sensors see: the ray caster of the map, built on first use, and the visible actors."""
 
 from collections.abc import Callable
 from concurrent.futures import Future, wait
@@ -33,7 +33,7 @@ _OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
 def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
     """Return what stands on a map; made anew each time."""
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - likewise
-    from linden.scenery.map_mesh import standing  # noqa: PLC0415 - a server that nobody looks with does without
+    from linden.scenery.map_mesh import standing  # noqa: PLC0415 - a server without such sensors does not need it
 
     return standing(parse(world_map.text), world_map, scene)
 
@@ -155,7 +155,7 @@ class Seeing:
         return self._stage
 
     def _built(self, wanted: Wanted, bodies: "Future[Bodies]", before: "tuple[Wanted, Future[Stage]] | None") -> Stage:
-        """Return the stage that is wanted, once that before it, which nobody wants any more, is done."""
+        """Return the wanted scene, after the build of the previous one has ended."""
         if before is not None:
             wait([before[1]])
         if self._whole is None or self._whole[0] is not wanted.scene:

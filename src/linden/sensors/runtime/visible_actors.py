@@ -40,7 +40,7 @@ _BLINKING = np.uint32(1 << LampOf.BLINKER_LEFT | 1 << LampOf.BLINKER_RIGHT)
 
 
 class _Cast(NamedTuple):
-    """Who there is; made anew when actors come or go. The first block has a row an actor, the second a row a part."""
+    """The visible actors, made anew with each new set. The first block has a row per actor, the second per part."""
 
     records: list[ActorRecord]
     row: I32  # in the actor table
@@ -102,7 +102,7 @@ class Company:
             rolling = (bodies.wheel_steer[slots], bodies.wheel_turned[slots])
             frames[cast.vehicles, : len(VEHICLE_FRAMES)] = vehicle_frames(hubs, *rolling)
         if len(cast.walkers):
-            walking = [cast.records[who] for who in cast.walkers.tolist()]
+            walking = [cast.records[index] for index in cast.walkers.tolist()]
             velocity = bodies.velocity[cast.slot[cast.walkers]]
             alive = np.array([not episode.walkers.is_dead(record.id) for record in walking])
             frames[cast.walkers] = walker_frames(
@@ -110,16 +110,16 @@ class Company:
                 np.array([episode.walkers.walked_m(record.id) for record in walking]),
                 alive * np.hypot(velocity[:, 0], velocity[:, 1]),
             )
-            for who, record in zip(cast.walkers.tolist(), walking, strict=True):
+            for index, record in zip(cast.walkers.tolist(), walking, strict=True):
                 if episode.poses.is_posed(record.id):
-                    frames[who] = posed_frames(bones_of(episode, record.id).in_actor)
+                    frames[index] = posed_frames(bones_of(episode, record.id).in_actor)
         return frames
 
     def _before(self, cast: _Cast, pose: NDArray[np.float32], *, goes_on: bool) -> NDArray[np.float32]:
-        """Return where the parts were when they were gathered last; who was not there then was where it is now."""
+        """Return the previous poses of the parts; new actors have their present pose."""
         first = np.searchsorted(cast.actor, np.arange(len(cast.records) + 1))
         known = self._poses if goes_on else {}
-        self._poses = {record.id: pose[first[who] : first[who + 1]] for who, record in enumerate(cast.records)}
+        self._poses = {record.id: pose[first[index] : first[index + 1]] for index, record in enumerate(cast.records)}
         if not known or not len(pose):
             return pose
         return np.concatenate([known.get(actor_id, now) for actor_id, now in self._poses.items()])
@@ -141,7 +141,7 @@ def _survey(episode: "Episode", bodies: "Bodies") -> _Cast:
     actors = episode.actors
     records = [record for record in actors if record.kind in _VISIBLE and bodies.parts(record.description)]
     embodied = [record.slot != NO_BODY for record in records]
-    parts = [(who, part) for who, record in enumerate(records) for part in bodies.parts(record.description)]
+    parts = [(index, part) for index, record in enumerate(records) for part in bodies.parts(record.description)]
     colours = [_colour(record) for record in records]
     kinds = np.array([record.kind if own else Kind.PROP for record, own in zip(records, embodied, strict=True)], int)
     return _Cast(
@@ -150,10 +150,10 @@ def _survey(episode: "Episode", bodies: "Bodies") -> _Cast:
         slot=np.array([_carrying_slot(episode, record) for record in records], np.int32),
         vehicles=np.flatnonzero(kinds == Kind.VEHICLE),
         walkers=np.flatnonzero(kinds == Kind.WALKER),
-        actor=np.array([who for who, _ in parts], np.intp),
+        actor=np.array([index for index, _ in parts], np.intp),
         mesh=np.array([part.mesh for _, part in parts], np.int32),
         frame=np.array([part.frame for _, part in parts], np.intp),
-        paint=np.array([part.colour or colours[who] for who, part in parts], np.uint8).reshape(-1, 3),
+        paint=np.array([part.colour or colours[index] for index, part in parts], np.uint8).reshape(-1, 3),
         scale=np.array([part.scale for _, part in parts], np.float64),
     )
 

@@ -24,7 +24,7 @@ class Frames(Protocol):
         ...
 
     def sensor_payloads(self, simulation: World, listened: set[int]) -> Sequence[tuple[int, bytes]]:
-        """Return what this frame's sensors measured, by stream, for the streams that somebody reads."""
+        """Return this frame's measurements by stream, for streams with subscribers."""
         ...
 
 
@@ -50,7 +50,7 @@ class Context:
     outbox: list[tuple[int, bytes]] = field(default_factory=list)
     """(stream id, message) in the order of sending; the server empties it after every call."""
     caller: int = 0
-    """Number of the connection whose call is being served."""
+    """Number of the connection that sent the current call."""
     traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
     pending_load: PendingLoad | None = None
@@ -81,7 +81,7 @@ class Context:
         return not self.simulation.seeing.wait(0.0)
 
     def waits_for_the_scene(self) -> bool:
-        """Whether the next frame has to wait until what sensors look at is built: somebody listens to one of them."""
+        """Return whether the next frame has to wait for the sensor scene, because a subscriber needs it."""
         if not self.builds_the_scene():
             return False
         world = self.simulation
@@ -100,4 +100,4 @@ class Context:
             trace = "" if error is None else " " + "".join(traceback.format_exception(error))
             self.bugs.say(sentence + trace)
         except MemoryError:
-            log.warning("a bug of ours, for whose traceback the memory does not suffice")
+            log.warning("a bug of the server; there is not enough memory for its traceback")

@@ -56,7 +56,7 @@ class Method:
     encode: Encoder | None
     reply: Reply
     advances: bool
-    """Whether it may make frames, and so has to wait for subscribers who lag behind."""
+    """Whether it may make frames, and so has to wait for slow subscribers."""
 
     def arguments(self, raw: list[Any]) -> list[Any]:
         """Return the typed arguments.
@@ -129,7 +129,7 @@ def advances(call: Call) -> bool:
 
 
 class Unanswered:
-    """A call whose long work is being made in the background; its handler goes on when that is done."""
+    """A call with work in the background; its handler continues when the work is done."""
 
     def __init__(self, call: Call, steps: "Generator[Work, Any, Any]", work: Work) -> None:
         self.call = call
@@ -156,7 +156,7 @@ def dispatch(context: Context, call: Call) -> bytes | Unanswered:
 
 
 def go_on(context: Context, unanswered: Unanswered) -> bytes | Unanswered:
-    """Go on with a call whose long work is done; returns as :func:`dispatch` does."""
+    """Continue a call after its long work; returns as :func:`dispatch` does."""
     call, steps, found = unanswered.call, unanswered.steps, METHODS[unanswered.call.method]
 
     def step() -> Work:

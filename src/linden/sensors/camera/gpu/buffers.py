@@ -1,10 +1,6 @@
 """Buffers in GPU memory: rays and light of one camera, the state kept between pictures, the inputs of a frame.
 
-Memory on a GPU for the rays of one camera: what they are, what they met, and the light that came along them.
-
-Where the pictures of one view are made on a GPU, beside those of others: memory, and work that was done before.
-
-What a GPU is told for each frame and picture, as arrays that go there together.
+The inputs of a frame and of a picture are packed into one array each, so that each takes one transfer.
 """
 
 from collections.abc import Callable, Hashable, Mapping

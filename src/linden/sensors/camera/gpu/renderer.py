@@ -80,11 +80,11 @@ class GpuDarkroom:
             scale = self._shelf.kept(("scale", spec), lambda: motion.scale(spec))
             return sheet.rays, sheet.hits, *desk.sent("motion", of_motion(look)).values(), scale
         faces, _ = self._on(look.seen)
-        whose = self._once("owners", look, lambda: self._sent("owners", of_owners(look.seen)))
+        owners = self._once("owners", look, lambda: self._sent("owners", of_owners(look.seen)))
         desk.gpu.after(self._gpu)
         if kind == "semantic":
-            return sheet.hits, whose["first"], faces.tag
-        return sheet.hits, whose["first"], whose["actor_id"], faces, whose["object_id"]
+            return sheet.hits, owners["first"], faces.tag
+        return sheet.hits, owners["first"], owners["actor_id"], faces, owners["object_id"]
 
     def _shine(self, desk: Desk, spec: CameraSpec, film: Film, look: Look) -> Waiting:
         """Begin a picture of light."""
