@@ -11,7 +11,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from basu.metrics.passengers import felt
-from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
+from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.records.history.files import read_history
 
 

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
-from basu.agents.builtin.basic import BasicAgent
-from basu.agents.builtin.human import HumanAgent
+from basu.agents.builtin.basic import BasicAgent, HumanAgent
 from basu.cli import main as basu
 
 if TYPE_CHECKING:

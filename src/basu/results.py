@@ -14,15 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
+from basu.files import read_json
 from basu.outcome import Status
-from basu.output.report.folder import RESULT_FILE
-from basu.output.report.reading import RunRecord, read_run
-from basu.output.report.scenarios.console import matrix_text
-from basu.output.report.scenarios.page.records import MATRIX_FILE
+from basu.output.report.documents import RESULT_FILE, RunRecord, read_run
+from basu.output.report.runs_picture import Trace, paths_png, speeds_png
+from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
+from basu.output.report.scenarios.matrix_text import matrix_text
 from basu.output.report.scenarios.sweep.success_map import sweep_map
-from basu.output.report.trace import Trace, paths_png, speeds_png
 from basu.records.history.files import HISTORY_FILE, read_history
-from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.leaderboard.modules import step_back
+from basu.agents.adapters.replacement_modules import step_back
 from servers import RunningServer, running_server
 
 SHORT_ROUTE = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"

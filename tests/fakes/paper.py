@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from py_trees.common import Status
 
 from basu.scenarios.stage import ActorSpec, Pose
-from basu.testing import PaperStage, paper_place, steady
+from basu.testing import PaperStage, steady
+from basu.testing import offline_stage as paper_place
 
 if TYPE_CHECKING:
     from collections.abc import Callable

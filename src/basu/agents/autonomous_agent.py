@@ -1,9 +1,8 @@
-"""The base class of every driver that BASU judges: what an agent is given, and the four methods it answers with.
+"""The base class of every agent, with the data that it receives and the checked answer of its ``config()``.
 
 A first agent of your own is a file with one class::
 
     import carla
-    from basu.agents.autonomous_agent import AutonomousAgent
 
     class Careful(AutonomousAgent):
         def setup(self):
@@ -22,13 +21,17 @@ and need not be overridden.
 
 from __future__ import annotations
 
+import difflib
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.sight import Sight
+from basu.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     import carla
 
@@ -141,3 +144,35 @@ class AutonomousAgent(ABC):
 
     def destroy(self) -> None:  # noqa: B027 - most agents have nothing to put away
         """Put away what ``setup`` took (files, windows, processes); called once after the last step in every case."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentConfig:
+    """An agent's wishes; file names as given, looked for later."""
+
+    routes: str = "routes/linden_leap.xml"
+    sensors: str | None = None
+    sumo: str | None = None
+    vehicle: str = "vehicle.easymile.ez10"
+    weather: str = "ClearNoon"
+
+
+def parse_config(given: Any, agent: str) -> AgentConfig:  # noqa: ANN401 - whatever a stranger's method returned
+    """Check what the ``config()`` of ``agent`` returned; None takes every default.
+
+    Raises:
+        UserError: it is no dict, has a key that means nothing, or a value that is no text.
+    """
+    if given is None:
+        return AgentConfig()
+    if not isinstance(given, Mapping):
+        raise UserError(f"config() of {agent} returned {type(given).__name__}; it must return a dict, such as {{}}")
+    known = [field.name for field in fields(AgentConfig)]
+    for key, value in given.items():
+        if key not in known:
+            close = difflib.get_close_matches(str(key), known, 1)
+            hint = f"did you mean '{close[0]}'?" if close else f"it may have {', '.join(known)}"
+            raise UserError(f"config() of {agent} has the key {key!r}, which means nothing here; {hint}")
+        if value is not None and (not isinstance(value, str) or not value):
+            raise UserError(f"config() of {agent}: '{key}' is {value!r}; it must be a text")
+    return AgentConfig(**{key: value for key, value in given.items() if value is not None})

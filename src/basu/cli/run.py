@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from basu.errors import Terminated, UserError
-from basu.metrics.score import Scoring
-from basu.metrics.scoring_json import read_scoring_file
+from basu.metrics.score import Scoring, read_scoring_file
 from basu.options import RunOptions
 from basu.outcome import EXIT_CODES
 from basu.settings.command_line import add_options, typed
@@ -89,7 +88,7 @@ def options_of(arguments: argparse.Namespace, below: Layer | None = None) -> Run
     Raises:
         UserError: an option that does not exist, or a value that it cannot have.
     """
-    from basu.settings.resolve import resolve  # noqa: PLC0415 - as above
+    from basu.settings.resolve import resolve  # noqa: PLC0415 - pydantic, which `--help` does not need
 
     layers = [] if below is None else [below]
     return resolve(RunOptions, [*layers, Layer(typed(RunOptions, arguments), typed=True)])
@@ -135,7 +134,7 @@ def run_agent(arguments: argparse.Namespace) -> int:
 def drive_thesis(arguments: argparse.Namespace) -> int:
     """Drive basic, behavioral, forward and human as section 5.5 of the thesis did, and print both tables."""
     options = options_of(arguments)
-    from basu.running.experiment.thesis import thesis  # noqa: PLC0415 - as above
+    from basu.running.thesis_experiment import thesis  # noqa: PLC0415 - as above
 
     return thesis(options)
 

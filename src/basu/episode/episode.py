@@ -23,7 +23,8 @@ from basu.errors import (
     SimulatorError,
     UserError,
 )
-from basu.managers.base_manager import BaseManager, Driver, Frame, Live, Run, ego_in
+from basu.managers import Live
+from basu.managers.base_manager import BaseManager, Driver, Frame, Run, ego_in
 from basu.managers.conduct import ticked
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.routes_manager import RoutesManager
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
     from basu.routing import Route
-    from basu.routing.progress import Progress
+    from basu.routing.planned_route import Progress
     from basu.routing.route_file import RouteDescription
     from basu.simulator import Simulator
 

@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 import carla
 
-from basu.agents.config import AgentConfig
-from basu.managers.stage.weather import changed
+from basu.agents.autonomous_agent import AgentConfig
 from basu.metrics.score import Scoring
 from basu.options import NOBODY, STEP_S, Traffic
 from basu.routing.route_file import RouteDescription, RoutePoint
+from basu.routing.weather import changed
 from basu.scenarios.paths.lanes import followed, waypoint_at
 
 if TYPE_CHECKING:
-    from basu.routing.route_weather import WeatherMark
-    from basu.scenarios.cases import Playable
+    from basu.routing.weather import WeatherMark
+    from basu.scenarios.playable import Playable
     from basu.scenarios.scenario import Scenario
 
 POINT_M = 20.0  # between the points of a route that goes straight on

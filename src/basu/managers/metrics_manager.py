@@ -9,10 +9,8 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
-from basu.managers.lane_under import LaneFinder
-from basu.managers.neighbours import Neighbours
-from basu.managers.route_lights import RouteLights
-from basu.metrics.so_far import SoFar
+from basu.managers.observations import LaneFinder, Neighbours, RouteLights
+from basu.metrics.incremental import SoFar
 from basu.records.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
 from basu.records.history.model import NO_LIGHT
 

@@ -6,9 +6,9 @@ import contextlib
 from typing import TYPE_CHECKING
 
 from basu.errors import UserError
+from basu.files import write_bytes
 from basu.managers.base_manager import BaseManager
 from basu.records.carla_log.sources import MAP_FILE
-from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run

@@ -14,32 +14,30 @@ import carla
 from py_trees.common import Status as NodeStatus
 
 from basu.errors import ScenarioError, UserError
-from basu.managers.asked import asked
 from basu.managers.base_manager import BaseManager
-from basu.managers.laid_out import is_behind, lay_out
-from basu.managers.stage.cast import bring, take_away
+from basu.managers.placed_scenario import asked, is_behind, lay_out
+from basu.managers.stage.environment import SharedWorld
 from basu.managers.stage.live_stage import LiveStage
-from basu.managers.stage.shared_world import SharedWorld
+from basu.managers.stage.scenario_actors import bring, take_away
 from basu.outcome import Outcome, Status
 from basu.scenarios.criteria.criterion import Played, moved
+from basu.scenarios.scenario import set_on
 from basu.scenarios.stage import Controls
-from basu.scenarios.tree import set_on
 from basu.scenarios.verdict import judge
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.managers.base_manager import Frame, Run
-    from basu.managers.laid_out import LaidOut
     from basu.managers.metrics_manager import MetricsManager
+    from basu.managers.placed_scenario import LaidOut
     from basu.managers.routes_manager import RoutesManager
     from basu.records.history import History
     from basu.routing import Route
-    from basu.scenarios.cases import Playable
     from basu.scenarios.criteria.criterion import Thing
-    from basu.scenarios.scenario import Scenario
+    from basu.scenarios.playable import Playable
+    from basu.scenarios.scenario import Composed, Scenario
     from basu.scenarios.stage import ActorSpec
-    from basu.scenarios.tree import Composed
     from basu.scenarios.verdict import Judged
 
 NEAR_M = 100.0  # before its trigger point along the route, a scenario's actors come into the world

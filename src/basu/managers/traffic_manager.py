@@ -1,4 +1,4 @@
-"""Other traffic: vehicles led by CARLA's Traffic Manager, walkers by its crowd, all of it drawn from one seed."""
+"""Other traffic from one seed: vehicles led by CARLA's Traffic Manager, walkers led by its crowd."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import carla
 import numpy as np
 
+from basu import client_threads
 from basu.errors import SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
-from basu.managers.traffic_places import CLEAR_M, REACH_M, suitable, vehicles_for
-from basu.utils import client_threads
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -22,6 +21,37 @@ if TYPE_CHECKING:
 
     from basu.managers.base_manager import Frame, Run
     from basu.options import Traffic
+
+
+REACH_M = 300.0
+"""Traffic begins within this of the route: about half a minute's drive, so that who is there can be met."""
+
+CLEAR_M = 30.0
+"""Nobody begins nearer to the vehicle under test: a stop from 25 mph with time to see it coming."""
+
+COARSE_M = 10.0  # between the points of the route that distances are taken from; nothing next to REACH_M
+
+
+def distance_m(places_m: NDArray[np.float64], route_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N,) how far each of the places (N, 2) lies from the nearest of a route's points (M, 2), a metre apart."""
+    nearest = np.full(len(places_m), np.inf)
+    for point in route_m[:: round(COARSE_M)]:
+        np.minimum(nearest, np.hypot(places_m[:, 0] - point[0], places_m[:, 1] - point[1]), out=nearest)
+    return nearest
+
+
+def suitable(
+    places_m: NDArray[np.float64], route_m: NDArray[np.float64], ego_m: tuple[float, float]
+) -> NDArray[np.int64]:
+    """The indices of the places (N, 2) within reach of the route and away from the vehicle under test."""
+    away_m = np.hypot(places_m[:, 0] - ego_m[0], places_m[:, 1] - ego_m[1])
+    return np.flatnonzero((distance_m(places_m, route_m) <= REACH_M) & (away_m >= CLEAR_M))
+
+
+def vehicles_for(density_per_km: float, lane_km: float) -> int:
+    """How many vehicles make up a density on so many km of driving lane."""
+    return round(density_per_km * lane_km)
+
 
 GAP_M = 2.5  # that vehicles keep to whom they follow; generate_traffic.py of CARLA has the same
 CROSSING_SHARE = 0.1  # of the walkers may leave the pavement where there is no crosswalk

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.metrics.responsibility import Responsibility
+    from basu.metrics.collisions import Responsibility
     from basu.records.history import History
 
 

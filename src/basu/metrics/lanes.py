@@ -20,8 +20,7 @@ import numpy as np
 from basu.metrics.infraction import Incident
 from basu.metrics.json_schema import mapping, number
 from basu.metrics.registry import Drive, Metric, register
-from basu.metrics.shares import Share, share_line, share_of, share_record, share_row
-from basu.metrics.stretches import chords, path_m, total_m
+from basu.metrics.stretches import Share, chords, path_m, share_line, share_of, share_record, share_row, total_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

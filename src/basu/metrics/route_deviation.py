@@ -16,7 +16,7 @@ import numpy as np
 from basu.metrics.infraction import Incident
 from basu.metrics.json_schema import number
 from basu.metrics.registry import Drive, Metric, register
-from basu.metrics.shares import Share, share_line, share_of, share_record, share_row
+from basu.metrics.stretches import Share, share_line, share_of, share_record, share_row
 
 if TYPE_CHECKING:
     from basu.metrics.result import Result

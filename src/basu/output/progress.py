@@ -11,7 +11,8 @@ from tqdm import tqdm
 from basu.managers.base_manager import BaseManager
 
 if TYPE_CHECKING:
-    from basu.managers.base_manager import Frame, Live, Run
+    from basu.managers import Live
+    from basu.managers.base_manager import Frame, Run
 
 UPDATE_TICKS = 20  # a second of simulated time
 SCORE_TICKS = 2000  # scoring anew costs some ms

@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.episode import Episode, EpisodeSpec
 from basu.episode.world import weather_called
 from basu.managers.recording_manager import RecordingManager
-from basu.managers.route_scenarios import told
+from basu.managers.scenario_results import told
 from basu.managers.sensors_manager import SensorsManager
 from basu.metrics.registry import user_metrics
 from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
-from basu.output.report.folder import make_draft
-from basu.output.viewer.onlooker import viewer_for
+from basu.output.report.documents import make_draft
+from basu.output.viewer.viewer_manager import viewer_for
 from basu.records.carla_log.sources import LOG_FILE
 from basu.running.drive import drive
 from basu.running.run_folder import OWN_ROUTE, run_config, write_run_folder
@@ -28,8 +28,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.episode import Towns
+    from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
-    from basu.managers.base_manager import BaseManager, Live
+    from basu.managers.base_manager import BaseManager
     from basu.metrics.score import Scoring
     from basu.options import RunOptions
     from basu.outcome import Outcome

@@ -14,20 +14,19 @@ from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import read_sensors
 from basu.episode.world import weather_called
 from basu.errors import UserError
+from basu.files import find
 from basu.managers.agents_manager import AgentsManager
 from basu.output.hud.person_input import person_for
-from basu.routing.route_file import RouteDescription, read_routes
-from basu.routing.subset import subset
-from basu.scenarios.on_way import scenarios_on
-from basu.utils.packaged import find
+from basu.routing.route_file import RouteDescription, read_routes, subset
+from basu.scenarios.route_scenarios import scenarios_on
 
 if TYPE_CHECKING:
-    from basu.agents.config import AgentConfig
+    from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.options import RunOptions
-    from basu.scenarios.cases import Playable
+    from basu.scenarios.playable import Playable
 
 
 class SensorSet(NamedTuple):

@@ -10,7 +10,7 @@ from basu.episode import Towns
 from basu.episode.world import check_towns
 from basu.errors import UserError
 from basu.outcome import Status
-from basu.output.report.folder import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
+from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.running.series import conditions, open_series

@@ -17,12 +17,20 @@ from typing import TYPE_CHECKING, Any
 
 import basu
 from basu.errors import UserError
-from basu.metrics.scoring_json import scoring_to_json
+from basu.files import write_bytes
+from basu.metrics.score import scoring_to_json
 from basu.outcome import Fault, Status
-from basu.output.report.folder import DRAFTS, RESULT_FILE, plain, publish, write_json
-from basu.output.report.schema import SERIES_SCHEMA, read_document, read_result
-from basu.output.report.series import SERIES_SCHEMA_VERSION, row, series_table, totals
-from basu.utils.atomic import write_bytes
+from basu.output.report.documents import (
+    DRAFTS,
+    RESULT_FILE,
+    SERIES_SCHEMA,
+    plain,
+    publish,
+    read_document,
+    read_result,
+    write_json,
+)
+from basu.output.report.series_document import SERIES_SCHEMA_VERSION, row, series_table, totals
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import boxes, other_boxes, own_boxes, touching
+from basu.metrics.boxes import boxes, other_boxes, own_boxes, touching
 from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, times_to_collision_s
 from basu.metrics.stop_signs import AT_REST_MPS, ZONE_BEFORE_M, ZONE_BEYOND_M
 from basu.routing import ControlKind

@@ -5,10 +5,11 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from basu.scenarios.cases import ALL, Playable, snake
-from basu.scenarios.characteristics import Characteristics, characteristics_of, having
+from basu.scenarios.cases import ALL, snake
+from basu.scenarios.characteristics import Characteristics, characteristics_of
 from basu.scenarios.nhtsa import BURDENS, Group
 from basu.scenarios.parameters import Number
+from basu.scenarios.playable import Playable, having
 from basu.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ def _in_full(scenario: type[Scenario], cases: list[Playable]) -> list[str]:
 
 def _unusual(playable: Playable) -> str:
     """The characteristics of a case that differ from a clear day on a dry straight street, as `--where` takes them."""
-    usual, found = Characteristics().document(), characteristics_of(playable).document()
+    usual, found = Characteristics().document(), characteristics_of(playable.case, playable.scenario).document()
     words = [f"{name}={value}" for name, value in found.items() if value != usual[name]]
     return f"; {', '.join(words)}" if words else ""
 
@@ -150,5 +151,5 @@ def _case_as_json(playable: Playable) -> dict[str, Any]:
         "on_route": case.on_route,
         "values": dict(playable.values),
         "unread": list(playable.unread),
-        "characteristics": characteristics_of(playable).document(),
+        "characteristics": characteristics_of(playable.case, playable.scenario).document(),
     }

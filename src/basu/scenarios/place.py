@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import carla
 
     from basu.routing import Route
-    from basu.scenarios.config.model import GivenActor
+    from basu.scenarios.xml_elements import GivenActor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import other_boxes, own_boxes
+from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
 from basu.outcome import Fault
 from basu.scenarios.criteria.contact import NoCollision

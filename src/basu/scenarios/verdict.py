@@ -9,8 +9,7 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.metrics.collisions import beginnings
-from basu.metrics.responsibility import responsibility
+from basu.metrics.collisions import beginnings, responsibility
 from basu.outcome import Fault, Outcome, Status
 from basu.scenarios.criteria.going import arrival_tick
 from basu.scenarios.criteria.surrogate_measures import margins_of, reported_always
@@ -63,7 +62,7 @@ ELSEWHERE = {
 
 
 class Collision(NamedTuple):
-    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.responsibility`)."""
+    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.collisions`)."""
 
     t_s: float
     other: str  # a role, a thing's name or a blueprint id

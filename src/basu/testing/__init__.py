@@ -1,9 +1,7 @@
 """Rehearse a scenario on paper: no server, no physics, bodies that move exactly as told."""
 
-from basu.testing.drivers import Driver, careful, steady, waiting_at
-from basu.testing.paper_place import paper_place
-from basu.testing.paper_stage import Command, PaperStage
-from basu.testing.rehearse import Rehearsal, rehearse
+from basu.testing.offline_stage import Command, PaperStage, paper_place
+from basu.testing.rehearsal import Driver, Rehearsal, careful, rehearse, steady, waiting_at
 
 __all__ = [
     "Command",

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from basu.scenarios.cases import Playable, cases_of
+from basu.scenarios.cases import cases_of
+from basu.scenarios.playable import Playable
 from basu.testing import Driver, Rehearsal, careful, paper_place, rehearse, steady
 
 ROOT = Path(__file__).parents[3]

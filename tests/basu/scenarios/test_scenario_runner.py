@@ -22,7 +22,7 @@ import carla
 import pytest
 
 from basu.episode.spec import description_of
-from basu.managers.laid_out import lay_out
+from basu.managers.placed_scenario import lay_out
 from basu.routing import plan
 from basu.scenarios.cases import by_id, cases_of
 from servers import RunningServer

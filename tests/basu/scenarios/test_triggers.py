@@ -5,7 +5,7 @@ import math
 import pytest
 from py_trees.common import Status
 
-from basu.metrics import arrival
+from basu.metrics import path_following
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import Pose
 from basu.scenarios.triggers import (
@@ -173,14 +173,14 @@ def test_arriving_is_known_no_later_than_the_run_knows_it(speed_mps: float) -> N
     stage = stage_with(driver=steady(speed_mps), length_m=60.0)
     play(EgoArrives(), stage, until_s=200.0)
     left_m = 60.0 - stage.ego_s_m
-    assert left_m > arrival.AT_END_M or left_m + speed_mps * stage.step_s > arrival.AT_END_M
+    assert left_m > path_following.AT_END_M or left_m + speed_mps * stage.step_s > path_following.AT_END_M
 
 
 def test_who_parks_near_the_end_has_arrived_as_the_run_has_it() -> None:
     assert min(along_route.SLACK_M, along_route.SLACK_MPS) >= 0.0
     stage = stage_with(driver=waiting_at(56.5, 100.0, 8.0), length_m=60.0)
     play(EgoArrives(), stage)
-    assert 3.0 < 60.0 - stage.ego_s_m <= arrival.PARKED_M
+    assert 3.0 < 60.0 - stage.ego_s_m <= path_following.PARKED_M
 
 
 def test_a_trigger_that_waits_again_has_nothing_to_say() -> None:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.agents.builtin.basic import BasicAgent
-from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
-from basu.agents.builtin.vehicle_facts import SHUTTLE
+from basu.agents.builtin.driving.controllers import HOLD_BRAKE
+from basu.agents.builtin.perception import SHUTTLE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

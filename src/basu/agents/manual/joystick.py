@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.manual.inputs import Axes, Strike
 from basu.errors import UserError
-from basu.utils.packaged import PACKAGE_FOLDER
+from basu.files import PACKAGE_FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

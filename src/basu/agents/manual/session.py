@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
 from basu.errors import UserError
-from basu.utils.atomic import write_bytes
+from basu.files import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 import carla
 
+from basu.agents.autonomous_agent import AgentConfig
 from basu.agents.calls import SETUP_LIMIT_S, checked, timed_out
-from basu.agents.config import AgentConfig
 from basu.agents.loader import BUILT_IN, LOAD_LIMIT_S, LoadedAgent, load_agent
 from basu.agents.process.agent_process import AgentProcess, CallError, Death, Memory, OverLimitError
 from basu.agents.process.child import Place, Wanted

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.errors import ScenarioError
-from basu.managers.stage.cast import bring, member_of, take_away
-from basu.managers.stage.puppets import Puppets
-from basu.managers.stage.surroundings import Surroundings
+from basu.managers.stage.environment import Surroundings
+from basu.managers.stage.scenario_actors import Puppets, bring, member_of, take_away
 from basu.scenarios.criteria.criterion import Move, Thing
 from basu.scenarios.stage import EGO, Body
 
@@ -22,8 +21,8 @@ if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
-    from basu.managers.stage.cast import Member
-    from basu.managers.stage.shared_world import SharedWorld
+    from basu.managers.stage.environment import SharedWorld
+    from basu.managers.stage.scenario_actors import Member
     from basu.routing import Route
     from basu.scenarios.stage import ActorSpec, Controls, Door, Pose
 

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.balance import STEP_MPS2
-from basu.metrics.passengers.boxes import distance_m, other_boxes
+from basu.metrics.boxes import distance_m, other_boxes
+from basu.metrics.passengers.felt import STEP_MPS2
 from basu.metrics.speeding import limits_mps
 from basu.routing import ControlKind
 

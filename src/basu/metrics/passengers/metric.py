@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.json_schema import choice, flag, integer, listing, mapping, number, record, text
-from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.causes import Kind
+from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.near_misses import NEAR_S
 from basu.metrics.passengers.verdict import judge
 from basu.metrics.registry import Column, Drive, Metric, register

@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.balance import GRIP_MPS2
-from basu.metrics.passengers.boxes import other_boxes, own_boxes, time_to_touch_s, touching
+from basu.metrics.boxes import other_boxes, own_boxes, time_to_touch_s, touching
+from basu.metrics.passengers.felt import GRIP_MPS2
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,17 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from basu.metrics.arrival import completion
 from basu.metrics.collisions import collisions
 from basu.metrics.lanes import off_road
-from basu.metrics.passengers.balance import GRIP_MPS2, Balance, balance
 from basu.metrics.passengers.causes import Cause, Kind, cause
-from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_score, parts
-from basu.metrics.passengers.felt import STANDING, Felt, Place, felt
+from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, Vibration, comfort_score, parts, vibration
+from basu.metrics.passengers.felt import GRIP_MPS2, STANDING, Balance, Felt, Place, balance, felt
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2, HarshStop, harsh_stops
 from basu.metrics.passengers.near_misses import Party, near_misses
 from basu.metrics.passengers.service import Visit, service
-from basu.metrics.passengers.vibration import Vibration, vibration
+from basu.metrics.path_following import completion
 from basu.metrics.red_lights import red_lights
 from basu.metrics.speeding import TOLERANCE_MPS, speeding
 from basu.metrics.stop_signs import stop_signs

@@ -14,20 +14,20 @@ from typing import TYPE_CHECKING
 
 from basu.agents.manual.inputs import Strike
 from basu.errors import SimulatorError, UserError
+from basu.files import write_bytes
 from basu.managers.base_manager import BaseManager
-from basu.managers.neighbours import Neighbours
-from basu.output.hud.camera import ChaseCamera
+from basu.managers.observations import Neighbours
 from basu.output.hud.canvas import GREY, RED, WHITE, Canvas
 from basu.output.hud.notices import Judge, Notices
 from basu.output.hud.panel import WIDTH, Panel, draw_help
 from basu.output.hud.readings import Around, Rates, read, setting_of
-from basu.output.hud.sensor_view import SensorView
+from basu.output.hud.sensor_view import ChaseCamera, SensorView
 from basu.output.hud.top_down import Body, TopDown
-from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
-    from basu.agents.manual.person import Person
-    from basu.managers.base_manager import Frame, Live, Run
+    from basu.agents.manual.inputs import Person
+    from basu.managers import Live
+    from basu.managers.base_manager import Frame, Run
     from basu.options import RunOptions
     from basu.output.hud.readings import Setting
 

@@ -7,18 +7,19 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from basu.agents.manual.devices import Devices, check_display
-from basu.agents.manual.person import Person
+from basu.agents.manual.inputs import Person
 from basu.agents.manual.session import Played, Session, Setting, Tape, read_session, write_session
 from basu.errors import UserError
+from basu.files import find
 from basu.managers.base_manager import BaseManager
 from basu.output.hud.hud import Hud
-from basu.utils.packaged import find
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.manual.inputs import InputSource
-    from basu.managers.base_manager import Frame, Live, Run
+    from basu.managers import Live
+    from basu.managers.base_manager import Frame, Run
     from basu.options import RunOptions
 
 

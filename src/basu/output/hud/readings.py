@@ -10,7 +10,8 @@ import carla
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.managers.base_manager import Ego, Frame, Live, Run
+    from basu.managers import Live
+    from basu.managers.base_manager import Ego, Frame, Run
     from basu.output.hud.notices import Judgement
 
 GRAVITY_MPS2 = 9.81

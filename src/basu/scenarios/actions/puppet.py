@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from basu.errors import ScenarioError
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, Pose
 

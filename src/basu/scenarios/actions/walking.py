@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 
 if TYPE_CHECKING:
     from basu.scenarios.paths import Path

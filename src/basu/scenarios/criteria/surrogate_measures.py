@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import other_boxes, own_boxes, touching
+from basu.metrics.boxes import other_boxes, own_boxes, touching
 from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, post_encroachment_s, times_to_collision_s
 from basu.scenarios.criteria.margin import Margin
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.metrics.passengers.boxes import Boxes
+    from basu.metrics.boxes import Boxes
     from basu.scenarios.criteria.criterion import Criterion, Judgement
-    from basu.scenarios.criteria.margin import Margin, Present
+    from basu.scenarios.criteria.margin import Present
 
 
 CORNERS = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)])

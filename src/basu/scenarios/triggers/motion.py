@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from basu.scenarios.stage import EGO
-from basu.scenarios.tree import Node
+from basu.scenarios.tree_node import Node
 
 
 def named(who: str) -> str:

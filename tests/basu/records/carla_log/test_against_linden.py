@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from basu.records.carla_log import Log, read_log
-from basu.records.carla_log.layouts import Kind
-from basu.records.carla_log.parts import Physics
+from basu.records.carla_log.layouts import Kind, Physics
 from fakes import recordings as made
 from linden.replay.file.packets import Frame
 from linden.replay.file.read import Recording

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from basu.scenarios.actions import Bump, Either, JitterControls, PullSteering, Wait
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.stage import Controls
 from basu.testing import PaperStage
 from fakes.paper import play, stage_with

@@ -11,9 +11,8 @@ from py_trees.common import Status
 from basu.errors import ScenarioError
 from basu.scenarios.cases import open_library
 from basu.scenarios.paths import Path
-from basu.scenarios.scenario import Scenario
+from basu.scenarios.scenario import Scenario, compose, set_on
 from basu.scenarios.stage import Controls, Pose
-from basu.scenarios.tree import compose, set_on
 from basu.testing import Command, PaperStage, Rehearsal, paper_place, rehearse, steady
 
 Laid = Callable[..., Scenario]

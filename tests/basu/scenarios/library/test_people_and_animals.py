@@ -19,9 +19,8 @@ from basu.scenarios.library.shuttle.running_for_the_shuttle import RunningForThe
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice
 from basu.scenarios.paths import crossing
-from basu.scenarios.scenario import Scenario
+from basu.scenarios.scenario import Scenario, compose, set_on
 from basu.scenarios.stage import Controls
-from basu.scenarios.tree import compose, set_on
 from basu.testing import PaperStage, Rehearsal, careful, rehearse, steady, waiting_at
 
 if TYPE_CHECKING:

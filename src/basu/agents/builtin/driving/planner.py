@@ -10,8 +10,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from basu.agents.builtin.driving.comfort import Limits, approach_accel_mps2, slowing_distance_m
-from basu.agents.builtin.driving.manner import BASIC
+from basu.agents.builtin.driving.manner import BASIC, Limits, approach_accel_mps2, slowing_distance_m
 from basu.agents.builtin.scene import Restriction, Urgency
 
 if TYPE_CHECKING:

@@ -10,12 +10,9 @@ import numpy as np
 from basu.agents.builtin.driving.manner import BASIC, LEFT_FROM_MAJOR_S, ROUNDABOUT_S
 from basu.agents.builtin.driving.path import SPACING_M, Path, make_path
 from basu.agents.builtin.driving.speed_profile import SpeedProfile, make_profile
-from basu.agents.builtin.rules.conflicts import make_zone
-from basu.agents.builtin.rules.gaps import GapRule, Movement, make_rule, movement
-from basu.agents.builtin.rules.service_stops import ServiceStop
-from basu.agents.builtin.rules.stop_signs import StopSign
-from basu.agents.builtin.rules.traffic_lights import TrafficLight
-from basu.agents.builtin.rules.yielding import YieldSign
+from basu.agents.builtin.rules.gap_acceptance import GapRule, Movement, make_rule, make_zone, movement
+from basu.agents.builtin.rules.right_of_way import StopSign, YieldSign
+from basu.agents.builtin.rules.stopping_lines import ServiceStop, TrafficLight
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.builtin.passing.standing import STANDING_MPS
+from basu.agents.builtin.passing.obstruction import STANDING_MPS
 from basu.agents.builtin.rules.corridor import Strip
-from basu.agents.builtin.rules.gaps import START_S, time_to_cover_s
+from basu.agents.builtin.rules.gap_acceptance import START_S, time_to_cover_s
 from basu.agents.builtin.rules.obstacles import SIDE_MARGIN_M
 from basu.agents.builtin.scene import Kind
 

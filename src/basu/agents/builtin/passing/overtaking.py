@@ -16,12 +16,12 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING
 
-from basu.agents.builtin.driving.comfort import slowing_distance_m
+from basu.agents.builtin.driving.manner import slowing_distance_m
 from basu.agents.builtin.driving.planner import ARRIVED_M, FIRM
 from basu.agents.builtin.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
+from basu.agents.builtin.passing.obstruction import LONGEST_BLOCK_M, STANDING_MPS, Standing
 from basu.agents.builtin.passing.opposite_lane import Need, is_free
-from basu.agents.builtin.passing.standing import LONGEST_BLOCK_M, STANDING_MPS, Standing
-from basu.agents.builtin.rules.gaps import USED_SHARE
+from basu.agents.builtin.rules.gap_acceptance import USED_SHARE
 from basu.agents.builtin.scene import Restriction, Urgency
 
 if TYPE_CHECKING:
@@ -30,8 +30,8 @@ if TYPE_CHECKING:
     from basu.agents.builtin.driving.manner import Manner, Passing
     from basu.agents.builtin.driving.path import Path, Place
     from basu.agents.builtin.passing.detour import Detour
+    from basu.agents.builtin.passing.obstruction import Block
     from basu.agents.builtin.passing.road import Road
-    from basu.agents.builtin.passing.standing import Block
     from basu.agents.builtin.scene import Body, Ego, Other
 
 STRAIGHT_S = 1.5  # one is all the way aside so long before the bumpers are level, that nobody sees a near miss in it …

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.output.report.markup import DASH, TIMES, e, figure, number
-from basu.output.report.plots import marks
+from basu.output.report import events
 from basu.output.report.plots.chart import Line, Mark, chart
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
-from basu.output.report.templates import render
+from basu.output.report.templates import DASH, TIMES, e, figure, number, render
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -38,10 +37,10 @@ def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
     for order, event in enumerate(found):
         so_far *= 1.0 if event.factor is None else event.factor
         pictures = [close_up(history, event), _speed(felt, event)] if order < PICTURED else []
-        symbol = marks.symbol(event.kind, event.label, scored=event.factor is not None)
+        symbol = events.symbol(event.kind, event.label, scored=event.factor is not None)
         (rest if event.factor is None else scored).append((event, symbol, pictures, _facts(event, so_far)))
     sections = [("Infractions", "infractions", scored), ("Seen, not scored", "events", rest)]
-    return render("html/templates/evidence.j2", sections=sections)
+    return render("templates/evidence.j2", sections=sections)
 
 
 def close_up(history: History, event: Event) -> Element:

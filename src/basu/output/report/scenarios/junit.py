@@ -12,7 +12,7 @@ import re
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from basu.output.report.scenarios.verdicts import LOOKS
+from basu.output.report.scenarios.tally import LOOKS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

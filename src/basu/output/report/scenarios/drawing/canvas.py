@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from basu.output.report.markup import number
+from basu.output.report.templates import number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-    from basu.output.report.scenarios.drawing.encounter import Point
-    from basu.output.report.scenarios.drawing.scene import Story
+    from basu.output.report.scenarios.drawing.encounter import Point, Story
 
 Metres = TypeVar("Metres", float, "NDArray[np.float64]")
 WIDTH_PX = 560.0

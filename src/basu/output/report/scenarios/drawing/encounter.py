@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import other_boxes, own_boxes
+from basu.metrics.boxes import other_boxes, own_boxes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -194,3 +194,40 @@ def _touch(history: History, collision: Collision) -> Point:
     east, south, _ = collision.impulse_ns  # pushes the ego away from what it hit
     reach_m = math.hypot(own[3], own[4]) / max(math.hypot(east, south), 1e-9)
     return _corner_to((own[0] - east * reach_m, own[1] - south * reach_m), own)[1]
+
+
+class Story(NamedTuple):
+    """What of a record a picture tells."""
+
+    result: dict[str, Any]
+    history: History
+    span: Span
+    roles: dict[int, str]
+    met: Encounter | None
+    touched: list[Contact]
+
+    @property
+    def conflict_tick(self) -> int | None:
+        """When the conflict began; None where it never did."""
+        t_s = self.result["phases_s"].get("conflict")
+        if t_s is None:
+            return None
+        return min(int(np.searchsorted(self.history.frames["t_s"], t_s - 1e-6)), len(self.history.frames) - 1)
+
+    def own_box(self, tick: int) -> Box:
+        """The ego's box in a tick."""
+        box: Box = own_boxes(self.history.facts, self.history.frames[tick : tick + 1])[0]
+        return box
+
+
+def story_of(result: dict[str, Any], history: History) -> Story:
+    """Find in a record what its picture is about."""
+    span = span_of(result, history)
+    return Story(
+        result,
+        history,
+        span,
+        roles_of(result),
+        encounter_of(result, history, span),
+        contacts_of(result, history, span),
+    )

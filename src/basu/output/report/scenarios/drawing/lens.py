@@ -6,19 +6,18 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.output.report.markup import e, extended, number
-from basu.output.report.scenarios.drawing.bodies import block, body, outline
+from basu.output.report.scenarios.drawing.actors import block, body, outline
 from basu.output.report.scenarios.drawing.canvas import WIDTH_PX, Canvas
 from basu.output.report.scenarios.drawing.encounter import boxes_at, thing_boxes
-from basu.output.report.scenarios.drawing.legend import cross
+from basu.output.report.scenarios.drawing.labels import cross
 from basu.output.report.streets import on_the_map
+from basu.output.report.templates import e, extended, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.scenarios.drawing.encounter import Box, Encounter, Point
-    from basu.output.report.scenarios.drawing.scene import Story
+    from basu.output.report.scenarios.drawing.encounter import Box, Encounter, Point, Story
     from basu.output.report.streets import Line
 
 LENS_PX, CAPTION_PX = (176.0, 136.0), 16.0

@@ -1,4 +1,4 @@
-"""``matrix.html`` as a whole: one file that opens by double click, with or without its script."""
+"""``matrix.html``: one file with the matrix as a table, shares, success maps, and a card for each case."""
 
 from __future__ import annotations
 
@@ -7,25 +7,100 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import UserError
+from basu.files import write_bytes
 from basu.output.report.html.page import page
-from basu.output.report.markup import e, extended, html
-from basu.output.report.scenarios.page import matrix_table, tree_view
-from basu.output.report.scenarios.page.card import anchor_of, card, parameters, verdict_mark
-from basu.output.report.scenarios.page.records import read_case
-from basu.output.report.scenarios.page.shares_view import shares_view
-from basu.output.report.scenarios.page.style import card_style
+from basu.output.report.scenarios.matrix_documents import read_case
+from basu.output.report.scenarios.page import case_card
+from basu.output.report.scenarios.page.case_card import anchor_of, card, parameters, verdict_mark
+from basu.output.report.scenarios.page.route_section import card_style
+from basu.output.report.scenarios.shares import shares_view
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import drawing
-from basu.output.report.scenarios.tally import blocks, counted
-from basu.output.report.scenarios.verdicts import LOOKS
-from basu.utils.atomic import write_bytes
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, tally
+from basu.output.report.templates import DASH, e, extended, html
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Collection, Iterator, Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.scenarios.page.records import CaseRecord
+    from basu.output.report.scenarios.matrix_documents import CaseRecord
+
+
+MOST_SIGNS = 16  # cases of a scenario that have a sign each; more of them are counted
+
+
+def matrix_table(matrix: dict[str, Any], carded: Collection[str]) -> Element:
+    """The table; ``carded`` are the anchors of the cards in the page."""
+    agents = matrix["agents"]
+    head = e("thead", e("tr", e("th", "scenario", scope="col"), *(e("th", agent, scope="col") for agent in agents)))
+    table = e("table", head, class_="matrix")
+    for block in blocks(matrix):
+        body = e("tbody", e("tr", e("th", block.group, scope="rowgroup", colspan=len(agents) + 1), class_="group"))
+        for row in block.rows:
+            name = e("th", row.scenario, e("small", row.title), scope="row")
+            body.append(e("tr", name, *(_cell(row.cases, agent, carded) for agent in agents)))
+        table.append(body)
+    total = e("tr", e("th", "all", scope="row"), *(_total(matrix["cases"], agent) for agent in agents), class_="total")
+    table.append(e("tbody", total))
+    return e("div", table, class_="wide-matrix")
+
+
+def key() -> Element:
+    """What the signs mean."""
+    shown = {look.style: look for look in LOOKS.values()}
+    words = {
+        "absent": "not exercised: the conflict never came about",
+        "unjudged": "not judged: a fault of simulator, set-up or benchmark, or interrupted",
+    }
+    return e(
+        "p",
+        *(
+            e("span", e("i", look.sign, class_=f"chip {style}"), words.get(style, look.word), class_="legend")
+            for style, look in shown.items()
+        ),
+        e(
+            "span",
+            "figures: passed of judged; of those passed, least distance and least time to a collision",
+            class_="legend",
+        ),
+        class_="legends",
+    )
+
+
+def _cell(cases: Sequence[dict[str, Any]], agent: str, carded: Collection[str]) -> Element:
+    """What one agent made of a scenario."""
+    cell = _total(cases, agent)
+    if len(cases) <= MOST_SIGNS:
+        signs = [_sign(case, agent, carded) for case in cases if agent in case["results"]]
+        cell.insert(0, e("span", *signs, class_="chips"))
+    return cell
+
+
+def _total(cases: Sequence[dict[str, Any]], agent: str) -> Element:
+    """How many were passed, and how narrowly."""
+    found = tally(cases, agent)
+    narrowly = [found.narrowest, "" if found.ttc_s is None else f"{found.ttc_s:.1f} s"]
+    absent = f"{found.absent} not exercised" if found.absent else ""
+    style = "unjudged" if not found.judged else "passed" if found.passed == found.judged else "failed"
+    share = f"{found.passed}/{found.judged}" if found.judged else DASH
+    return e(
+        "td",
+        e("b", share, class_=f"share {style}"),
+        e("small", ", ".join(text for text in (*narrowly, absent) if text)),
+        class_="cell",
+    )
+
+
+def _sign(case: dict[str, Any], agent: str, carded: Collection[str]) -> Element:
+    """One case, a link to its card where there is one."""
+    result = case["results"][agent]
+    look, anchor = LOOKS[result["verdict"]], anchor_of(case["id"], agent)
+    told = f"{case['id']}, {agent}: {look.word}. {result['message']}"
+    if anchor not in carded:
+        return e("i", look.sign, class_=f"chip {look.style}", title=told)
+    return e("a", look.sign, href=f"#{anchor}", class_=f"chip {look.style}", title=told, aria_label=told)
+
 
 PAGE_FILE = "matrix.html"
 HERE = Path(__file__).parent
@@ -66,7 +141,7 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
     cards = _cards(cells, record)
     body = e("body", _head(matrix))
     extended(body, [shares_view(matrix), *_sweeps(matrix)])
-    table = e("section", e("h2", "Matrix"), matrix_table.key(), matrix_table.matrix_table(matrix, carded))
+    table = e("section", e("h2", "Matrix"), key(), matrix_table(matrix, carded))
     extended(body, [table, _cases(matrix, cards)])
     script = (HERE / "matrix.js").read_text(encoding="utf-8")
     return page(f"Scenarios: {matrix['what']}", body, script=script, style=card_style())
@@ -149,7 +224,7 @@ def _sweeps(matrix: dict[str, Any]) -> Iterator[Element]:
 
 def _cases(matrix: dict[str, Any], cards: dict[str, list[Element]]) -> Element:
     """All cases by group and scenario, each to be opened."""
-    section = e("section", e("h2", "Cases"), _filters(matrix), tree_view.key(), id="cases")
+    section = e("section", e("h2", "Cases"), _filters(matrix), case_card.key(), id="cases")
     for block in blocks(matrix):
         group = e("section", e("h3", block.group), class_="of-group", data_group=block.group)
         for row in block.rows:

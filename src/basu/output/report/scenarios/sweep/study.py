@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.output.report.scenarios.tally import blocks
-from basu.output.report.scenarios.verdicts import LOOKS
+from basu.output.report.scenarios.tally import LOOKS, blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
