@@ -27,7 +27,7 @@ class FakeEpisode:
         assert layers == 0
 
 
-class FakeSeeing:
+class FakeSensorScene:
     """There is nothing to see; notes who would have waited for it."""
 
     def __init__(self, *, is_there: bool = True) -> None:
@@ -51,7 +51,7 @@ class FakeSimulation:
     spawn_points: tuple[Transform, ...] = (Transform(),)
     steps_s: list[float] = field(default_factory=list)
     episode: FakeEpisode = field(default_factory=FakeEpisode)
-    seeing: FakeSeeing = field(default_factory=FakeSeeing)
+    sensor_scene: FakeSensorScene = field(default_factory=FakeSensorScene)
     sensors: EpisodeSensors = field(default_factory=EpisodeSensors)
 
     def step(self, dt_s: float) -> None:

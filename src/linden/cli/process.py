@@ -15,7 +15,7 @@ from typing import TextIO
 from typing_extensions import Self
 
 from linden.background import end_all
-from linden.server.rpc.warning_log import Sparing
+from linden.server.rpc.warning_log import LogFilter
 
 GRACE_S = 1.0
 """How long what is being done at a signal may take: any call but the loading of an unusual map."""
@@ -77,7 +77,7 @@ def _break_off(number: int, _frame: FrameType | None) -> None:
     raise SystemExit(128 + number)  # as the shell counts it
 
 
-class PatientHandler(logging.StreamHandler):  # type: ignore[type-arg] # subscripted at run time only from Python 3.11 on
+class LossyHandler(logging.StreamHandler):  # type: ignore[type-arg] # subscripted at run time only from Python 3.11 on
     """Writes the log to stderr. A full pipe loses lines and never stops the server."""
 
     def __init__(self) -> None:
@@ -121,10 +121,10 @@ def _nowhere() -> TextIO:
 
 def write_log(level: str) -> None:
     """Write the server's log to stderr from a level on; the compiler's own log is left out."""
-    logging.basicConfig(level=logging.WARNING, handlers=[PatientHandler()], format="linden: %(levelname)s: %(message)s")
+    logging.basicConfig(level=logging.WARNING, handlers=[LossyHandler()], format="linden: %(levelname)s: %(message)s")
     log = logging.getLogger("linden")
     log.setLevel(level)
-    log.addFilter(Sparing())
+    log.addFilter(LogFilter())
 
 
 def allow_connections() -> None:

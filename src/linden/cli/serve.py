@@ -117,9 +117,9 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
         compile_once(cache)
         simulation = World(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
         simulation.episode.warm_up()
-        simulation.seeing.device = arguments.device
-        simulation.seeing.standing_on = partial(standing_of, cache=cache)
-        simulation.seeing.bodies_of = partial(bodies_of, cache=cache)
+        simulation.sensor_scene.device = arguments.device
+        simulation.sensor_scene.standing_on = partial(standing_of, cache=cache)
+        simulation.sensor_scene.bodies_of = partial(bodies_of, cache=cache)
         keep_bodies(simulation.library, cache)
         keep_standing(world_map, simulation.episode.surroundings.scene, cache)  # seconds, if it is not there yet
         mesh_file(simulation.episode, meshes)  # every client asks for it before anything else

@@ -52,7 +52,7 @@ class Rules(NamedTuple):
     replay_sensors: bool
 
 
-class Cast:
+class ReplayedActors:
     """The actors of the world that stand for recorded actors.
 
     Attributes:

@@ -13,11 +13,11 @@ import numpy as np
 from linden.geometry import compose
 from linden.protocol.values.space import Transform
 from linden.replay import frame_records as recorded_lamps
-from linden.replay.apply_frame import Stage
+from linden.replay.apply_frame import FrameApplier
 from linden.replay.file.packets import Frame, RecordingError
 from linden.replay.file.track import Track
 from linden.replay.interpolation import Places, between, places
-from linden.replay.replayed_actors import Cast, ReplayedWorld, Rules
+from linden.replay.replayed_actors import ReplayedActors, ReplayedWorld, Rules
 
 log = logging.getLogger("linden")
 
@@ -116,8 +116,8 @@ class _Run:
         self._frames, self._elapsed_s = track.places, track.elapsed_s
         self._events = deque(sorted(track.events.items()))
         self.span = _span(float(self._elapsed_s[-1]), plan)
-        self._cast = Cast(simulation, rules)
-        self._stage = Stage(simulation, self._cast)
+        self._actors = ReplayedActors(simulation, rules)
+        self._applier = FrameApplier(simulation, self._actors)
         self._known: dict[int, Frame] = {}
         self._now_s = self.span.start_s
         self._has_begun = False
@@ -137,8 +137,8 @@ class _Run:
         while self._events and self._events[0][0] <= at:
             self._take_in(self._events.popleft()[1])
         frame = self._frame(at)
-        self._stage.put(self._places(at, now_s))
-        self._stage.show(frame)
+        self._applier.put(self._places(at, now_s))
+        self._applier.show(frame)
         self._follow()
 
     def _places(self, at: int, now_s: float) -> Places:
@@ -167,17 +167,17 @@ class _Run:
             raise frame
         parent_of = dict(frame.parents.tolist())
         for actor in frame.added:
-            self._cast.enter(actor, parent_of.get(actor.id, 0))
+            self._actors.enter(actor, parent_of.get(actor.id, 0))
         for (actor_id,) in frame.removed.tolist():
-            self._cast.leave(actor_id)
-        self._stage.swing_doors(frame.doors)
+            self._actors.leave(actor_id)
+        self._applier.swing_doors(frame.doors)
         lamps = recorded_lamps.states(frame.scene_lights)
         if unknown := self._simulation.episode.surroundings.lamps.update(lamps):
             log.info("replay: the map lacks %d of the lamps that were switched", len(unknown))
 
     def _follow(self) -> None:
         episode = self._simulation.episode
-        actor_id = self._cast.of.get(self._plan.follow_id, 0)
+        actor_id = self._actors.of.get(self._plan.follow_id, 0)
         if actor_id in episode.actors:
             episode.place(episode.spectator_id, compose(episode.transform(actor_id), self._plan.offset))
 
@@ -186,8 +186,8 @@ class _Run:
         if not keep_actors:
             for _, frame in self._events:
                 for (actor_id,) in () if isinstance(frame, RecordingError) else frame.removed.tolist():
-                    self._cast.leave(actor_id)
-        self._cast.dismiss()
+                    self._actors.leave(actor_id)
+        self._actors.dismiss()
         self.recording.close()
 
 

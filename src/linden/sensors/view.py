@@ -134,7 +134,7 @@ class LookingSensor(Protocol):
 
 
 @runtime_checkable
-class Expectant(Protocol):
+class AsynchronousSensor(Protocol):
     """A sensor with asynchronous measurements: those of a frame all begin before the first is read."""
 
     def expect(self, look: Look) -> None:

@@ -45,7 +45,7 @@ def most_connections() -> int:
     return max(RESERVED_FILES, min(soft - RESERVED_FILES, MOST_CONNECTIONS_ANYWHERE))
 
 
-class Entrance:
+class Acceptor:
     """Listens on both ports and keeps the connections that have not sent anything yet."""
 
     def __init__(

@@ -14,7 +14,7 @@ from linden.server.load_answers import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
 from linden.server.rpc import registry
 from linden.server.rpc.context import Context
-from linden.server.rpc.registry import Unanswered
+from linden.server.rpc.registry import SuspendedCall
 from linden.server.subscribers import Expected, Subscribers
 
 log = logging.getLogger("linden")
@@ -87,7 +87,7 @@ class Calls:
         self._cues: dict[RpcPeer, Cue] = {}  # of clients with a Traffic Manager
         self._driven: dict[RpcPeer, Driven] = {}  # of those too
         self._shown_frame = context.simulation.frame
-        self._working: dict[RpcPeer, Unanswered] = {}  # clients with work in the background
+        self._working: dict[RpcPeer, SuspendedCall] = {}  # clients with work in the background
         self._handovers: dict[RpcPeer, Handover] = {}  # of loads by clients with a Traffic Manager
         self._load_until_s = math.inf  # when a pending load begins in any case
         self._held: dict[RpcPeer, tuple[bytes, float]] = {}  # answers that wait for the scene, and until when
@@ -184,7 +184,7 @@ class Calls:
         if self._context.simulation.frame != frame:
             self.last_ticker = peer
         self.publish()
-        if isinstance(answer, Unanswered):
+        if isinstance(answer, SuspendedCall):
             self._working[peer] = answer
             answer.made.add_done_callback(lambda _: self._wake())
             return None

@@ -14,7 +14,7 @@ SHORTEST_STEP_S = 1e-4
 """So that two ticks in a row have a step above zero between them."""
 
 
-class Pace:
+class FrameClock:
     """The rhythm of one server. All times in s of one steady clock."""
 
     def __init__(self, now_s: float) -> None:

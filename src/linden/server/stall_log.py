@@ -19,7 +19,7 @@ NO_TICK_S = 10.0
 _NAMED = 5  # how many peers a sentence names
 
 
-class Stretch:
+class Stall:
     """One stretch of waiting after the other, each told of once it has lasted."""
 
     def __init__(self, told_after_s: float) -> None:
@@ -49,12 +49,12 @@ class Stretch:
         return max(0.0, self._since_s + self._told_after_s - now_s)
 
 
-class Waiting:
+class StallLog:
     """The waiting of one server."""
 
     def __init__(self) -> None:
-        self._held_up = Stretch(HELD_UP_S)
-        self._no_tick = Stretch(NO_TICK_S)
+        self._held_up = Stall(HELD_UP_S)
+        self._no_tick = Stall(NO_TICK_S)
         self._frame = -1
 
     def for_subscribers(self, now_s: float, congested: Sequence[StreamPeer]) -> None:

@@ -14,7 +14,7 @@ DEEP_M = 10.0
 """No actor stands so far below the ground by mistake; roads under others have a ground of their own."""
 
 
-class Buried:
+class BelowGround:
     """The actors without physics, by the slots of their bodies."""
 
     def __init__(self, ground: Ground, bodies: Bodies) -> None:

@@ -90,9 +90,9 @@ def spawn(
     )
     episode.actors.add(record, world_pose, pose if parent_id else None)
     if record.slot != NO_BODY:
-        episode.buried.arrive(record.slot)
+        episode.below_ground.arrive(record.slot)
     if made_trigger is not None:
-        episode.grip.add(record.id, made_trigger)
+        episode.friction.add(record.id, made_trigger)
     return record
 
 
@@ -170,5 +170,5 @@ def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
         episode.bodies.remove(record.slot)
         episode.forget_contacts(record.slot)
     episode.doors.forget(actor_id)
-    episode.grip.forget(actor_id)
+    episode.friction.forget(actor_id)
     episode.poses.forget(actor_id)

@@ -8,7 +8,13 @@ from linden.errors import Refusal
 from linden.protocol.values.space import Transform, Vector3D
 from linden.sensors.devices.collision import collisions
 from linden.sensors.devices.instruments import Instrument, Moment, instrument, observe
-from linden.sensors.runtime.looking_sensors import MAKERS, Eye, Now, eye_of, look_around
+from linden.sensors.runtime.looking_sensors import (
+    MAKERS,
+    ScheduledSensor,
+    SensorFrame,
+    look_around,
+    scheduled_sensor_of,
+)
 from linden.simulation.actor_table import ActorRecord, ActorTable
 from linden.simulation.episode import Episode
 
@@ -63,15 +69,15 @@ class EpisodeSensors:
 
     def __init__(self) -> None:
         self.instruments: dict[int, Instrument] = {}
-        self.looking: dict[int, Eye] = {}
+        self.looking: dict[int, ScheduledSensor] = {}
 
     def add(self, record: ActorRecord) -> None:
         """Make the sensor of an actor that was spawned, if the actor is a sensor that measures here."""
         self.remove(record.id)  # an id can be that of an actor that a replay has destroyed
         if (made := instrument(record.description)) is not None:
             self.instruments[record.id] = made
-        if (eye := eye_of(record.description)) is not None:
-            self.looking[record.id] = eye
+        if (sensor := scheduled_sensor_of(record.description)) is not None:
+            self.looking[record.id] = sensor
 
     def remove(self, actor_id: int) -> None:
         """Drop the sensor of an actor that is destroyed."""
@@ -89,7 +95,7 @@ class EpisodeSensors:
         return any(actors.get(actor_id).stream_id in listened for actor_id in self.looking if actor_id in actors)
 
 
-def measure(sensors: EpisodeSensors, episode: Episode, listened: Container[int], now: Now) -> Measurements:
+def measure(sensors: EpisodeSensors, episode: Episode, listened: Container[int], now: SensorFrame) -> Measurements:
     """Return the measurements that are due in this frame and have subscribers, in the order of the sensors."""
     sensors.remove_destroyed(episode.actors)
     found: Measurements = []

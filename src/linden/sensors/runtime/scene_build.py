@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from linden.simulation.episode import Episode
 
 
-class Stage(NamedTuple):
+class BuiltScene(NamedTuple):
     """A scene for sensors, cached as long as the map's scene and its present boxes (``statics``) stay the same."""
 
     scene: Scene
@@ -33,7 +33,7 @@ class Stage(NamedTuple):
     caster: Caster
 
 
-class Wanted(NamedTuple):
+class SceneKey(NamedTuple):
     """The input of a build, and the key of the cached result: the map, its scene, and the boxes that are present."""
 
     world_map: LoadedMap
@@ -42,7 +42,7 @@ class Wanted(NamedTuple):
     present: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, episode: "Episode") -> "Wanted":
+    def of(cls, episode: "Episode") -> "SceneKey":
         """Return what an episode's sensors want now."""
         here = episode.surroundings
         return cls(episode.map, here.scene, here.statics, here.present.copy())
@@ -53,7 +53,7 @@ class Wanted(NamedTuple):
         return self.scene is here.scene and self.statics is here.statics
 
 
-def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
+def build(wanted: SceneKey, whole: Mesh, bodies: "Bodies", device: str) -> BuiltScene:
     """Return the stage: the caster built beside the rest of it, which a colour picture needs."""
     # here, not above: a server without such sensors does not need it
     from linden.sensors.camera.picture.rgb import looks_of  # noqa: PLC0415 - see above
@@ -65,7 +65,7 @@ def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
         _load_kernels()
     faces = table_of(standing, bodies.meshes)
     looks_of(standing, bodies.meshes)
-    return Stage(wanted.scene, wanted.statics, standing, faces, caster.result())
+    return BuiltScene(wanted.scene, wanted.statics, standing, faces, caster.result())
 
 
 @once

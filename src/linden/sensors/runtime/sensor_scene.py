@@ -13,9 +13,9 @@ from linden.maps.library import LoadedMap
 from linden.scenery.mesh import Mesh
 from linden.scenery.scene.objects import Scene
 from linden.sensors.casting.caster import CPU, Instances
-from linden.sensors.runtime.light_state import Shining
-from linden.sensors.runtime.scene_build import Stage, Wanted, build
-from linden.sensors.runtime.visible_actors import Company
+from linden.sensors.runtime.light_state import LightStateCache
+from linden.sensors.runtime.scene_build import BuiltScene, SceneKey, build
+from linden.sensors.runtime.visible_actors import VisibleActors
 from linden.sensors.view import NO_ACTOR_FROM, Seen
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def bodies_of(library: BlueprintLibrary) -> "Bodies":
     return Bodies(library)
 
 
-class Seeing:
+class SensorScene:
     """Lets sensors see an episode; outlives it, since most loads load the same map again.
 
     Nothing is built before a sensor that looks is there, and no body gathered before it is listened to.
@@ -64,22 +64,22 @@ class Seeing:
         self.bodies_of: Callable[[BlueprintLibrary], Bodies] = bodies_of
         self._library = library
         self._bodies: Future[Bodies] | None = None
-        self._company: Company | None = None
+        self._visible_actors: VisibleActors | None = None
         self._whole: tuple[Scene, Mesh] | None = None
-        self._stage: Stage | None = None
-        self._coming: tuple[Wanted, Future[Stage]] | None = None
+        self._scene: BuiltScene | None = None
+        self._coming: tuple[SceneKey, Future[BuiltScene]] | None = None
         self._unwanted: Unwanted | None = None
         self._episode: Episode | None = None
         self._signals: tuple[Episode, U32] | None = None
-        self._shining = Shining()
+        self._light_states = LightStateCache()
         self._frame = -1
         self._instances: Instances | None = None
 
     def prepare(self, episode: "Episode") -> None:
         """Begin to build what is not built yet, in the background: a sensor that looks was spawned."""
         if not self._is_built(episode) and (self._coming is None or not self._coming[0].is_for(episode)):
-            wanted, before, bodies = Wanted.of(episode), self._coming, self._bodies_coming()
-            self._stage = None  # before the next is built: two of them at once would take twice the memory
+            wanted, before, bodies = SceneKey.of(episode), self._coming, self._bodies_coming()
+            self._scene = None  # before the next is built: two of them at once would take twice the memory
             self._give_up()
             self._unwanted = unwanted = Unwanted()
             self._coming = wanted, in_background(lambda: self._built(wanted, bodies, before), unwanted)
@@ -90,8 +90,8 @@ class Seeing:
         if self._coming is not None and not self._coming[0].is_for(episode):
             self._give_up()
             self._coming = None
-        if self._stage is not None and self._stage.scene is not episode.surroundings.scene:
-            self._stage = self._whole = None
+        if self._scene is not None and self._scene.scene is not episode.surroundings.scene:
+            self._scene = self._whole = None
 
     def _give_up(self) -> None:
         if self._unwanted is not None:
@@ -107,28 +107,28 @@ class Seeing:
         So the next frame knows where they came from, whether or not a sensor measures in this one.
         """
         if self._instances is None or episode is not self._episode or frame != self._frame:
-            if self._company is None or episode is not self._episode:
-                self._company = Company(self._all_bodies())
-            self._instances = self._company.gather(episode, goes_on=frame == self._frame + 1)
+            if self._visible_actors is None or episode is not self._episode:
+                self._visible_actors = VisibleActors(self._all_bodies())
+            self._instances = self._visible_actors.gather(episode, goes_on=frame == self._frame + 1)
             self._episode, self._frame = episode, frame
         return self._instances
 
     def look(self, episode: "Episode", frame: int) -> Seen:
         """Return the moment as it is seen, the bodies posed; builds what is not built yet."""
-        instances, stage = self.follow(episode, frame), self._stage_of(episode)
-        stage.caster.pose(instances)
+        instances, scene = self.follow(episode, frame), self._scene_of(episode)
+        scene.caster.pose(instances)
         if self._signals is None or self._signals[0] is not episode:
             self._signals = episode, _object_ids(episode)  # lights and signs are there as long as the episode
-        shine = self._shining.of(episode)
+        light_states = self._light_states.of(episode)
         return Seen(
-            caster=stage.caster,
-            standing=stage.standing,
+            caster=scene.caster,
+            standing=scene.standing,
             bodies=self._all_bodies().meshes,
-            faces=stage.faces,
+            faces=scene.faces,
             instances=instances,
             object_id=self._signals[1],
-            object_lights=shine.lights,
-            object_light_colour=shine.colour,
+            object_lights=light_states.lights,
+            object_light_colour=light_states.colour,
             weather=episode.weather,
             now_s=episode.elapsed_s,
         )
@@ -143,18 +143,20 @@ class Seeing:
 
     def _is_built(self, episode: "Episode") -> bool:
         here = episode.surroundings
-        return self._stage is not None and self._stage.scene is here.scene and self._stage.statics is here.statics
+        return self._scene is not None and self._scene.scene is here.scene and self._scene.statics is here.statics
 
-    def _stage_of(self, episode: "Episode") -> Stage:
-        """Return the stage; what does not stand any more (layers, single objects) is left out of it."""
+    def _scene_of(self, episode: "Episode") -> BuiltScene:
+        """Return the built scene, without hidden layers and objects."""
         self.prepare(episode)
         if self._coming is not None:
             coming, self._coming = self._coming[1], None
-            self._stage = coming.result()
-        assert self._stage is not None
-        return self._stage
+            self._scene = coming.result()
+        assert self._scene is not None
+        return self._scene
 
-    def _built(self, wanted: Wanted, bodies: "Future[Bodies]", before: "tuple[Wanted, Future[Stage]] | None") -> Stage:
+    def _built(
+        self, wanted: SceneKey, bodies: "Future[Bodies]", before: "tuple[SceneKey, Future[BuiltScene]] | None"
+    ) -> BuiltScene:
         """Return the wanted scene, after the build of the previous one has ended."""
         if before is not None:
             wait([before[1]])

@@ -189,7 +189,7 @@ def _from_unreal(moment: Vector3D) -> Vector3D:
 def set_actor_simulate_physics(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let forces move an actor, or hold it where it is put."""
     episode = context.simulation.episode
-    episode.buried.simulate(episode.body(actor_id), wanted=enabled)
+    episode.below_ground.simulate(episode.body(actor_id), wanted=enabled)
 
 
 @method("set_actor_enable_gravity")

@@ -10,7 +10,7 @@ from linden.maps.library import MapLibrary
 from linden.maps.navigation.library import MeshLibrary
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.replay.file.folder import RecordingFolder
-from linden.server.rpc.warning_log import Complaints
+from linden.server.rpc.warning_log import WarningLog
 from linden.world import World
 
 log = logging.getLogger("linden")
@@ -57,8 +57,8 @@ class Context:
     """The load that has been answered and has not begun; see ``handlers.session.load_new_episode``."""
     frame_is_due: bool = False
     """Whether asynchronous mode's next frame shall not wait for the clock."""
-    complaints: Complaints = field(default_factory=Complaints)
-    bugs: Complaints = field(default_factory=Complaints)
+    warnings: WarningLog = field(default_factory=WarningLog)
+    bugs: WarningLog = field(default_factory=WarningLog)
 
     def advance(self) -> int:
         """Make one frame, put what it shows into the outbox, and return its number."""
@@ -78,7 +78,7 @@ class Context:
 
     def builds_the_scene(self) -> bool:
         """Whether what sensors look at is being built."""
-        return not self.simulation.seeing.wait(0.0)
+        return not self.simulation.sensor_scene.wait(0.0)
 
     def waits_for_the_scene(self) -> bool:
         """Return whether the next frame has to wait for the sensor scene, because a subscriber needs it."""
@@ -89,9 +89,9 @@ class Context:
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""
-        self.complaints.say(sentence)
+        self.warnings.say(sentence)
 
-    def own_up(self, sentence: str, error: BaseException | None = None) -> None:
+    def log_bug(self, sentence: str, error: BaseException | None = None) -> None:
         """Log a bug of ours with its traceback; however many warnings clients have called forth, it is seen.
 
         Where memory does not suffice for the traceback, the log has none.

@@ -47,7 +47,7 @@ def kind_of(sentence: str) -> str:
     return _FIGURES.sub("#", sentence[:_KIND_CHARACTERS])
 
 
-class Complaints:
+class WarningLog:
     """What one server has said."""
 
     def __init__(self) -> None:
@@ -80,7 +80,7 @@ CHARACTERS = 100_000
 PERIOD_S = 60.0
 
 
-class Sparing(logging.Filter):
+class LogFilter(logging.Filter):
     """Lets a line pass or drops it. The level debug lets every line pass."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:

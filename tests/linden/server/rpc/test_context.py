@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from fakes.simulation import FakeFrames, FakeMaps, FakeSeeing
+from fakes.simulation import FakeFrames, FakeMaps, FakeSensorScene
 from linden.sensors.runtime.measure import EpisodeSensors
 from linden.server.rpc.context import Context
 
@@ -21,7 +21,7 @@ def test_a_frame_waits_for_the_scene_only_where_somebody_looks_at_it(
     sensors = EpisodeSensors()
     sensors.looking[CAMERA] = None
     context = Context(
-        simulation=SimpleNamespace(seeing=FakeSeeing(is_there=is_there), episode=episode, sensors=sensors),
+        simulation=SimpleNamespace(sensor_scene=FakeSensorScene(is_there=is_there), episode=episode, sensors=sensors),
         maps=FakeMaps(),
         frames=FakeFrames(),
         streams=SimpleNamespace(listened=lambda: listened),
