@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.builtin.driving.driver import BehavioralDriver
-from basu.agents.builtin.driving.driver import Command, Driver
 from basu.agents.builtin.driving.controllers import DriveModel
+from basu.agents.builtin.driving.driver import BehavioralDriver, Command, Driver
 from basu.agents.builtin.driving.manner import NORMAL, Manner
 from basu.agents.builtin.driving.task import make_task
 from basu.agents.builtin.passing.road import make_road

@@ -3,7 +3,8 @@
 Where a simulator falls silent, the client's Traffic Manager lets its time-out escape from its thread
 (``TrafficManagerLocal::Run`` asks for the episode's settings), and C++ then ends the process: ``std::terminate``. With
 :func:`hold` such a thread is put to sleep instead; the calls of the benchmark itself fail by their own time-outs, as
-exceptions. Who has held a thread must leave by :func:`leave`: C++ would wait for that thread at the process's end.
+exceptions. A program that has held a thread must leave by :func:`leave`: C++ would wait for that thread at the
+process's end.
 """
 
 from __future__ import annotations

@@ -79,12 +79,12 @@ class Traffic(NamedTuple):
     density_per_km: float | None = None  # vehicles on a km of driving lane near the route
 
     @property
-    def nobody(self) -> bool:
+    def is_empty(self) -> bool:
         """Whether the vehicle under test is to be alone."""
-        return self == NOBODY
+        return self == NO_TRAFFIC
 
 
-NOBODY = Traffic()
+NO_TRAFFIC = Traffic()
 
 
 class Sumo(NamedTuple):

@@ -76,7 +76,7 @@ class RunResult:
 
     @property
     def result(self) -> Result:
-        """The judgement as one object, with the value of every metric; docs/result.md describes it."""
+        """The judgement as one object, with the value of every metric; docs/reference/result.md describes it."""
         return self._record.result
 
     @property
@@ -235,7 +235,7 @@ class ScenarioResults:
 
     @property
     def shares(self) -> dict[str, Any]:
-        """The share of the crash toll that each agent survives, as docs/scenarios.md describes it."""
+        """The share of the crash cost that each agent's passed cases stand for, as docs/scenarios.md describes it."""
         return dict(self.document["shares"])
 
     def to_pandas(self) -> pd.DataFrame:

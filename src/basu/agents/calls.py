@@ -116,7 +116,7 @@ class AgentCalls:
         self._is_ours = is_ours
         self._is_bound = False
         self._config: AgentConfig | None = None
-        self._as_numpy: frozenset[str] = frozenset()  # ids of the sensors whose measurements become arrays here
+        self._as_numpy: frozenset[str] = frozenset()  # ids of the sensors with measurements as arrays
         self.name = agent_class.__name__
         self.agent = self._call("__init__", self._setup_limit_s, agent_class)
 
@@ -254,7 +254,7 @@ def checked(answer: object, name: str) -> carla.VehicleControl:
     for value_name, low in PEDALS_AND_WHEEL:
         value = getattr(answer, value_name)
         if not math.isfinite(value):
-            raise AgentInvalidControlError(f"run_step() of {name} returned a control whose {value_name} is {value}")
+            raise AgentInvalidControlError(f"run_step() of {name} returned a control with {value_name} {value}")
         if not low <= value <= 1.0:
             setattr(answer, value_name, min(1.0, max(low, value)))
     return answer

@@ -70,7 +70,7 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     if agent_config is not None and not issubclass(loaded.agent_class, LeaderboardAgent):
         raise UserError(
             f"the agent '{wanted}' takes no --agent-config: that is for agents of the leaderboard and of "
-            "ScenarioRunner; leave it away"
+            "ScenarioRunner; remove the option"
         )
     return loaded
 

@@ -69,7 +69,7 @@ def add_replay(replay: argparse.ArgumentParser) -> None:
 
 
 def ask_recording(arguments: argparse.Namespace) -> int:
-    """Run a metric on a recording alone; no simulator is asked."""
+    """Run a metric on a recording alone, without a simulator."""
     from basu.records.carla_log import read_log  # noqa: PLC0415 - brings in the client, which `--help` does not need
     from basu.records.carla_log.metric_file import drawn, off_screen, run_metric  # noqa: PLC0415 - likewise
     from basu.records.carla_log.metrics_log import MetricsLog  # noqa: PLC0415 - likewise

@@ -60,7 +60,7 @@ def add_list(listing: argparse.ArgumentParser) -> None:
 
 
 def score_run(arguments: argparse.Namespace) -> int:
-    """Compute scores and infractions of a run again, from its history and facts; no simulator is asked."""
+    """Compute scores and infractions of a run again, from its history and facts, without a simulator."""
     from basu.cli.run import scoring_of  # noqa: PLC0415 - as above
     from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
     from basu.metrics.result import judge  # noqa: PLC0415 - likewise

@@ -108,7 +108,7 @@ class Episode:
         observers: Callable[[Live], Sequence[BaseManager]] = lambda _live: (),
         folder: Path = Path(),
     ) -> None:
-        """Describe an episode; nothing is asked of the simulator yet.
+        """Describe an episode; the simulator gets no call yet.
 
         ``towns`` are shared by all episodes of a simulator. ``sensors`` makes the agent's sensors for one drive.
         ``participants`` are set up between the traffic and the sensors and are not ticked. ``observers`` makes managers
@@ -254,7 +254,7 @@ class Episode:
         self.outcome = managers.routes.outcome or ground.scenarios.outcome
         if self.outcome is not None:
             return Step(observation, self.outcome, self.outcome)
-        # A simulator that has ended is asked for no step: the Traffic Manager's thread in the official client would run
+        # A simulator that has ended gets no further step: the Traffic Manager's thread in the official client would run
         # into its own time-out meanwhile, and that ends the whole process.
         if self._simulator.ended():
             raise SimulatorError("the simulator ended")
@@ -376,7 +376,7 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
         raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:
         raise UserError(
-            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (asked for: {number}); "
+            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (requested: {number}); "
             "another program ticks it too, and a benchmark has to be the only one"
         )
     return Frame(0 if before is None else before.tick + 1, snapshot.frame, snapshot, ego_in(ego))

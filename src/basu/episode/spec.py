@@ -11,7 +11,7 @@ import carla
 
 from basu.agents.autonomous_agent import AgentConfig
 from basu.metrics.score import Scoring
-from basu.options import NOBODY, STEP_S, Sumo, Traffic
+from basu.options import NO_TRAFFIC, STEP_S, Sumo, Traffic
 from basu.routing.route_file import RouteDescription, RoutePoint
 from basu.routing.weather import changed
 from basu.scenarios.paths.lanes import followed, waypoint_at
@@ -36,7 +36,7 @@ class EpisodeSpec:
     config: AgentConfig = field(default_factory=AgentConfig)  # its vehicle is the one under test
     weather: carla.WeatherParameters  # at the start
     weather_along: tuple[WeatherMark, ...] = ()  # along the route
-    traffic: Traffic = NOBODY
+    traffic: Traffic = NO_TRAFFIC
     sumo: Sumo | None = None  # traffic of SUMO
     scenarios: tuple[Playable, ...] = ()  # on the route, or the one case
     is_case: bool = False  # the episode begins and ends with its one scenario

@@ -1,4 +1,4 @@
-"""The agent under test: made, bound to its run, asked for a control every tick within its time limit."""
+"""The agent under test: made, bound to its run, called for a control every tick within its time limit."""
 
 from __future__ import annotations
 

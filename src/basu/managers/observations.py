@@ -84,7 +84,7 @@ BEHIND_M = 1.0  # a light counts until its line is so far behind the rear: the l
 
 
 class RouteLights:
-    """The lights of a route, asked for once; their states come with every tick."""
+    """The lights of a route, read once; their states come with every tick."""
 
     def __init__(self, world: carla.World, route: Route, rear_m: float) -> None:
         """Look them up; ``rear_m`` is how far the vehicle reaches behind its origin."""
@@ -94,7 +94,7 @@ class RouteLights:
         self._lights = [(s_m, light) for s_m, light in found if light is not None]
 
     def next_state(self, route_s_m: float) -> int:
-        """The carla.TrafficLightState of the next light whose line is not ``BEHIND_M`` behind the rear, or NO_LIGHT."""
+        """The carla.TrafficLightState of the next light, its line at most ``BEHIND_M`` behind the rear; or NO_LIGHT."""
         for line_s_m, light in self._lights:
             if line_s_m >= route_s_m - self._rear_m - BEHIND_M:
                 return int(light.get_state())
@@ -103,9 +103,9 @@ class RouteLights:
 
 LOOK_AGAIN_TICKS = 20  # the list of actors is compared at least so often, and whenever the number of actors changes
 MOVING_KINDS = ("vehicle.", "walker.")
-THING_KINDS = ("static.prop.",)  # scenery is no actor; sensors, signs and friction triggers stand in nobody's way
-SMALLEST_M = 0.15  # half size of a body whose box the simulator leaves empty
-OVERHEAD_M = 3.0  # a thing whose box begins so far above the road is driven under
+THING_KINDS = ("static.prop.",)  # scenery is no actor; sensors, signs and friction triggers stand in no vehicle's way
+SMALLEST_M = 0.15  # half size of a body with an empty box from the simulator
+OVERHEAD_M = 3.0  # a thing that begins so far above the road is driven under
 
 
 class _Shape(NamedTuple):
@@ -142,7 +142,7 @@ class Neighbours:
         return self._last[1]
 
     def _found(self, frame: Frame) -> list[tuple[float, ...]]:
-        """The rows of a frame that was not asked for yet."""
+        """The rows of a new frame."""
         if len(frame.snapshot) != self._count or frame.tick % LOOK_AGAIN_TICKS == 0:
             self._look_again(len(frame.snapshot))
         moving: list[tuple[float, int, carla.ActorSnapshot]] = []

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import ActorSpec, Pose
 
 
-def asked(who: str, call: Callable[[], T]) -> T:
+def call_scenario(name: str, call: Callable[[], T]) -> T:
     """One call of a scenario's code; what goes wrong in it is the scenario's.
 
     Raises:
@@ -44,27 +44,27 @@ def asked(who: str, call: Callable[[], T]) -> T:
         raise
     except RuntimeError as error:
         if "time-out" in str(error):
-            raise SimulatorError(f"the simulator failed in the scenario {who}: {error}") from error
-        raise _scenarios(who, error) from error
+            raise SimulatorError(f"the simulator failed in the scenario {name}: {error}") from error
+        raise _scenarios(name, error) from error
     except Exception as error:
-        raise _scenarios(who, error) from error
+        raise _scenarios(name, error) from error
 
 
-def _scenarios(who: str, error: Exception) -> ScenarioError:
+def _scenarios(name: str, error: Exception) -> ScenarioError:
     """What went wrong in a scenario's code, with its place."""
     where = traceback.extract_tb(error.__traceback__)[-1]
     return ScenarioError(
-        f"the scenario {who} raised {type(error).__name__}: {error} (line {where.lineno} of {where.filename})"
+        f"the scenario {name} raised {type(error).__name__}: {error} (line {where.lineno} of {where.filename})"
     )
 
 
 OFF_ROUTE_M = 5.0  # a trigger point farther than this from the route belongs to another way
 ALIKE_M = 1.0  # places of the route so much farther from a point than its nearest one may be meant as well
 TURNED_RAD = math.radians(60.0)  # a trigger point turned by more than this looks along another way
-IN_THE_WAY_M = 2.5  # aside of the route, within which somebody stands in the ego's way
+IN_THE_WAY_M = 2.5  # aside of the route, within which an actor stands in the ego's way
 
 
-class LaidOut(NamedTuple):
+class PlacedScenario(NamedTuple):
     """A scenario on its route."""
 
     planned: Playable
@@ -73,7 +73,7 @@ class LaidOut(NamedTuple):
     way: Route  # up to where the scenario's own part ends
 
 
-def lay_out(planned: Playable, route: Route, carla_map: carla.Map, *, own: bool) -> LaidOut:
+def place_scenario(planned: Playable, route: Route, carla_map: carla.Map, *, own: bool) -> PlacedScenario:
     """Lay a scenario on the ego's route, which is ``own`` or has others on it.
 
     Raises:
@@ -93,8 +93,8 @@ def lay_out(planned: Playable, route: Route, carla_map: carla.Map, *, own: bool)
                 f"point, and there are {place.left_m:.0f} m; move it back or let the route go on"
             )
         way = until(route, place.trigger_s_m + needs_m)
-    scenario = asked(case.name, partial(planned.scenario, place, planned.values))
-    return LaidOut(planned, scenario, asked(case.name, partial(compose, scenario)), way)
+    scenario = call_scenario(case.name, partial(planned.scenario, place, planned.values))
+    return PlacedScenario(planned, scenario, call_scenario(case.name, partial(compose, scenario)), way)
 
 
 def _trigger_s_m(planned: Playable, route: Route, *, own: bool) -> float:
@@ -114,19 +114,19 @@ def _on_the_way_s_m(planned: Playable, route: Route, trigger: Pose) -> float:
         ScenarioError: it does not.
     """
     case = planned.case
-    who = f"{case.source}: the trigger point of '{case.name}' ({trigger.x_m:.1f}, {trigger.y_m:.1f})"
+    point = f"{case.source}: the trigger point of '{case.name}' ({trigger.x_m:.1f}, {trigger.y_m:.1f})"
     away_m = np.hypot(route.points_m[:, 0] - trigger.x_m, route.points_m[:, 1] - trigger.y_m)
     nearest_m = float(away_m.min())
     if nearest_m > OFF_ROUTE_M:
         raise ScenarioError(
-            f"{who} lies {nearest_m:.1f} m off the route '{route.id}'; move it to within {OFF_ROUTE_M:.0f} m"
+            f"{point} lies {nearest_m:.1f} m off the route '{route.id}'; move it to within {OFF_ROUTE_M:.0f} m"
         )
     along = np.cos(route.yaw_rad - trigger.yaw_rad) >= math.cos(TURNED_RAD)
     candidates = np.flatnonzero(along & (away_m <= OFF_ROUTE_M))
     if not len(candidates):
         index = int(away_m.argmin())
         raise ScenarioError(
-            f"{who} looks to {round(math.degrees(trigger.yaw_rad)) % 360}°, and the route goes to "
+            f"{point} looks to {round(math.degrees(trigger.yaw_rad)) % 360}°, and the route goes to "
             f"{round(math.degrees(float(route.yaw_rad[index]))) % 360}° there; turn it"
         )
     least_m = float(away_m[candidates].min())
@@ -142,7 +142,7 @@ def nearest_s_m(route: Route, x_m: float, y_m: float) -> float:
 
 
 def is_behind(place: Place, spec: ActorSpec) -> bool:
-    """Whether somebody stands in the ego's lane before the trigger point, where it would come upon them from behind."""
+    """Whether an actor stands in the ego's lane before the trigger point, where the ego would reach it from behind."""
     s_m = nearest_s_m(place.route, spec.pose.x_m, spec.pose.y_m)
     at = place.at(s_m - place.trigger_s_m)
     aside_m = math.hypot(spec.pose.x_m - at.x_m, spec.pose.y_m - at.y_m)

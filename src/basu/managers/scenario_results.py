@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from basu.scenarios.verdict import Judged
 
 
-def told(scenarios: Sequence[Playing], history: History | None, outcome: Outcome) -> list[dict[str, Any]]:
+def results_of(scenarios: Sequence[Playing], history: History | None, outcome: Outcome) -> list[dict[str, Any]]:
     """Each scenario with its verdict and the evidence; ``outcome`` is the run's, ``history`` its whole record."""
     return [_told(playing, history, outcome) for playing in scenarios]
 
@@ -52,7 +52,7 @@ def judged_on_the_way(playing: Playing, history: History, outcome: Outcome) -> J
 
 
 def _evidence(playing: Playing, judged: Judged | None, step_s: float) -> dict[str, Any]:
-    """When it was played, with whom, and what its criteria say."""
+    """When it was played, its actors, and the judgements of its criteria."""
     judgements = () if judged is None else judged.judgements
     return {
         "began_s": None if playing.armed_tick is None else round(playing.armed_tick * step_s, 3),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     Boxes = NDArray[np.float64]
 
 
-UNKNOWN_M = (0.25, 0.25)  # half sizes of who has none recorded: somebody on foot
+UNKNOWN_M = (0.25, 0.25)  # half sizes of an actor without a recorded size: a person on foot
 
 
 def boxes(x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[np.float64], half_m: Boxes) -> Boxes:

@@ -103,8 +103,8 @@ class SpeedingSoFar:
         seconds = (end - self._open.first) * begun.facts.step_s
         if seconds < LEAST_S:
             return []
-        told = episode(begun, 0, top_mps=self._open.top_mps, posted_mps=self._open.posted_mps, seconds=seconds)
-        return [replace(told, tick=self._open.first)]
+        found = episode(begun, 0, top_mps=self._open.top_mps, posted_mps=self._open.posted_mps, seconds=seconds)
+        return [replace(found, tick=self._open.first)]
 
 
 @dataclass(slots=True)

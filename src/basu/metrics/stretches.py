@@ -82,7 +82,7 @@ def share_of(
 ) -> Share:
     """Measure where ``holds`` (T,); ``words`` says what it was from frame to frame.
 
-    A stretch whose path is no longer than ``forgiven_m`` does not count.
+    A stretch with a path no longer than ``forgiven_m`` does not count.
     """
     pieces = chords(path_m(history.frames))
     speed_mps = history.speed_mps()

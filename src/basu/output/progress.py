@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 UPDATE_TICKS = 20  # a second of simulated time
 SCORE_TICKS = 2000  # scoring anew costs some ms
-QUIET_S = 10.0  # between two lines where nobody watches (a log file)
+QUIET_S = 10.0  # between two lines without a terminal (a log file)
 
 
 class ProgressBar(BaseManager):

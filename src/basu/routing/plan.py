@@ -75,7 +75,7 @@ def controls_on(
 
 
 def _lines(found: list[Control]) -> tuple[Control, ...]:
-    """Controls without references on connecting roads to a signal whose own line lies a few metres before them."""
+    """Controls without references on connecting roads to a signal with its own line a few metres before them."""
     kept: list[Control] = []
     for control in found:
         again = any(
@@ -179,7 +179,7 @@ def _poses(waypoints: list[carla.Waypoint]) -> tuple[NDArray[np.float64], NDArra
 
 
 def _carried_on(limit_mps: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Let a limit hold on through a junction, whose roads post none of their own."""
+    """Extend a limit through a junction; its roads post none of their own."""
     known = ~np.isnan(limit_mps)
     if not known.any():
         return limit_mps

@@ -73,7 +73,7 @@ def read_routes(path: Path) -> tuple[RouteDescription, ...]:
 
 
 def route_element(description: RouteDescription) -> etree._Element:
-    """The <route> that a description was read from, for those who read more of it.
+    """The <route> that a description was read from, for readers of its other elements.
 
     Raises:
         UserError: the file is no longer as it was.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.episode import Episode, EpisodeSpec
 from basu.episode.world import weather_called
 from basu.managers.recording_manager import RecordingManager
-from basu.managers.scenario_results import told
+from basu.managers.scenario_results import results_of
 from basu.managers.sensors_manager import SensorsManager
 from basu.metrics.registry import user_metrics
 from basu.output.hud.person_input import onlookers_for
@@ -118,7 +118,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         traffic=episode.traffic,
         log=recording[0].path if recording else None,
     )
-    met = told(episode.playing, driven.history, driven.outcome)
+    met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)
     document = write_run_folder(
         draft, driven, session.scoring, ground.town.lanes, config, met, own, quiet=session.quiet
@@ -135,7 +135,7 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
         if waiting:
             sys.stderr.write(
                 f"basu: warning: the agent goes a way of its own, so the {len(waiting)} scenarios on the way of route "
-                f"'{job.description.id}' are left away\n"
+                f"'{job.description.id}' are skipped\n"
             )
             waiting = ()
     options = session.options

@@ -33,14 +33,14 @@ if TYPE_CHECKING:
 
 
 class SensorSet(NamedTuple):
-    """The sensors of a run, and in words who gave them."""
+    """The sensors of a run, and their origin in words."""
 
     specs: tuple[SensorSpec, ...]
     source: str
 
 
 class Job(NamedTuple):
-    """One run of those that were asked for."""
+    """One of the requested runs."""
 
     number: int  # from 0
     description: RouteDescription
@@ -98,7 +98,7 @@ def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
 
 
 def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Playable, ...]:
-    """The scenarios on the way of a route, unless they are to be left away."""
+    """The scenarios of a route, unless the options skip them."""
     return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
 
 
@@ -129,7 +129,7 @@ def _has_sumo() -> bool:
 def _chosen(
     routes: tuple[RouteDescription, ...], config: AgentConfig, options: RunOptions
 ) -> tuple[RouteDescription, ...]:
-    """The routes of the file that were asked for."""
+    """The requested routes of the file."""
     if options.routes_subset is not None:
         return subset(routes, options.routes_subset)
     if options.route_id is None:

@@ -69,7 +69,7 @@ def run_config(
 
 
 def options_again(options: RunOptions, description: RouteDescription, seed: int) -> RunOptions:
-    """Return the options that repeat one run of those that ``options`` asked for.
+    """Return the options that repeat one run of a series with ``options``.
 
     Keys that a person pressed and that were recorded become the keys to play.
     """

@@ -30,7 +30,7 @@ BREAKING_OFF = frozenset({Status.INTERRUPTED, Status.SIMULATOR_FAILED})  # no fu
 
 
 def run(options: RunOptions, scoring: Scoring) -> int:
-    """Run everything that was asked for; the exit code is that of the worst outcome.
+    """Run all requested runs; the exit code is that of the worst outcome.
 
     Raises:
         UserError, AgentError: nothing can be started like this.
@@ -51,7 +51,7 @@ def run(options: RunOptions, scoring: Scoring) -> int:
 
 
 def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | None:
-    """The series that all runs belong to, where one was asked for.
+    """The series of all runs, where the options name one.
 
     Raises:
         UserError: it can be neither begun nor gone on with.

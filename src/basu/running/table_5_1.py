@@ -29,7 +29,7 @@ class Printed(NamedTuple):
     driving: float
 
     def infraction_by_formula(self) -> float:
-        """Equation 5.1 on the row's counts; whom it hit the table does not say, the text says "an object"."""
+        """Equation 5.1 on the row's counts; the table does not name the other party, the text says "an object"."""
         return infraction_score(
             {Infraction.COLLISION_STATIC: self.collisions, Infraction.SPEEDING: self.speeding}, SCORING
         )

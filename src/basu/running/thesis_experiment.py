@@ -50,7 +50,7 @@ NOTES = {
 
 
 def differences(printed: Mapping[str, Printed], ours: Mapping[str, Measured], keys_by: str) -> list[str]:
-    """Sentences for all agents; ``keys_by`` says who pressed the keys of the human's session."""
+    """Sentences for all agents; ``keys_by`` is the source of the keys of the human's session."""
     found = [STOP_SIGNS]
     for agent, row in ours.items():
         note = f"keys were pressed by: {keys_by}" if agent == "human" else NOTES.get(agent)
@@ -119,7 +119,7 @@ def _number(count: int, what: str) -> str:
     return f"{ ({0: 'no', 1: 'one'}.get(count, str(count))) } {what}{'' if count == 1 else 's'}"
 
 
-KEYS = "data/human_session.json"  # of the human; it knows who pressed them
+KEYS = "data/human_session.json"  # of the human; it states the source of the keys
 ROUTE, VEHICLE, WEATHER = "routes/linden_short.xml", "vehicle.tesla.model3", "ClearSunset"
 
 

@@ -272,7 +272,7 @@ def _read(case: Case, scenario: type[Scenario]) -> Playable:
 
 
 def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scenario]], path: Path) -> None:
-    """Pass a user's classes whose names nobody has."""
+    """Refuse a user's class with the name of another class."""
     taken = {plain(name) for scenario in scenarios for name in (scenario.__name__, *scenario.aliases)}
     for scenario in users:
         if plain(scenario.__name__) in taken:
@@ -280,7 +280,7 @@ def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scena
 
 
 def _two_of_one_name(one: Case, other: Case) -> ScenarioError:
-    """Who they are."""
+    """The error that names both."""
     return ScenarioError(f"'{one.name}' is given in {one.source} and in {other.source}; rename one")
 
 

@@ -177,7 +177,7 @@ def value_of(field: str, text: str) -> enum.Enum:
 
 
 def read_where(conditions: Iterable[tuple[str, str]]) -> dict[str, list[enum.Enum]]:
-    """The values asked for by field; a field that is given several times allows each of its values.
+    """The requested values by field; a field that is given several times allows each of its values.
 
     Raises:
         ScenarioError: there is no such field, or it has no such value.

@@ -62,36 +62,36 @@ def _check_parameters(parameters: Sequence[Parameter], named: str) -> None:
     for parameter in parameters:
         if not isinstance(parameter, Number | Choice):
             raise ScenarioError(f"{named} has {parameter!r} among its parameters, which is no Number and no Choice")
-        told = f"{named} has the parameter '{parameter.name}'"
+        subject = f"{named} has the parameter '{parameter.name}'"
         if not re.fullmatch(r"[a-z][a-z0-9_]*", parameter.name) or parameter.name in RESERVED:
-            raise ScenarioError(f"{told}; it must be a word in snake case that is no element of a case's XML")
+            raise ScenarioError(f"{subject}; it must be a word in snake case that is no element of a case's XML")
         if parameter.name in seen:
-            raise ScenarioError(f"{told} twice; name one otherwise")
+            raise ScenarioError(f"{subject} twice; name one otherwise")
         seen.add(parameter.name)
         if isinstance(parameter, Number):
-            _check_number(parameter, told)
+            _check_number(parameter, subject)
         else:
-            _check_choice(parameter, told)
+            _check_choice(parameter, subject)
 
 
-def _check_number(number: Number, told: str) -> None:
+def _check_number(number: Number, subject: str) -> None:
     """A range with the default in it."""
     if not (math.isfinite(number.low) and math.isfinite(number.high) and number.low < number.high):
-        raise ScenarioError(f"{told} from {number.low:g} to {number.high:g}; the range must go up and end")
+        raise ScenarioError(f"{subject} from {number.low:g} to {number.high:g}; the range must go up and end")
     if not number.low <= number.default <= number.high:
         raise ScenarioError(
-            f"{told} with default {number.default:g}, which is outside {number.low:g} to {number.high:g}"
+            f"{subject} with default {number.default:g}, which is outside {number.low:g} to {number.high:g}"
         )
 
 
-def _check_choice(choice: Choice, told: str) -> None:
+def _check_choice(choice: Choice, subject: str) -> None:
     """Two words or more, each once, that can stand in an id."""
     if len(set(choice.options)) != len(choice.options) or len(choice.options) < 2:
-        raise ScenarioError(f"{told} with options {choice.options!r}; it needs two different words or more")
+        raise ScenarioError(f"{subject} with options {choice.options!r}; it needs two different words or more")
     for option in choice.options:
         if not OPTION.fullmatch(option):
             raise ScenarioError(
-                f"{told} with the option '{option}'; letters, digits, '.', '_', '+' and '-' may stand in it"
+                f"{subject} with the option '{option}'; letters, digits, '.', '_', '+' and '-' may stand in it"
             )
 
 
@@ -121,7 +121,7 @@ def users_scenarios(path: Path) -> list[type[Scenario]]:
         raise ScenarioError(f"the scenario file {path} does not exist; check the name and the folder you are in")
     found = _scenarios_in(_executed(path))
     if not found:
-        raise ScenarioError(f"{path} holds no subclass of Scenario; see docs/scenarios.md for how one looks")
+        raise ScenarioError(f"{path} holds no subclass of Scenario; see docs/reference/scenarios.md for how one looks")
     for scenario in found:
         check_class(scenario, str(path))
     return found

@@ -23,7 +23,7 @@ WIDTH = 120  # of a line
 
 
 def listed(library: Library, words: list[str], where: Sequence[tuple[str, str]] = ()) -> Listed:
-    """The cases that are meant and have the characteristics asked for, below their scenarios.
+    """The chosen cases with the requested characteristics, below their scenarios.
 
     Without words and characteristics, scenarios that have no case are listed as well.
 
@@ -48,8 +48,8 @@ def as_text(cases_by_type: Listed, *, full: bool) -> list[str]:
         lines.append(f"{group.value.upper()}{yearly}")
         for scenario in scenarios:
             cases = cases_by_type[scenario]
-            told = f"{snake(scenario.__name__)} ({_many(len(cases), 'case')}): {scenario.title()}"
-            lines += textwrap.wrap(told, WIDTH, initial_indent="  ", subsequent_indent="      ")
+            sentence = f"{snake(scenario.__name__)} ({_many(len(cases), 'case')}): {scenario.title()}"
+            lines += textwrap.wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="      ")
             lines += _in_full(scenario, cases) if full else _in_short(scenario, cases)
         lines.append("")
     groups = len({scenario.group for scenario in cases_by_type})
@@ -66,8 +66,8 @@ def _many(count: int, noun: str) -> str:
 def _in_short(scenario: type[Scenario], cases: list[Playable]) -> list[str]:
     """Where it happens and what may vary, a paragraph each."""
     places = "; ".join(dict.fromkeys(_place(playable) for playable in cases))
-    told = "; ".join(f"{p.name} {_values(p)}" for p in scenario.parameters)
-    return [*_paragraph("at", places), *_paragraph("with", told)]
+    sentence = "; ".join(f"{p.name} {_values(p)}" for p in scenario.parameters)
+    return [*_paragraph("at", places), *_paragraph("with", sentence)]
 
 
 def _paragraph(label: str, text: str) -> list[str]:
@@ -135,10 +135,10 @@ def as_json(cases_by_type: Listed) -> dict[str, Any]:
 
 def _parameter_as_json(parameter: Parameter) -> dict[str, Any]:
     """A number with its range, or a choice with its options."""
-    told = {"name": parameter.name, "about": parameter.about, "unit": parameter.unit, "default": parameter.unsaid}
+    sentence = {"name": parameter.name, "about": parameter.about, "unit": parameter.unit, "default": parameter.unsaid}
     if isinstance(parameter, Number):
-        return {**told, "low": parameter.low, "high": parameter.high}
-    return {**told, "options": list(parameter.options)}
+        return {**sentence, "low": parameter.low, "high": parameter.high}
+    return {**sentence, "options": list(parameter.options)}
 
 
 def _case_as_json(playable: Playable) -> dict[str, Any]:

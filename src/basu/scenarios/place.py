@@ -26,7 +26,7 @@ class Place:
     route: Route
     trigger_s_m: float  # of the trigger point, along the route
     carla_map: carla.Map
-    others: tuple[GivenActor, ...] = ()  # whom the file places by itself
+    others: tuple[GivenActor, ...] = ()  # actors placed by the file itself
 
     def at(self, ahead_m: float, right_m: float = 0.0, turned_deg: float = 0.0) -> Pose:
         """The pose so far ahead along the route, so far to its right, turned clockwise from its direction.

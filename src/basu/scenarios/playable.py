@@ -48,7 +48,7 @@ class Playable(NamedTuple):
 
 
 def having(playables: Sequence[Playable], conditions: Sequence[tuple[str, str]]) -> tuple[Playable, ...]:
-    """The cases that have all characteristics asked for.
+    """The cases with all requested characteristics.
 
     Raises:
         ScenarioError: there is no such field or value, or no case has them all.

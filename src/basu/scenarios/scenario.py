@@ -20,7 +20,7 @@ A scenario of your own is one class and one case::
         def criteria(self):
             return [NoCollision(), Arrives()]
 
-See `docs/scenarios.md`.
+See `docs/reference/scenarios.md`.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class Scenario(ABC):
         return value
 
     def actors(self) -> Sequence[ActorSpec]:
-        """Who is there besides the ego; put into the world before the first frame."""
+        """The actors besides the ego; they are spawned before the first frame."""
         return ()
 
     def setup(self) -> Behaviour | None:

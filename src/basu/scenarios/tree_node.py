@@ -11,11 +11,11 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import Stage
 
 
-BROKEN_OFF = "broken off"  # the feedback of who was begins so
+BROKEN_OFF = "broken off"  # the first words of an aborted node's feedback
 
 
 class Node(Behaviour):
-    """What triggers and actions share: a stage, a first frame, and an end that is told in words."""
+    """The base of triggers and actions: a stage, a first frame, and an end with a feedback message."""
 
     stage: Stage
 

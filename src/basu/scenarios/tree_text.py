@@ -35,7 +35,7 @@ class TreeNode(TypedDict):
 
 
 def tree_of(composed: Composed, judgements: Sequence[Judgement] = (), criteria: Sequence[Criterion] = ()) -> TreeNode:
-    """The tree as it was left, with what the criteria said, or before a run with what they will be asked.
+    """The tree as it was left, with the criteria's judgements, or before a run with their names.
 
     Without either, there is no branch of criteria.
     """
@@ -68,7 +68,7 @@ def node_of(behaviour: Behaviour) -> TreeNode:
 
 
 def _status_before(behaviour: Behaviour, children: Sequence[TreeNode]) -> str:
-    """What became of a node that py_trees has reset: who breaks off a composite forgets what its parts had done."""
+    """What became of a node that py_trees has reset: an aborted composite forgets what its parts had done."""
     if children:
         return "waiting" if all(child["status"] == "waiting" for child in children) else "broken off"
     if not behaviour.feedback_message:
@@ -103,7 +103,7 @@ def _judged(judgement: Judgement) -> TreeNode:
 
 
 def _of_all(judgements: Sequence[Judgement]) -> str:
-    """What those that decide said together."""
+    """The joint result of the deciding criteria."""
     said = [judgement.passed for judgement in judgements if judgement.deciding]
     if False in said:
         return "failure"

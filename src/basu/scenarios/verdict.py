@@ -41,7 +41,7 @@ class Verdict(enum.Enum):
 
     @property
     def fault(self) -> Fault:
-        """Who answers for it; nobody where the driving was judged."""
+        """The party at fault; none where the driving was judged."""
         return FAULT_OF.get(self, Fault.NOBODY)
 
 
@@ -85,7 +85,7 @@ class Judged(NamedTuple):
 
     @property
     def fault(self) -> Fault:
-        """Who answers for it; nobody where the driving was judged."""
+        """The party at fault; none where the driving was judged."""
         return self.verdict.fault
 
 
@@ -108,10 +108,10 @@ def judge(
             f"nothing was recorded, though the run ended as {outcome.status.value}",
         )
         return Judged(verdict, message, (), margins_of(()), outcome, None)
-    asked = with_policy(criteria)
-    judgements = tuple(criterion.judge(played) for criterion in (*asked, *reported_always(asked)))
+    deciding = with_policy(criteria)
+    judgements = tuple(criterion.judge(played) for criterion in (*deciding, *reported_always(deciding)))
     begun = exercised(played) if triggered else Finding(False, "the ego never came to where the conflict begins")
-    assessment = assess(asked, judgements, outcome, begun)
+    assessment = assess(deciding, judgements, outcome, begun)
     verdict, message = (
         _fault(outcome)
         or _never_triggered(played, triggered=triggered)
@@ -150,7 +150,7 @@ def _fault(outcome: Outcome) -> tuple[Verdict, str] | None:
 
 
 def _never_triggered(played: Played, *, triggered: bool) -> tuple[Verdict, str] | None:
-    """The verdict of a scenario whose ego arrived without triggering it."""
+    """The verdict of a scenario after an arrival without its trigger."""
     arrived = arrival_tick(played.history)
     if triggered or arrived is None:
         return None

@@ -33,7 +33,7 @@ class GivenActor:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Case:
-    """One instance of a scenario: who, where, with which values."""
+    """One instance of a scenario: its actors, place and values."""
 
     name: str  # its id, unique among all cases of a command
     type: str  # of the scenario
@@ -53,7 +53,7 @@ class Case:
     source: str = ""  # file and line, for sentences
 
 
-EGO_MODEL = "vehicle.easymile.ez10"  # whom an <ego_vehicle> without `model` means: the shuttle
+EGO_MODEL = "vehicle.easymile.ez10"  # of an <ego_vehicle> without `model`: the shuttle
 OTHER_MODEL = "vehicle.*"  # likewise, as in ScenarioRunner
 EGO_ATTRIBUTES = ("x", "y", "z", "yaw", "model", "rolename")
 OTHER_ATTRIBUTES = (*EGO_ATTRIBUTES, "speed", "color")
@@ -147,7 +147,7 @@ def ego_of(element: etree._Element, path: Path) -> GivenActor:
     """
     only(element, EGO_ATTRIBUTES, path)
     if element.get("rolename", EGO) != EGO:
-        raise complaint(element, path, f"has rolename='{element.get('rolename')}'; who is under test is '{EGO}' here")
+        raise complaint(element, path, f"has rolename='{element.get('rolename')}'; the vehicle under test is '{EGO}'")
     return GivenActor(role=EGO, model=element.get("model", EGO_MODEL), pose=pose_of(element, path, yaw=True))
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from basu.scenarios.stage import ActorSpec
 
 
-def paper_place(
+def offline_place(
     points: Sequence[Sequence[float]],
     *,
     trigger_s_m: float = 0.0,
@@ -39,8 +39,8 @@ def paper_place(
     for from_m, to_m in junctions_m:
         is_junction |= (s_m >= from_m) & (s_m <= to_m)
     route = Route(
-        id="paper",
-        town="paper",
+        id="offline",
+        town="offline",
         points_m=poses[:, :3],
         s_m=s_m,
         yaw_rad=poses[:, 3],
@@ -53,7 +53,7 @@ def paper_place(
     return Place(route=route, trigger_s_m=trigger_s_m, carla_map=None)
 
 
-HELD_MPS2, ROLLING_MPS2 = 8.0, 0.5  # how hard who is held brakes, and who is let go slows down
+HELD_MPS2, ROLLING_MPS2 = 8.0, 0.5  # deceleration of a braked and of a rolling body
 # half length and half width in m where a blueprint's id begins so; the first that fits. Rounded from CARLA's boxes.
 SIZES_M: tuple[tuple[str, float, float], ...] = (
     ("walker.", 0.25, 0.25),
@@ -74,12 +74,12 @@ SIZES_M: tuple[tuple[str, float, float], ...] = (
 
 
 class _Led(NamedTuple):
-    """What somebody is told until told otherwise."""
+    """The command of a body until the next one."""
 
     velocity_x_mps: float
     velocity_y_mps: float
     yaw_rate_radps: float
-    slows_mps2: float = 0.0  # who is held or let go
+    slows_mps2: float = 0.0  # of a braked or rolling body
 
 
 class Command(NamedTuple):
@@ -90,18 +90,18 @@ class Command(NamedTuple):
     details: tuple[object, ...]
 
 
-class PaperStage:
+class OfflineStage:
     """See ``basu.scenarios.stage.Stage``. ``advance`` carries a frame's commands out.
 
     The ego keeps to its route whatever is done to its controls; ``controls`` says what they would be. With
-    ``turn_share`` below 1 bodies turn by that share of what they are told, as a simulated vehicle's tyres let it.
+    ``turn_share`` below 1 bodies turn by that share of their command, as a simulated vehicle's tyres let it.
     """
 
     def __init__(
         self,
         place: Place,
         cast: Sequence[ActorSpec],
-        driver: Callable[[PaperStage], float],
+        driver: Callable[[OfflineStage], float],
         *,
         seed: int = 0,
         step_s: float = 0.05,
@@ -140,25 +140,25 @@ class PaperStage:
 
     @property
     def ego_contacts(self) -> frozenset[str]:
-        """Whom it has touched."""
+        """The actors that the ego has touched."""
         return self._touched
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Everybody who is there, the ego last."""
+        """All bodies present, the ego last."""
         return tuple(self._bodies)
 
     def body(self, name: str) -> Body:
-        """Somebody in this frame."""
+        """A body in this frame."""
         try:
             return self._bodies[name]
         except KeyError:
             raise ScenarioError(
-                f"nobody on the stage is called '{name}'; there are {', '.join(self._bodies)}"
+                f"no actor on the stage is called '{name}'; there are {', '.join(self._bodies)}"
             ) from None
 
     def is_there(self, name: str) -> bool:
-        """Whether somebody is on the stage."""
+        """Whether an actor is on the stage."""
         return name in self._bodies
 
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
@@ -172,14 +172,14 @@ class PaperStage:
         )
 
     def walk(self, name: str, velocity_x_mps: float, velocity_y_mps: float) -> None:
-        """Lead a walker, who faces where it goes."""
+        """Command a walker; it faces its direction of travel."""
         body = self.body(name)
         if velocity_x_mps or velocity_y_mps:
             self._bodies[name] = body._replace(yaw_rad=math.atan2(velocity_y_mps, velocity_x_mps))
         self._led[name] = _Led(velocity_x_mps, velocity_y_mps, 0.0)
 
     def put(self, name: str, pose: Pose) -> None:
-        """Put somebody elsewhere, at rest."""
+        """Move an actor to another place, at rest."""
         self._bodies[name] = self.body(name)._replace(
             x_m=pose.x_m, y_m=pose.y_m, z_m=pose.z_m, yaw_rad=pose.yaw_rad, velocity_x_mps=0.0, velocity_y_mps=0.0
         )
@@ -193,7 +193,7 @@ class PaperStage:
         self._note("let go", name)
 
     def remove(self, name: str) -> None:
-        """Take somebody off the stage."""
+        """Remove an actor from the stage."""
         self.body(name)
         del self._bodies[name], self._led[name]
         self._note("remove", name)
@@ -234,7 +234,7 @@ class PaperStage:
         return meant
 
     def advance(self) -> None:
-        """The next frame: everybody moves as told, the ego as its driver says, and touches are seen."""
+        """The next frame: all bodies move as commanded, the ego as its driver says; contacts are recorded."""
         speed_mps = max(0.0, self._driver(self))
         for name, led in list(self._led.items()):
             self._bodies[name], self._led[name] = self._moved(self._bodies[name], led)
@@ -244,7 +244,7 @@ class PaperStage:
         self._touched |= {name for name in self._led if self._touches(self._bodies[name])}
 
     def _moved(self, body: Body, led: _Led) -> tuple[Body, _Led]:
-        """A body a frame later, and what it is told from then on."""
+        """A body a frame later, and its command from then on."""
         speed_mps = math.hypot(led.velocity_x_mps, led.velocity_y_mps)
         if led.slows_mps2 and speed_mps:
             share = max(0.0, speed_mps - led.slows_mps2 * self.step_s) / speed_mps
@@ -282,7 +282,7 @@ class PaperStage:
 
 
 def _entering(spec: ActorSpec) -> Body:
-    """Somebody as it comes on."""
+    """An actor at its entrance."""
     half_m = next(size[1:] for size in SIZES_M if spec.blueprint.startswith(size[0]))
     yaw_rad = spec.pose.yaw_rad
     return Body(*spec.pose, spec.speed_mps * math.cos(yaw_rad), spec.speed_mps * math.sin(yaw_rad), *half_m)

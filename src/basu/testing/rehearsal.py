@@ -14,7 +14,7 @@ from basu.scenarios.actions.puppet import gap_ahead
 from basu.scenarios.paths import Path
 from basu.scenarios.scenario import compose, set_on
 from basu.scenarios.stage import EGO
-from basu.testing.offline_stage import PaperStage
+from basu.testing.offline_stage import OfflineStage
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
     from basu.testing.offline_stage import Command
 
 
-Driver = Callable[[PaperStage], float]
+Driver = Callable[[OfflineStage], float]
 START_MPS2 = 2.0  # how hard they accelerate
 
 
 def steady(speed_mps: float) -> Driver:
-    """One speed from the first frame on, whoever is in the way."""
+    """One speed from the first frame on, regardless of obstacles."""
     return lambda _stage: speed_mps
 
 
@@ -39,7 +39,7 @@ def waiting_at(
     """A speed, a lawful stop before ``s_m`` of the route for so long, and on."""
     stood_s = 0.0
 
-    def drive(stage: PaperStage) -> float:
+    def drive(stage: OfflineStage) -> float:
         nonlocal stood_s
         now_mps, left_m = stage.ego.forward_mps, s_m - stage.ego_s_m
         if stood_s >= seconds or left_m < -0.5:
@@ -54,10 +54,10 @@ def waiting_at(
 
 
 def careful(speed_mps: float, brake_mps2: float = 5.0, keeps_m: float = 3.0) -> Driver:
-    """A speed, and brakes for whoever is on its way as far as it needs to stand ``keeps_m`` before."""
+    """A speed, and braking for actors on its way, to stand ``keeps_m`` before them."""
     way: Path | None = None
 
-    def drive(stage: PaperStage) -> float:
+    def drive(stage: OfflineStage) -> float:
         nonlocal way
         way = way or Path.through(stage.route.points_m)
         now_mps, allowed_mps = stage.ego.forward_mps, speed_mps
@@ -81,7 +81,7 @@ class Rehearsal:
 
     tree: Composed  # as it was left
     phases_s: dict[str, float]  # when each phase began; one that was never reached is missing
-    contacts_s: dict[str, float]  # when the ego first touched whom
+    contacts_s: dict[str, float]  # when the ego first touched each actor
     times_s: NDArray[np.float64]  # (T,) of the frames
     ego_s_m: NDArray[np.float64]  # (T,) along its route
     trails: dict[str, NDArray[np.float64]]  # by role (T, 4): x, y in m, yaw in rad, speed in m/s; nan while not there
@@ -93,7 +93,7 @@ class Rehearsal:
         return bool(self.tree.root.root.status == Status.SUCCESS)
 
     def least_distance_m(self, name: str) -> float:
-        """From the ego's middle to somebody's, at the nearest."""
+        """The least distance from the ego's middle to an actor's."""
         apart_m = self.trails[name][:, :2] - self.trails[EGO][:, :2]
         return float(np.nanmin(np.hypot(*apart_m.T)))
 
@@ -107,8 +107,8 @@ def rehearse(
     until_s: float | None = None,
     turn_share: float = 1.0,
 ) -> Rehearsal:
-    """Play it until its tree is done, at most as long as its time limit; the ego drives 6 m/s if nobody says else."""
-    stage = PaperStage(
+    """Play it until its tree is done, at most as long as its time limit; the ego drives 6 m/s by default."""
+    stage = OfflineStage(
         scenario.place, scenario.actors(), driver or steady(EGO_MPS), seed=seed, step_s=step_s, turn_share=turn_share
     )
     tree = compose(scenario)

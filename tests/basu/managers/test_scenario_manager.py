@@ -13,9 +13,9 @@ import pytest
 
 from basu.cli import main
 from basu.errors import ScenarioError
-from basu.managers.placed_scenario import is_behind, lay_out
+from basu.managers.placed_scenario import is_behind, place_scenario
 from basu.managers.scenario_manager import Playing
-from basu.managers.scenario_results import told
+from basu.managers.scenario_results import results_of
 from basu.metrics.score import Scoring
 from basu.options import RunOptions
 from basu.outcome import Outcome, Status
@@ -68,7 +68,7 @@ def waiting_at(x_m: float, y_m: float = 1.75, yaw_deg: float = 0.0) -> Playable:
 
 
 def test_a_scenario_begins_at_its_trigger_point_and_ends_where_it_needs_no_more() -> None:
-    laid = lay_out(waiting_at(12.0), WAY, TOWN, own=False)
+    laid = place_scenario(waiting_at(12.0), WAY, TOWN, own=False)
     assert laid.scenario.place.trigger_s_m == pytest.approx(10.0, abs=0.01)
     assert laid.way.length_m == pytest.approx(30.0, abs=1.0)
     assert laid.scenario.place.route is WAY  # it sees the rest of the way all the same
@@ -84,7 +84,7 @@ def test_a_scenario_begins_at_its_trigger_point_and_ends_where_it_needs_no_more(
 )
 def test_a_scenario_without_a_place_on_the_route_is_refused_in_a_sentence(waiting: Playable, words: str) -> None:
     with pytest.raises(ScenarioError, match=words):
-        lay_out(waiting, WAY, TOWN, own=False)
+        place_scenario(waiting, WAY, TOWN, own=False)
 
 
 def there_and_round(way: Route) -> Route:
@@ -96,12 +96,12 @@ def there_and_round(way: Route) -> Route:
 
 
 def test_of_two_times_that_a_route_comes_by_the_first_is_meant() -> None:
-    laid = lay_out(waiting_at(12.0), there_and_round(WAY), TOWN, own=False)
+    laid = place_scenario(waiting_at(12.0), there_and_round(WAY), TOWN, own=False)
     assert laid.scenario.place.trigger_s_m == pytest.approx(10.0, abs=0.01)
 
 
 def test_who_stands_in_the_lane_before_the_trigger_point_comes_later() -> None:
-    place = lay_out(waiting_at(20.0), WAY, TOWN, own=False).scenario.place
+    place = place_scenario(waiting_at(20.0), WAY, TOWN, own=False).scenario.place
     assert is_behind(place, ActorSpec("tailgater", "vehicle.*", place.at(-8.0)))
     assert not is_behind(place, ActorSpec("leader", "vehicle.*", place.at(8.0)))
     assert not is_behind(place, ActorSpec("walker", "walker.*", place.at(-8.0, 4.0)))
@@ -140,7 +140,7 @@ def test_theirs_are_read_with_our_classes(tmp_path: Path) -> None:
     (found,) = scenarios_on(description)
     assert "DynamicObjectCrossing" in found.scenario.aliases
     assert found.case.name == "DynamicObjectCrossing_1"
-    assert found.unread == ("distance",)  # their class reads it, ours does not: told in the result
+    assert found.unread == ("distance",)  # their class reads it, ours does not: the result says so
 
 
 def test_scenarios_can_be_left_away(tmp_path: Path) -> None:
@@ -177,7 +177,7 @@ def test_the_packaged_route_has_scenarios_that_all_have_their_place() -> None:
     from basu.routing import plan  # noqa: PLC0415 - only here
 
     route = plan(town, description)
-    laid = [lay_out(waiting, route, town, own=False) for waiting in scenarios_on(description)]
+    laid = [place_scenario(waiting, route, town, own=False) for waiting in scenarios_on(description)]
     assert 5 <= len(laid) <= 8
     begins = [each.scenario.place.trigger_s_m for each in laid]
     assert begins == sorted(begins)
@@ -240,10 +240,10 @@ def test_lights_go_on_when_the_last_scenario_that_holds_one_is_over() -> None:
 
 
 def test_what_was_not_reached_is_told_as_such() -> None:
-    laid = lay_out(waiting_at(12.0), WAY, TOWN, own=False)
+    laid = place_scenario(waiting_at(12.0), WAY, TOWN, own=False)
     stage: Any = SimpleNamespace(route=laid.way, roles={}, types={})
     playing = Playing(laid.planned, laid.scenario, laid.composed, stage)
-    (row,) = told([playing], None, Outcome(Status.AGENT_CRASHED, "the agent raised KeyError"))
+    (row,) = results_of([playing], None, Outcome(Status.AGENT_CRASHED, "the agent raised KeyError"))
     assert (row["reached"], row["verdict"]) == (False, None)
     assert row["message"] == "it waits at 10 m of the route, and the run ended before: the agent raised KeyError"
     schema = read_schema(RESULT_SCHEMA)

@@ -140,7 +140,7 @@ def test_there_has_to_be_a_series_to_go_on_with(tmp_path: Path) -> None:
 def test_two_who_drive_one_series_count_each_run_once(tmp_path: Path) -> None:
     one, other = opened(tmp_path), opened(tmp_path, resume=True)
     run(one, JOBS[0])
-    with pytest.raises(UserError, match="somebody else drives the series"):
+    with pytest.raises(UserError, match="another command drives the series"):
         run(other, JOBS[0])
     assert opened(tmp_path, resume=True).done == {0}
 

@@ -1,4 +1,4 @@
-"""Claims about the example of docs/scenarios.md: it is found, and it tells drivers apart on paper."""
+"""Claims about the example of docs/reference/scenarios.md: it is found, and it tells drivers apart on paper."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import pytest
 
 from basu.scenarios.cases import cases_of
 from basu.scenarios.playable import Playable
-from basu.testing import Driver, Rehearsal, careful, paper_place, rehearse, steady
+from basu.testing import Driver, Rehearsal, careful, offline_place, rehearse, steady
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
@@ -19,7 +19,7 @@ def playable_() -> Playable:
 
 
 def rehearsed(playable: Playable, driver: Driver) -> Rehearsal:
-    place = paper_place([(0.0, 0.0), (100.0, 0.0)])
+    place = offline_place([(0.0, 0.0), (100.0, 0.0)])
     return rehearse(playable.scenario(place, playable.values), driver)
 
 

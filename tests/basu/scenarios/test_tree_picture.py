@@ -14,7 +14,7 @@ from basu.scenarios.scenario import PHASES, Scenario, compose
 from basu.scenarios.tree_picture import FORMS, as_svg, draw
 from basu.scenarios.tree_text import TreeNode, as_dot, as_text, tree_of, walk
 from basu.scenarios.triggers import EgoPasses
-from basu.testing import paper_place, rehearse
+from basu.testing import offline_place, rehearse
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -44,7 +44,7 @@ JUDGEMENTS = (
 
 @pytest.fixture
 def odd() -> Odd:
-    return Odd(paper_place([(0.0, 0.0), (60.0, 0.0)]), {})
+    return Odd(offline_place([(0.0, 0.0), (60.0, 0.0)]), {})
 
 
 @pytest.fixture

@@ -15,7 +15,7 @@ from basu.scenarios.place import Place
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import EGO, ActorSpec
 from basu.scenarios.triggers import TimeToArrival
-from basu.testing import PaperStage, careful, paper_place, rehearse, steady, waiting_at
+from basu.testing import OfflineStage, careful, offline_place, rehearse, steady, waiting_at
 
 
 class StepsOut(Scenario):
@@ -40,7 +40,7 @@ class StepsOut(Scenario):
 @pytest.fixture
 def bend() -> Place:
     arc = [(20.0 + 60.0 * math.sin(a), 60.0 - 60.0 * math.cos(a)) for a in np.linspace(0.0, 1.5, 60)]
-    return paper_place([(0.0, 0.0), *arc], trigger_s_m=5.0)
+    return offline_place([(0.0, 0.0), *arc], trigger_s_m=5.0)
 
 
 def steps_out(place: Place, **given: str) -> StepsOut:
@@ -88,7 +88,7 @@ def test_the_ego_on_paper_keeps_to_its_route(bend: Place) -> None:
 
 
 def test_a_lawful_stop_takes_its_time_and_goes_on(bend: Place) -> None:
-    stage = PaperStage(bend, (), waiting_at(40.0, 3.0, 8.0))
+    stage = OfflineStage(bend, (), waiting_at(40.0, 3.0, 8.0))
     stood = 0
     while stage.ego_s_m < 60.0:
         stage.advance()

@@ -140,7 +140,7 @@ class Feeds:
         self._providers, self._clocks = [], []
 
     def _begin(self) -> None:
-        """Hand the run to whoever has not got it yet."""
+        """Hand the run to each provider that has not got it yet."""
         for provider in _loaded(CarlaDataProvider, "srunner.scenariomanager.carla_data_provider"):
             if provider not in self._providers:
                 self._providers.append(provider)

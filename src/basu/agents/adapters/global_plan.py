@@ -60,7 +60,7 @@ class Gps:
         return np.array([place.latitude, place.longitude, fix[2]], np.float64)
 
     def _location(self, latitude: float, longitude: float) -> carla.Location:
-        """Where CARLA's degrees are: its own function turned round by Newton's method from the last place asked for."""
+        """Where CARLA's degrees are: its own function turned round by Newton's method from the last result."""
         at = self._last
         for _ in range(STEPS):
             here, east, south = (

@@ -71,7 +71,7 @@ class SensorSet(NamedTuple):
     """A set taken apart."""
 
     entries: list[Any]  # for the simulator, in BASU's fields
-    pseudo: dict[str, str]  # id and type of those that the adapter answers for
+    pseudo: dict[str, str]  # id and type of the sensors that the adapter makes itself
 
 
 def translated(given: object, dialect: Dialect, source: str) -> SensorSet:
@@ -136,7 +136,7 @@ WHOLE = frozenset({"width", "height", "channels", "points_per_second"})
 
 
 def theirs(specs: tuple[SensorSpec, ...]) -> tuple[list[dict[str, Any]], dict[str, SensorSpec]]:
-    """The host's dicts, and the sensors by id; those that it does not serve are left out, and that is logged."""
+    """The host's dicts, and the sensors by id; sensors that it does not serve are left out with a log entry."""
     served = {spec.id: spec for spec in specs if spec.type_id in KNOWN}
     for spec in specs:
         if spec.id not in served:

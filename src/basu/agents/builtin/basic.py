@@ -3,8 +3,8 @@
 This file joins the official client to ``driving`` and ``rules``, which decide and know nothing of it. The agent uses no
 sensors and no clock: the same ticks give the same drive.
 
-The driver is at it all the while, as a driving instructor is: it looks and decides, and what it decides counts while
-the person lets it. Who takes the wheel and what is done with it: ``basu.agents.manual.inputs``.
+The human agent's driver decides in every step, as a driving instructor does. Its decision counts while the person does
+not drive. ``basu.agents.manual.inputs`` decides between the two.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class BasicAgent(AutonomousAgent):
         }
 
     def _get_in(self, pose: carla.Transform) -> tuple[Driver, VehicleFacts]:
-        """Read the vehicle and lay out the route for it."""
+        """Read the vehicle and plan its task."""
         assert self.route is not None  # setup refuses
         facts = read_facts(self.vehicle, pose)
         task = make_task(self.route, facts.body, min(self.cruise_mps, facts.top_mps))
@@ -87,7 +87,7 @@ def _control(command: Command, facts: VehicleFacts, speed_mps: float) -> carla.V
 
 
 class HumanAgent(BasicAgent):
-    """What drives while the person does not; BASU seats a person before whoever is one of these."""
+    """The driver while the person does not drive; BASU adds a person's input to agents of this class."""
 
     driven_by_person = True
 

@@ -1,7 +1,7 @@
 """The behavioral agents, named after CARLA's BehaviorAgent, and the thesis's run that leaves its path on purpose.
 
 Its three profiles are ``behavioral`` (normal), ``behavioral-cautious`` and ``behavioral-aggressive``; what they differ
-in, with sources, stands in `docs/agents.md`. Like the basic agent it uses no sensors and no clock.
+in, with sources, stands in `docs/reference/agents.md`. Like the basic agent it uses no sensors and no clock.
 
 Table 5.1 has it with one collision, one speeding and 0.56 of the path. This one drives as ``behavioral`` does up to a
 share of the route, then speeds up beyond the limit, drives at something that stands still beside the street, and stays
@@ -49,7 +49,7 @@ class BehavioralAgent(BasicAgent):
     driver: BehavioralDriver | None = None
 
     def _get_in(self, pose: carla.Transform) -> tuple[BehavioralDriver, VehicleFacts]:
-        """Read the vehicle, lay out the route for it, and look at the lanes beside it."""
+        """Read the vehicle, plan its task, and read the lanes beside the route."""
         assert self.route is not None  # setup refuses
         facts = read_facts(self.vehicle, pose)
         task = make_task(self.route, facts.body, facts.top_mps, self.manner)
@@ -59,7 +59,7 @@ class BehavioralAgent(BasicAgent):
 
 
 class CautiousAgent(BehavioralAgent):
-    """The cautious profile; `docs/agents.md` has its figures."""
+    """The cautious profile; `docs/reference/agents.md` has its figures."""
 
     manner = CAUTIOUS
 
@@ -93,7 +93,7 @@ ABOVE_LIMIT_MPS = 2.5  # well beyond the tolerance of 1 m/s; 5.6 mph
 BLOW_MPS = 2.0  # so much speed is lost in one step only in a crash
 HARD_THINGS = ("Buildings", "Poles", "Vegetation", "TrafficSigns", "Fences", "Walls", "Static")
 LOWEST_M, HIGHEST_M = 1.0, 0.5  # above the road: a box that begins higher or ends lower is not hit by a bumper
-AROUND_M = 60.0  # from the place asked for: what is looked at
+AROUND_M = 60.0  # from the requested place: the searched surroundings
 NEAREST_M, FARTHEST_M = 4.5, 20.0  # beside the path: off the road, and not so far that the run ends on the way
 LEFT_M = 25.0  # what stands to the left, across the other lane, has to be so much nearer to the place
 LEAVES_M, LEAVES_PER_M = 10.0, 1.8  # so far before the thing, plus so much for each metre that it lies aside

@@ -73,7 +73,7 @@ class VehicleFacts(NamedTuple):
 
 
 def read_facts(vehicle: carla.Vehicle, pose: carla.Transform) -> VehicleFacts:
-    """Ask the server once; ``pose`` is the vehicle's at this moment, in whose frame the wheels are placed."""
+    """Read the server's data once; ``pose`` is the vehicle's at this moment, the frame of the wheels' places."""
     control = vehicle.get_physics_control()
     box = vehicle.bounding_box
     front_x_m, rear_x_m = _axles_m(control, pose, box)

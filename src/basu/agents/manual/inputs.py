@@ -109,10 +109,10 @@ DEFT = 0.02  # less than this of a stick or pedal leaves the wheel and pedals to
 
 
 class Person:
-    """Sits at the wheel. ``step`` once a tick; ``latest`` is what was done in it, for whoever shows windows.
+    """The person at the wheel. Call ``step`` once a tick; ``latest`` is that tick's input, for windows.
 
-    Whoever drives at first, P changes it. With ``taken_by_any_input`` touching a key for driving, a stick or a pedal
-    takes over, too.
+    The key P changes between person and agent. With ``taken_by_any_input`` touching a key for driving, a stick or a
+    pedal takes over, too.
     """
 
     def __init__(self, source: InputSource, *, drives_first: bool, taken_by_any_input: bool, live: bool) -> None:
@@ -131,7 +131,7 @@ class Person:
         Args:
             tick: of the run, from 0.
             dt_s: simulated time from tick to tick.
-            agents: the control of the one who is relieved: the wheel is taken over as it stands.
+            agents: the agent's control; the person takes over the wheel as it stands.
         """
         self.latest = done = self.source.read(tick)
         if self._takes_or_gives(done):
@@ -145,7 +145,7 @@ class Person:
         return _control(self._hands, done, reverse=self._reverse)
 
     def _takes_or_gives(self, done: Input) -> bool:
-        """Change who drives where that is wished; whether the person has just taken the wheel."""
+        """Change between person and agent on request; whether the person has just taken the wheel."""
         before = self.driving
         if done.strikes.count(Strike.AUTOPILOT) % 2:
             self.driving = not self.driving

@@ -86,7 +86,7 @@ def _sections(path: Path) -> configparser.ConfigParser:
 
 
 def _named(sections: configparser.ConfigParser, device: str) -> str | None:
-    """The section whose name is part of the device's, the longest of several."""
+    """The section with a name that is part of the device's, the longest of several."""
     known = [name for name in sections.sections() if name.lower() in device.lower()]
     return max(known, key=len, default=None)
 

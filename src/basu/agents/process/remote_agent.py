@@ -38,12 +38,12 @@ ERRORS: dict[str, type[BasuError]] = {
     "user": UserError,
     "simulator": SimulatorError,
 }
-MARGIN_S = 5.0  # beyond the simulator's time-out for a step to begin: the process itself says who kept it waiting
+MARGIN_S = 5.0  # beyond the simulator's time-out for a step to begin: the process itself reports the cause of the wait
 BUILT_IN_KEY = ""  # BASU's own agents share a process: none of them leaves anything behind
 
 
 class AgentInProcess(NamedTuple):
-    """An agent whose code is loaded in a process of its own, and not here."""
+    """An agent with its code in a process of its own, and not here."""
 
     name: str  # for folders and tables
     file: Path | None  # None: BASU's own

@@ -38,7 +38,7 @@ SUNSET_M = 1000.0 * FOOT_M  # of an unlit body, as the sun sets
 LOW_BEAM_M = 100.0 * FOOT_M  # of an unlit body, in the dark
 LAMPS_M = 500.0 * FOOT_M  # of a vehicle, in the dark
 DARK_DEG = -6.0  # height of the sun
-CONTRAST = 0.05  # at which a thing is no longer told from the fog before it
+CONTRAST = 0.05  # at which a thing cannot be seen against the fog
 FOG_PER_M, FOG_EXPONENT = 0.07, 1.6  # extinction in the densest fog; how it grows with the density
 RAIN_PER_M, DUST_PER_M = 0.003, 0.03  # in the hardest rain and the densest dust
 CLEAR_PER_M = 1e-4  # 30 km
@@ -83,7 +83,7 @@ RADIUS_M = 80.0  # farther actors do not matter in a town: 11 m/s through the lo
 MEMORY_S = 2.0  # a driver counts on an actor for so long after it went out of sight
 NEAR_M = 120.0  # static boxes are kept for this circle, and for the whole radius once an actor is farther away
 FAR_TICKS = 5  # beyond ``RADIUS_M`` an actor is looked at in every fifth tick, four times a second
-WEATHER_TICKS = 20  # the weather is asked for again after so many ticks
+WEATHER_TICKS = 20  # the weather is read again after so many ticks
 
 
 class Knowledge(enum.Enum):
@@ -91,7 +91,7 @@ class Knowledge(enum.Enum):
 
     SEEN = "seen"  # those in line of sight, and those seen a moment ago
     FULL = "full"  # all, as the simulator has them
-    NONE = "none"  # nobody: the control drivers'
+    NONE = "none"  # no other actor: for the control drivers
 
 
 class Sight:
@@ -111,9 +111,9 @@ class Sight:
 
         Args:
             world: with the vehicle in it.
-            vehicle: on whose roof the sensors sit.
-            radius_m: nobody farther along x or y than this is looked for.
-            knowledge: ``FULL`` leaves the filter out; ``NONE`` sees nobody.
+            vehicle: the sensors sit on its roof.
+            radius_m: actors farther than this along x or y are left out.
+            knowledge: ``FULL`` leaves the filter out; ``NONE`` sees no actor.
         """
         self._world, self._own_id, self._radius_m, self._knowledge = world, vehicle.id, radius_m, knowledge
         self._census = Census(world, vehicle.id, radius_m)

@@ -1,7 +1,7 @@
 """Weather, friction and lights that scenarios change, several at a time, and their restoration.
 
-What a scenario asks for lies over what those before it asked for, and goes with it: whoever leaves first takes nothing
-from the others, and whoever leaves last leaves the world as it was.
+A scenario's changes lie over those of earlier scenarios, and end with it. An ending scenario takes nothing from the
+others; the last one to end leaves the world as it was.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 
 from basu.errors import ScenarioError
-from basu.managers.stage.scenario_actors import take_away
+from basu.managers.stage.scenario_actors import destroy_actors
 from basu.routing.weather import WEATHER_FIELDS, changed
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ class Wish(NamedTuple):
 
 
 class SharedWorld:
-    """One for a run; its scenarios are told apart by their names."""
+    """One for a run; scenarios are distinguished by their names."""
 
     def __init__(self, world: carla.World) -> None:
         self._world = world
@@ -47,7 +47,7 @@ class SharedWorld:
         self._shown: carla.WeatherParameters | None = None  # what was set last
         self._lights: dict[str, dict[str, Wish]] = {}  # likewise, by the OpenDRIVE signal's id
 
-    def ask_weather(self, who: str, values: Mapping[str, float]) -> None:
+    def ask_weather(self, scenario: str, values: Mapping[str, float]) -> None:
         """Change fields of the weather.
 
         Raises:
@@ -56,18 +56,18 @@ class SharedWorld:
         changed(carla.WeatherParameters(), values)
         if not self._weather:
             self._beneath = self._world.get_weather()
-        self._weather.setdefault(who, {}).update(values)
+        self._weather.setdefault(scenario, {}).update(values)
         self._show_weather()
 
     def keep_up(self) -> None:
-        """Where somebody else has set the weather meanwhile, as a route's own does, lay the scenarios' over it."""
+        """Where another client or the route has set the weather meanwhile, lay the scenarios' over it."""
         if self._weather:
             now = self._world.get_weather()
             if now != self._shown:
                 self._beneath = now
                 self._show_weather()
 
-    def ask_light(self, who: str, landmark_id: str, state: str) -> None:
+    def ask_light(self, scenario: str, landmark_id: str, state: str) -> None:
         """Let a traffic light show a state; all lights stand still until they are given back, as CARLA's freeze has it.
 
         Raises:
@@ -77,16 +77,16 @@ class SharedWorld:
             raise ScenarioError(f"a traffic light cannot show '{state}'; it shows {', '.join(LIGHT_STATES)}")
         light = self._world.get_traffic_light_from_opendrive_id(landmark_id)
         if light is None:
-            raise ScenarioError(f"the map has no traffic light whose OpenDRIVE signal is '{landmark_id}'")
+            raise ScenarioError(f"the map has no traffic light with the OpenDRIVE signal '{landmark_id}'")
         if not self._lights:
             light.freeze(True)
-        wishes = self._lights.setdefault(who, {})
+        wishes = self._lights.setdefault(scenario, {})
         wishes[landmark_id] = Wish(light, LIGHT_STATES[state])
         light.set_state(LIGHT_STATES[state])
 
-    def give_back(self, who: str) -> None:
-        """Take away what one of them asked for; where the simulator is gone, so is all this."""
-        weather, lights = self._weather.pop(who, None), self._lights.pop(who, {})
+    def give_back(self, scenario: str) -> None:
+        """Undo the changes of one of them; where the simulator is gone, so is all this."""
+        weather, lights = self._weather.pop(scenario, None), self._lights.pop(scenario, {})
         with contextlib.suppress(RuntimeError):
             if weather is not None:
                 self._show_weather()
@@ -100,8 +100,8 @@ class SharedWorld:
                 next(iter(lights.values())).light.freeze(False)
 
     def _show_weather(self) -> None:
-        """Set the weather beneath with everybody's changes."""
-        assert self._beneath is not None, "somebody asks, or has asked"
+        """Set the weather beneath with the changes of all scenarios."""
+        assert self._beneath is not None, "a scenario has changed the weather"
         weather = carla.WeatherParameters(**{name: getattr(self._beneath, name) for name in WEATHER_FIELDS})
         for values in self._weather.values():
             changed(weather, values)
@@ -113,10 +113,10 @@ TRIGGER_HEIGHT_M = 3.0  # of the box in which wheels feel the friction
 
 
 class Surroundings:
-    """Of one scenario, ``who``; weather and lights are shared with the others of its run."""
+    """The changes of one ``scenario``; it shares weather and lights with the others of its run."""
 
-    def __init__(self, client: carla.Client, world: carla.World, shared: SharedWorld, who: str) -> None:
-        self._client, self._world, self._shared, self._who = client, world, shared, who
+    def __init__(self, client: carla.Client, world: carla.World, shared: SharedWorld, scenario: str) -> None:
+        self._client, self._world, self._shared, self._scenario = client, world, shared, scenario
         self._patches: list[carla.Actor] = []
 
     def set_weather(self, values: Mapping[str, float]) -> None:
@@ -125,7 +125,7 @@ class Surroundings:
         Raises:
             ScenarioError: weather has no such field.
         """
-        self._shared.ask_weather(self._who, values)
+        self._shared.ask_weather(self._scenario, values)
 
     def set_friction(self, pose: Pose, radius_m: float, friction: float) -> None:
         """Make a square of the road slippery, ``radius_m`` to each side."""
@@ -144,10 +144,10 @@ class Surroundings:
         Raises:
             ScenarioError: there is no such light or state.
         """
-        self._shared.ask_light(self._who, landmark_id, state)
+        self._shared.ask_light(self._scenario, landmark_id, state)
 
     def give_back(self) -> None:
         """Leave everything as it was; where the simulator is gone, so is all this."""
-        take_away(self._client, self._patches)
+        destroy_actors(self._client, self._patches)
         self._patches = []
-        self._shared.give_back(self._who)
+        self._shared.give_back(self._scenario)

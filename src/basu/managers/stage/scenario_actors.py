@@ -1,7 +1,7 @@
 """A scenario's actors in a live simulator: spawned, commanded in one batch a frame, and destroyed.
 
 A vehicle's velocity and turning are set in every frame, as ScenarioRunner's ``SimpleVehicleControl`` does it, so that
-a scenario's timing is exact; it still stands on its wheels, and whoever hits it is hit. Upwards it moves by itself.
+a scenario's timing is exact; it still stands on its wheels and takes part in collisions. Upwards it moves by itself.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ class Member(NamedTuple):
     half_width_m: float
 
 
-def bring(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], who: str) -> list[Member]:
-    """Put everybody of ``specs`` into the world, ``who`` being the case; all of them, or nobody.
+def spawn_actors(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], case: str) -> list[Member]:
+    """Put all actors of ``specs`` into the world for a ``case``; all of them, or none.
 
     Raises:
         ScenarioError: a blueprint or an attribute is not there, a name is given twice, or a place is taken.
@@ -49,19 +49,19 @@ def bring(client: carla.Client, world: carla.World, specs: Sequence[ActorSpec], 
     names = [EGO, *(spec.name for spec in specs)]
     for name in names:
         if names.count(name) > 1:
-            raise ScenarioError(f"{who} has two actors called '{name}'; give each its own role")
+            raise ScenarioError(f"{case} has two actors called '{name}'; give each its own role")
     library = world.get_blueprint_library()
     members: list[Member] = []
     try:
         for spec in specs:
-            members.append(_brought(world, library, spec, who))  # noqa: PERF401 - whoever came must go if one cannot
+            members.append(_spawned(world, library, spec, case))  # noqa: PERF401 - spawned actors go if one cannot come
     except BaseException:
-        take_away(client, [member.actor for member in members])
+        destroy_actors(client, [member.actor for member in members])
         raise
     return members
 
 
-def take_away(client: carla.Client, actors: Iterable[carla.Actor]) -> None:
+def destroy_actors(client: carla.Client, actors: Iterable[carla.Actor]) -> None:
     """Take actors out of the world; where the simulator is gone, so are they.
 
     By commands: of an actor that no snapshot has shown yet, ``destroy`` now and then says that it is dead already, and
@@ -82,34 +82,34 @@ def member_of(actor: carla.Actor, name: str) -> Member:
     )
 
 
-def _brought(world: carla.World, library: carla.BlueprintLibrary, spec: ActorSpec, who: str) -> Member:
+def _spawned(world: carla.World, library: carla.BlueprintLibrary, spec: ActorSpec, case: str) -> Member:
     """One of them."""
-    blueprint = _blueprint(library, spec, who)
+    blueprint = _blueprint(library, spec, case)
     pose = carla.Transform(
         carla.Location(spec.pose.x_m, spec.pose.y_m, _ground_m(world, spec.pose) if spec.on_ground else spec.pose.z_m),
         carla.Rotation(yaw=math.degrees(spec.pose.yaw_rad)),
     )
     if blueprint.id.startswith("walker."):
         pose.location.z += _half_height_m(blueprint)
-    _out_of_doors(world, spec, who)
+    _out_of_doors(world, spec, case)
     try:
         actor = world.spawn_actor(blueprint, pose)
     except RuntimeError as error:
         raise ScenarioError(
-            f"{who} puts '{spec.name}' ({blueprint.id}) at ({spec.pose.x_m:.1f}, {spec.pose.y_m:.1f}), where there is "
+            f"{case} puts '{spec.name}' ({blueprint.id}) at ({spec.pose.x_m:.1f}, {spec.pose.y_m:.1f}), where there is "
             f"no room for it ({error}); move it"
         ) from error
     return member_of(actor, spec.name)
 
 
-def _blueprint(library: carla.BlueprintLibrary, spec: ActorSpec, who: str) -> carla.ActorBlueprint:
+def _blueprint(library: carla.BlueprintLibrary, spec: ActorSpec, case: str) -> carla.ActorBlueprint:
     """Its blueprint with its attributes: of a pattern, the first in alphabetical order."""
     found = sorted(library.filter(spec.blueprint), key=lambda blueprint: str(blueprint.id))
     if not found:
         known = sorted(blueprint.id for blueprint in library)
         close = difflib.get_close_matches(spec.blueprint, known, 1)
         hint = f"did you mean '{close[0]}'?" if close else "`world.get_blueprint_library()` has them all"
-        raise ScenarioError(f"{who} asks for a '{spec.blueprint}' ('{spec.name}'), which the simulator has not; {hint}")
+        raise ScenarioError(f"{case} needs a '{spec.blueprint}' ('{spec.name}'), which the simulator has not; {hint}")
     blueprint = found[0]
     if blueprint.has_attribute("role_name"):
         blueprint.set_attribute("role_name", spec.name)
@@ -117,7 +117,7 @@ def _blueprint(library: carla.BlueprintLibrary, spec: ActorSpec, who: str) -> ca
         blueprint.set_attribute("is_invincible", "false")
     for name, value in spec.attributes:
         if not blueprint.has_attribute(name):
-            raise ScenarioError(f"{who}: {blueprint.id} ('{spec.name}') has no attribute '{name}'")
+            raise ScenarioError(f"{case}: {blueprint.id} ('{spec.name}') has no attribute '{name}'")
         blueprint.set_attribute(name, value)
     return blueprint
 
@@ -128,7 +128,7 @@ def _ground_m(world: carla.World, pose: Pose) -> float:
     return (pose.z_m if found is None else float(found.location.z)) + DROP_M
 
 
-def _out_of_doors(world: carla.World, spec: ActorSpec, who: str) -> None:
+def _out_of_doors(world: carla.World, spec: ActorSpec, case: str) -> None:
     """See that no house stands over the place.
 
     Raises:
@@ -137,7 +137,7 @@ def _out_of_doors(world: carla.World, spec: ActorSpec, who: str) -> None:
     high, low = (carla.Location(spec.pose.x_m, spec.pose.y_m, spec.pose.z_m + up_m) for up_m in (ROOFS_FROM_M, -1.0))
     if any(point.label in INDOORS for point in world.cast_ray(high, low)):
         raise ScenarioError(
-            f"{who} puts '{spec.name}' at ({spec.pose.x_m:.1f}, {spec.pose.y_m:.1f}), which is inside a house; move it"
+            f"{case} puts '{spec.name}' at ({spec.pose.x_m:.1f}, {spec.pose.y_m:.1f}), which is inside a house; move it"
         )
 
 
@@ -152,7 +152,7 @@ HELD = carla.VehicleControl(brake=1.0, hand_brake=True)
 
 
 class Motion(NamedTuple):
-    """What a vehicle is told, in m/s and rad/s, or a walker (whose turning is 0)."""
+    """The command of a vehicle, in m/s and rad/s, or of a walker (its turning is 0)."""
 
     velocity_x_mps: float
     velocity_y_mps: float
@@ -170,7 +170,7 @@ class Puppets:
         self._vehicles: dict[int, tuple[carla.Actor, Motion]] = {}
         self._new: list[object] = []  # commands that are sent once
         self._held: set[int] = set()
-        self._walkers: dict[int, tuple[float, float]] = {}  # what each was told last, in m/s
+        self._walkers: dict[int, tuple[float, float]] = {}  # the last command of each, in m/s
 
     def move(self, member: Member, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Lead a vehicle."""
@@ -205,14 +205,14 @@ class Puppets:
             self._new.append(carla.command.ApplyVehicleControl(member.actor.id, ROLLING))
 
     def forget(self) -> None:
-        """Lead nobody any more."""
+        """Command no actor any more."""
         self._vehicles.clear()
         self._held.clear()
         self._walkers.clear()
         self._new.clear()
 
     def carry_out(self) -> None:
-        """Send what all of them are told."""
+        """Send the commands of all of them."""
         commands, self._new = self._new, []
         for actor_id, (actor, motion) in self._vehicles.items():
             if motion == STILL:

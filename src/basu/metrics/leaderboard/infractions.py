@@ -9,9 +9,9 @@ wall that is scraped along for 20 m is hit once, here every 5 m.
 
 Source: ``OutsideRouteLanesTest`` in ``atomic_criteria.py`` of carla-simulator/scenario_runner, branches leaderboard-1.0
 and leaderboard-2.0. Outside is beyond the edge of the nearest driving or parking lane, by more than 1.3 m in 1.0 and
-0.5 m in 2.x, or in a wrong lane. Which lane is wrong is not asked of the plan: entering another lane whose direction
-turns by more than 150 degrees is going wrong, doing it once more is coming back, and after a junction the vehicle's own
-heading decides. The figure is the way along the plan made meanwhile, in per cent of all the way made.
+0.5 m in 2.x, or in a wrong lane. The plan does not decide which lane is wrong: entering another lane with a direction
+that turns by more than 150 degrees is going wrong, doing it once more is coming back, and after a junction the
+vehicle's own heading decides. The figure is the way along the plan made meanwhile, in per cent of all the way made.
 
 Source: ``MinimumSpeedRouteTest`` in ``atomic_criteria.py`` of carla-simulator/scenario_runner, branch leaderboard-2.0,
 with the four check points that ``route_scenario.py`` gives it. On each quarter of the route the vehicle's mean speed is

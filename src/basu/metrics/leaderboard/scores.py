@@ -84,7 +84,7 @@ def _completion(history: History, end: Ending, version: Version) -> float:
     """The share of the route in per cent; all of it where the drive ended at its end.
 
     A drive that the benchmark took for arrived, and ended, is let arrive: on a route of less than 100 m the leaderboard
-    asks for its last metre, which nobody was given the time for.
+    requires its last metre, and no drive had the time for it.
     """
     last = history.frames[-1]
     remaining_m = history.facts.route.length_m - float(last["route_s_m"])

@@ -7,7 +7,7 @@ C.2.3; motion sickness dose from annex D.
 It is a convention of this project, made of figures that are each defined by a source; the weights are adjustable.
 Harm goes before comfort: a ride falls into the first of these levels that holds, and no comfort lifts it out.
 
-    0             the vehicle touched somebody or something
+    0             the vehicle touched an actor or a thing
     0 .. 0.2      the ride did not arrive: 0.2 times the share of the route, times 0.6 for each near miss
     0.2 .. 0.4    near misses: 0.2 + 0.2 x 0.6 ** (n - 1)
     0.4 .. 0.6    breaches, which are rules broken, stops passed and phantom stops: 0.4 + 0.2 x 0.8 ** n
@@ -15,7 +15,7 @@ Harm goes before comfort: a ride falls into the first of these levels that holds
 
 The parts, each in 0 .. 1:
 
-    balance       1 - share of the moving time in which one has to step / 0.1, at least 0; 0 once a step was not enough
+    balance       1 - share of the moving time with balancing steps / 0.1, at least 0; 0 once a step was not enough
     harsh_stops   0.7 for each harsh stop that had a cause, 0.4 for each that had none, multiplied
     vibration     1 where the total value is "not uncomfortable" (0.315 m/s²), 0 from "very uncomfortable" (1.25 m/s²)
     near_misses   0.6 for each party that was nearly hit, multiplied

@@ -1,20 +1,20 @@
 """What a standing passenger feels: accelerations of the floor, and the share of the ride that upsets the balance.
 
-Whoever stands has to balance on a floor that is pushed about, so what counts is the specific force: acceleration of
-the place one stands at, less gravity, along the vehicle's axes. A slope is felt like a push, and in a bend the place
+A standing passenger balances on a moving floor, so the measure is the specific force: acceleration of
+the place of standing, less gravity, along the vehicle's axes. A slope is felt like a push, and in a bend the place
 matters: the terms of the yaw acceleration and of the centripetal acceleration about the vehicle's origin are in it, as
 are those of pitch and roll. Mechanics: Goldstein, Classical Mechanics, 3rd ed., sections 4.9 and 4.10.
 
 Krašna, Keller, Linder, Silvano, Xu, Thomson and Klug 2021, "Human Response to Longitudinal Perturbations of Standing
 Passengers on Public Transport During Regular Operation", Frontiers in Bioengineering and Biotechnology 9:680883, put 24
-healthy volunteers of 34 +- 9 years, who held on to nothing, through two brakings of a bus: "For the two braking pulses
+healthy volunteers of 34 +- 9 years without a handhold through two brakings of a bus: "For the two braking pulses
 (1.0 and 2.5 m/s2), only the lower magnitude pulse allowed balance recovery without compensatory stepping." Karekla and
 Tyler 2018, Safety Science 105, 128-133, chose 1.0, 1.5 and 2.5 m/s² as low, medium and high of what London's bus
 passengers live through, and found control of balance to fall with each.
 
-So above 1.0 a passenger who holds on to nothing has to take a step, for which there has to be room; above 2.5 not
-even a step is vouched for, and only a grip helps. How strong a grip has to be neither study tells: no share is claimed
-for those who hold on. Old people fall sooner than these volunteers.
+So above 1.0 a passenger without a handhold needs a balancing step, and room for it. Above 2.5 no study vouches for a
+step, and only a handhold helps. Neither study states how strong a grip has to be: no share is claimed for passengers
+with a handhold. Old people fall sooner than these volunteers.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ JERK_WINDOW_S = 0.5  # UN Regulation No. 79, 03 series: jerk is a 500 ms moving 
 
 
 class Place(NamedTuple):
-    """Where somebody stands: m from the vehicle's origin, which lies on the road under the middle of its box."""
+    """Where a passenger stands: m from the vehicle's origin, which lies on the road under the middle of its box."""
 
     forward_m: float
     right_m: float
@@ -146,7 +146,7 @@ class Balance(NamedTuple):
 
 
 def balance(felt: Felt) -> Balance:
-    """Count the time in which a passenger who holds on to nothing has to step, and in which that is not enough."""
+    """Count the time in which a passenger without a handhold needs a step, and in which a step is not enough."""
     size_mps2 = felt.horizontal_mps2()
     tick_s = float(felt.t_s[1] - felt.t_s[0])
     # a stop throws people when the vehicle stands already: what is felt at rest belongs to the ride

@@ -99,5 +99,5 @@ class KeysManager(BaseManager):
     def close(self) -> None:
         """Write the session, where one was recorded."""
         if self._path is not None and self._here is not None and self._tape is not None:
-            with contextlib.suppress(UserError):  # a disk that is full by now is told of by what is written next
+            with contextlib.suppress(UserError):  # the next write reports a full disk
                 write_session(self._path, Session(setting=self._here, inputs=tuple(self._tape.inputs)))

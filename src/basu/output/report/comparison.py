@@ -52,7 +52,7 @@ def heads(found: Sequence[Row]) -> tuple[str, ...]:
 
 
 def rows(runs: Sequence[RunRecord]) -> list[Row]:
-    """A row for each run; agents that appear twice are told apart by number."""
+    """A row for each run; agents that appear twice are numbered."""
     names = Counter(run.agent for run in runs)
     seen: Counter[str] = Counter()
     found = []

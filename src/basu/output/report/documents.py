@@ -174,15 +174,15 @@ def _sentence(error: jsonschema.ValidationError) -> str:
 
 def _asked(error: jsonschema.ValidationError) -> str:
     """What a value must be, in words."""
-    asked = error.validator_value
+    allowed = error.validator_value
     if error.validator == "type":
-        return " or ".join(AN.get(name, name) for name in ([asked] if isinstance(asked, str) else asked))
+        return " or ".join(AN.get(name, name) for name in ([allowed] if isinstance(allowed, str) else allowed))
     if error.validator == "enum":
-        return f"one of {', '.join(map(str, asked))}"
+        return f"one of {', '.join(map(str, allowed))}"
     if error.validator in {"minimum", "maximum"}:
         low, high = error.schema.get("minimum"), error.schema.get("maximum")
         return f"at least {low}" if high is None else f"at most {high}" if low is None else f"in {low}..{high}"
-    return repr(asked)
+    return repr(allowed)
 
 
 def _version(document: object) -> object:
@@ -206,7 +206,7 @@ class RunRecord:
 
     @property
     def agent(self) -> str:
-        """Who drove, as its author called it."""
+        """The agent's name, as its author gave it."""
         return str(self.result.meta["agent"]["name"])
 
 

@@ -1,10 +1,7 @@
 """HTML and SVG: elements, numbers as text, and the Jinja2 environment with autoescape and strict undefined names.
 
-Names of agents and messages of theirs are somebody else's words. There is no place here where text could pass for
-markup, and nothing to forget: that is why no template language is used.
-
-Text is escaped wherever it comes from: names of agents and messages of theirs are somebody else's words. Drawings are
-elements made by `markup.e`; the filter ``drawn`` is the only way by which an element gets into a page.
+Text is escaped wherever it comes from: names and messages of agents are foreign text. Pages are templates; drawings are
+elements made by `e`. The filter ``drawn`` is the only way by which an element gets into a page.
 """
 
 from __future__ import annotations

@@ -143,7 +143,7 @@ DRIVEN_COLOUR, WALKER_COLOUR, OTHER_COLOUR, INFRACTION_COLOUR = (
 )
 OTHER_HEIGHT_M = 1.6  # of the boxes that are drawn: records hold lengths and widths
 DRIVEN_ABOVE_M = 0.3  # the driven path, so that it lies over the planned one
-HALF_SIZE_M = (2.3, 0.95)  # of who has none in the record
+HALF_SIZE_M = (2.3, 0.95)  # of an actor without one in the record
 
 
 class Driving(NamedTuple):
@@ -158,7 +158,7 @@ class Driving(NamedTuple):
 
 
 class Other(NamedTuple):
-    """Somebody near; CARLA's frame."""
+    """An actor nearby; CARLA's frame."""
 
     id: int
     type_id: str
@@ -178,7 +178,7 @@ class Shower:
         self._told: set[tuple[str, int, str | None]] = set()
 
     def tick(self, t_s: float, ego: Pose, driving: Driving, others: Sequence[Other]) -> None:
-        """Show where everybody is and what is driven; what is shown later belongs to this time too."""
+        """Show all actors and the control; later entities belong to this time too."""
         self.recording.set_time(TIMELINE, duration=t_s)
         self._pose(ego)
         self._signals(ego, driving)

@@ -20,7 +20,7 @@ MIRROR = np.array([1.0, -1.0, 1.0])
 
 
 class Pose(NamedTuple):
-    """Somebody's place and attitude: CARLA's frame, m and rad."""
+    """An actor's place and attitude: CARLA's frame, m and rad."""
 
     x_m: float
     y_m: float
@@ -37,7 +37,7 @@ def shown(points_m: ArrayLike) -> NDArray[np.float64]:
 
 
 def turned(pose: Pose) -> NDArray[np.float64]:
-    """(3, 3) the rotation from somebody's own frame into the world, as it is drawn.
+    """(3, 3) the rotation from an actor's own frame into the world, as it is drawn.
 
     The matrix before it is mirrored: LibCarla, ``carla/geom/Transform.h``, ``GetMatrix``.
     """

@@ -34,7 +34,7 @@ def show_log(
     """Show a recorder file, keep it in ``rrd``; says where it was shown.
 
     Raises:
-        UserError: Rerun is missing, or there is nobody to show.
+        UserError: Rerun is missing, or there is no actor to show.
     """
     actors = [actor for kind in SHOWN_TYPES for actor in log.ids_of(type_id=kind)]
     if not actors:
@@ -76,7 +76,7 @@ def _driving(run: ActorArrays, index: int) -> entities.Driving:
 
 
 def _others(log: Log, runs: dict[int, ActorArrays]) -> dict[int, list[entities.Other]]:
-    """Everybody but the hero, by frame."""
+    """All actors but the hero, by frame."""
     types = {actor.id: actor.type_id for actor in log.created}
     found: dict[int, list[entities.Other]] = {}
     for actor, run in runs.items():

@@ -70,7 +70,7 @@ def show_run(
 
 
 def _window(history: History, end: int, first: int) -> History:
-    """The frames from ``first`` until before ``end`` and the contacts in them, whose ticks count from ``first``."""
+    """The frames from ``first`` until before ``end`` and the contacts in them; ticks count from ``first``."""
     contacts = (contact for contact in history.collisions if first <= contact.tick < end)
     return replace(
         history,
@@ -96,7 +96,7 @@ def _driving(row: np.void) -> entities.Driving:
 
 
 def _others(history: History) -> dict[int, list[entities.Other]]:
-    """Who was near, by tick."""
+    """The actors nearby, by tick."""
     facts = history.facts
     found: dict[int, list[entities.Other]] = {}
     for row in history.others:

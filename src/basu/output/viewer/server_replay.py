@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from basu.records.carla_log import Log
 
 
-NOBODY = 0  # whom the spectator follows where there is no hero
+NO_ACTOR = 0  # followed by the spectator where there is no hero
 
 
 class Where(NamedTuple):
@@ -33,7 +33,7 @@ class Where(NamedTuple):
 
 
 class Progress(NamedTuple):
-    """What is told while it plays."""
+    """Callbacks while it plays."""
 
     ready: Callable[[str], object]  # the address at which the simulator can be watched
     frame: Callable[[int], object]  # so many frames more were shown
@@ -45,13 +45,13 @@ def play(log: Log, where: Where, *, speed: float, progress: Progress) -> None:
     ``speed`` is simulated against wall time, 0 for as fast as it goes.
 
     Raises:
-        UserError: nobody answers there, or the simulator cannot replay the file.
+        UserError: no server answers there, or the simulator cannot replay the file.
         SimulatorError: it went away.
     """
     with _simulator(log.path, where) as (client, address):
         step_s = float(np.median(np.diff(log.elapsed_s))) if log.frames > 1 else 0.05
-        hero = next(iter(log.ids_of(role_name="hero")), NOBODY)
-        with ticked_by_us(client.get_world(), step_s):  # a replay goes on by itself where nobody holds the clock
+        hero = next(iter(log.ids_of(role_name="hero")), NO_ACTOR)
+        with ticked_by_us(client.get_world(), step_s):  # a replay goes on by itself where no client holds the clock
             world = _begun(client, log, hero)
             progress.ready(address)
             with ticked_by_us(world, step_s):  # again: another map comes with settings of its own

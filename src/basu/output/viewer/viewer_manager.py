@@ -29,7 +29,7 @@ class ViewerManager(BaseManager):
     """Shows each tick as it was recorded."""
 
     def __init__(self, live: Live, say: Callable[[str], None]) -> None:
-        """Look on at ``live``; ``say`` tells the user where it can be seen."""
+        """Observe ``live``; ``say`` prints the viewer's address."""
         self._live, self._say = live, say
         self._stream: Stream | None = None
 
@@ -80,7 +80,7 @@ class ViewerManager(BaseManager):
         self._say(f"viewer            {RRD_FILE} in the result folder ({stream.said}); `rerun {RRD_FILE}` opens it")
 
     def _others(self, frame: Frame) -> list[entities.Other]:
-        """Who is near, as the record has them."""
+        """The actors nearby, from the record."""
         return [
             entities.Other(
                 int(actor_id),

@@ -15,7 +15,7 @@ import numpy as np
 
 MAGIC = b"CARLA_RECORDER"
 VERSIONS = (1, 2)  # 1: all releases; 2: of development after 0.9.16, the same but for how attributes' types count
-NOBODY = 0xFFFFFFFF  # an actor's id in a collision with scenery
+NO_ACTOR = 0xFFFFFFFF  # an actor's id in a collision with scenery
 
 
 class Kind(IntEnum):

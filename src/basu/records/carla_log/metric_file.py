@@ -45,7 +45,7 @@ class BasicMetric(ABC):
         Args:
             town_map: the map the run lay in.
             log: the recording.
-            criteria: what the run was judged by, a dict a criterion; None where nobody judged.
+            criteria: what the run was judged by, a dict a criterion; None without a judgement.
         """
 
 

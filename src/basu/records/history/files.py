@@ -114,7 +114,7 @@ def facts_from_json(text: str) -> Facts:
     document = json.loads(text)
     version = document["schema_version"]
     if version not in (WITHOUT_APPLIED, FACTS_SCHEMA_VERSION):
-        lacks = ", which lacks what the metrics ask for (lanes, lights, who drives)" if version == 1 else ""
+        lacks = ", which lacks what the metrics ask for (lanes, lights, the driver)" if version == 1 else ""
         raise ValueError(
             f"{FACTS_FILE} has schema version {version}{lacks}, and this one reads {FACTS_SCHEMA_VERSION}; score it "
             "with the version of basu that its config.json names, or drive it again by the command there"

@@ -163,7 +163,7 @@ FRAME = np.dtype(
         ),  # carla.TrafficLightState of the light the vehicle stands under, NO_LIGHT for none
         ("route_s_m", "<f8"),  # progress along the planned route
         ("lateral_m", "<f8"),  # off the route, positive to the right
-        ("route_light", "<i1"),  # of the next light on the route whose line is not 1 m behind the rear, as above
+        ("route_light", "<i1"),  # of the next light on the route with its line less than 1 m behind the rear, as above
         ("manual", "<i1"),  # a person drives
         ("road_id", "<i4"),  # the lane under the vehicle's origin, whatever its type
         ("lane_id", "<i4"),
@@ -231,7 +231,7 @@ class Facts:
     step_s: float  # simulated time from tick to tick
     vehicle: Vehicle
     route: Route
-    actor_types: Mapping[int, str]  # blueprint ids of all who were ever near
+    actor_types: Mapping[int, str]  # blueprint ids of all actors that were ever near
     actor_sizes: Mapping[int, tuple[float, float]]  # half the length and half the width of their boxes, m
 
 

@@ -83,7 +83,7 @@ def _measured(playing: Playing, history: History) -> dict[str, Any] | None:
 
 
 def lost(playable: Playable, loaded: FoundAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
-    """The document of a case whose process died: nothing is known of it."""
+    """The document of a case after the death of its process: nothing is known of it."""
     judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
     return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)
 

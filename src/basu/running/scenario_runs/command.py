@@ -52,7 +52,7 @@ class MatrixRun(NamedTuple):
 
 
 def run_scenarios(options: ScenarioOptions) -> int:
-    """Play everything that was asked for and show the matrix; the exit code is that of the worst verdict.
+    """Play all requested cases and show the matrix; the exit code is that of the worst verdict.
 
     Raises:
         UserError: nothing can be played like this.
@@ -139,7 +139,7 @@ def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> 
 
 
 def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
-    """The cases that were asked for in the order of the typology, sampled where that was.
+    """The requested cases in the order of the typology, with samples where requested.
 
     Raises:
         UserError: there is none of that name, or it cannot be sampled like this.
@@ -165,7 +165,7 @@ def _exit_code(document: dict[str, Any]) -> int:
 
 
 def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
-    """The agents, loaded before anything begins, so that a wrong one is told at once.
+    """The agents, loaded before anything begins, so that a wrong one is refused at once.
 
     Raises:
         UserError: one cannot be had, or two have one name.

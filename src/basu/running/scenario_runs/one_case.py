@@ -14,7 +14,7 @@ from basu.episode.spec import description_of
 from basu.episode.world import asking, towns_of, world_of
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
-from basu.managers.placed_scenario import asked, lay_out
+from basu.managers.placed_scenario import call_scenario, place_scenario
 from basu.managers.sensors_manager import SensorsManager
 from basu.outcome import Outcome, Status
 from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
@@ -161,7 +161,7 @@ def _streets(episode: Episode | None) -> list[NDArray[np.float64]]:
 
 
 def _sensors(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
-    """What the agent senses with; those of our own read no sensors, theirs are for who looks on, as nobody does here.
+    """The agent's sensors; built-in agents read none, and theirs serve observers, which a case has not.
 
     Raises:
         UserError: the agent asks for what is no sensor set.
@@ -182,5 +182,5 @@ def drawn(options: ScenarioOptions, form: str) -> str:
         check_town(case, towns_of(simulator.client))
         carla_map = world_of(simulator.client, case.town).get_map()
         route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))
-        laid = lay_out(playable, route, carla_map, own=True)
-        return asked(case.name, partial(draw, laid.scenario, form))
+        placed = place_scenario(playable, route, carla_map, own=True)
+        return call_scenario(case.name, partial(draw, placed.scenario, form))

@@ -113,7 +113,7 @@ def work(connection: Connection) -> None:
 
 
 def main() -> None:
-    """Work at the pipe whose descriptor is the first argument."""
+    """Work at a pipe; its descriptor is the first argument."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the command, which ends its workers
     with contextlib.suppress(EOFError, BrokenPipeError):  # the command has ended
         work(Connection(int(sys.argv[1])))
@@ -121,7 +121,7 @@ def main() -> None:
         client_threads.leave(0)
 
 
-ATTEMPTS = 2  # at a job whose worker died
+ATTEMPTS = 2  # at a job before it counts as failed
 END_LIMIT_S = 10.0  # for a worker to end by itself
 
 

@@ -125,7 +125,7 @@ class SetLight(Action):
 
 
 class OpenDoor(Action):
-    """Open a vehicle's door, by default the one towards the street of who is parked on the right."""
+    """Open a vehicle's door, by default the street side of a car parked on the right."""
 
     def __init__(self, actor: str, door: Door = Door.FRONT_LEFT) -> None:
         super().__init__(f"{actor} opens its {door.name.lower().replace('_', ' ')} door")

@@ -67,7 +67,7 @@ def part_of(history: History, first: int, end: int, until_s_m: float | None = No
     """The frames from ``first`` to before ``end``, their events, and the route up to ``until_s_m`` (None: all of it).
 
     Ticks count from the part's first frame; times stay those of the run, and places along the route as well, so that
-    who passes ``until_s_m`` has arrived.
+    an ego beyond ``until_s_m`` has arrived.
     """
     frames = history.frames[first:end].copy()
     frames["tick"] -= first

@@ -1,4 +1,4 @@
-"""Stopping for something: coming to rest before a line, an obstacle or somebody."""
+"""Criteria of stopping: coming to rest before a line, an obstacle or an actor."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ class HeedsRedLights(Criterion):
 def _broken(
     criterion: Criterion, played: Played, run: tuple[Evidence, ...], *, measured: float, limit: str
 ) -> Judgement:
-    """The first one decides, and all are told."""
+    """The first one decides, and the sentence names all."""
     return criterion.says(
         played,
         False,
@@ -140,7 +140,7 @@ class KeepsSpeed(Criterion):
 class MinimumSpeed(Criterion):
     """The ego's mean speed from a phase on (``since``, None: from the first frame) is at least ``least_mps``.
 
-    For scenarios in which nothing is in the way: who creeps through them has not shown that it can drive.
+    For scenarios in which nothing is in the way: creeping through them shows no ability to drive.
     """
 
     aspect = Aspect.COMPLETED

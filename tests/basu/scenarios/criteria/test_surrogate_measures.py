@@ -193,7 +193,7 @@ def test_who_was_hit_coming_across_the_way_was_no_time_apart(
     history = ride(1.0, eastward(lambda _: 10.0, 2.0), others=[(9, moves)])
     said = Pet().judge(played(history, collisions=(hit(18, "vehicle.audi.tt", 9),)))
     assert said.measured == measured
-    assert ("was touched" if measured == 0.0 else "nobody crossed its way within 5 s") in said.sentence
+    assert ("was touched" if measured == 0.0 else "no actor crossed its way within 5 s") in said.sentence
 
 
 def test_it_is_the_gap_between_the_bumpers_over_the_egos_speed() -> None:

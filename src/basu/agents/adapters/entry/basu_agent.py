@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import carla
 
 LEADERBOARD, SCENARIO_RUNNER = "leaderboard.autoagents.autonomous_agent", "srunner.autoagents.autonomous_agent"
-# whoever loads this file has loaded its own base class before
+# a host that loads this file has loaded its own base class before
 HOST: Any = importlib.import_module(LEADERBOARD if LEADERBOARD in sys.modules else SCENARIO_RUNNER)
 
 

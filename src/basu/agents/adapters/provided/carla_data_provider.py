@@ -16,7 +16,7 @@ HERO = "hero"
 
 
 class _Surface(type):
-    """What is asked for and not there is ScenarioRunner's."""
+    """Refuse what only ScenarioRunner has."""
 
     def __getattr__(cls, name: str) -> NoReturn:
         raise AttributeError(
@@ -63,10 +63,10 @@ class CarlaDataProvider(metaclass=_Surface):
     def get_map(world: carla.World | None = None) -> carla.Map:
         """The map of the run, which is read once."""
         if CarlaDataProvider._map is None:
-            asked = world or CarlaDataProvider._world
-            if asked is None:
+            wanted = world or CarlaDataProvider._world
+            if wanted is None:
                 raise ValueError("CarlaDataProvider has no world yet")
-            CarlaDataProvider._map = asked.get_map()
+            CarlaDataProvider._map = wanted.get_map()
         return CarlaDataProvider._map
 
     @staticmethod
@@ -92,7 +92,7 @@ class CarlaDataProvider(metaclass=_Surface):
 
     @staticmethod
     def get_all_actors() -> carla.ActorList:
-        """Everybody in the world; asked once a step."""
+        """All actors in the world; read once a step."""
         if CarlaDataProvider._all_actors is None:
             CarlaDataProvider._all_actors = _needed(CarlaDataProvider._world).get_actors()
         return CarlaDataProvider._all_actors
@@ -152,7 +152,7 @@ class CarlaDataProvider(metaclass=_Surface):
 
     @staticmethod
     def on_carla_tick() -> None:
-        """Forget what was asked in the last step."""
+        """Forget the answers of the last step."""
         CarlaDataProvider._all_actors = None
 
     @staticmethod

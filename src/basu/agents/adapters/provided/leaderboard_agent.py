@@ -17,7 +17,7 @@ class Track(enum.Enum):
 
 
 class AutonomousAgent(PlannedAgent):
-    """An agent of the leaderboard 2.x: made, given its plan, set up, asked for its sensors, then stepped."""
+    """An agent of the leaderboard 2.x: it is made, gets its plan, is set up, names its sensors, then steps."""
 
     PLAN_SPACING_M = 200.0
 

@@ -49,7 +49,7 @@ def downsample_route(route: Sequence[tuple[carla.Transform, Any]], sample_factor
 
 
 class PlannedAgent:
-    """An agent that is given a plan, asked for its sensors, then stepped.
+    """An agent that receives a plan, names its sensors, then steps.
 
     The thinned plan lies in ``_global_plan`` (dicts of lat, lon in degrees and z in m) and ``_global_plan_world_coord``
     (transforms), each entry with its ``RoadOption``; the names are those that agents read.

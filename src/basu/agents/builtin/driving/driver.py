@@ -85,15 +85,15 @@ class Driver:
         others: Sequence[Other],
         shows: Callable[[str], Light],
         limit_mps: float,
-        asked: Iterable[Restriction] = (),
+        demands: Iterable[Restriction] = (),
     ) -> Command:
-        """Meet everything that is asked for: path, rules, other people, and what the caller adds."""
+        """Meet all restrictions: of path, rules, other actors, and the caller's own."""
         restrictions = [
             Restriction(distance_m, speed_mps, Urgency.GENTLE, "bend or lower limit")
             for distance_m, speed_mps in self.profile.slowdowns(place.s_m, HORIZON_M)
         ]
         restrictions.append(Restriction(self.path.end_s_m - place.s_m, 0.0, Urgency.GENTLE, "end of the route"))
-        restrictions.extend(asked)
+        restrictions.extend(demands)
         restrictions.extend(self._ruled(ego, place, others, shows))
         restrictions.extend(self._obstacles.step(ego, place, others))
         accel_mps2 = self.planner.step(ego.speed_mps, limit_mps, restrictions, self._obstacles.follow_mps2)
@@ -110,9 +110,9 @@ class Driver:
     def _ruled(
         self, ego: Ego, place: Place, others: Sequence[Other], shows: Callable[[str], Light]
     ) -> list[Restriction]:
-        """What signs, lights and stops ask for; those not yet in sight and those long passed are not asked."""
+        """The restrictions of signs, lights and stops in sight."""
         s_m, front_s_m = place.s_m, place.s_m + self._body.front_m
-        asked = [
+        demands = [
             *(sign.step(ego, front_s_m, others) for sign in self.task.stop_signs if _in_sight(sign.line_s_m, s_m)),
             *(sign.step(ego, front_s_m, others) for sign in self.task.yield_signs if _in_sight(sign.line_s_m, s_m)),
             *(
@@ -122,7 +122,7 @@ class Driver:
             ),
             *(stop.step(ego, s_m) for stop in self.task.stops if _in_sight(stop.s_m, s_m)),
         ]
-        return [restriction for restriction in asked if restriction is not None]
+        return [restriction for restriction in demands if restriction is not None]
 
 
 def _in_sight(mark_s_m: float, s_m: float) -> bool:
@@ -132,8 +132,8 @@ def _in_sight(mark_s_m: float, s_m: float) -> bool:
 
 NEAR_M = 150.0  # rules look at those within this, 25 mph for 13 s; only passing has to look farther
 SIGHT_M = 350.0  # from standstill the cautious one needs some 21 s, in which one at 25 mph gets 240 m
-SOFTER = 0.7  # share of the usual comfort that is left of braking and its jerk while somebody is close behind
-HURRY_MPS = 1.0  # one who drives below the limit may be this much faster then, up to the limit as basic has it
+SOFTER = 0.7  # share of the usual braking and jerk while an actor is close behind
+HURRY_MPS = 1.0  # added to a speed below the limit then, up to the limit of basic
 
 
 class BehavioralDriver(Driver):
@@ -160,7 +160,7 @@ class BehavioralDriver(Driver):
         near = [o for o in others if abs(o.x_m - ego.x_m) < NEAR_M and abs(o.y_m - ego.y_m) < NEAR_M]
         place = self._locate(ego)
         tailgated = self.tailgating.step(ego, self.path, place, near)
-        asked = self._choose_path(ego, place, others, tailgated=tailgated)
+        demands = self._choose_path(ego, place, others, tailgated=tailgated)
         place = self._locate(ego)
         limit_mps = self._limit_mps(place)
         if tailgated and self.detour is None:
@@ -168,20 +168,20 @@ class BehavioralDriver(Driver):
             limit_mps = self._hurried_mps(place, limit_mps)
         else:
             self.planner.comfort = self.manner.comfort
-        return self._drive(ego, place, near, shows, limit_mps, asked)
+        return self._drive(ego, place, near, shows, limit_mps, demands)
 
     def _choose_path(self, ego: Ego, place: Place, others: Sequence[Other], *, tailgated: bool) -> list[Restriction]:
-        """Keep to the lane, go round what stands in it, or make room for who is close behind."""
+        """Keep to the lane, pass an obstruction, or make room for a tailgater."""
         lane = self.task.path
         own = place if self.path is lane else lane.follow(ego.x_m, ego.y_m, place.near)
-        asked: list[Restriction] = []
+        demands: list[Restriction] = []
         if self.pulling_over.detour is None:
-            asked = self.overtaking.step(ego, own, others)
+            demands = self.overtaking.step(ego, own, others)
         if self.overtaking.phase is Phase.KEEPING:
-            asked.extend(self.pulling_over.step(ego, own, others, tailgated=tailgated))
+            demands.extend(self.pulling_over.step(ego, own, others, tailgated=tailgated))
         self.detour = self.overtaking.detour or self.pulling_over.detour
         self.path = self._obstacles.path = lane if self.detour is None else self.detour.path
-        return asked
+        return demands
 
     def _limit_mps(self, place: Place) -> float:
         """The speed here, on a way round the speed of that."""

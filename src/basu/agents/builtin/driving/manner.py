@@ -5,8 +5,8 @@ zero exactly when the new speed is reached (Biagiotti and Melchiorri, Trajectory
 Robots, 2008, section 3.4, "double S").
 
 ``BASIC`` is the basic agent's, with nothing of the behavioral ones. The other three are named as CARLA's BehaviorAgent
-names its profiles, whose figures (in km/h and metres of its own controller) are the model for their order, not for
-their values.
+names its profiles. The profiles' figures (in km/h and metres of its own controller) are the model for their order, not
+for their values.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ class Manner(NamedTuple):
     following: Following | None = None  # None: keeps the distance in which comfort can stop
     gaps: Gaps | None = None  # None: the rules' own
     passing: Passing | None = None  # None: waits behind whatever stands there
-    tailgated_s: float = 0.0  # somebody behind nearer than this is a tailgater; 0: never
+    tailgated_s: float = 0.0  # an actor behind nearer than this is a tailgater; 0: never
 
 
 # basic: below the passengers' 1.0 m/s² and 1.0 m/s³ by what tracking adds

@@ -24,7 +24,7 @@ SAME_BLOCK_M = 10.0  # between two that stand in the lane: nearer than this one 
 LONGEST_BLOCK_M = 25.0  # more than this is a jam
 QUEUE_M = 20.0  # a vehicle that stands this near before a line or a junction waits for its turn …
 QUEUE_PATIENCE_S = 60.0  # … unless it stands for so long
-DROVE_FACTOR = 4.0  # who was seen to drive has a driver, who is given so much more time
+DROVE_FACTOR = 4.0  # a vehicle seen driving has a driver, and gets so much more time
 
 
 class Block(NamedTuple):
@@ -41,7 +41,7 @@ class Block(NamedTuple):
 
 
 class Standing:
-    """Remembers since when others stand, and who of them was seen to drive."""
+    """Remembers since when other actors stand, and which of them were seen driving."""
 
     def __init__(self, body: Body) -> None:
         self._body = body
@@ -94,7 +94,7 @@ class Standing:
 
 
 def _joined(seen: Sequence[tuple[Footprint, Other]]) -> list[tuple[Footprint, Other]]:
-    """The first of those seen, in order, and whoever stands close behind one of them."""
+    """The first of the visible actors in order, and each one that stands close behind another."""
     joined: list[tuple[Footprint, Other]] = []
     for one in seen:
         if joined and max(footprint.to_s_m for footprint, _ in joined) + SAME_BLOCK_M < one[0].from_s_m:

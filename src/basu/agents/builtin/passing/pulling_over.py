@@ -1,7 +1,7 @@
 """Detects a tailgater and makes room for it: over to a lane of the same direction on the right, and back.
 
-Only where such a lane is free and goes on, past no junction, line or service stop; and back only when nobody is beside
-or close behind in the lane that one came from.
+It needs a free lane that continues past no junction, line or service stop. The vehicle returns only when no actor is
+beside it or close behind in its former lane.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from basu.agents.builtin.scene import Body, Ego, Other
 
 
-LEAST_MPS = 2.0  # nobody tailgates one who hardly moves
+LEAST_MPS = 2.0  # a vehicle that hardly moves has no tailgater
 TAILGATER_WITHIN_M = 40.0
 SAME_WAY_RAD = math.radians(45.0)
 NOTICED_S = 1.0  # it has to go on for so long …
@@ -30,7 +30,7 @@ FORGOTTEN_S = 3.0  # … and is over after so long
 
 
 class Tailgating:
-    """Whether somebody follows at less than ``near_s`` seconds; 0: one does not care."""
+    """Whether an actor follows at less than ``near_s`` seconds; 0 switches the check off."""
 
     def __init__(self, body: Body, near_s: float) -> None:
         self.is_on = False
@@ -69,11 +69,11 @@ class Tailgating:
 
 
 ALONG_M = 40.0  # driven in the other lane at least
-LONGER_M = 20.0  # by which that is drawn out while somebody is in the way back
-BEHIND_M, AHEAD_M = 20.0, 10.0  # nobody so near before and behind in the lane that one changes to
+LONGER_M = 20.0  # added while an actor blocks the way back
+BEHIND_M, AHEAD_M = 20.0, 10.0  # no actor this near before and behind in the target lane
 DECIDES_M = 10.0  # before the way back begins it is seen whether it is clear
 LIKE_M = 0.3  # a lane that lies so much elsewhere is another lane
-SLOWEST_MPS = 3.0  # changes of lane are laid out for this speed at least
+SLOWEST_MPS = 3.0  # changes of lane are planned for this speed at least
 
 
 class PullingOver:
@@ -101,7 +101,7 @@ class PullingOver:
                 to_s_m=extent.to_s_m + LONGER_M,
             )
             if not self._goes_on(drawn_out, self.detour.offset_m):
-                return [Restriction(extent.until_s_m - place.s_m, 0.0, Urgency.FIRM, "nobody lets us in")]
+                return [Restriction(extent.until_s_m - place.s_m, 0.0, Urgency.FIRM, "no gap to return")]
             offset_m = self.detour.offset_m
             self.detour = make_detour(self._path, drawn_out, offset_m, self._manner, self.detour.speed_mps, offset_m)
         return []
@@ -129,7 +129,7 @@ class PullingOver:
         return beside and not marks and not ends and not road.meets_junction(extent.from_s_m, extent.to_s_m)
 
     def _is_clear(self, place: Place, others: Sequence[Other], lane_m: float, half_m: float) -> bool:
-        """Whether nobody is near in the lane whose middle lies ``lane_m`` to the right of ours."""
+        """Whether no actor is near in the lane with its middle ``lane_m`` to the right of ours."""
         for other in others:
             there = self._path.follow(other.x_m, other.y_m, place.near)
             ahead_m = there.s_m - place.s_m

@@ -1,7 +1,7 @@
 """Gap acceptance: predicted conflicts on the road ahead, and critical headways for crossing and joining.
 
 Whatever the critical headway of the handbook says, a slow vehicle needs the time that it takes to leave the crossing
-behind; the longer of the two counts. Who has waited past all patience takes a gap of the bare time of the crossing.
+behind; the longer of the two counts. After all patience, a vehicle takes a gap of the bare crossing time.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ TURN_RAD = math.radians(45.0)  # a way that turns by less than this goes through
 
 
 class Movement(enum.Enum):
-    """What a way does in a junction; the value is the critical headway of one who comes from a minor street, s."""
+    """What a way does in a junction; the value is the critical headway from a minor street, s."""
 
     LEFT = LEFT_FROM_MINOR_S
     THROUGH = THROUGH_FROM_MINOR_S
@@ -47,7 +47,7 @@ def movement(path: Path, from_s_m: float, to_s_m: float) -> Movement:
 
 
 def time_to_cover_s(distance_m: float, speed_mps: float, accel_mps2: float, top_mps: float) -> float:
-    """Seconds for a distance, speeding up evenly to ``top_mps`` and no further; who is faster keeps its speed."""
+    """Seconds for a distance, speeding up evenly to ``top_mps`` and no further; a faster vehicle keeps its speed."""
     if distance_m <= 0.0:
         return 0.0
     speed_mps = max(speed_mps, 0.0)
@@ -68,7 +68,7 @@ class GapRule(NamedTuple):
     top_mps: float  # … up to this speed
 
     def needed_s(self, distance_m: float, speed_mps: float, waited_s: float) -> float:
-        """Until nobody may come: ``distance_m`` from the rear bumper here to its having left the crossing."""
+        """The least gap, in s; ``distance_m`` is what the rear bumper covers until it has left the crossing."""
         start_s = START_S if speed_mps < 1.0 else 0.0
         own_s = start_s + time_to_cover_s(distance_m, speed_mps, self.accel_mps2, self.top_mps)
         return own_s if waited_s > self.patience_s else max(self.critical_s, own_s + self.margin_s)

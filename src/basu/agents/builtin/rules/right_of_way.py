@@ -5,8 +5,8 @@
     APPROACHING ── at rest at the line ──► WAITING ── rested, and the way is clear ──► PASSED
          └─────────────────── already beyond the line ────────────────────────────────────►
 
-Who turns left from a street that has the right of way gives way likewise, to those alone who come towards it (Ohio
-Revised Code 4511.42).
+A left turn from a street that has the right of way gives way likewise, to oncoming traffic alone (Ohio Revised Code
+4511.42).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 REST_S = 1.2  # how long one stands at least
-COURTESY_S = 4.0  # who was there first and has not moved by then is parked, or waves us on
+COURTESY_S = 4.0  # an actor that was there first and has not moved by then is parked, or waves us on
 IMPATIENCE_S = 45.0  # after this a gap that is just long enough will do, so that no stream of cars holds one for ever
 BEYOND_M = 1.0  # a bumper this far over the line is in the crossing, where stopping endangers
 PULL_AWAY_MPS2 = 0.8  # how it accelerates over the crossing
@@ -70,18 +70,18 @@ class StopSign:
         return None if self.phase is StopPhase.PASSED else hold_at(self.line_s_m, front_s_m, "stop sign")
 
     def _may_go(self, ego: Ego, others: Sequence[Other]) -> bool:
-        """Whether one has rested and nobody with a better right is in the way."""
+        """Whether the vehicle has rested and no actor with a better right is in the way."""
         rested_s = ego.time_s - self._rest_since_s
         if rested_s < REST_S - 1e-6:
             return False
         if self._before_us and rested_s < COURTESY_S:
-            self._before_us &= waiting(self._zone, ego, others)  # who has set off is seen as crossing from now on
+            self._before_us &= waiting(self._zone, ego, others)  # an actor that sets off counts as crossing from now on
             if self._before_us:
                 return False
         return not crossing(self._zone, ego, others, self._gap_s(rested_s))
 
     def _gap_s(self, rested_s: float) -> float:
-        """How long nobody may come."""
+        """How long the crossing has to stay free, in s."""
         if self._rule is not None:
             return self._rule.needed_s(self._way_m, 0.0, rested_s)
         return self._needed_gap_s if rested_s < IMPATIENCE_S else min(SHORT_GAP_S, self._needed_gap_s)
@@ -121,7 +121,7 @@ class YieldSign:
             zone: what is crossed behind the line.
             body_length_m: of the own vehicle.
             rule: which gap will do; without one, that in which the entry is driven at ``ENTRY_MPS``.
-            oncoming_to_rad: the path's heading at the line, where only those count who come towards it.
+            oncoming_to_rad: the path's heading at the line, where oncoming actors alone count.
         """
         self.line_s_m = line_s_m
         self.phase = YieldPhase.APPROACHING
@@ -154,14 +154,14 @@ class YieldSign:
         return "yield sign" if self._oncoming_to_rad is None else "left turn"
 
     def _heeded(self, others: Sequence[Other]) -> Sequence[Other]:
-        """Those to whom one gives way."""
+        """The actors with a better right."""
         if self._oncoming_to_rad is None:
             return others
         heading_rad = self._oncoming_to_rad
         return [o for o in others if abs(math.remainder(o.yaw_rad - heading_rad, math.tau)) > ONCOMING_RAD]
 
     def _within_s(self, ego: Ego, left_m: float) -> float:
-        """How long nobody may come."""
+        """How long the crossing has to stay free, in s."""
         inside_m = left_m + self._zone.length_m + self._body_length_m
         if self._rule is None:
             return inside_m / max(ego.speed_mps, ENTRY_MPS) + MARGIN_S

@@ -57,7 +57,7 @@ class TrafficLight:
             self._drives_through_yellow = False
             return None
         if shows is Light.YELLOW:
-            # decided once, when it turns yellow: who has begun to stop stops, who has not begun does not begin
+            # decided once, when it turns yellow: a stop that has begun goes on, and none begins later
             if self._drives_through_yellow or self._is_too_late(left_m, speed_mps):
                 self._drives_through_yellow = True
                 return None

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
-PICTURED = 60  # events that have pictures; a drive with more of them is told in words from there on
+PICTURED = 60  # events with pictures; further events have words only
 CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
 AROUND_S = 8.0  # of speed, before and after
-UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others whose size is not recorded
+UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others without a recorded size
 
 
 def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
@@ -44,7 +44,7 @@ def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
 
 
 def close_up(history: History, event: Event) -> Element:
-    """The place from above: the vehicle under test, dark, and who was near it in that tick."""
+    """The place from above: the vehicle under test, dark, and the actors near it in that tick."""
     x_m, y_m = event.x_m, event.y_m
     bounds = Bounds(x_m - CLOSE_M[0], y_m - CLOSE_M[1], x_m + CLOSE_M[0], y_m + CLOSE_M[1])
     frame, vehicle = history.frames[event.tick], history.facts.vehicle

@@ -20,7 +20,7 @@ WIDTH = 110
 NAME_WIDTH, AGENT_WIDTH = 30, 24  # of a scenario and an agent; a longer name is cut
 GAP = "   "
 LATER = {"FAILURE": 1, "NOT_EXERCISED": 2}
-MOST_TOLD = 6  # cases of an agent whose end is told in a sentence
+MOST_TOLD = 6  # cases of an agent with a sentence on their end
 GREEN, RED, YELLOW, BOLD, DIM, PLAIN = "\x1b[32m", "\x1b[31m", "\x1b[33m", "\x1b[1m", "\x1b[2m", "\x1b[0m"
 
 
@@ -39,7 +39,7 @@ def matrix_text(matrix: dict[str, Any], *, colour: bool = False) -> str:
     parts = [_headline(matrix)]
     parts += [_table(matrix, agents, colour=colour) for agents in _side_by_side(matrix)]
     parts += [_key(matrix), _endings(matrix, colour=colour)]
-    parts.append("\n".join(textwrap.fill(told, WIDTH, subsequent_indent="  ") for told in boundary(matrix)))
+    parts.append("\n".join(textwrap.fill(sentence, WIDTH, subsequent_indent="  ") for sentence in boundary(matrix)))
     parts.append(shares_text(matrix))
     return "\n\n".join(part for part in parts if part)
 
@@ -142,14 +142,14 @@ def _painted(text: str, colour_code: str, *, colour: bool) -> str:
 def _key(matrix: dict[str, Any]) -> str:
     """What the parts of a cell are, as far as they occur."""
     verdicts = {result["verdict"] for case in matrix["cases"] for result in case["results"].values()}
-    told = ["passed of judged; of those passed, the least distance to anybody, and the least time to a collision."]
+    notes = ["passed of judged; of those passed, the least distance to any actor, and the least time to a collision."]
     if "AGENT_FAULT" in verdicts:
-        told.append("! the agent itself broke down: judged, and not passed.")
+        notes.append("! the agent itself broke down: judged, and not passed.")
     if "NOT_EXERCISED" in verdicts:
-        told.append("○ not exercised: the conflict never came about; counts for neither side.")
+        notes.append("○ not exercised: the conflict never came about; counts for neither side.")
     if any(not LOOKS[verdict].is_judged and verdict != "NOT_EXERCISED" for verdict in verdicts):
-        told.append("? not judged, for a fault of the simulator, the set-up or the benchmark, or interrupted.")
-    return "\n".join(told)
+        notes.append("? not judged, for a fault of the simulator, the set-up or the benchmark, or interrupted.")
+    return "\n".join(notes)
 
 
 def _endings(matrix: dict[str, Any], *, colour: bool) -> str:

@@ -41,13 +41,13 @@ class Tally(NamedTuple):
     absent: int  # not exercised: the conflict never came about
     unjudged: int  # for faults of others: simulator, set-up, benchmark, or an interruption
     at_fault: int  # collisions for which the agent is at fault
-    distance_m: float | None  # None where nothing was passed or nobody was near, so the others
+    distance_m: float | None  # None where nothing was passed or no actor was near, so the others
     ttc_s: float | None
     pet_s: float | None
 
     @property
     def narrowest(self) -> str:
-        """The least distance in words; nothing where nobody was near."""
+        """The least distance in words; nothing where no actor was near."""
         if self.distance_m is None:
             return ""
         return "contact" if self.distance_m < CONTACT_M else f"{self.distance_m:.2f} m"

@@ -24,11 +24,11 @@ if TYPE_CHECKING:
 
 LEAST_HALF_PX = 3.5  # half of the shorter side: a walker is small, and is to be seen
 NOSE = 0.55  # from there on a box narrows to its front
-ROUND_HALF_M = 0.6  # who is not longer than twice this has no front that could be seen
+ROUND_HALF_M = 0.6  # an actor not longer than twice this has no visible front
 
 
 def body(box: Box, canvas: Canvas, style: str) -> Element:
-    """A vehicle, pointed at its front; a circle for somebody on foot."""
+    """A vehicle, pointed at its front; a circle for a person on foot."""
     x_m, y_m, _, half_length_m, half_width_m = box.tolist()
     if max(half_length_m, half_width_m) <= ROUND_HALF_M:
         x, y = canvas.at(x_m, y_m)
@@ -103,12 +103,12 @@ def own_trail(history: History, span: Span, canvas: Canvas) -> list[Element]:
 
 
 def other_trail(x_m: NDArray[np.float64], y_m: NDArray[np.float64], canvas: Canvas) -> Element:
-    """Somebody else's."""
+    """The trail of another actor."""
     return e("path", d=_whole(np.column_stack([x_m, y_m]), canvas), class_="way")
 
 
 def dots(t_s: NDArray[np.float64], x_m: NDArray[np.float64], y_m: NDArray[np.float64], canvas: Canvas) -> list[Dot]:
-    """Where somebody was at each whole second, as far as it is in the picture and has moved since the last."""
+    """An actor's places at whole seconds, as far as they are in the picture and apart from each other."""
     found: list[Dot] = []
     last_m: Point | None = None
     for second in range(int(np.ceil(t_s[0] - 1e-6)), int(t_s[-1] + 1e-6) + 1):

@@ -19,7 +19,7 @@ Metres = TypeVar("Metres", float, "NDArray[np.float64]")
 WIDTH_PX = 560.0
 LEAST_HEIGHT_PX, GREATEST_HEIGHT_PX = 290.0, 430.0
 LEAST_M, MARGIN_M = 26.0, 5.0  # what a picture shows at the least from west to east, and around what matters
-NEAR_M, FAR_M = 58.0, 120.0  # around the encounter, and of a drive that met nobody
+NEAR_M, FAR_M = 58.0, 120.0  # around the encounter, and of a drive without an encounter
 BEFORE_S, AFTER_S = 2.0, 3.0  # of driving that is shown in any case
 
 

@@ -55,7 +55,7 @@ class Taken(NamedTuple):
 
 
 class Labels:
-    """The words of one picture, in the order of their weight: who comes first has the choice."""
+    """The words of one picture, in the order of their weight: the first has the choice."""
 
     def __init__(self, canvas: Canvas) -> None:
         self._canvas = canvas

@@ -69,10 +69,10 @@ def case_drawing(result: dict[str, Any], history: History, streets: Sequence[Lin
 
 
 def _title(story: Story) -> str:
-    """The picture in a sentence, for who does not see it."""
+    """The picture in a sentence, for screen readers."""
     met, result = story.met, story.result
     what = f"{result['id']} with {result['agent']} from above, north is up"
     if met is None:
-        return f"{what}; nobody was near"
+        return f"{what}; no actor was near"
     t_s = float(story.history.frames["t_s"][met.tick])
     return f"{what}; least distance {met.distance_m:.2f} m to {met.other} at {t_s:.1f} s"

@@ -31,7 +31,7 @@ LANE_M = 3.4  # how wide a lane is drawn
 PLAN_M = 1.6  # and the plan
 TOLERANCE_M = 0.1  # which the plan may be off
 APART_PX = 40.0  # times on a trail are written no nearer to each other
-CONTACT_M = 0.005  # a distance below this is told as a contact
+CONTACT_M = 0.005  # a distance below this is a contact
 SMALL_PX, STRONG_PX, ALARM_PX = 11.5, 13.0, 14.0
 
 
@@ -72,7 +72,7 @@ class Scene:
         ]
 
     def _ways(self) -> list[Element]:
-        """The trails of the ego and of those whom the scenario brought."""
+        """The trails of the ego and of the scenario's actors."""
         story, canvas = self._story, self._canvas
         history, span = story.history, story.span
         drawn: list[Element] = []
@@ -93,7 +93,7 @@ class Scene:
         return [*drawn, *actors.own_trail(history, span, canvas), *actors.drawn(found, "dot", 2.6)]
 
     def _moment(self) -> list[Element]:
-        """Everybody when the ego was nearest to somebody, and the distance as a line."""
+        """All actors at the moment of the least distance, and the distance as a line."""
         story, canvas, labels = self._story, self._canvas, self._labels
         begun = [] if story.conflict_tick is None else [self._ghost(story.conflict_tick)]
         met = story.met
@@ -121,7 +121,7 @@ class Scene:
         return body(box, self._canvas, "ghost")
 
     def _gap(self, met: Encounter) -> list[Element]:
-        """The least distance, drawn and told."""
+        """The least distance, as a line and in words."""
         canvas = self._canvas
         ends = [canvas.at(*met.own_m), canvas.at(*met.theirs_m)]
         t_s = float(self._story.history.frames["t_s"][met.tick])

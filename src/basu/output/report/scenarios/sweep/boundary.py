@@ -1,8 +1,8 @@
 """Where an agent begins to fail, in sentences with counts: the rule of one parameter that separates verdicts best.
 
-Of all thresholds and ranges between neighbouring values, the one whose table of counts is the least likely by chance:
-Fisher's exact test, one-sided, its probability multiplied by the number of rules that were tried (Bonferroni), so that
-a range has to be worth more than a threshold, and noise finds no rule.
+Of all thresholds and ranges between neighbouring values, the one with the table of counts that is the least likely by
+chance: Fisher's exact test, one-sided, its probability multiplied by the number of rules that were tried (Bonferroni),
+so that a range has to be worth more than a threshold, and noise finds no rule.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ BY_CHANCE = 0.05  # a rule more likely than this by chance is none
 MOST_CUTS = 200  # that ranges lie between; among more of them, these are spread evenly over the cases
 MOST_OPTIONS = 12  # of a choice; with more of them no rule is looked for
 MOST_DIGITS = 6
-EXACT = 12  # rules of a kind whose chance is computed: those with the greatest information gain
+EXACT = 12  # rules of a kind with a computed chance: those with the greatest information gain
 KINDS = 2  # thresholds and ranges
 
 
@@ -49,7 +49,7 @@ class Rule(NamedTuple):
         """Whether chance is no explanation."""
         return self.log_chance < math.log(BY_CHANCE)
 
-    def told(self) -> str:
+    def words(self) -> str:
         """Where it fails, as a condition."""
         unit = f" {self.axis.unit}" if self.axis.unit and not self.axis.options else ""
         return f"{self.axis.name} {self.condition()}{unit}"
@@ -67,23 +67,23 @@ class Rule(NamedTuple):
 
 def best_rule(axis: Axis, failed: NDArray[np.bool_], among: NDArray[np.bool_] | None = None) -> Rule | None:
     """The best rule of a parameter over the cases ``among``; None where there is none to try."""
-    asked = np.ones(len(failed), dtype=np.bool_) if among is None else among
-    rules = _of_options(axis, failed, asked) if axis.options else _of_numbers(axis, failed, asked)
+    used = np.ones(len(failed), dtype=np.bool_) if among is None else among
+    rules = _of_options(axis, failed, used) if axis.options else _of_numbers(axis, failed, used)
     return min(rules, key=lambda rule: rule.log_chance, default=None)
 
 
 def best_of(axes: Iterable[Axis], failed: NDArray[np.bool_], among: NDArray[np.bool_] | None = None) -> Rule | None:
     """The best rule of all parameters that chance does not explain, the number of parameters counted."""
-    asked = list(axes)
-    rules = [rule for axis in asked if (rule := best_rule(axis, failed, among)) is not None]
-    rules = [rule._replace(log_chance=rule.log_chance + math.log(len(asked))) for rule in rules]
+    used = list(axes)
+    rules = [rule for axis in used if (rule := best_rule(axis, failed, among)) is not None]
+    rules = [rule._replace(log_chance=rule.log_chance + math.log(len(used))) for rule in rules]
     return min((rule for rule in rules if rule.is_sure), key=lambda rule: rule.log_chance, default=None)
 
 
-def _of_numbers(axis: Axis, failed: NDArray[np.bool_], asked: NDArray[np.bool_]) -> list[Rule]:
+def _of_numbers(axis: Axis, failed: NDArray[np.bool_], used: NDArray[np.bool_]) -> list[Rule]:
     """The best threshold and the best range, each against all of its kind."""
-    values, order = np.sort(axis.values[asked]), np.argsort(axis.values[asked], kind="stable")
-    fails = np.concatenate([[0], np.cumsum(failed[asked][order])])
+    values, order = np.sort(axis.values[used]), np.argsort(axis.values[used], kind="stable")
+    fails = np.concatenate([[0], np.cumsum(failed[used][order])])
     cuts, total = np.flatnonzero(np.diff(values) > 0.0) + 1, len(values)
     if len(cuts) == 0:
         return []
@@ -103,31 +103,29 @@ def _of_numbers(axis: Axis, failed: NDArray[np.bool_], asked: NDArray[np.bool_])
             begin, end = int(first[best]), int(last[best])
             low = -math.inf if begin == 0 else between(float(values[begin - 1]), float(values[begin]))
             high = math.inf if end == total else between(float(values[end - 1]), float(values[end]))
-            inside = asked & (axis.values > low) & (axis.values < high)
+            inside = used & (axis.values > low) & (axis.values < high)
             chance = float(chances.min()) + math.log(KINDS * int(kind.sum()))
-            found.append(_rule(axis, low, high, (), inside, failed, asked, chance))
+            found.append(_rule(axis, low, high, (), inside, failed, used, chance))
     return found
 
 
-def _of_options(axis: Axis, failed: NDArray[np.bool_], asked: NDArray[np.bool_]) -> list[Rule]:
+def _of_options(axis: Axis, failed: NDArray[np.bool_], used: NDArray[np.bool_]) -> list[Rule]:
     """Options in the order of their share of failures: the first so many of them against the rest."""
     if len(axis.options) > MOST_OPTIONS:
         return []
-    counts = [(int((asked & (axis.values == number)).sum()), number) for number in range(len(axis.options))]
-    shares = {number: float(failed[asked & (axis.values == number)].mean()) for count, number in counts if count > 0}
+    counts = [(int((used & (axis.values == number)).sum()), number) for number in range(len(axis.options))]
+    shares = {number: float(failed[used & (axis.values == number)].mean()) for count, number in counts if count > 0}
     ordered = sorted(shares, key=lambda number: (-shares[number], number))
     tried = 2 ** (len(ordered) - 1) - 1
     found = []
     for count in range(1, len(ordered)):
         chosen = sorted(ordered[:count])
-        inside = asked & np.isin(axis.values, chosen)
+        inside = used & np.isin(axis.values, chosen)
         chance = _log_chances(
-            np.array([(failed & inside).sum()]), np.array([inside.sum()]), int((failed & asked).sum()), int(asked.sum())
+            np.array([(failed & inside).sum()]), np.array([inside.sum()]), int((failed & used).sum()), int(used.sum())
         )
         options = tuple(axis.options[number] for number in chosen)
-        found.append(
-            _rule(axis, math.nan, math.nan, options, inside, failed, asked, float(chance[0]) + math.log(tried))
-        )
+        found.append(_rule(axis, math.nan, math.nan, options, inside, failed, used, float(chance[0]) + math.log(tried)))
     return found
 
 
@@ -138,7 +136,7 @@ def _rule(
     options: tuple[str, ...],
     inside: NDArray[np.bool_],
     failed: NDArray[np.bool_],
-    asked: NDArray[np.bool_],
+    used: NDArray[np.bool_],
     log_chance: float,
 ) -> Rule:
     """A rule with its counts."""
@@ -149,7 +147,7 @@ def _rule(
         options,
         inside,
         int((failed & inside).sum()),
-        int((failed & asked & ~inside).sum()),
+        int((failed & used & ~inside).sum()),
         log_chance,
     )
 
@@ -237,16 +235,16 @@ def sentences(found: Boundary) -> list[str]:
         return [f"passes all {count} cases.", *left]
     if failed == count:
         return [f"fails all {count} cases.", *left]
-    told = [f"fails {failed} of {count} cases.", *left]
+    lines = [f"fails {failed} of {count} cases.", *left]
     if found.rule is None:
-        told.append("no single parameter tells which: any such rule could be chance (Fisher's exact test, 5 %).")
+        lines.append("no single parameter tells which: any such rule could be chance (Fisher's exact test, 5 %).")
     else:
-        told.append(_one(found.rule, count - int(found.rule.inside.sum())))
+        lines.append(_one(found.rule, count - int(found.rule.inside.sum())))
     if found.rule is not None and found.within is not None:
-        told.append(_both(found.rule, found.within, study))
+        lines.append(_both(found.rule, found.within, study))
     if found.pair is not None and found.pair.tells:
-        told.append(_told_by(found.pair))
-    return told
+        lines.append(_pair_in_words(found.pair))
+    return lines
 
 
 def _one(rule: Rule, outside: int) -> str:
@@ -254,11 +252,11 @@ def _one(rule: Rule, outside: int) -> str:
     inside = int(rule.inside.sum())
     if 2 * rule.failed_inside < inside:
         return (
-            f"fails more often where {rule.told()} ({rule.failed_inside} of {inside}) "
+            f"fails more often where {rule.words()} ({rule.failed_inside} of {inside}) "
             f"than elsewhere ({rule.failed_outside} of {outside})."
         )
     passed = outside - rule.failed_outside
-    return f"fails where {rule.told()} ({rule.failed_inside} of {inside}), passes elsewhere ({passed} of {outside})."
+    return f"fails where {rule.words()} ({rule.failed_inside} of {inside}), passes elsewhere ({passed} of {outside})."
 
 
 def _both(rule: Rule, within: Rule, study: Study) -> str:
@@ -267,15 +265,15 @@ def _both(rule: Rule, within: Rule, study: Study) -> str:
     outside = len(study.failed) - inside
     passed = int((~study.failed & ~within.inside).sum())
     return (
-        f"more narrowly, where {rule.told()} and {within.told()} "
+        f"more narrowly, where {rule.words()} and {within.words()} "
         f"({within.failed_inside} of {inside} fail, elsewhere {passed} of {outside} pass)."
     )
 
 
-def _told_by(pair: Pair) -> str:
+def _pair_in_words(pair: Pair) -> str:
     """The map's two parameters, and how far they can be trusted."""
-    near = neighbours_of(pair.asked)
+    near = neighbours_of(pair.used)
     return (
-        f"of all pairs, {pair.x.name} and {pair.y.name} foretell best: {pair.right} of {pair.asked} verdicts, each "
+        f"of all pairs, {pair.x.name} and {pair.y.name} predict best: {pair.right} of {pair.used} verdicts, each "
         f"from the {near} or so other cases nearest in them (the commoner verdict alone, {pair.commoner})."
     )

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
 
 LEAST_NEIGHBOURS = 3
 MOST_CASES = 400  # that a pair of parameters is tried on; among more of them, every so-many-th
-MOST_AXES = 10  # whose pairs are tried: those that are declared first
+MOST_AXES = 10  # parameters tried in pairs: the first ones declared
 DEALS, BY_CHANCE = (
     199,
     0.05,
 )  # how often verdicts are dealt out anew; a pair that is this likely by chance tells nothing
 HALF = 0.5
-CERTAIN = 1e-3  # no share is told nearer to 0 or 1 than this, so that one mistake does not outweigh all
+CERTAIN = 1e-3  # a share stays this far from 0 and 1, so that one mistake does not outweigh all
 
 
 class Pair(NamedTuple):
@@ -37,7 +37,7 @@ class Pair(NamedTuple):
     x: Axis
     y: Axis
     right: int  # verdicts foretold, each from all others
-    asked: int
+    used: int
     commoner: int  # that one would have right by always saying the commoner verdict
     loss: float  # mean logarithmic loss, by which pairs are compared
     chance: float  # of the best of all pairs being as good with the same verdicts dealt out anew
@@ -54,7 +54,7 @@ def neighbours_of(count: int) -> int:
 
 
 def best_pair(study: Study) -> Pair | None:
-    """The two parameters whose neighbourhoods foretell the verdicts best; None where fewer than two vary.
+    """The two parameters that predict the verdicts best by neighbourhood; None where fewer than two vary.
 
     What chance would do is known from the same cases with their verdicts dealt out anew, so many times: each time the
     best of all pairs counts, as it does here.

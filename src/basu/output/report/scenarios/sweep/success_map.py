@@ -69,17 +69,17 @@ def _strip(axis: Axis, failed: NDArray[np.bool_], rule: Rule | None, left: float
     highest = max(int(all_.max()), 1)
     at = scale.at(edges)
     group = e("g", e("text", title(axis), x=left, y=top - 7.0, class_="strong"))
-    group.append(e("text", _told(rule), x=left + STRIP_WIDTH_PX, y=top - 7.0, text_anchor="end", class_="small"))
+    group.append(e("text", _words_of(rule), x=left + STRIP_WIDTH_PX, y=top - 7.0, text_anchor="end", class_="small"))
     for index in range(len(all_)):
         x, width = at[index] + 1.0, at[index + 1] - at[index] - 2.0
         whole, part = (STRIP_HEIGHT_PX * count / highest for count in (all_[index], fails[index]))
         if all_[index]:
-            told = f"{fails[index]} of {all_[index]} fail"
+            sentence = f"{fails[index]} of {all_[index]} fail"
             bar = {"x": number(x, 1), "width": number(width, 1)}
             group.append(
                 e(
                     "rect",
-                    e("title", told),
+                    e("title", sentence),
                     y=number(bottom - whole, 1),
                     height=number(whole, 1),
                     class_="passes",
@@ -98,7 +98,7 @@ def _strip(axis: Axis, failed: NDArray[np.bool_], rule: Rule | None, left: float
     return group
 
 
-def _told(rule: Rule | None) -> str:
+def _words_of(rule: Rule | None) -> str:
     """The rule in words, beside the parameter's name."""
     if rule is None:
         return "tells nothing by itself"
@@ -135,17 +135,17 @@ def sweep_map(matrix: dict[str, Any], agent: str | None = None, scenario: str | 
 
     An empty text where no parameter varied.
     """
-    asked = [s for s in studies(matrix) if agent in {None, s.agent} and scenario in {None, s.scenario}]
-    if not asked:
+    chosen = [s for s in studies(matrix) if agent in {None, s.agent} and scenario in {None, s.scenario}]
+    if not chosen:
         return ""
-    found = boundary_of(asked[0])
-    told = [line for text in sentences(found) for line in textwrap.wrap(text[0].upper() + text[1:], LINE_CHARACTERS)]
-    head_px = 30.0 + LINE_PX * len(told)
+    found = boundary_of(chosen[0])
+    lines = [line for text in sentences(found) for line in textwrap.wrap(text[0].upper() + text[1:], LINE_CHARACTERS)]
+    head_px = 30.0 + LINE_PX * len(lines)
     picture = drawing(found, head_px)
     picture.set("xmlns", "http://www.w3.org/2000/svg")
     picture.insert(0, e("style", map_style()))
-    picture.append(e("text", f"{asked[0].scenario} with {asked[0].agent}", x=8, y=20.0 - head_px, class_="strong"))
-    for row, line in enumerate(told):
+    picture.append(e("text", f"{chosen[0].scenario} with {chosen[0].agent}", x=8, y=20.0 - head_px, class_="strong"))
+    for row, line in enumerate(lines):
         picture.append(e("text", line, x=8, y=40.0 - head_px + LINE_PX * row, class_="small"))
     return tostring(picture, encoding="unicode") + "\n"
 
@@ -169,7 +169,7 @@ def drawing(found: Boundary, head_px: float = 0.0) -> Element:
 
 
 def _title(found: Boundary) -> str:
-    """The map in a sentence, for who does not see it."""
+    """The map in a sentence, for screen readers."""
     study = found.study
     return f"{study.scenario} with {study.agent}: " + " ".join(sentences(found))
 
@@ -211,9 +211,9 @@ def _cases(study: Study, x: Scale, y: Scale) -> list[Element]:
     return sorted(drawn, key=lambda element: element.get("class") != "pass")  # failures on top
 
 
-def mark(style: str, x: float, y: float, told: str | None = None) -> Element:
+def mark(style: str, x: float, y: float, sentence: str | None = None) -> Element:
     """One case: a hollow circle passes, a cross fails, a triangle broke down."""
-    title = None if told is None else e("title", told)
+    title = None if sentence is None else e("title", sentence)
     if style == "pass":
         return e("circle", title, cx=number(x, 1), cy=number(y, 1), r=MARK_PX - 0.8, class_=style)
     left, right, top, bottom = (number(v, 1) for v in (x - MARK_PX, x + MARK_PX, y - MARK_PX, y + MARK_PX))
@@ -257,7 +257,5 @@ def _legend(study: Study, y: float, *, tells: bool) -> Sequence[Element]:
             drawn.append(e("text", text, x=x + 24.0, y=y + 4.0, class_="small"))
             x += 40.0 + 6.0 * len(text)
     elif study.is_mixed:
-        drawn.append(
-            e("text", "no boundary can be told from these two", x=min(x, LEFT_PX + WIDTH_PX), y=y + 4.0, class_="small")
-        )
+        drawn.append(e("text", "these two show no boundary", x=min(x, LEFT_PX + WIDTH_PX), y=y + 4.0, class_="small"))
     return drawn

@@ -86,7 +86,7 @@ def test_who_met_nobody_has_a_picture_too() -> None:
     result = unjudged(actors=[])
     history = crossing()
     alone = replace(history, others=history.others[:0])
-    assert "nobody was near" in case_picture(result, alone, [])
+    assert "no actor was near" in case_picture(result, alone, [])
 
 
 @pytest.mark.parametrize("name", ["x_m", "y_m", "velocity_x_mps"])
