@@ -42,4 +42,3 @@ def to_sumo(
     yaw = math.radians(yaw_deg)
     front_x_m, front_y_m = x_m + math.cos(yaw) * half_length_m, y_m + math.sin(yaw) * half_length_m
     return front_x_m + offset_m[0], -front_y_m + offset_m[1], (yaw_deg + NORTH_YAW_DEG) % 360.0
-
