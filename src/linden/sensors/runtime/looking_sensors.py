@@ -34,7 +34,6 @@ class Eye:
 
     def __init__(self, description: ActorDescription) -> None:
         self.sensor = MAKERS[description.id](description)
-        self.takes_pictures = description.id in CAMERAS
         self._schedule = Schedule(interval_s(description))
         self._last_s: float | None = None
         self._pose: Transform | None = None

@@ -15,6 +15,7 @@ from linden.maps.library import LoadedMap
 from linden.physics.contact.statics import Statics
 from linden.scenery.mesh import NO_OBJECT, Mesh
 from linden.scenery.scene.objects import Scene
+from linden.sensors.camera.cameras import CAMERAS
 from linden.sensors.casting.caster import CPU, Caster
 from linden.sensors.view import Faces, table_of
 
@@ -58,7 +59,7 @@ class Wanted(NamedTuple):
 
 def has_cameras(episode: "Episode") -> bool:
     """Return whether a camera is among the sensors that look around."""
-    return any(eye.takes_pictures for eye in episode.eyes.values())
+    return any(record.description.id in CAMERAS for record in episode.actors)
 
 
 def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
