@@ -143,7 +143,7 @@ def test_an_unknown_vehicle_type_is_named(folder: Path, tmp_path: Path) -> None:
         f'<configuration><input><net-file value="{folder}/small.net.xml"/><route-files value="x.rou.xml"/></input>'
         "</configuration>"
     )
-    with pytest.raises(UserError, match="The vehicle type 'no.such' for vehicle 'x' is not known"):
+    with pytest.raises(UserError, match=r"The vehicle type 'no\.such' for vehicle 'x' is not known"):
         in_process(config, step_s=STEP_S, seed=0)
 
 
@@ -193,7 +193,7 @@ def link_to(port: int) -> links.Link:
     while True:
         try:
             return connected("127.0.0.1", port, step_s=STEP_S)
-        except UserError as error:
+        except UserError as error:  # noqa: PERF203 - it waits for a process
             if "no SUMO answers" not in str(error) or time.monotonic() > deadline:
                 raise
 
@@ -212,7 +212,9 @@ def test_a_sumo_that_is_killed_in_the_middle_is_the_simulator_s_failure(folder: 
 def test_a_running_sumo_of_another_step_is_refused(folder: Path) -> None:
     with (
         running_sumo(folder, 0.1) as (_, port),
-        pytest.raises(UserError, match="makes steps of 0.1 s and the run ones of 0.05 s; start it with --step-length"),
+        pytest.raises(
+            UserError, match=r"makes steps of 0\.1 s and the run ones of 0\.05 s; start it with --step-length"
+        ),
     ):
         link_to(port)
 
