@@ -41,7 +41,6 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _one_sumo_a_test() -> Iterator[None]:
     """End the SUMO of a test that failed: a process holds one."""
     yield
-    import libsumo
-
+    libsumo = pytest.importorskip("libsumo")
     if libsumo.simulation.isLoaded():
         libsumo.close()
