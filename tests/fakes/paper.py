@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from basu.testing import Driver
 
 
-def somebody(
+def actor_at(
     x_m: float, y_m: float = 0.0, yaw_rad: float = 0.0, *, speed_mps: float = 0.0, kind: str = "vehicle.audi.a2"
 ) -> ActorSpec:
     """An actor called "other"."""

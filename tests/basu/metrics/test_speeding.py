@@ -1,4 +1,4 @@
-"""Claims about speeding: episodes, not frames; a tolerance, stated; whose limit holds."""
+"""Claims about speeding: episodes, not frames; a stated tolerance; the limit that holds."""
 
 import math
 

@@ -169,7 +169,7 @@ def test_there_has_to_be_a_series_to_go_on_with(tmp_path: Path) -> None:
         opened(tmp_path / "nothing", resume=True)
 
 
-def test_two_who_drive_one_series_count_each_run_once(tmp_path: Path) -> None:
+def test_two_that_drive_one_series_count_each_run_once(tmp_path: Path) -> None:
     one, other = opened(tmp_path), opened(tmp_path, resume=True)
     run(one, JOBS[0])
     with pytest.raises(UserError, match="another command drives the series"):

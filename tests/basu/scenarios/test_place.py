@@ -17,7 +17,7 @@ def test_ahead_counts_from_the_trigger_point() -> None:
     assert place.left_m == pytest.approx(80.0)
 
 
-def test_right_is_south_of_who_drives_east_and_turned_is_clockwise() -> None:
+def test_right_is_south_of_an_ego_that_drives_east_and_turned_is_clockwise() -> None:
     pose = offline_place([(0.0, 0.0), (100.0, 0.0)]).at(10.0, 3.0, 90.0)
     assert pose[:2] == pytest.approx((10.0, 3.0))
     assert pose.yaw_rad == pytest.approx(math.pi / 2.0)

@@ -73,7 +73,7 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
     if given.get("hud") is None:
         given.pop("hud_screenshot", None)
     if given.get("in_process"):
-        given.pop("agent_memory_gb", None)  # there is no process whose memory could be limited
+        given.pop("agent_memory_gb", None)  # without a process there is no memory to limit
     return resolve(model, [Layer(given)])
 
 

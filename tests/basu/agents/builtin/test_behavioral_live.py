@@ -130,7 +130,7 @@ def test_it_lets_oncoming_cars_past_before_it_goes_round(driven: Driven) -> None
     assert lateral_m[np.abs(s_m - PARKED_S_M) < 2.0].max() < -2.0
 
 
-def test_at_a_stop_sign_those_go_first_who_cross(driven: Driven) -> None:
+def test_at_a_stop_sign_the_ones_go_first_that_cross(driven: Driven) -> None:
     number = "next(k for k, w in enumerate(self.route.waypoints) if w.is_junction)"
     history, result = driven(STOP_SIGN, f"self.send_across({number}, 6.0, 0.0, 8.0, 30.0, 52.0)")
     assert (result["status"], infractions(result)) == ("Completed", [])
@@ -142,7 +142,7 @@ def test_at_a_stop_sign_those_go_first_who_cross(driven: Driven) -> None:
     assert nearest_m(history, frames["tick"][inside]) > 5.0  # from middle to middle; nobody else is on the crossing
 
 
-def test_into_a_roundabout_those_go_first_who_circulate(driven: Driven) -> None:
+def test_into_a_roundabout_the_ones_go_first_that_circulate(driven: Driven) -> None:
     number = "next(k for k, w in enumerate(self.route.waypoints) if w.is_junction)"
     history, result = driven(ROUNDABOUT, f"self.send_across({number}, 6.0, -0.3, 8.0, 30.0, 52.0)")
     assert (result["status"], infractions(result)) == ("Completed", [])

@@ -17,8 +17,8 @@ from basu.testing import Rehearsal, careful, rehearse, steady, waiting_at
 Laid = Callable[..., Scenario]
 LIBRARY = open_library()
 SHUTTLE_MPS = 6.7
-FAST_MPS = 9.0  # whoever follows a leader that drives 7 m/s has to be faster to hit it
-# whom an ego meets that drives on at its speed and looks at nobody
+FAST_MPS = 9.0  # an ego has to be faster than a leader at 7 m/s to hit it
+# the actors met by an ego that drives on blindly
 MET = {
     "FollowLeadingVehicle": "leader",
     "FollowLeadingVehicleWithObstacle": "leader",
@@ -53,14 +53,14 @@ def test_each_has_three_cases_or_more_on_the_route_and_off_it(kind: str) -> None
 
 
 @pytest.mark.parametrize("name", names(*MET))
-def test_who_drives_on_meets_them(laid: Laid, name: str) -> None:
+def test_an_ego_that_drives_on_meets_them(laid: Laid, name: str) -> None:
     scenario = laid(name)
     played = rehearse(scenario, steady(FAST_MPS))
     assert MET[type(scenario).__name__] in played.contacts_s
 
 
 @pytest.mark.parametrize("name", [name for name in names(*MET) if not name.startswith("static_object")])
-def test_who_brakes_for_what_is_ahead_is_unharmed_and_sees_the_end(laid: Laid, name: str) -> None:
+def test_an_ego_that_brakes_for_what_is_ahead_is_unharmed_and_sees_the_end(laid: Laid, name: str) -> None:
     played = rehearse(laid(name), careful(SHUTTLE_MPS))
     assert not played.contacts_s
     assert played.over
@@ -82,7 +82,7 @@ def test_a_leader_of_any_kind_stands_with_its_front_at_the_line(laid: Laid, name
 
 
 @pytest.mark.parametrize("name", names("FollowLeadingVehicleWithObstacle"))
-def test_the_leader_lets_somebody_cross_before_it_and_drives_on(laid: Laid, name: str) -> None:
+def test_the_leader_lets_an_actor_cross_before_it_and_drives_on(laid: Laid, name: str) -> None:
     played = rehearse(laid(name), careful(SHUTTLE_MPS))
     stands = speed_mps(played, "leader") == 0.0
     walks = speed_mps(played, "crosser") > 0.5
@@ -92,7 +92,7 @@ def test_the_leader_lets_somebody_cross_before_it_and_drives_on(laid: Laid, name
     assert speed_mps(played, "leader")[after:].max() > 2.0
 
 
-def test_the_leader_brakes_as_hard_as_is_asked(laid: Laid) -> None:
+def test_the_leader_brakes_as_hard_as_requested(laid: Laid) -> None:
     played = rehearse(laid("lead_vehicle_brakes_1", brake="8", speed="6"), careful(SHUTTLE_MPS))
     assert np.diff(speed_mps(played, "leader")).min() / 0.05 == pytest.approx(-8.0, abs=0.5)
 
@@ -109,7 +109,7 @@ def test_a_van_placed_near_swerves_at_once_and_still_gets_round(laid: Laid) -> N
 
 
 @pytest.mark.parametrize("stops", [1, 4])
-def test_a_queue_stops_as_often_as_is_asked(laid: Laid, stops: int) -> None:
+def test_a_queue_stops_as_often_as_requested(laid: Laid, stops: int) -> None:
     played = rehearse(laid("stop_and_go_1", stops=str(stops), stride="8"), careful(SHUTTLE_MPS))
     stands = (speed_mps(played, "leader") < 0.01).astype(int)
     assert np.count_nonzero(np.diff(stands) == 1) == stops
@@ -149,7 +149,7 @@ def test_what_crosses_comes_out_from_behind_the_van(laid: Laid) -> None:
 
 
 @pytest.mark.parametrize("name", names(*AT_JUNCTIONS))
-def test_who_stops_at_the_line_and_lets_them_pass_arrives(laid: Laid, name: str) -> None:
+def test_an_ego_that_stops_at_the_line_and_lets_them_pass_arrives(laid: Laid, name: str) -> None:
     scenario = laid(name)
     line_m = next_junction(scenario.place).from_m - 3.0
     played = rehearse(scenario, waiting_at(line_m, 15.0, 6.0))
@@ -174,12 +174,12 @@ def test_the_other_sets_off_in_the_first_region_and_accelerates_in_the_second(la
 
 @pytest.mark.parametrize("name", names("Roundabout"))
 @pytest.mark.parametrize("ego_mps", [5.0, FAST_MPS])
-def test_who_does_not_give_way_in_a_roundabout_meets_a_car(laid: Laid, name: str, ego_mps: float) -> None:
+def test_an_ego_that_does_not_give_way_in_a_roundabout_meets_a_car(laid: Laid, name: str, ego_mps: float) -> None:
     assert {"car 1", "car 2"} & set(rehearse(laid(name), steady(ego_mps)).contacts_s)
 
 
 @pytest.mark.parametrize("cars", [1, 2, 4])
-def test_as_many_cars_circulate_as_are_asked_for_apart_from_each_other(laid: Laid, cars: int) -> None:
+def test_as_many_cars_circulate_as_requested_apart_from_each_other(laid: Laid, cars: int) -> None:
     scenario = laid("roundabout_1", cars=str(cars))
     played = rehearse(scenario, waiting_at(next_junction(scenario.place).from_m - 3.0, 15.0, 6.0))
     there = [name for name in played.trails if name.startswith("car ")]

@@ -50,7 +50,7 @@ def test_each_has_three_cases_or_more_on_the_route_and_off_it(kind: str) -> None
 
 
 @pytest.mark.parametrize("name", names(*KINDS))
-def test_who_keeps_its_course_passes_all_phases_with_its_controls_given_back(laid: Laid, name: str) -> None:
+def test_an_ego_that_keeps_its_course_passes_all_phases_with_its_controls_given_back(laid: Laid, name: str) -> None:
     scenario = laid(name)
     played = rehearse(scenario, steady(6.0))
     assert list(played.phases_s) == ["setup", "trigger", "conflict", "resolution", "end"]
@@ -137,7 +137,7 @@ def test_a_route_without_a_stop_sign_or_a_bend_is_refused() -> None:
 
 
 @pytest.mark.parametrize(("gusts", "side"), [(1, "right"), (3, "left")])
-def test_as_many_gusts_come_as_are_asked_for_to_the_side_they_are(laid: Laid, gusts: int, side: str) -> None:
+def test_as_many_gusts_come_as_requested_to_the_side_they_are(laid: Laid, gusts: int, side: str) -> None:
     told = np.array([steer for _, steer in steered(laid("cross_wind_1", gusts=str(gusts), side=side, push="0.2"))])
     blowing = np.abs(told) > 0.0
     assert np.count_nonzero(np.diff(blowing.astype(int)) == 1) == gusts
@@ -155,7 +155,7 @@ def test_the_pull_in_a_bend_is_towards_its_outside(laid: Laid, name: str) -> Non
     assert set(np.sign(pulled)) == {-math.copysign(1.0, turned_rad)}
 
 
-def test_what_is_done_is_told_in_the_tree(laid: Laid) -> None:
+def test_what_is_done_is_reported_in_the_tree(laid: Laid) -> None:
     played = rehearse(laid("control_loss_1"), steady(6.0))
     lost = played.tree.phases["conflict"].children[0]
     assert [node.name for node in lost.children[:2]] == ["controls jitter for 1.5 s", "ego passes place 2"]

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Laid = Callable[..., Scenario]
 SHUTTLE_MPS = 6.7
-# whom an ego meets that drives on at its speed and looks at nobody
+# the actors met by an ego that drives on blindly
 MET = {
     "PedestrianCrossing": "walker",
     "PedestrianTurnsBack": "walker",
@@ -80,7 +80,7 @@ def test_a_case_marked_so_begins_on_the_shuttles_route(case: object) -> None:
 
 
 @pytest.mark.parametrize("name", names(MET))
-def test_who_drives_on_meets_them(laid: Laid, name: str) -> None:
+def test_an_ego_that_drives_on_meets_them(laid: Laid, name: str) -> None:
     scenario = laid(name)
     driver = pulling_away if isinstance(scenario, RunningForTheShuttle) else steady(SHUTTLE_MPS)
     played = rehearse(scenario, driver)
@@ -89,8 +89,8 @@ def test_who_drives_on_meets_them(laid: Laid, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [names({kind})[0] for kind in MET])
-def test_who_stops_in_time_arrives_unharmed(laid: Laid, name: str) -> None:
-    """For what steps in too late for a driver of paper, who sees only what is in the way, one waits."""
+def test_an_ego_that_stops_in_time_arrives_unharmed(laid: Laid, name: str) -> None:
+    """The offline driver reacts to obstacles only, so it waits for an actor that steps in late."""
     scenario = laid(name)
     driver = careful(SHUTTLE_MPS)
     if isinstance(scenario, DeerAtDusk | Dooring | CyclistCrossing):
@@ -102,7 +102,7 @@ def test_who_stops_in_time_arrives_unharmed(laid: Laid, name: str) -> None:
 
 
 def _meets_m(scenario: Scenario) -> float:
-    """Along the route, where who drives on meets them."""
+    """Along the route, where an ego that drives on meets them."""
     if isinstance(scenario, CyclistCrossing):
         return crossing(scenario.place, cast("Side", scenario.choice("side"))).ego_s_m
     if isinstance(scenario, Dooring):
@@ -160,7 +160,7 @@ def _crosses(one: np.ndarray, other: np.ndarray, van: np.ndarray) -> bool:
 @pytest.mark.parametrize("name", names({"CyclistSwerves"}))
 def test_round_the_door_the_cyclist_comes_into_the_lane_and_leaves_it(laid: Laid, name: str) -> None:
     scenario = laid(name)
-    played = rehearse(scenario, steady(scenario.number("speed")))  # who is no faster stays behind
+    played = rehearse(scenario, steady(scenario.number("speed")))  # an ego that is no faster stays behind
     right_m = _beside_m(scenario, played, "cyclist")
     edge_m, into_m = scenario.number("edge"), scenario.number("into")
     assert right_m[0] == pytest.approx(edge_m, abs=0.05)
@@ -172,7 +172,7 @@ def test_round_the_door_the_cyclist_comes_into_the_lane_and_leaves_it(laid: Laid
 
 
 def _beside_m(scenario: Scenario, played: Rehearsal, name: str) -> np.ndarray:
-    """(T,) how far to the right of a straight route somebody is."""
+    """(T,) how far to the right of a straight route an actor is."""
     start = scenario.place.at(0.0)
     gap = played.trails[name][:, :2] - (start.x_m, start.y_m)
     beside: np.ndarray = gap @ (-np.sin(start.yaw_rad), np.cos(start.yaw_rad))
@@ -213,7 +213,7 @@ def test_a_deviation_goes_to_the_side_it_is_said_to(laid: Laid) -> None:
 
 
 @pytest.mark.parametrize("name", names({"LeavingStop"}))
-def test_who_overtakes_at_the_stop_waits_for_the_shuttle_to_move(laid: Laid, name: str) -> None:
+def test_an_ego_that_overtakes_at_the_stop_waits_for_the_shuttle_to_move(laid: Laid, name: str) -> None:
     scenario = laid(name)
 
     def waits(stage: object) -> float:
