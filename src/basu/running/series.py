@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import basu
 from basu.errors import UserError
 from basu.files import write_bytes
-from basu.metrics.score import scoring_to_json
+from basu.metrics.scoring import scoring_to_json
 from basu.outcome import Fault, Status
 from basu.output.report.documents import (
     DRAFTS,
@@ -37,7 +37,7 @@ from basu.settings.option import fields_of, to_json
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.options import RunOptions
 from basu.running.preparation import Job, Plan
 

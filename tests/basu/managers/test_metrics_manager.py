@@ -9,7 +9,8 @@ import pytest
 
 from basu.managers.base_manager import Ego, Frame
 from basu.managers.metrics_manager import MetricsManager
-from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.score import infractions, score
+from basu.metrics.scoring import Scoring
 from basu.records.history.model import NO_LIGHT
 from basu.routing.planned_route import Progress, advance
 from fakes.crossing_map import LANE_M, crossing

@@ -16,7 +16,7 @@ from basu.errors import ScenarioError
 from basu.managers.placed_scenario import is_behind, place_scenario
 from basu.managers.scenario_manager import Playing
 from basu.managers.scenario_results import results_of
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.outcome import Outcome, Status
 from basu.output.report.console import met

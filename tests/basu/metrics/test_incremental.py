@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from basu.metrics.incremental import SoFar
-from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.score import infractions, score
+from basu.metrics.scoring import Scoring
 from basu.records.history import FRAME, Collision, History, Recorder
 from fakes.drives import at, driven, hit, ramp, stop_sign, straight_route, traffic_light
 

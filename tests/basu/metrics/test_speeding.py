@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from basu.metrics.speeding import LEAST_S, TOLERANCE_MPS, limits_mps, speeding
+from basu.metrics.scoring import TOLERANCE_MPS
+from basu.metrics.speeding import LEAST_S, limits_mps, speeding
 from fakes.drives import at, driven, straight_route
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from basu.errors import UserError
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.outcome import Status
 from basu.output.report.documents import make_draft, publish

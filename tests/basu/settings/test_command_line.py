@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from basu.cli import parser
 from basu.errors import UserError
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import typed, words_of

@@ -7,7 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from basu.metrics.incremental import SoFar
-from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.score import infractions, score
+from basu.metrics.scoring import Scoring
 from basu.output.viewer import entities
 from basu.output.viewer.entities import log_map, log_route, log_vehicle
 from basu.output.viewer.layout import Parts, Pose

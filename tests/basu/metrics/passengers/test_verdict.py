@@ -10,7 +10,8 @@ from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_
 from basu.metrics.passengers.felt import balance, felt
 from basu.metrics.passengers.metric import passengers_to_json
 from basu.metrics.passengers.verdict import Judged, judge
-from basu.metrics.score import Scoring, score
+from basu.metrics.score import score
+from basu.metrics.scoring import Scoring
 from basu.output.report.documents import RESULT_SCHEMA, read_schema
 from basu.records.history import History
 from fakes.rides import braked, eastward, moving, ride
