@@ -1,7 +1,7 @@
 """Draws what standing passengers felt in one or more runs: `python examples/passengers_plot.py RUN … --to felt.png`.
 
 A run's folder is all it needs. The grey bands are what volunteers answered without a step, and with one
-(docs/passengers.md). A time with --around draws 10 s about it.
+(docs/reference/passengers.md). A time with --around draws 10 s about it.
 """
 
 import argparse

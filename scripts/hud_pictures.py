@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/hud.md: in traffic, from above with a person at the keys, the help page, a lidar.
+"""Makes the pictures of docs/how-to/hud.md: in traffic, from above with a person at the keys, the help page, a lidar.
 
     SDL_VIDEODRIVER=dummy python scripts/hud_pictures.py
 

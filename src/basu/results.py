@@ -76,7 +76,7 @@ class RunResult:
 
     @property
     def result(self) -> Result:
-        """The judgement as one object, with the value of every metric; docs/result.md describes it."""
+        """The judgement as one object, with the value of every metric; docs/reference/result.md describes it."""
         return self._record.result
 
     @property

@@ -61,4 +61,4 @@ def test_what_comes_of_every_call_is_what_the_page_says(
 ) -> None:
     assert outcomes.keys() == record.keys()
     differing = {member: (found, record[member]) for member, found in outcomes.items() if found != record[member]}
-    assert not differing, "run `make docs`, look at what has changed in docs/supported.md, and commit it"
+    assert not differing, "run `make observe pages`, look at what has changed in docs/supported.md, and commit it"

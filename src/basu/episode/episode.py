@@ -26,12 +26,14 @@ from basu.managers.metrics_manager import MetricsManager
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
+from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
 from basu.outcome import Outcome, Status
 from basu.routing import plan
+from basu.simulator import linden_command
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from basu.episode.spec import EpisodeSpec
     from basu.episode.world import Town
@@ -78,6 +80,7 @@ class _Managers(NamedTuple):
     routes: RoutesManager
     metrics: MetricsManager
     traffic: TrafficManager
+    sumo: SumoManager | None
     sensors: SensorsManager
     observers: tuple[BaseManager, ...]
 
@@ -115,7 +118,7 @@ class Episode:
         self.outcome: Outcome | None = None
         self.bug: Exception | None = None  # an error of the benchmark itself
         self.agent_error: AgentError | None = None
-        self.traffic: Mapping[str, int] = {"vehicles": 0, "walkers": 0}  # what the drive has had, once it is over
+        self.traffic: dict[str, int] = {"vehicles": 0, "walkers": 0}  # what the drive has had, once it is over
         self.first_frame: int | None = None  # the server's number of the first recorded frame, likewise
         self._managers: _Managers | None = None
         self._run: Run | None = None
@@ -204,10 +207,12 @@ class Episode:
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)
+        sumo = None if self._spec.sumo is None else SumoManager(self._spec.sumo, linden_command())
         observers = tuple(self._new_observers(Live(self._driver, sensors, routes, metrics)))
-        self._managers = _Managers(routes, metrics, traffic, sensors, observers)
+        self._managers = _Managers(routes, metrics, traffic, sumo, sensors, observers)
         # participants before sensors: another program's agent says only once it is set up what it wants to sense
-        for manager in (traffic, *self._participants, sensors, routes, metrics, ground.scenarios, *observers):
+        joined = () if sumo is None else (sumo,)
+        for manager in (traffic, *joined, *self._participants, sensors, routes, metrics, ground.scenarios, *observers):
             self._set_up.append(manager)
             manager.setup(run)
         return self._observe(None)
@@ -246,6 +251,8 @@ class Episode:
             raise SimulatorError("the simulator ended")
         applied = ground.scenarios.through(control)
         managers.metrics.applied(applied)
+        if managers.sumo is not None:
+            managers.sumo.tick(frame)
         run.vehicle.apply_control(applied)
         return Step(self._observe(frame), None, managers.routes.outcome)
 
@@ -308,7 +315,9 @@ class Episode:
                 if self.outcome is not None:  # the drive is over and keeps its status
                     self.outcome = self.outcome._replace(message=f"{self.outcome.message}; afterwards {error}")
         if self._managers is not None:
-            self.traffic, self.first_frame = self._managers.traffic.count, self._managers.metrics.first_frame
+            self.traffic, self.first_frame = dict(self._managers.traffic.count), self._managers.metrics.first_frame
+            if self._managers.sumo is not None:
+                self.traffic["vehicles"] += self._managers.sumo.count
         self._managers = self._run = self._unrecorded = None
         self._prepared = self._laid = False
         self._resources.close()

@@ -28,12 +28,12 @@ class ControlKind(enum.Enum):
 class Control:
     """A stop sign, yield sign or traffic light that governs the route's lane."""
 
-    kind: ControlKind
+    kind: ControlKind  # stop sign, yield sign or traffic light
     landmark_id: str  # OpenDRIVE signal id; a traffic light's actor is world.get_traffic_light_from_opendrive_id(...)
     s_m: float  # along the route, where the line to stop at is crossed
     x_m: float  # the lane's centre at the line, CARLA frame
-    y_m: float
-    z_m: float
+    y_m: float  # likewise
+    z_m: float  # likewise
     yaw_rad: float  # of the lane at the line, CARLA frame (clockwise from above)
 
 
@@ -41,29 +41,29 @@ class Control:
 class Stop:
     """A service stop, where passengers get on and off."""
 
-    id: str
-    name: str
+    id: str  # as the route file names it
+    name: str  # for people
     s_m: float  # along the route
     x_m: float  # as the route file has it, CARLA frame
-    y_m: float
-    z_m: float
-    yaw_rad: float
+    y_m: float  # likewise
+    z_m: float  # likewise
+    yaw_rad: float  # likewise, clockwise from above
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Route:
     """A path along lane centres, about one point a metre, all arrays of one length N. CARLA frame, yaw in rad."""
 
-    id: str
-    town: str
-    points_m: NDArray[np.float64]  # (N, 3)
+    id: str  # of the route in its file
+    town: str  # name of the map
+    points_m: NDArray[np.float64]  # (N, 3) x, y, z
     s_m: NDArray[np.float64]  # (N,) arc length in the plane from the first point, strictly increasing
     yaw_rad: NDArray[np.float64]  # (N,) of the lane
-    lane_width_m: NDArray[np.float64]  # (N,)
+    lane_width_m: NDArray[np.float64]  # (N,) of the lane under each point
     speed_limit_mps: NDArray[np.float64]  # (N,) as the map posts it, nan where it posts none
-    is_junction: NDArray[np.bool_]  # (N,)
-    road_id: NDArray[np.int64]  # (N,)
-    lane_id: NDArray[np.int64]  # (N,)
+    is_junction: NDArray[np.bool_]  # (N,) whether the point is in a junction
+    road_id: NDArray[np.int64]  # (N,) OpenDRIVE road
+    lane_id: NDArray[np.int64]  # (N,) OpenDRIVE lane; its sign gives the side of the road
     stops: tuple[Stop, ...] = ()  # in the order in which the route passes them
     controls: tuple[Control, ...] = ()  # likewise
     timetable: Timetable | None = None  # when it is due at its stops; None without a timetable

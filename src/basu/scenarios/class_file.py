@@ -121,7 +121,7 @@ def users_scenarios(path: Path) -> list[type[Scenario]]:
         raise ScenarioError(f"the scenario file {path} does not exist; check the name and the folder you are in")
     found = _scenarios_in(_executed(path))
     if not found:
-        raise ScenarioError(f"{path} holds no subclass of Scenario; see docs/scenarios.md for how one looks")
+        raise ScenarioError(f"{path} holds no subclass of Scenario; see docs/reference/scenarios.md for how one looks")
     for scenario in found:
         check_class(scenario, str(path))
     return found

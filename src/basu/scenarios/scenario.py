@@ -20,7 +20,7 @@ A scenario of your own is one class and one case::
         def criteria(self):
             return [NoCollision(), Arrives()]
 
-See `docs/scenarios.md`.
+See `docs/reference/scenarios.md`.
 """
 
 from __future__ import annotations

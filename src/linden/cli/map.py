@@ -7,7 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.cli import map_pointcloud
+from linden.cli import map_pointcloud, map_sumo
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
 
@@ -40,6 +40,8 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
     cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
     map_pointcloud.add_arguments(cloud_parser)
+
+    map_sumo.add_arguments(_add(actions, "sumo", map_sumo.run, map_sumo.HELP))
 
 
 def build(arguments: argparse.Namespace) -> int:

@@ -191,9 +191,9 @@ def _spread_terrain(heights_m: F64) -> None:
     Nearest: Danielsson 1980, "Euclidean distance mapping", the sequential four-neighbour transform.
     """
     rows, columns = heights_m.shape
-    empty = np.isinf(heights_m)
-    away = np.where(empty, 1e9, 0.0)
+    empty, away = np.zeros((rows, columns), np.bool_), np.zeros((rows, columns))
     dx, dy = np.zeros((rows, columns)), np.zeros((rows, columns))
+    _note_empty(heights_m, empty, away)
     for sweep in range(2):
         step = 1 if sweep == 0 else -1
         for i in range(rows):
@@ -213,6 +213,15 @@ def _spread_terrain(heights_m: F64) -> None:
                     around = heights_m[row - 1, column] + heights_m[row + 1, column]
                     around += heights_m[row, column - 1] + heights_m[row, column + 1]
                     heights_m[row, column] = 0.25 * around
+
+
+@kernel
+def _note_empty(heights_m: F64, empty: NDArray[np.bool_], away: F64) -> None:
+    """Mark the nodes without a height (inf), which are as far from their source as can be; in place."""
+    for row in range(heights_m.shape[0]):
+        for column in range(heights_m.shape[1]):
+            if math.isinf(heights_m[row, column]):
+                empty[row, column], away[row, column] = True, 1e9
 
 
 @kernel

@@ -6,10 +6,13 @@ Columns without a unit in their name: position m, rotation (pitch, yaw, roll) ra
 about the world's x, y, z, acceleration m/s², box_centre and half_extent m in the body's frame.
 """
 
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from linden.compiled import fingerprint
 
 Rows = NDArray[Any]
 """Array of BODY (N,), or of VEHICLE_SPEC (N,)."""
@@ -19,6 +22,11 @@ Spec: TypeAlias = Any
 """One record of VEHICLE_SPEC, as kernels see it."""
 Work: TypeAlias = Any
 """One record of VEHICLE_WORK, as kernels see it."""
+
+_HERE = Path(__file__).parent
+_WITH_KERNELS = [path for path in _HERE.rglob("*.py") if b"linden.compiled" in path.read_bytes()]
+SOURCES = fingerprint(*_WITH_KERNELS, _HERE.parent / "maps" / "ground.py")
+"""Of all files with kernels of the physics, this one included: what is compiled across them is renewed with any."""
 
 NO_BODY, VEHICLE, WALKER, PROP = range(4)
 """Values of the column ``kind``."""

@@ -10,10 +10,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
+from linden.compiled import kept_part, part
 from linden.maps.ground import Ground, surface_under
 from linden.physics.axes import body_axes, within_turn
-from linden.physics.state import Body, Spec
+from linden.physics.state import SOURCES, Body, Spec
 
 F64 = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def start_tumbling(v: Body) -> None:
     v.still_s = 0.0
 
 
-@part
+@kept_part(SOURCES)
 def tumble(v: Body, spec: Spec, ground: Ground, gravity_mps2: float, dt_s: float) -> None:
     """Advance a tumbling vehicle by one substep."""
     if v.resting and _is_still(v, 0.0):

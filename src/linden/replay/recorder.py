@@ -1,7 +1,7 @@
 """Records an episode as CARLA's recorder does: who comes and goes, and after each frame where all are and what they do.
 
 Rows of the snapshot become records of the file by whole columns. While nothing is recorded, nothing is done.
-Source of what is written when: ``CarlaRecorder.cpp``; docs/recorder.md says where this one does more.
+Source of what is written when: ``CarlaRecorder.cpp``; docs/reference/recorder.md says where this one does more.
 """
 
 import logging

@@ -67,7 +67,9 @@ def _noted(hits: Hits, count: int, at: float, surface: int, number: int) -> Hits
     """Return the list with one more hit, grown where needed."""
     if count == len(hits):
         grown = np.empty((2 * count, 3))
-        grown[:count] = hits
+        for k in range(count):
+            for column in range(3):
+                grown[k, column] = hits[k, column]
         hits = grown
     hits[count, 0], hits[count, 1], hits[count, 2] = at, surface, number
     return hits

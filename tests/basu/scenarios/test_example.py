@@ -1,4 +1,4 @@
-"""Claims about the example of docs/scenarios.md: it is found, and it tells drivers apart on paper."""
+"""Claims about the example of docs/reference/scenarios.md: it is found, and it tells drivers apart on paper."""
 
 from pathlib import Path
 

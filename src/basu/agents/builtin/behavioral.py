@@ -1,7 +1,7 @@
 """The behavioral agents, named after CARLA's BehaviorAgent, and the thesis's run that leaves its path on purpose.
 
 Its three profiles are ``behavioral`` (normal), ``behavioral-cautious`` and ``behavioral-aggressive``; what they differ
-in, with sources, stands in `docs/agents.md`. Like the basic agent it uses no sensors and no clock.
+in, with sources, stands in `docs/reference/agents.md`. Like the basic agent it uses no sensors and no clock.
 
 Table 5.1 has it with one collision, one speeding and 0.56 of the path. This one drives as ``behavioral`` does up to a
 share of the route, then speeds up beyond the limit, drives at something that stands still beside the street, and stays
@@ -59,7 +59,7 @@ class BehavioralAgent(BasicAgent):
 
 
 class CautiousAgent(BehavioralAgent):
-    """The cautious profile; `docs/agents.md` has its figures."""
+    """The cautious profile; `docs/reference/agents.md` has its figures."""
 
     manner = CAUTIOUS
 

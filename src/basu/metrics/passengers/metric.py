@@ -122,7 +122,7 @@ class Passengers(Metric):
     order = 95
     schema = record(
         null_=True,
-        about_="the ride as its standing passengers would judge it: docs/passengers.md",
+        about_="the ride as its standing passengers would judge it: docs/reference/passengers.md",
         passed=flag(),
         reasons=listing(text()),
         comfort_score=number(low=0, high=1, null=True),

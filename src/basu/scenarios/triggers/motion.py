@@ -75,7 +75,7 @@ class StandsStill(Trigger):
 
 
 class ClosesIn(Trigger):
-    """The ego would be at an actor within ``seconds`` if the distance went on to shrink as it does, edge to edge."""
+    """The ego would reach an actor within ``seconds`` at the present closing speed, edge to edge."""
 
     def __init__(self, actor: str, seconds: float) -> None:
         super().__init__(f"ego {seconds:.3g} s from {actor}")
@@ -96,7 +96,7 @@ class ClosesIn(Trigger):
 
 
 class Elapsed(Trigger):
-    """So much time has gone since the scenario began."""
+    """``seconds`` have passed since the scenario began."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__(f"{seconds:.3g} s since the beginning")

@@ -16,7 +16,7 @@ from linden.authoring.streets.writing import text
 def main() -> None:
     """Write the map and the routes named on the command line, as ROUTE=FILE."""
     parser = argparse.ArgumentParser(prog="python -m linden.authoring.streets", description=__doc__)
-    parser.add_argument("streets", type=Path, help="GeoJSON file (docs/maps.md)")
+    parser.add_argument("streets", type=Path, help="GeoJSON file (docs/reference/maps.md)")
     parser.add_argument("-o", "--output", type=Path, required=True, help="OpenDRIVE file to write")
     parser.add_argument("--route", action="append", default=[], metavar="ROUTE=FILE", help="a route's id, and its file")
     arguments = parser.parse_args()

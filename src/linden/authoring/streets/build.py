@@ -51,7 +51,7 @@ class Built(NamedTuple):
 
 
 def build(streets: dict[str, object]) -> bytes:
-    """Return OpenDRIVE 1.4 text for a street GeoJSON (docs/maps.md); equal input gives equal bytes.
+    """Return OpenDRIVE 1.4 text for a street GeoJSON (docs/reference/maps.md); equal input gives equal bytes.
 
     Raises:
         UserError: the GeoJSON lacks something or holds what cannot be built; says which feature.

@@ -1,7 +1,7 @@
 """The street facts a map is built from: a GeoJSON file, checked once and turned into frozen values in metres.
 
-``docs/maps.md`` describes the schema. Points are projected (transverse Mercator about the origin) into OpenDRIVE's
-frame, x east and y north, and rounded to 1 mm, so that what follows does not depend on the projection's last bits.
+``docs/reference/maps.md`` describes the schema. Points are projected (transverse Mercator about the origin) into the
+frame of OpenDRIVE, x east and y north, and rounded to 1 mm: results do not depend on the projection's last bits.
 """
 
 import math
@@ -130,7 +130,9 @@ def read(document: object) -> Facts:
         UserError: what is missing or wrong, and in which feature.
     """
     if not isinstance(document, dict) or document.get("type") != "FeatureCollection":
-        raise UserError("this is not a GeoJSON FeatureCollection; docs/maps.md describes the file that is wanted")
+        raise UserError(
+            "this is not a GeoJSON FeatureCollection; docs/reference/maps.md describes the file that is wanted"
+        )
     features = [_Feature(number, raw) for number, raw in enumerate(document.get("features", []), start=1)]
     streets = [feature for feature in features if feature.kind == "street"]
     if not streets:

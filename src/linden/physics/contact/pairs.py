@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import kernel, part
+from linden.compiled import kept_part, part
 from linden.physics.contact.statics import Statics
-from linden.physics.state import Body, Rows
+from linden.physics.state import SOURCES, Body, Rows
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -44,7 +44,7 @@ def box_centre(v: Body) -> tuple[float, float]:
     return x, v.position[1] + sine * v.box_centre[0] + cosine * v.box_centre[1]
 
 
-@kernel
+@kept_part(SOURCES)
 def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
     """Return (P, 2) of first body and second body, or -1 - n for the n-th static; ordered, each pair once.
 
@@ -167,7 +167,8 @@ def _insert(near: I32, count: int, item: int) -> tuple[I32, int]:
     """Insert into an ascending list that holds each number once."""
     if count == len(near):
         grown = np.empty(2 * count, np.int32)
-        grown[:count] = near
+        for k in range(count):
+            grown[k] = near[k]
         near = grown
     place = count
     while place > 0 and near[place - 1] > item:
@@ -198,5 +199,6 @@ def _hash(cell_x: int, cell_y: int, size: int) -> int:
 def _twice(rows: I32) -> I32:
     """Return the (N, 2) array with room for twice as many rows."""
     larger = np.empty((2 * len(rows), 2), np.int32)
-    larger[: len(rows)] = rows
+    for k in range(len(rows)):
+        larger[k, 0], larger[k, 1] = rows[k, 0], rows[k, 1]
     return larger

@@ -3,7 +3,7 @@
 Unreal 4's WheeledVehicleMovementComponent lets its inputs follow the control once a frame, each at a rate of its own,
 rising (away from zero) or falling; PhysX's PxVehicleDrive4WSmoothAnalogRawInputsAndSetAnalogInputs follows that once
 more, at the same rates, every step, steering after it has been scaled by the steering curve. Recordings of CARLA are
-met best with both (docs/fidelity.md).
+met best with both (docs/explanation/fidelity.md).
 """
 
 from linden.compiled import kernel, part

@@ -15,6 +15,7 @@ from linden.maps.library import LoadedMap
 from linden.physics.contact.statics import Statics
 from linden.scenery.mesh import NO_OBJECT, Mesh
 from linden.scenery.scene.objects import Scene
+from linden.sensors.camera.cameras import CAMERAS
 from linden.sensors.casting.caster import CPU, Caster
 from linden.sensors.view import Faces, table_of
 
@@ -31,26 +32,34 @@ class Stage(NamedTuple):
     standing: Mesh
     faces: Faces
     caster: Caster
+    pictures: bool  # whether what cameras need is loaded
 
 
 class Wanted(NamedTuple):
-    """What a stage is built for: what stands on a map, and which boxes of it are there."""
+    """What a stage is built for: what stands on a map, which boxes of it are there, and whether cameras look."""
 
     world_map: LoadedMap
     scene: Scene
     statics: Statics
     present: NDArray[np.bool_]
+    pictures: bool
 
     @classmethod
-    def of(cls, episode: "Episode") -> "Wanted":
-        """Return what an episode's sensors want now."""
+    def of(cls, episode: "Episode", *, pictures: bool) -> "Wanted":
+        """Return what an episode's sensors want now; ``pictures``: even if no camera is there yet."""
         here = episode.surroundings
-        return cls(episode.map, here.scene, here.statics, here.present.copy())
+        return cls(episode.map, here.scene, here.statics, here.present.copy(), pictures or has_cameras(episode))
 
     def is_for(self, episode: "Episode") -> bool:
         """Return whether this is still what an episode's sensors want."""
         here = episode.surroundings
-        return self.scene is here.scene and self.statics is here.statics
+        is_here = self.scene is here.scene and self.statics is here.statics
+        return is_here and (self.pictures or not has_cameras(episode))
+
+
+def has_cameras(episode: "Episode") -> bool:
+    """Return whether a camera is among the sensors that look around."""
+    return any(record.description.id in CAMERAS for record in episode.actors)
 
 
 def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
@@ -62,18 +71,20 @@ def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
     standing = present_of(whole, wanted.present)
     caster = in_background(lambda: caster_of(standing, bodies.meshes, device))
     if device == CPU:
-        _load_kernels()
+        _load_kernels(pictures=False)
+        if wanted.pictures:
+            _load_kernels(pictures=True)
     faces = table_of(standing, bodies.meshes)
     looks_of(standing, bodies.meshes)
-    return Stage(wanted.scene, wanted.statics, standing, faces, caster.result())
+    return Stage(wanted.scene, wanted.statics, standing, faces, caster.result(), wanted.pictures)
 
 
 @once
-def _load_kernels() -> None:
-    """Load what a first picture needs of machine code, out of the cache, where a start compiled everything."""
-    from linden.sensors.warming import warm_up  # noqa: PLC0415 - as in build
+def _load_kernels(*, pictures: bool) -> None:
+    """Load the machine code of rays, or that of pictures, out of the cache: a start has it compiled."""
+    from linden.sensors.warming import warm_cameras, warm_rays  # noqa: PLC0415 - as in build
 
-    warm_up()
+    (warm_cameras if pictures else warm_rays)()
 
 
 def present_of(mesh: Mesh, present: NDArray[np.bool_]) -> Mesh:

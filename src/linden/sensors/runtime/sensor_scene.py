@@ -14,7 +14,7 @@ from linden.scenery.mesh import Mesh
 from linden.scenery.scene.objects import Scene
 from linden.sensors.casting.caster import CPU, Instances
 from linden.sensors.runtime.light_state import Shining
-from linden.sensors.runtime.scene_build import Stage, Wanted, build
+from linden.sensors.runtime.scene_build import Stage, Wanted, build, has_cameras
 from linden.sensors.runtime.visible_actors import Company
 from linden.sensors.view import NO_ACTOR_FROM, Seen
 
@@ -54,6 +54,8 @@ class Seeing:
         standing_on: gives the mesh of what stands on a map, anew or out of a cache.
         bodies_of: gives the meshes of a library's actors, likewise.
         when_built: called when what was being built is there, or will not be; by any thread.
+        await_kernels: waits until the kernels of rays are compiled, or those of pictures (True) too.
+        is_compiling: tells whether kernels of pictures are still being compiled.
         device: where rays are cast: "cpu", or a GPU as Warp names it, "cuda".
     """
 
@@ -62,6 +64,8 @@ class Seeing:
         self.device = CPU
         self.when_built: Callable[[], None] = lambda: None
         self.bodies_of: Callable[[BlueprintLibrary], Bodies] = bodies_of
+        self.await_kernels: Callable[[bool], None] = lambda pictures: None  # noqa: ARG005 - all are compiled
+        self.is_compiling: Callable[[], bool] = lambda: False
         self._library = library
         self._bodies: Future[Bodies] | None = None
         self._company: Company | None = None
@@ -78,7 +82,8 @@ class Seeing:
     def prepare(self, episode: "Episode") -> None:
         """Begin to build what is not built yet, in the background: a sensor that looks was spawned."""
         if not self._is_built(episode) and (self._coming is None or not self._coming[0].is_for(episode)):
-            wanted, before, bodies = Wanted.of(episode), self._coming, self._bodies_coming()
+            wanted = Wanted.of(episode, pictures=not self.is_compiling())
+            before, bodies = self._coming, self._bodies_coming()
             self._stage = None  # before the next is built: two of them at once would take twice the memory
             self._give_up()
             self._unwanted = unwanted = Unwanted()
@@ -143,7 +148,9 @@ class Seeing:
 
     def _is_built(self, episode: "Episode") -> bool:
         here = episode.surroundings
-        return self._stage is not None and self._stage.scene is here.scene and self._stage.statics is here.statics
+        stage = self._stage
+        is_here = stage is not None and stage.scene is here.scene and stage.statics is here.statics
+        return is_here and stage is not None and (stage.pictures or not has_cameras(episode))
 
     def _stage_of(self, episode: "Episode") -> Stage:
         """Return the stage; what does not stand any more (layers, single objects) is left out of it."""
@@ -160,6 +167,7 @@ class Seeing:
             wait([before[1]])
         if self._whole is None or self._whole[0] is not wanted.scene:
             self._whole = wanted.scene, self.standing_on(wanted.world_map, wanted.scene)
+        self.await_kernels(wanted.pictures)
         return build(wanted, self._whole[1], bodies.result(), self.device)
 
 

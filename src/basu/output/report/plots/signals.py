@@ -63,7 +63,7 @@ def stretches(holds: NDArray[np.bool_], t_s: NDArray[np.float64]) -> list[tuple[
     return [(float(t_s[first]), float(t_s[end - 1])) for first, end in edges.tolist()]
 
 
-# what standing volunteers could recover from (docs/passengers.md has the sources), both ways
+# what standing volunteers could recover from (docs/reference/passengers.md has the sources), both ways
 RECOVERABLE = (
     (STEP_MPS2, f"{STEP_MPS2:g}: with a step"),
     (-STEP_MPS2, ""),

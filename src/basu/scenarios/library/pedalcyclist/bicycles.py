@@ -1,7 +1,7 @@
 """Bicycles, the room that they are owed, and a parked car's door as something one can drive into.
 
-An open door takes no space in the simulator (`docs/physics.md`). A sheet of its size stands in for it: one of the
-library's street signs, which lies in the car's side, above its roof, as long as the door is shut.
+An open door takes no space in the simulator (`docs/reference/physics.md`). A sheet of its size stands in for it: one of
+the library's street signs, which lies in the car's side, above its roof, as long as the door is shut.
 """
 
 from __future__ import annotations
