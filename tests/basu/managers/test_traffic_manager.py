@@ -121,7 +121,7 @@ def test_traffic_is_there_from_the_first_step_and_gone_after_the_last(
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--vehicles", "5000"], "5000 vehicles were asked for, and "),
+        (["--vehicles", "5000"], "5000 vehicles were requested, and "),
         (["--vehicles", "-1"], "--vehicles is -1; it must be 0 or more"),
         (["--traffic-density", "nan"], "--traffic-density is nan; it must be a finite number"),
     ],

@@ -42,5 +42,5 @@ def test_the_width_is_that_of_the_routes_lane() -> None:
 
 
 def test_what_only_a_map_knows_is_refused_without_one() -> None:
-    with pytest.raises(ScenarioError, match="'paper' was not laid on a map"):
+    with pytest.raises(ScenarioError, match="'offline' was not laid on a map"):
         offline_place([(0.0, 0.0), (50.0, 0.0)]).waypoint(10.0)

@@ -162,7 +162,7 @@ def test_the_deviating_agent_makes_the_thesiss_row(simulator: RunningServer, tmp
 
 
 def nearest_m(history: History, ticks: np.ndarray) -> float:
-    """The least distance in some ticks to somebody who moves ahead of the vehicle."""
+    """The least distance in some ticks to an actor that moves ahead of the vehicle."""
     least_m = np.inf
     for other in history.others[np.isin(history.others["tick"], ticks)]:
         frame = history.frames[int(other["tick"])]

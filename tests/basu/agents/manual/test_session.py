@@ -33,7 +33,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @given(inputs=INPUTS)
 def test_what_is_written_is_read(file: Path, inputs: list[Input]) -> None:
-    session = Session(setting=SETTING, inputs=tuple(inputs), by="somebody")
+    session = Session(setting=SETTING, inputs=tuple(inputs), by="a tester")
     write_session(file, session)
     assert read_session(file) == session
 

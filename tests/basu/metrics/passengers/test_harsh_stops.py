@@ -112,7 +112,7 @@ def test_a_lower_limit_ahead_is_a_reason() -> None:
 def test_a_limit_that_is_exceeded_already_is_a_reason() -> None:
     found = why(stopped(route=straight_route(limit_mps=2.0)))
     assert found.kind is Kind.LIMIT
-    assert found.detail.startswith("the limit of 2.0 m/s, exceeded already, asked for 0.")
+    assert found.detail.startswith("the limit of 2.0 m/s, exceeded already, demanded 0.")
 
 
 def test_a_bend_too_tight_for_the_speed_is_a_reason() -> None:
@@ -159,7 +159,7 @@ def test_of_two_reasons_the_one_that_asks_for_more_is_reported() -> None:
     found = why(stopped(route=line, others=[(9, moving(BRAKED_AT_M + 7.0, 0.0, 0.0, 0.0))]))
     assert found.kind is Kind.ACTOR
     assert (
-        found.detail == f"vehicle.audi.tt (actor 9) {found.away_m:.1f} m ahead asked for {found.needed_mps2:.2f} m/s²"
+        found.detail == f"vehicle.audi.tt (actor 9) {found.away_m:.1f} m ahead demanded {found.needed_mps2:.2f} m/s²"
     )
 
 

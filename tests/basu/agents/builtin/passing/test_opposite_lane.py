@@ -60,7 +60,7 @@ def test_what_stands_in_the_other_lane_blocks_it_only_there() -> None:
 def test_an_actor_that_moves_about_the_next_junction_may_turn_in() -> None:
     crosser = car(162.0, -12.0, 5.0, 90.0)
     assert not free(crosser, junction_m=155.0)
-    assert free(crosser)  # without a junction it is in somebody's garden
+    assert free(crosser)  # without a junction it is in a garden
 
 
 def test_what_is_not_seen_may_come_at_the_limit() -> None:

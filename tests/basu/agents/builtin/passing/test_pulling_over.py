@@ -14,7 +14,7 @@ PATH = make_path(POINTS_M, POINTS_M[:, 0])
 
 
 def notices(behind: Other | None, seconds: float, *, tailgating: Tailgating | None = None, from_s: float = 0.0) -> bool:
-    """After that long at 6 m/s with somebody who keeps behind in the same place relative to us."""
+    """After that long at 6 m/s with an actor that keeps its place behind us."""
     tailgating = tailgating or Tailgating(SHUTTLE_BODY, 1.0)
     place = PATH.find(100.0, 0.0, 0.0)
     for k in range(round(seconds / 0.05) + 1):
