@@ -54,7 +54,7 @@ def show_run(
         log_map(recording, town)
     log_route(recording, history.facts.route)
     log_vehicle(recording, history.facts.vehicle)
-    shower = entities.Shower(recording)
+    shower = entities.TickLogger(recording)
     others = _others(history)
     so_far, every = SoFar(scoring), max(1, round(SCORE_EVERY_S / history.facts.step_s))
     for tick, row in enumerate(history.frames):

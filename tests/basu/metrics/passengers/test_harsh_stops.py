@@ -158,9 +158,7 @@ def test_of_two_reasons_the_one_that_asks_for_more_is_reported() -> None:
     line = straight_route(controls=(control(ControlKind.STOP_SIGN, BRAKED_AT_M + 9.0),))
     found = why(stopped(route=line, others=[(9, moving(BRAKED_AT_M + 7.0, 0.0, 0.0, 0.0))]))
     assert found.kind is Kind.ACTOR
-    assert (
-        found.detail == f"vehicle.audi.tt (actor 9) {found.away_m:.1f} m ahead demanded {found.needed_mps2:.2f} m/s²"
-    )
+    assert found.detail == f"vehicle.audi.tt (actor 9) {found.away_m:.1f} m ahead demanded {found.needed_mps2:.2f} m/s²"
 
 
 def test_off_the_route_the_way_is_straight_ahead() -> None:

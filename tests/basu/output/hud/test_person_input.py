@@ -8,7 +8,7 @@ import pygame
 import pytest
 
 from basu.agents.manual.inputs import Held, Input
-from basu.agents.manual.session import Played, Session, Setting, Tape, read_session
+from basu.agents.manual.session import Played, RecordingSource, Session, Setting, read_session
 from basu.cli import main
 from basu.errors import SimulatorError, UserError
 from basu.options import RunOptions
@@ -59,7 +59,7 @@ def test_a_folder_that_is_not_there_is_reported_before_anything_starts(tmp_path:
 
 def test_what_was_driven_is_written_with_where(tmp_path: Path) -> None:
     setting = Setting(town="Linden", route="7", vehicle="vehicle.audi.tt", step_s=0.05)
-    tape = Tape(Played(Session(setting=setting, inputs=(Input(Held.BRAKE),)), None))
+    tape = RecordingSource(Played(Session(setting=setting, inputs=(Input(Held.BRAKE),)), None))
     tape.read(0)
     manager = KeysManager(tape, tmp_path / "keys.json")
     run: Any = SimpleNamespace(
@@ -72,7 +72,7 @@ def test_what_was_driven_is_written_with_where(tmp_path: Path) -> None:
 
 
 def test_a_run_that_was_never_set_up_leaves_no_session(tmp_path: Path) -> None:
-    KeysManager(Tape(Session(setting=None, inputs=())), tmp_path / "keys.json").close()  # type: ignore[arg-type]
+    KeysManager(RecordingSource(Session(setting=None, inputs=())), tmp_path / "keys.json").close()  # type: ignore[arg-type]
     assert not (tmp_path / "keys.json").exists()
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from py_trees.common import Status
 
-from basu.managers.stage.scenario_actors import Puppets
+from basu.managers.stage.scenario_actors import ActorCommands
 from basu.scenarios.actions import Brake, DriveAlong, LetGo, WalkAlong
 from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.paths import Path, along_lane
@@ -25,7 +25,7 @@ class OneActor:
     step_s, ego_contacts = STEP_S, frozenset()
 
     def __init__(self, client: carla.Client, actor: carla.Actor) -> None:
-        self.actor, self.puppets, self.time_s = actor, Puppets(client), 0.0
+        self.actor, self.puppets, self.time_s = actor, ActorCommands(client), 0.0
         self.member = SimpleNamespace(actor=actor)
         self.seen: list[Body] = []
 
