@@ -207,7 +207,7 @@ def test_the_example_agent_arrives(run: Runner) -> None:
     assert result["scores"]["driving"] > 0.95
 
 
-def test_somebody_elses_simulator_is_left_as_it_was(run: Runner, tmp_path: Path, simulator: RunningServer) -> None:
+def test_another_users_simulator_is_left_as_it_was(run: Runner, tmp_path: Path, simulator: RunningServer) -> None:
     client = carla.Client("127.0.0.1", simulator.port)
     world = client.get_world()
     before = world.get_settings()
@@ -321,7 +321,7 @@ def test_a_route_that_cannot_be_driven_gets_a_sentence(
     assert any(re.search(sentence, line) for line in error.splitlines())
 
 
-def test_hitting_a_parked_car_is_told_with_the_party_the_place_and_the_speed(run: Runner, tmp_path: Path) -> None:
+def test_hitting_a_parked_car_is_reported_with_the_party_the_place_and_the_speed(run: Runner, tmp_path: Path) -> None:
     path = tmp_path / "rammer.py"
     path.write_text(RAMMER)
     _, result = run(path)
