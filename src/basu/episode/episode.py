@@ -23,11 +23,13 @@ from basu.errors import (
 from basu.managers import Live
 from basu.managers.base_manager import BaseManager, Driver, Frame, Run
 from basu.managers.metrics_manager import MetricsManager
+from basu.managers.observations import Neighbours
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
+from basu.managers.world_changes import WorldChanges
 from basu.outcome import Outcome, Status
 from basu.routing import plan
 from basu.simulator import linden_command
@@ -183,6 +185,8 @@ class Episode:
             server_address=self._simulator.address,
             own_simulator=self._simulator.own,
             weather=spec.weather_along,
+            neighbours=Neighbours(world, vehicle.id),
+            changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
         )
         self._prepared = True
 
@@ -203,7 +207,7 @@ class Episode:
         assert ground is not None, "likewise"
         self.history = self.outcome = self.bug = self.agent_error = None
         self._driver = Driver()
-        routes = RoutesManager()
+        routes = RoutesManager(self._spec.stop_after_s)
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)
@@ -254,6 +258,7 @@ class Episode:
         if managers.sumo is not None:
             managers.sumo.tick(frame)
         run.vehicle.apply_control(applied)
+        run.changes.control = applied
         return Step(self._observe(frame), None, managers.routes.outcome)
 
     def _observe(self, before: Frame | None) -> Observation:

@@ -9,6 +9,7 @@ import pytest
 
 from basu.managers.base_manager import Ego, Frame
 from basu.managers.metrics_manager import MetricsManager
+from basu.managers.world_changes import WorldChanges
 from basu.metrics.score import infractions, score
 from basu.metrics.scoring import Scoring
 from basu.records.history.model import NO_LIGHT
@@ -21,6 +22,8 @@ FIRST_FRAME = 4000
 
 class Sensor:
     """Keeps the callback."""
+
+    id = 7
 
     def listen(self, hear: Any) -> None:
         self.hear = hear
@@ -68,6 +71,8 @@ class Stage:
                 route=self.route,
                 step_s=STEP_S,
                 carla_map=carla.Map("Crossing", crossing()),
+                neighbours=None,
+                changes=WorldChanges(),
             )
         )
         self.tick = 0
