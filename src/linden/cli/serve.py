@@ -89,6 +89,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     from linden.server.ports import is_loopback, open_ports, port_of  # noqa: PLC0415 - see above
     from linden.simulation import Simulation  # noqa: PLC0415 - see above
     from linden.simulation.walking_mesh import mesh_file  # noqa: PLC0415 - see above
+    from linden.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - see above
     from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
     from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
 
@@ -113,6 +114,7 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
             raise UserError(f"--map: {refusal}") from refusal
         warm_up()
         warm_rays()
+        warm_batches()
         compile_once(cache)
         simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
         simulation.episode.warm_up()

@@ -10,6 +10,8 @@ frame comes by itself, until the batch of the last frame has come and the thread
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from linden.wire.plain import Controls
+
 BATCH = "apply_batch"
 DESTROY = "destroy_actor"
 
@@ -65,6 +67,8 @@ class Driven:
 
 def _actor_ids(commands: Any) -> frozenset[int]:  # noqa: ANN401 - as it came
     """Return the actors of a batch as it came; none where its form is not that of a Traffic Manager's."""
+    if isinstance(commands, Controls):
+        return frozenset(commands.actor_ids.tolist())
     try:
         return frozenset(command[0][1][0] for command in commands)
     except (TypeError, LookupError):

@@ -146,6 +146,17 @@ class Episode:
         """
         return self._slot_of_kind(actor_id, Kind.VEHICLE, "Actor is not a Vehicle")
 
+    def vehicles(self, actor_ids: NDArray[np.int64]) -> NDArray[np.int32] | None:
+        """Return the slots (K,) of vehicles (K,), None where one of them is no vehicle."""
+        if self._seen_version != self.actors.version:
+            self._survey()
+        ids, slots = self._vehicle_index
+        if not len(ids):
+            return None
+        places = np.searchsorted(ids, actor_ids)
+        places[places == len(ids)] = 0
+        return slots[places] if np.array_equal(ids[places], actor_ids) else None
+
     def walker(self, actor_id: int) -> int:
         """Return the slot of a walker.
 
@@ -252,6 +263,8 @@ class Episode:
         self._keep_limits()
         self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(Kind.VEHICLE)
         self._vehicle_actor_id = np.array(self._vehicle_ids, np.int32)
+        order = np.argsort(self._vehicle_actor_id)
+        self._vehicle_index = self._vehicle_actor_id[order].astype(np.int64), self._vehicle_slots[order]
         self._walker_ids, self._walker_slots, self._walker_rows = self._embodied(Kind.WALKER)
         self._limits_kmh = np.array(
             [self._speed_limit_kmh.get(actor_id, DEFAULT_SPEED_LIMIT_KMH) for actor_id in self._vehicle_ids]

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import msgpack
 
 from linden.errors import ProtocolError
+from linden.wire import packed
 from linden.wire.decode import got
 
 MAX_MESSAGE_BYTES = 64 * 1024 * 1024
@@ -36,6 +37,7 @@ class Call(NamedTuple):
     id: int
     method: str
     args: list[Any]
+    """As msgpack has them; the commands of a batch of plain controls are :class:`linden.wire.plain.Controls`."""
     is_async: bool
 
 
@@ -59,6 +61,7 @@ class RpcConnection:
             max_array_len=MAX_ARRAY_ITEMS,
             max_map_len=0,  # CARLA sends none
         )
+        self._fed_bytes = self._whole_bytes = 0  # what the unpacker has got, and up to where that is whole calls
         self.unfinished_bytes = 0
         """How much of a call has come that is not yet whole."""
         self.unfinished_arrays = 0
@@ -90,6 +93,10 @@ class RpcConnection:
     def _take(self, data: bytes, calls: list[Call]) -> None:
         if self._failure is not None:
             return
+        if self._fed_bytes == self._whole_bytes and (batch := packed.read(data)) is not None:
+            calls.append(Call(batch.call_id, packed.BATCH, [batch.controls, batch.do_tick], batch.is_async))
+            data = data[batch.end :]
+        self._fed_bytes += len(data)
         self.unfinished_bytes += len(data)
         self.unfinished_arrays += len(data) - len(data.translate(None, _ARRAYS))
         if self.unfinished_arrays > MAX_ARRAYS:
@@ -98,6 +105,7 @@ class RpcConnection:
             self._unpacker.feed(data)
             for message in self._unpacker:
                 calls.append(_call(message))
+                self._whole_bytes = self._unpacker.tell()
                 self.unfinished_bytes = self.unfinished_arrays = 0
         except _UNPACKING_FAILED as error:
             raise ProtocolError(f"what arrived is not msgpack of a call: {error or type(error).__name__}") from error
@@ -118,20 +126,20 @@ def _call(message: object) -> Call:
 
 def value(call: Call, result: object) -> bytes:
     """Encode the result of a function that has one."""
-    packed: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
+    return answer
 
 
 def void(call: Call) -> bytes:
     """Encode that a function without a result has done its work."""
-    packed: bytes = _pack((RESPONSE, call.id, None, ((False,),)))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, ((False,),)))
+    return answer
 
 
 def bare(call: Call, result: object) -> bytes:
     """Encode a result that carries its own wrapping: the answers to a batch."""
-    packed: bytes = _pack((RESPONSE, call.id, None, result))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, result))
+    return answer
 
 
 def refusal(call: Call, message: str, reply: Reply) -> bytes:
@@ -142,11 +150,11 @@ def refusal(call: Call, message: str, reply: Reply) -> bytes:
     if reply is Reply.BARE:
         return unknown(call, message)
     failed: bool | int = True if reply is Reply.VOID else 0
-    packed: bytes = _pack((RESPONSE, call.id, None, ((failed, (message,)),)))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, ((failed, (message,)),)))
+    return answer
 
 
 def unknown(call: Call, message: str) -> bytes:
     """Encode that there is no such function; the client raises ``rpc::rpc_error during call in function <name>``."""
-    packed: bytes = _pack((RESPONSE, call.id, message, None))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, message, None))
+    return answer
