@@ -13,6 +13,7 @@ from linden.simulation.bones import Poses
 from linden.simulation.buried import Buried
 from linden.simulation.doors import Doors
 from linden.simulation.eyes import Eye
+from linden.simulation.foresight import Foresight
 from linden.simulation.grip import Grip
 from linden.simulation.motion import MOTION_OFFSET, gather_motion
 from linden.simulation.scenery import scenery_of
@@ -49,6 +50,7 @@ class Episode:
         elapsed_s: simulated time since it began.
         actors: who is there, with the packed rows of the snapshot.
         bodies: what occupies space and moves.
+        foresight: the bodies of the next frame, where they are known.
         buried: whose physics is withheld, far below the ground.
         surroundings: what stands there, its lamps, and what clients drew.
         traffic: the lights.
@@ -68,6 +70,7 @@ class Episode:
         self.elapsed_s = 0.0
         self.actors = ActorTable()
         self.bodies = Bodies()
+        self.foresight = Foresight()
         self.buried = Buried(world_map.ground, self.bodies)
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)

@@ -11,7 +11,7 @@ from linden.simulation.replayer import Replayer
 from linden.simulation.scenery import scenery_of
 from linden.simulation.seeing import Seeing
 from linden.simulation.spawning import destroy, refuse_idle, spawn
-from linden.simulation.step import step
+from linden.simulation.step import look_ahead, step
 from linden.values.actors import ActorDescription
 from linden.values.episode import EpisodeSettings
 from linden.values.space import Transform
@@ -103,6 +103,12 @@ class Simulation:
         step(self.episode, dt_s, self._substeps(dt_s))
         self.replayer.after_step(self, dt_s)
         self.recorder.after_step(self.episode, dt_s)
+
+    def look_ahead(self) -> None:
+        """Compute the next frame's physics before it is asked for, where its length is known: an idle server may."""
+        dt_s = self.settings.fixed_delta_seconds
+        if dt_s is not None:
+            look_ahead(self.episode, dt_s, self._substeps(dt_s))
 
     def _substeps(self, dt_s: float) -> int:
         """Return into how many parts the physics cuts a step: CARLA's rule for its substepping settings."""

@@ -1,6 +1,5 @@
 """One step of the world, stage after stage: lights, bodies, then what the snapshot shows of them."""
 
-from linden.physics.step import advance
 from linden.simulation.episode import Episode
 from linden.simulation.spawning import destroy
 
@@ -10,10 +9,15 @@ def step(episode: Episode, dt_s: float, substeps: int) -> None:
     episode.actors.turn_page()
     episode.traffic.step(dt_s)
     episode.grip.update(episode)
-    episode.contacts = advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
+    episode.contacts = episode.foresight.advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
     episode.elapsed_s += dt_s
     for actor_id in episode.walkers.step(episode, dt_s):
         destroy(episode, actor_id, announce=True)
     episode.surroundings.step(episode.elapsed_s)
     episode.sockets.follow(episode)
     episode.observe()
+
+
+def look_ahead(episode: Episode, dt_s: float, substeps: int) -> None:
+    """Compute the bodies of the next step ahead of time; nothing of the episode changes."""
+    episode.foresight.look_ahead(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
