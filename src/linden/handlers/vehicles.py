@@ -12,7 +12,6 @@ from linden.values.vehicles import (
 )
 from linden.wire.controls import ClientControl
 from linden.wire.decode import U32
-from linden.world.blueprints import Kind
 
 
 @method("apply_control_to_vehicle")
@@ -95,14 +94,13 @@ def set_light_bits(context: Context, actor_id: int, bits: int) -> None:
     """Switch lamps, as bits of VehicleLightState."""
     episode = context.simulation.episode
     episode.vehicle(actor_id)
-    episode.actors.get(actor_id).light_state = bits
+    episode.actors.set_lamps(actor_id, bits)
 
 
 @method("get_vehicle_light_states")
 def get_vehicle_light_states(context: Context) -> list[tuple[int, int]]:
     """Return (id, lamps) of every vehicle."""
-    actors = context.simulation.episode.actors
-    return [(record.id, record.light_state) for record in actors if record.kind is Kind.VEHICLE]
+    return context.simulation.episode.actors.lamps()
 
 
 @method("set_actor_autopilot")
