@@ -21,6 +21,8 @@ PR_SET_PDEATHSIG = 1
 """Of prctl(2)."""
 START_LIMIT_S = 900.0
 """The first start on a machine compiles the kernels: a minute or two of its time, which may be shared by many."""
+END_LIMIT_S = 60.0
+"""A server ends within seconds. On a busy machine they are longer."""
 
 
 @dataclass(frozen=True)
@@ -53,13 +55,13 @@ def running_server(*options: str) -> Iterator[RunningServer]:
         try:
             port, streaming_port = _ports(process, log_file)
             yield RunningServer(process, port, streaming_port, time.monotonic() - began_s, log_file)
-        finally:
+            has_ended = process.poll() is not None  # a test's own doing
             process.terminate()
-            try:
-                process.wait(10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+            code = process.wait(END_LIMIT_S)
+            assert has_ended or code == 0, f"the server ended with {code}: {log_file.read_text('utf-8')[-1000:]}"
+        finally:
+            process.kill()
+            process.wait()
             assert process.stdout is not None
             process.stdout.close()
 

@@ -1,13 +1,16 @@
-"""Work beside other work: a thread that makes something, and how it is given up.
+"""Work in the background: a thread that makes something, and how the work is given up.
 
-The threads are daemons: a process that is told to end does not wait for them. Those of ``concurrent.futures`` it would
-wait for, and for ever where the signal came in the moment in which one was started.
+The threads are daemons, because Python waits for any other thread without a limit when a process ends. But compiled
+code of a daemon goes on while the libraries of the process are taken down, and ends the process by a signal. So a
+process calls :func:`end_all` before it ends.
 """
 
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
 from threading import Event, Thread, local
 from typing import TypeAlias, TypeVar
+from weakref import WeakSet
 
 Made = TypeVar("Made")
 
@@ -21,6 +24,8 @@ class NotWantedError(Exception):
 
 
 _here = local()  # .unwanted: the Event by which the work of this thread is given up
+_threads: "WeakSet[Thread]" = WeakSet()
+_ending = Event()  # the process ends: no work is wanted any more
 
 
 def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) -> "Future[Made]":
@@ -31,11 +36,27 @@ def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) ->
     made: Future[Made] = Future()
 
     def begin() -> None:
-        _here.unwanted = unwanted
+        _here.unwanted = Event() if unwanted is None else unwanted
         carry_out(work, made)
 
-    Thread(target=begin, name="background", daemon=True).start()
+    thread = Thread(target=begin, name="background", daemon=True)
+    _threads.add(thread)
+    thread.start()
     return made
+
+
+def end_all(at_most_s: float) -> bool:
+    """Give up all work in the background and wait for its threads; return whether all have ended in time.
+
+    To be called once, at the end of a process. Work that begins later is given up at its first checkpoint.
+    """
+    _ending.set()
+    until_s = time.monotonic() + at_most_s
+    while running := [thread for thread in tuple(_threads) if thread.is_alive()]:
+        running[0].join(max(0.0, until_s - time.monotonic()))
+        if time.monotonic() >= until_s:
+            return not any(thread.is_alive() for thread in running)
+    return True
 
 
 def checkpoint() -> None:
@@ -45,7 +66,7 @@ def checkpoint() -> None:
         NotWantedError: it is not wanted.
     """
     unwanted = getattr(_here, "unwanted", None)
-    if unwanted is not None and unwanted.is_set():
+    if unwanted is not None and (unwanted.is_set() or _ending.is_set()):
         raise NotWantedError
 
 

@@ -1,5 +1,7 @@
-"""Work in the background ends where it is not wanted any more."""
+"""Work in the background ends where it is not wanted any more, and before its process ends."""
 
+import subprocess
+import sys
 from threading import Event
 
 import pytest
@@ -27,3 +29,22 @@ def test_work_that_is_not_wanted_ends_at_its_next_checkpoint() -> None:
         made.result(10)
     assert other.result(10) is None
     checkpoint()  # here nothing is given up
+
+
+AT_THE_END = """
+import sys, time
+from linden.background import checkpoint, end_all, in_background
+def work():
+    for _ in range(10_000):
+        time.sleep(0.01)
+        {check}
+made = in_background(work)
+print(end_all(0.5), made.done(), in_background(checkpoint).exception(10).__class__.__name__)
+"""
+
+
+@pytest.mark.parametrize(("check", "said"), [("checkpoint()", "True True"), ("pass", "False False")])
+def test_the_end_of_a_process_waits_for_work_but_not_for_ever(check: str, said: str) -> None:
+    program = [sys.executable, "-c", AT_THE_END.format(check=check)]
+    ran = subprocess.run(program, capture_output=True, text=True, timeout=60, check=True)
+    assert ran.stdout == f"{said} NotWantedError\n"

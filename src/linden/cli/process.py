@@ -7,19 +7,22 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import FrameType, TracebackType
 from typing import TextIO
 
 from typing_extensions import Self
 
+from linden.background import end_all
 from linden.cli.sparing import Sparing
 
 GRACE_S = 1.0
 """How long what is being done at a signal may take: any call but the loading of an unusual map."""
 MOST_FILES = 20_000
 """What the limit of open files is raised to where the system allows it: all connections the server takes, and more."""
+LAST_WORK_S = 3.0
+"""How long the end of the process waits for work in the background: the largest part of a scene takes a second."""
 WHOLE_WRITE_BYTES = 4096
 """What a pipe that can be written to takes without making the writer wait (PIPE_BUF of Linux)."""
 
@@ -134,6 +137,27 @@ def allow_connections() -> None:
     wanted = MOST_FILES if hard == resource.RLIM_INFINITY else min(hard, MOST_FILES)
     if soft != resource.RLIM_INFINITY and soft < wanted:
         resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
+
+
+@contextmanager
+def background_work_ended() -> Iterator[None]:
+    """At the end of the block, wait for work in the background; end the process at once, with 0, where it goes on.
+
+    Compiled code that still runs while the process takes its libraries down would end it by a signal. An error is
+    raised all the same, since its message is still to be written.
+    """
+    has_failed = False
+    try:
+        yield
+    except Exception:
+        has_failed = True
+        raise
+    finally:
+        if not end_all(LAST_WORK_S) and not has_failed:
+            logging.shutdown()
+            with suppress(OSError):  # a closed pipe, a full disk
+                sys.stdout.flush()
+            os._exit(0)
 
 
 def give_up_stdout() -> None:

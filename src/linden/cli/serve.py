@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linden.cli.process import Ending, allow_connections, give_up_stdout, write_log
+from linden.cli.process import Ending, allow_connections, background_work_ended, give_up_stdout, write_log
 from linden.values.episode import EpisodeSettings
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     write_log(arguments.log_level.upper())
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start one a core, and they spin; we are one thread
     allow_connections()
-    with Ending() as ending:
+    with background_work_ended(), Ending() as ending:
         with _collector_paused():
             server = _make_server(arguments)
         ending.ask_first(server.stop)

@@ -88,6 +88,7 @@ class Calls:
         self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
         self._driven: dict[RpcPeer, Driven] = {}  # of those too
         self._driven_now: RpcPeer | None = None  # whose batch was the last call
+        self._shown_frame = context.simulation.frame
         self._working: dict[RpcPeer, Unanswered] = {}  # whose call has work in the background
         self._handovers: dict[RpcPeer, Handover] = {}  # of loads by those who run a Traffic Manager
         self._load_until_s = math.inf  # when a pending load begins in any case
@@ -203,17 +204,14 @@ class Calls:
 
     def _with_driven(self, peer: RpcPeer, call: Call, answer: bytes) -> bytes | None:
         """Return what is to be sent for a call of a client that runs Traffic Managers; see ``server.driven``."""
-        simulation = self._context.simulation
         if call.method == BATCH and call.args:
-            ready = self._driven.setdefault(peer, Driven()).batch(call.args[0], simulation.frame)
+            ready = self._driven.setdefault(peer, Driven()).batch(call.args[0])
             self._driven_now = peer
             return b"".join((answer, *ready))
         if call.method != DESTROY or peer not in self._driven or call.is_async or not call.args:
             return answer
         frames_come = not self.is_synchronous() and not self._context.waits_for_the_scene()
-        waits = self._driven[peer].destroyed(
-            call.args[0], answer, self._clock(), simulation.frame, frames_come=frames_come
-        )
+        waits = self._driven[peer].destroyed(call.args[0], answer, self._clock(), frames_come=frames_come)
         self._context.frame_is_due |= waits
         return None if waits else answer
 
@@ -229,6 +227,16 @@ class Calls:
                     self._close(peer)
                     continue
                 self._watch(peer)
+
+    def traffic_wait_s(self, now_s: float) -> float:
+        """Return how long asynchronous mode's next frame waits at most for Traffic Managers; 0 where it need not.
+
+        A frame that lacks a car must not come while a Traffic Manager works on the car; see ``server.driven``.
+        """
+        if not self._driven:
+            return 0.0
+        actors = self._context.simulation.episode.actors
+        return max(one.frame_wait_s(now_s, actors.__contains__) for one in self._driven.values())
 
     def _keep(self, peer: RpcPeer, call: Call, answer: bytes) -> bool:
         """Return whether an answer has to wait, and keep it where it has."""
@@ -361,6 +369,10 @@ class Calls:
 
     def publish(self) -> None:
         """Send what the last call or frame left in the outbox."""
+        if self._context.simulation.frame != self._shown_frame:
+            self._shown_frame = self._context.simulation.frame
+            for driven in self._driven.values():
+                driven.shown()
         if not self._context.outbox:
             return
         now_s = self._clock()

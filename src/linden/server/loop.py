@@ -133,7 +133,8 @@ class Server:
         ]
         settings = self.context.simulation.settings
         if not settings.synchronous_mode:
-            waits.append(self._pace.wait_s(now_s, settings.fixed_delta_seconds))
+            pace_s = self._pace.wait_s(now_s, settings.fixed_delta_seconds)
+            waits.append(pace_s or self._calls.traffic_wait_s(now_s))
         return min((wait_s for wait_s in waits if wait_s is not None), default=None)
 
     def _look_around(self) -> None:
@@ -256,6 +257,8 @@ class Server:
         settings = self.context.simulation.settings
         now_s = self._clock()
         waits = not self.context.frame_is_due and self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0
+        if not settings.synchronous_mode and not waits and self._calls.traffic_wait_s(now_s) > 0.0:
+            return
         self.context.frame_is_due = False
         if settings.synchronous_mode or waits or self.context.waits_for_the_scene():
             return

@@ -59,9 +59,7 @@ class Foresight:
         before, specs = _words(bodies.state, bodies.count).copy(), _words(bodies.specs, bodies.count).copy()
         contacts = advance(bodies, ground, statics, dt_s, substeps)
         state = _words(bodies.state, bodies.count)
-        self._frame = _Frame(
-            ground, statics, dt_s, substeps, bodies.count, before, specs, state.copy(), contacts
-        )
+        self._frame = _Frame(ground, statics, dt_s, substeps, bodies.count, before, specs, state.copy(), contacts)
         state[:] = before
 
     def advance(self, bodies: Bodies, ground: Ground, statics: Statics, dt_s: float, substeps: int) -> Contacts:
@@ -77,9 +75,7 @@ class Foresight:
         return frame.contacts
 
     @staticmethod
-    def _fits(
-        frame: _Frame, bodies: Bodies, ground: Ground, statics: Statics, dt_s: float, substeps: int
-    ) -> bool:
+    def _fits(frame: _Frame, bodies: Bodies, ground: Ground, statics: Statics, dt_s: float, substeps: int) -> bool:
         """Return whether a frame was computed from just this."""
         return (
             frame.ground is ground

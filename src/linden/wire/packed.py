@@ -18,7 +18,9 @@ CONTROL_INDEX = 2
 """Of ApplyVehicleControl among CARLA's commands."""
 
 _REQUEST = b"\x94\x00"  # an array of four; the first says that it is a request
-_METHOD = bytes((0xA0 + len(BATCH), *BATCH.encode(), 0x93, 0x91))  # its name, then three parameters, the first [is_async]
+_METHOD = bytes(
+    (0xA0 + len(BATCH), *BATCH.encode(), 0x93, 0x91)
+)  # its name, then three parameters, the first [is_async]
 _LATEST = len(_REQUEST) + 5 + len(_METHOD)  # where the name ends at the latest: an id has at most five bytes
 _BOOLS = {0xC2: False, 0xC3: True}
 _LONGEST = 4 + 5 + 1 + 3 * 9 + 3 + 5

@@ -153,6 +153,17 @@ def test_a_signal_during_a_long_call_ends_it_cleanly_within_two_seconds() -> Non
         assert "Traceback" not in server.log()
 
 
+@pytest.mark.parametrize("after_s", [0.5, 1.0, 2.0, 3.0])
+def test_a_signal_while_a_scene_is_built_ends_it_cleanly(after_s: float) -> None:
+    """Compiled code of the building thread went on during the exit, and ended the process by SIGABRT."""
+    with running_server() as server, RawClient(server.port) as client:
+        point = client.call("get_map_info")[1][0]
+        client.call("spawn_actor", [0, "sensor.camera.rgb", []], point)
+        time.sleep(after_s)
+        server.process.terminate()
+        assert server.process.wait(20) == 0, server.log()
+
+
 def test_it_ends_while_a_subscriber_reads_nothing() -> None:
     with (
         running_server("--sync") as server,
