@@ -46,13 +46,12 @@ def tick(port: int, cars: int) -> None:
 class Pair(NamedTuple):
     """A server and its client."""
 
-    number: int
     cars: int
     server: subprocess.Popen[str]
     client: subprocess.Popen[str]
 
 
-def begin(number: int, cars: int) -> Pair:
+def begin(cars: int) -> Pair:
     server = subprocess.Popen([sys.executable, *LINDEN], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     ready = next(line for line in server.stdout if line.startswith("linden: ready"))
     port = re.search(r"rpc port (\d+)", ready)[1]
@@ -62,13 +61,63 @@ def begin(number: int, cars: int) -> Pair:
         stderr=subprocess.DEVNULL,
         text=True,
     )
-    return Pair(number, cars, server, client)
+    return Pair(cars, server, client)
 
 
 def end(pair: Pair) -> None:
     for process in (pair.client, pair.server):
         process.kill()
         process.wait()
+
+
+class Watch:
+    """All pairs, and what has come from them.
+
+    Attributes:
+        ticks: by the cars of a pair.
+        hangs: likewise.
+        ended: clients that ended themselves.
+        load: the greatest of the machine.
+    """
+
+    def __init__(self) -> None:
+        self._selector = selectors.DefaultSelector()
+        self._heard_s: dict[Pair, float] = {}
+        self.ticks: collections.Counter[int] = collections.Counter()
+        self.hangs: collections.Counter[int] = collections.Counter()
+        self.ended = 0
+        self.load = 0.0
+
+    def add(self, pair: Pair) -> None:
+        self._selector.register(pair.client.stdout, selectors.EVENT_READ, pair)
+        self._heard_s[pair] = time.monotonic()
+
+    def look(self) -> None:
+        """Wait a second for lines, count them, and begin those pairs anew that have ended or hang."""
+        for key, _ in self._selector.select(1.0):
+            if lines := os.read(key.fd, 4096).count(b"\n"):
+                self.ticks[key.data.cars] += TOLD_EACH * lines
+                self._heard_s[key.data] = time.monotonic()
+            else:
+                self.ended += 1
+                print(f"a client with {key.data.cars} cars ended with {key.data.client.wait()}", flush=True)
+                self._again(key.data)
+        for pair in [pair for pair, last_s in self._heard_s.items() if time.monotonic() - last_s > HANGS_S]:
+            self.hangs[pair.cars] += 1
+            print(f"a client with {pair.cars} cars hangs", flush=True)
+            self._again(pair)
+        self.load = max(self.load, os.getloadavg()[0])
+
+    def _again(self, pair: Pair) -> None:
+        self._selector.unregister(pair.client.stdout)
+        del self._heard_s[pair]
+        end(pair)
+        self.add(begin(pair.cars))
+
+    def close(self) -> None:
+        for pair in self._heard_s:
+            end(pair)
+        self._selector.close()
 
 
 def main() -> None:
@@ -81,47 +130,19 @@ def main() -> None:
     parser.add_argument("--cars", type=int, nargs="+", default=[1, 3, 20], help="of the pairs, by turns")
     arguments = parser.parse_args()
     cars = [arguments.cars[number % len(arguments.cars)] for number in range(arguments.pairs)]
-    ticks: collections.Counter[int] = collections.Counter()
-    hangs: collections.Counter[int] = collections.Counter()
-    ended = 0
-    with selectors.DefaultSelector() as selector:
-        heard_s: dict[Pair, float] = {}
-
-        def watch(pair: Pair) -> None:
-            selector.register(pair.client.stdout, selectors.EVENT_READ, pair)
-            heard_s[pair] = time.monotonic()
-
-        def again(pair: Pair) -> None:
-            selector.unregister(pair.client.stdout)
-            del heard_s[pair]
-            end(pair)
-            watch(begin(pair.number, pair.cars))
-
-        for number, count in enumerate(cars):
-            watch(begin(number, count))
-        began_s, load = time.monotonic(), os.getloadavg()[0]
-        while time.monotonic() - began_s < arguments.seconds:
-            for key, _ in selector.select(1.0):
-                if lines := os.read(key.fd, 4096).count(b"\n"):
-                    ticks[key.data.cars] += TOLD_EACH * lines
-                    heard_s[key.data] = time.monotonic()
-                else:  # the client has ended itself
-                    ended += 1
-                    print(f"a client with {key.data.cars} cars ended with {key.data.client.wait()}", flush=True)
-                    again(key.data)
-            load = max(load, os.getloadavg()[0])
-            for pair in [pair for pair, last_s in heard_s.items() if time.monotonic() - last_s > HANGS_S]:
-                hangs[pair.cars] += 1
-                print(f"a client with {pair.cars} cars hangs", flush=True)
-                again(pair)
-        for pair in heard_s:
-            end(pair)
+    watch = Watch()
+    for count in cars:
+        watch.add(begin(count))
+    began_s = time.monotonic()
+    while time.monotonic() - began_s < arguments.seconds:
+        watch.look()
+    watch.close()
     print("cars  pairs     ticks  hangs")
     for count in arguments.cars:
-        print(f"{count:4}  {cars.count(count):5}  {ticks[count]:8}  {hangs[count]:5}")
+        print(f"{count:4}  {cars.count(count):5}  {watch.ticks[count]:8}  {watch.hangs[count]:5}")
     print(
-        f"{ticks.total()} ticks, {hangs.total()} hangs, {ended} clients that ended, in {arguments.seconds:.0f} s on "
-        f"{os.cpu_count()} cores with a load of up to {load:.0f}"
+        f"{watch.ticks.total()} ticks, {watch.hangs.total()} hangs, {watch.ended} clients that ended, in "
+        f"{arguments.seconds:.0f} s on {os.cpu_count()} cores with a load of up to {watch.load:.0f}"
     )
 
 

@@ -83,7 +83,7 @@ def _drive(context: Context, controls: Controls) -> list[Answer]:
         try:
             episode.bodies.set_controls(np.array([episode.vehicle(actor_id)]), controls.fields[nth : nth + 1])
             answers.append(cmd.done(actor_id))
-        except Refusal as refusal:
+        except Refusal as refusal:  # noqa: PERF203 - each command fails or succeeds by itself
             answers.append(cmd.failed(told("apply_control_to_vehicle", refusal)))
     return answers
 

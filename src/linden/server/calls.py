@@ -138,7 +138,7 @@ class Calls:
         self._watch(peer)
 
     def _look_ahead(self, peer: RpcPeer) -> None:
-        """Compute the next frame's physics while a Traffic Manager in synchronous mode takes note of its batch's end."""
+        """Compute the next frame's physics while a Traffic Manager's threads take note of their batch's end."""
         if self._driven_now is peer and not peer.calls and self.is_synchronous():
             self._context.simulation.look_ahead()
         self._driven_now = None

@@ -6,6 +6,7 @@ There is no lock, because nothing happens at the same time: between two events t
 import contextlib
 import gc
 import logging
+import select
 import selectors
 import socket
 import sys
@@ -40,6 +41,10 @@ SWITCH_S = 0.001
 """How long work in the background keeps Python's lock when this thread wants it; a call wants it some times, and by
 default it would have to wait 5 ms each time."""
 
+COARSE_S = 0.002
+"""Waits shorter than this end on time. The selector counts whole milliseconds; a tick's answer waits half of one."""
+
+_MOST_SELECTED = 1024  # numbers of files that select(2) can take
 _READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 _BUG = "internal error in %s; the server goes on"
 
@@ -58,6 +63,8 @@ class Server:
             variable_step_s=lambda: self._pace.variable_step_s(self._clock()),
         )
         self._selector = selectors.DefaultSelector()
+        file = self._selector.fileno() if hasattr(self._selector, "fileno") else _MOST_SELECTED
+        self._fine_files = (file,) if file < _MOST_SELECTED else ()
         self._subscribers = Subscribers(self.context.streams, self._watch, self._close)
         self._entrance = Entrance(ports, self._selector, self._clock, self._welcome, self._close)
         self._waiting = Waiting()
@@ -112,7 +119,11 @@ class Server:
 
     def _turn(self) -> None:
         """Wait for the next thing to do, and do it."""
-        for key, events in self._selector.select(self._wait_s()):
+        wait_s = self._wait_s()
+        if wait_s is not None and 0.0 < wait_s < COARSE_S and self._fine_files:
+            select.select(self._fine_files, (), (), wait_s)
+            wait_s = 0.0
+        for key, events in self._selector.select(wait_s):
             key.data(events)
         for peer in tuple(self._calls.unfinished):
             self._calls.carry_out(peer)

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from linden.ground import Ground
 from linden.physics.bodies import Bodies
 from linden.physics.contact.statics import Statics
-from linden.physics.state import Rows
 from linden.physics.step import Contacts, advance
 
 MOST_IN_VAIN = 2
@@ -26,16 +25,14 @@ Words = NDArray[np.uint64]
 
 
 class _Frame(NamedTuple):
-    """What was computed, and what from."""
+    """What a frame was computed from, beside the bodies' state, and what touched in it."""
 
     ground: Ground
     statics: Statics
     dt_s: float
     substeps: int
     count: int
-    before: Words
-    specs: Words
-    after: Words
+    fittings: int
     contacts: Contacts
 
 
@@ -44,49 +41,67 @@ class Foresight:
 
     def __init__(self) -> None:
         self._frame: _Frame | None = None
+        self._before: Words = np.empty(0, np.uint64)
+        self._after: Words = np.empty(0, np.uint64)
         self._in_vain = 0
         self._left_out = 0
 
     def look_ahead(self, bodies: Bodies, ground: Ground, statics: Statics, dt_s: float, substeps: int) -> None:
         """Compute the frame that these bodies come to; they stay as they are."""
-        if self._frame is not None and self._fits(self._frame, bodies, ground, statics, dt_s, substeps):
-            return
         if self._in_vain >= MOST_IN_VAIN:
             self._left_out += 1
             if self._left_out < TRIED_AGAIN:
                 return
             self._in_vain = self._left_out = 0
-        before, specs = _words(bodies.state, bodies.count).copy(), _words(bodies.specs, bodies.count).copy()
-        contacts = advance(bodies, ground, statics, dt_s, substeps)
-        state = _words(bodies.state, bodies.count)
-        self._frame = _Frame(ground, statics, dt_s, substeps, bodies.count, before, specs, state.copy(), contacts)
-        state[:] = before
+        state = _words(bodies)
+        if self._frame is not None and self._fits(self._frame, bodies, state, ground, statics, dt_s, substeps):
+            return
+        self._frame = None
+        if len(self._before) != len(state):
+            self._before, self._after = np.empty_like(state), np.empty_like(state)
+        self._before[:] = state
+        try:
+            contacts = advance(bodies, ground, statics, dt_s, substeps)
+            self._after[:] = state
+        except MemoryError:
+            return
+        finally:
+            state[:] = self._before
+        self._frame = _Frame(ground, statics, dt_s, substeps, bodies.count, bodies.fittings, contacts)
 
     def advance(self, bodies: Bodies, ground: Ground, statics: Statics, dt_s: float, substeps: int) -> Contacts:
         """Advance the bodies as :func:`linden.physics.step.advance` does; return what touched."""
         frame, self._frame = self._frame, None
         if frame is None:
             return advance(bodies, ground, statics, dt_s, substeps)
-        if not self._fits(frame, bodies, ground, statics, dt_s, substeps):
+        state = _words(bodies)
+        if not self._fits(frame, bodies, state, ground, statics, dt_s, substeps):
             self._in_vain += 1
             return advance(bodies, ground, statics, dt_s, substeps)
         self._in_vain = 0
-        _words(bodies.state, bodies.count)[:] = frame.after
+        state[:] = self._after
         return frame.contacts
 
-    @staticmethod
-    def _fits(frame: _Frame, bodies: Bodies, ground: Ground, statics: Statics, dt_s: float, substeps: int) -> bool:
+    def _fits(
+        self,
+        frame: _Frame,
+        bodies: Bodies,
+        state: Words,
+        ground: Ground,
+        statics: Statics,
+        dt_s: float,
+        substeps: int,
+    ) -> bool:
         """Return whether a frame was computed from just this."""
         return (
             frame.ground is ground
             and frame.statics is statics
-            and (frame.dt_s, frame.substeps, frame.count) == (dt_s, substeps, bodies.count)
-            and np.array_equal(frame.before, _words(bodies.state, bodies.count))
-            and np.array_equal(frame.specs, _words(bodies.specs, bodies.count))
+            and frame[2:6] == (dt_s, substeps, bodies.count, bodies.fittings)
+            and np.array_equal(self._before, state)
         )
 
 
-def _words(rows: Rows, count: int) -> Words:
-    """Return the rows in use as they lie in memory."""
-    words: Words = rows[:count].view(np.ndarray).view(np.uint64)
+def _words(bodies: Bodies) -> Words:
+    """Return the state in use as it lies in memory."""
+    words: Words = bodies.state[: bodies.count].view(np.ndarray).view(np.uint64)
     return words

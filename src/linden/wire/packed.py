@@ -78,7 +78,7 @@ def _unsigned(packed: bytes) -> int | None:
 def _array(data: bytes, at: int) -> tuple[int, int]:
     """Return how many items the array has that begins here, and where they begin; -1 where none does."""
     first = data[at]
-    if 0x90 <= first < 0xA0:  # noqa: PLR2004 - msgpack's fixarray
+    if 0x90 <= first < 0xA0:  # msgpack's fixarray
         return first - 0x90, at + 1
     width = {0xDC: 2, 0xDD: 4}.get(first, 0)
     return (int.from_bytes(data[at + 1 : at + 1 + width], "big"), at + 1 + width) if width else (_NONE, at)
@@ -93,9 +93,13 @@ def _read_controls(
     ``data`` goes on behind ``length`` for at least a command's length.
     """
     for n in range(len(actor_ids)):
-        if at >= length:
-            return -1
-        if data[at] != 0x91 or data[at + 1] != 0x92 or data[at + 2] != CONTROL_INDEX or data[at + 3] != 0x92:
+        if (
+            at >= length
+            or data[at] != 0x91
+            or data[at + 1] != 0x92
+            or data[at + 2] != CONTROL_INDEX
+            or data[at + 3] != 0x92
+        ):
             return -1
         number, at = _integer(data, at + 4)
         if at < 0 or number < 0 or data[at] != 0x90 + CONTROL_FIELDS:
@@ -108,9 +112,9 @@ def _read_controls(
                 return -1
             fields[n, column] = value
         for column in range(3, 6):
+            fields[n, column] = data[at] - 0xC2
             if data[at] != 0xC2 and data[at] != 0xC3:
                 return -1
-            fields[n, column] = data[at] - 0xC2
             at += 1
         number, at = _integer(data, at)
         if at < 0 or number > LARGEST_PLAIN:

@@ -140,6 +140,23 @@ def test_without_a_fixed_step_there_is_nothing_to_foresee(monkeypatch: pytest.Mo
     assert not computed
 
 
+def test_bodies_are_as_they_were_where_memory_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    simulation = street()
+    simulation.step(STEP_S)
+    bodies = simulation.episode.bodies
+    before = bodies.state.tobytes()
+
+    def fail(changed: Bodies, *_: object) -> object:
+        changed.position[0] += 1.0
+        raise MemoryError
+
+    with monkeypatch.context() as patch:
+        patch.setattr(foresight, "advance", fail)
+        simulation.look_ahead()
+    assert bodies.state.tobytes() == before
+    simulation.step(STEP_S)
+
+
 def test_the_states_are_whole_words() -> None:
     bodies = Bodies()
-    assert bodies.state.itemsize % np.uint64().itemsize == bodies.specs.itemsize % np.uint64().itemsize == 0
+    assert bodies.state.itemsize % np.uint64().itemsize == 0
