@@ -2,8 +2,8 @@
 
     python benchmarks/split_server.py FILE [options of linden serve]
 
-The file holds sums in s as JSON: frames and what they show, of it sensors, what was
-computed ahead, and how long answers waited for the cue.
+The file holds sums in s as JSON: frames and what they show, of it sensors, what was computed ahead, and how long
+answers waited for the cue.
 """
 
 import json

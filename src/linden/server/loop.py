@@ -29,13 +29,14 @@ from linden.world.maps import MapLibrary
 
 log = logging.getLogger("linden")
 
-UNFINISHED_BYTES_OF_ALL = 128 * 1024 * 1024
-"""What half-received calls may take in all connections together: two of the largest, hundreds of any usual size."""
-UNFINISHED_ARRAYS_OF_ALL = 8 * 1024 * 1024
-"""How many arrays half-received calls may have in all connections together: two of the most."""
+HELD_BYTES_OF_ALL = 128 * 1024 * 1024
+"""What calls that are half received or wait to be carried out may take in all connections together: two of the largest,
+hundreds of any usual size."""
+HELD_ARRAYS_OF_ALL = 2 * 1024 * 1024
+"""How many arrays such calls may have in all connections together: four of the most, some 140 MB."""
 
 HOARD_BYTES = 64 * 1024
-"""From this size on a half-received call is looked at: smaller ones of a thousand clients are 64 MB."""
+"""From this size on what a client holds is looked at: smaller ones of a thousand clients are 64 MB."""
 
 SWITCH_S = 0.001
 """How long work in the background keeps Python's lock when this thread wants it; a call wants it some times, and by
@@ -241,26 +242,27 @@ class Server:
 
     def _called(self, peer: RpcPeer, data: bytes) -> None:
         if data:
-            peer.calls.extend(peer.connection.receive(data))
+            peer.receive(data)
             if peer.calls:
                 self._entrance.has_spoken(peer)
-            elif peer.connection.unfinished_bytes > HOARD_BYTES:
+            if peer.held()[0] > HOARD_BYTES:
                 self._refuse_to_hoard()
         else:
             peer.at_end = True
         self._calls.carry_out(peer)
 
     def _refuse_to_hoard(self) -> None:
-        """Break off where all the half-received calls together have become too much.
+        """Break off where all that clients have sent and is not carried out has become too much.
 
         Raises:
             ProtocolError: the connection that went too far is to be closed.
         """
-        held = sum(peer.connection.unfinished_bytes for peer in self._clients)
-        arrays = sum(peer.connection.unfinished_arrays for peer in self._clients)
-        if held > UNFINISHED_BYTES_OF_ALL or arrays > UNFINISHED_ARRAYS_OF_ALL:
+        held = [peer.held() for peer in self._clients]
+        size, arrays = sum(each[0] for each in held), sum(each[1] for each in held)
+        if size > HELD_BYTES_OF_ALL or arrays > HELD_ARRAYS_OF_ALL:
             raise ProtocolError(
-                f"half-received calls of all clients hold {held} bytes with {arrays} arrays, too much to receive more"
+                f"calls of all clients that are half received or wait to be carried out hold {size} bytes with "
+                f"{arrays} arrays, too much to receive more"
             )
 
     def _make_due_frame(self) -> None:
