@@ -2,7 +2,7 @@
 BIN := .venv/bin
 AGENT ?= basic
 
-.PHONY: run test check format bench docs clean
+.PHONY: run test check format bench docs pages observe clean
 
 run:  ## drive the shuttle route and score the drive
 	@scripts/setup run
@@ -30,13 +30,23 @@ bench:  ## the figures of benchmarks/README.md, anew
 	$(BIN)/python benchmarks/stages.py
 	$(BIN)/python benchmarks/ticks.py
 
-docs:  ## the generated pages
+docs: pages  ## the documentation site, in site/
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+	@echo "to read it, with search: $(BIN)/python -m http.server --directory site"
+
+pages:  ## the generated pages and tables of docs/
 	@scripts/setup dev
-	$(BIN)/python scripts/observe_client.py
 	$(BIN)/python scripts/make_supported.py
 	$(BIN)/python scripts/make_scenarios_page.py
 	$(BIN)/python scripts/make_options_tables.py
+	$(BIN)/python scripts/make_command_line_page.py
+	$(BIN)/python scripts/make_agent_page.py
+	$(BIN)/python scripts/make_example_blocks.py
+
+observe:  ## docs/supported.json, from a live server: before `make pages` where the server answers more than before
+	@scripts/setup dev
+	$(BIN)/python scripts/observe_client.py
 
 clean:
-	rm -rf .venv build src/*.egg-info .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
+	rm -rf .venv build site src/*.egg-info .coverage* .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -not -path './.git/*' -exec rm -rf {} +

@@ -15,13 +15,13 @@ import numpy as np
 
 from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import SensorSpec, parse_sensors
+from basu.files import find
 from basu.managers.agents_manager import AgentsManager
 from basu.managers.base_manager import Frame, Run, ego_in
 from basu.managers.sensors_manager import SensorsManager
 from basu.routing import plan
 from basu.routing.route_file import read_routes
 from basu.simulator import OwnServer, connect
-from basu.utils.packaged import find
 
 STEP_S, TIMEOUT_S, WARM_UP_TICKS = 0.05, 60.0, 20
 

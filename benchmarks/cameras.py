@@ -10,22 +10,22 @@ import statistics
 import time
 from collections.abc import Callable
 
+from linden.maps.cache import MapCache
+from linden.maps.library import MapLibrary
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.space import Rotation, Transform
 from linden.sensors.camera import labels
 from linden.sensors.camera.picture import rgb
-from linden.sensors.camera.picture.develop import developed
 from linden.sensors.camera.picture.edges import edge_rays, finer
-from linden.sensors.camera.picture.shadows import sunny, within
-from linden.sensors.camera.rays import aim, directions
+from linden.sensors.camera.picture.film import developed
+from linden.sensors.camera.picture.sun_shadows import sunny, within
+from linden.sensors.camera.pixel_rays import aim, directions
 from linden.sensors.camera.spec import CameraSpec, Film
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription
-from linden.values.space import Rotation, Transform
-from linden.world.map_cache import MapCache
-from linden.world.maps import MapLibrary
+from linden.world import World
 
 
 def stage_by_stage(rounds: int) -> None:
-    simulation = Simulation(MapLibrary([], MapCache.of_user().facts_of).load("Linden"))
+    simulation = World(MapLibrary([], MapCache.of_user().facts_of).load("Linden"))
     simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), simulation.spawn_points[3])
     simulation.step(0.05)
     seen = simulation.seeing.look(simulation.episode, simulation.frame)

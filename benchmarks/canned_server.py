@@ -3,14 +3,15 @@
 Wire, handlers and snapshot are linden's own, so what is left is the client's time and the way between the two.
 """
 
-from linden.handlers import frames, registry
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.server import frames
 from linden.server.loop import Server
 from linden.server.ports import open_ports, port_of
-from linden.simulation import Simulation
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.server.rpc import registry
+from linden.world import World
 
 
-class StillWorld(Simulation):
+class StillWorld(World):
     """Time passes, and nothing else does."""
 
     def step(self, dt_s: float) -> None:

@@ -21,9 +21,9 @@ from eyes_server import populate, town
 from numpy.typing import NDArray
 from rays import FAR_M, RaySet, raw, ray_sets
 
-from linden.casting.choose import CPU
-from linden.casting.embree import EmbreeCaster
-from linden.sensors.seen import Seen
+from linden.sensors.casting.choose import CPU
+from linden.sensors.casting.embree import EmbreeCaster
+from linden.sensors.view import Seen
 
 OPEN3D = Path(__file__).with_name("peer_open3d.py")
 NO_PEER = "Open3D was not measured: name a Python that has it by --peer-python"

@@ -9,31 +9,31 @@ from collections.abc import Iterator
 
 from eyes_rows import CAR, OTHERS, THROTTLE, Figures, Row, Sensor
 
-from linden.casting.choose import check_device
-from linden.handlers import frames
-from linden.meshes.library import standing_of
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.vehicles import VehicleControl
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.control import VehicleControl
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.scenery.map_mesh_cache import standing_of
+from linden.sensors.casting.choose import check_device
+from linden.server import frames
+from linden.world import World
 
 WARM_UP = 3
 
 
-def town(device: str) -> Simulation:
+def town(device: str) -> World:
     """Return Linden, nobody in it, its sensors on a device."""
     check_device(device)
     cache = MapCache.of_user()
-    simulation = Simulation(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings(True))
+    simulation = World(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings(True))
     simulation.seeing.device = device
     simulation.seeing.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
     return simulation
 
 
-def populate(simulation: Simulation, row: Row, vehicles: int) -> set[int]:
+def populate(simulation: World, row: Row, vehicles: int) -> set[int]:
     """Begin an episode with a car, others around it, all on their way; returns the streams of the car's sensors."""
     episode = simulation.episode
     simulation.load(episode.map, reset_settings=False)
@@ -48,7 +48,7 @@ def populate(simulation: Simulation, row: Row, vehicles: int) -> set[int]:
     return {attached(simulation, sensor, car.id) for sensor in row.sensors}
 
 
-def attached(simulation: Simulation, sensor: Sensor, car_id: int) -> int:
+def attached(simulation: World, sensor: Sensor, car_id: int) -> int:
     """Attach a sensor to the car and return its stream."""
     types = {item.id: item.type for item in simulation.library.find(sensor.blueprint).definition.attributes}
     values = tuple(AttributeValue(key, types[key], value) for key, value in sensor.chosen.items())

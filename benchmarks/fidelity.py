@@ -4,7 +4,7 @@
 
 FOLDER holds CARLA recorder logs (*.log) with additional data. Every half second of each vehicle's drive, the same
 vehicle starts here from the recorded moment and gets the recorded controls frame by frame. The table tells how far
-speed and place are off after 1, 5 and 10 s; what docs/fidelity.md says of it was made by this command.
+speed and place are off after 1, 5 and 10 s; what docs/explanation/fidelity.md says of it was made by this command.
 """
 
 import argparse

@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from fidelity_tracks import F64, Track
 
-from linden.ground import Ground
+from linden.blueprints.library import BlueprintLibrary
+from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
 from linden.physics.contact.statics import Statics
 from linden.physics.step import advance
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.vehicles import VehicleControl
-from linden.world.blueprints import BlueprintLibrary
+from linden.protocol.values.control import VehicleControl
+from linden.protocol.values.space import Rotation, Transform, Vector3D
 
 LIBRARY = BlueprintLibrary.load()
 SUBSTEP_S = 0.01  # CARLA's own setting, max_substep_delta_time

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.recording.layouts import ActorKind
-from linden.recording.packets import Frame
-from linden.recording.read import Recording
-from linden.values.space import BoundingBox, Vector3D
-from linden.values.vehicles import VehiclePhysicsControl
+from linden.protocol.values.control import VehiclePhysicsControl
+from linden.protocol.values.space import BoundingBox, Vector3D
+from linden.replay.file.layouts import ActorKind
+from linden.replay.file.packets import Frame
+from linden.replay.file.read import Recording
 
 F64 = NDArray[np.float64]
 

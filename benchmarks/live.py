@@ -15,7 +15,7 @@ import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from linden.values.snapshot import VEHICLE_ROW
+from linden.protocol.values.snapshot import VEHICLE_ROW
 
 LINDEN = ["-m", "linden.cli", "serve", "--port", "0", "--sync"]
 HEADERS_BYTES = 48 + 36

@@ -18,16 +18,15 @@ import numpy as np
 import psutil
 from numpy.typing import NDArray
 
-from linden.casting.choose import caster_of
-from linden.meshes.library import standing_of
-from linden.opendrive.parse import parse
-from linden.pointcloud.cloud import Cloud, in_map
-from linden.pointcloud.drive import Lidar, drive
-from linden.pointcloud.streets import places_along
-from linden.pointcloud.voxels import VoxelGrid
-from linden.simulation.scenery import scenery_of
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.authoring.pointcloud.cloud import Cloud, in_map
+from linden.authoring.pointcloud.drive import Lidar, drive, places_along
+from linden.authoring.pointcloud.voxels import VoxelGrid
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.maps.opendrive.parse import parse
+from linden.scenery.map_mesh_cache import standing_of
+from linden.sensors.casting.choose import caster_of
+from linden.simulation.surroundings import scenery_of
 
 F64 = NDArray[np.float64]
 VOXEL_M = 0.2

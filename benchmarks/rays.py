@@ -16,21 +16,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.crew import in_stretches, processors
-from linden.casting.embree import EmbreeCaster, arguments
-from linden.casting.embreex_caster import EmbreexCaster
-from linden.casting.packets import Packet, intersect, new_packet, occlude, put_rays
-from linden.casting.rays import Rays
 from linden.compiled import unlocked
-from linden.meshes.library import standing_of
-from linden.sensors.lidar.fan import Fan, aim, fire
-from linden.simulation import Simulation
-from linden.simulation.eyes import Now
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Transform, Vector3D
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Transform, Vector3D
+from linden.scenery.map_mesh_cache import standing_of
+from linden.sensors.casting.caster import Rays
+from linden.sensors.casting.embree import EmbreeCaster, arguments
+from linden.sensors.casting.embreex_caster import EmbreexCaster
+from linden.sensors.casting.packets import Packet, intersect, new_packet, occlude, put_rays
+from linden.sensors.casting.thread_pool import in_stretches, processors
+from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
+from linden.sensors.runtime.looking_sensors import Now
+from linden.world import World
 
 FAR_M = 200.0
 COLUMNS = 22  # of a packet with its mask
@@ -133,9 +133,9 @@ def timed(work: Callable[[], object], rounds: int, before: Callable[[], object] 
     return 1000.0 * min(taken)
 
 
-def town(vehicles: int) -> Simulation:
+def town(vehicles: int) -> World:
     cache = MapCache.of_user()
-    simulation = Simulation(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    simulation = World(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings())
     simulation.seeing.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
     points = simulation.spawn_points
     for point in points[:: max(1, len(points) // vehicles)][:vehicles]:
@@ -157,7 +157,7 @@ SENSORS = {
 }
 
 
-def sensor_ms(simulation: Simulation, name: str, chosen: dict[str, str], rounds: int) -> float:
+def sensor_ms(simulation: World, name: str, chosen: dict[str, str], rounds: int) -> float:
     """Return what one measurement of 0.1 s takes in the simulation, bodies gathered and posed in it."""
     blueprint = simulation.library.find(name.split(",", maxsplit=1)[0])
     types = {item.id: item.type for item in blueprint.definition.attributes}

@@ -13,14 +13,14 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from linden.recording.read import Recording
-from linden.simulation import Simulation
-from linden.simulation.replayer import Plan
-from linden.values.actors import ActorDescription
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Transform
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Transform
+from linden.replay.file.read import Recording
+from linden.replay.replayer import Plan
+from linden.world import World
 
 SETTINGS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
 STEP_S = 0.05
@@ -38,7 +38,7 @@ def cpu_ms(work: Callable[[], object], frames: int) -> float:
 
 def row(maps: MapLibrary, count: int, frames: int, folder: Path) -> tuple[float, ...]:
     """Return tick off, plain, more, replay in ms, and bytes of a frame plain and more."""
-    simulation = Simulation(maps.load(HOME_MAP), SETTINGS)
+    simulation = World(maps.load(HOME_MAP), SETTINGS)
     points = simulation.spawn_points
     for point in points[:: len(points) // count][:count]:
         simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), point)

@@ -10,9 +10,9 @@ import argparse
 import time
 from pathlib import Path
 
-from linden.recording.errors import RecordingError
-from linden.recording.read import Recording
-from linden.recording.reports.info import file_info
+from linden.replay.file.contents_report import file_info
+from linden.replay.file.packets import RecordingError
+from linden.replay.file.read import Recording
 
 COLUMNS = ("frames", "seconds", "actors", "vehicles", "positions", "controls", "collisions", "MB/s", "text MB/s")
 

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from linden.cli import main as linden
-from linden.handlers import frames
-from linden.handlers.context import Context
+from linden.server import frames
 from linden.server.cue import Cue
-from linden.simulation import Simulation
+from linden.server.rpc.context import Context
+from linden.world import World
 
 WRITTEN_EACH = 50
 """Frames."""
@@ -59,7 +59,7 @@ def watch(file: Path) -> None:
         return finish(cue)
 
     Context.advance, Cue.ticked, Cue.finish = advance_and_write, begin, end
-    Simulation.look_ahead = timed("ahead_s", Simulation.look_ahead)
+    World.look_ahead = timed("ahead_s", World.look_ahead)
     frames.sensor_payloads = timed("sensors_s", frames.sensor_payloads)
 
 

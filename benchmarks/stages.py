@@ -13,17 +13,18 @@ from collections.abc import Callable
 
 import msgpack
 
-from linden.handlers import frames, registry
-from linden.handlers.context import Context
+from linden.maps.library import HOME_MAP, MapLibrary
 from linden.physics.step import advance
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription
-from linden.values.episode import EpisodeSettings
-from linden.values.vehicles import VehicleControl
-from linden.wire.commands import COMMANDS, ApplyVehicleControl
-from linden.wire.rpc import REQUEST, RpcConnection
-from linden.wire.stream import StreamTable
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.control import VehicleControl
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.wire.commands import COMMANDS, ApplyVehicleControl
+from linden.protocol.wire.rpc import REQUEST, RpcConnection
+from linden.protocol.wire.stream import StreamTable
+from linden.server import frames
+from linden.server.rpc import registry
+from linden.server.rpc.context import Context
+from linden.world import World
 
 SETTINGS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
 SUBSTEPS = 5
@@ -31,7 +32,7 @@ SUBSTEPS = 5
 
 def stages(maps: MapLibrary, count: int) -> dict[str, Callable[[], object]]:
     """Return the stages of a tick with that many vehicles, to be called in this order."""
-    simulation = Simulation(maps.load(HOME_MAP), SETTINGS)
+    simulation = World(maps.load(HOME_MAP), SETTINGS)
     points = simulation.spawn_points
     model = ActorDescription(0, "vehicle.tesla.model3")
     ids = [simulation.spawn(model, point).id for point in points[:: len(points) // count][:count]]

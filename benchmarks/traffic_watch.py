@@ -10,7 +10,7 @@ import carla
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.values.enums import TrafficLightState
+from linden.protocol.values.enums import TrafficLightState
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]

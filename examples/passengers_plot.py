@@ -1,7 +1,7 @@
 """Draws what standing passengers felt in one or more runs: `python examples/passengers_plot.py RUN … --to felt.png`.
 
 A run's folder is all it needs. The grey bands are what volunteers answered without a step, and with one
-(docs/passengers.md). A time with --around draws 10 s about it.
+(docs/reference/passengers.md). A time with --around draws 10 s about it.
 """
 
 import argparse
@@ -11,7 +11,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from basu.metrics.passengers import felt
-from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
+from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.records.history.files import read_history
 
 

@@ -16,8 +16,8 @@ import numpy as np
 from matplotlib import colormaps
 from numpy.typing import NDArray
 
-from linden.pointcloud.pcd_reading import clouds_of
-from linden.values.enums import SemanticTag
+from linden.authoring.pointcloud.pcd_reading import clouds_of
+from linden.protocol.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
 Picture = NDArray[np.uint8]

@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/hud.md: in traffic, from above with a person at the keys, the help page, a lidar.
+"""Makes the pictures of docs/how-to/hud.md: in traffic, from above with a person at the keys, the help page, a lidar.
 
     SDL_VIDEODRIVER=dummy python scripts/hud_pictures.py
 
@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
-from basu.agents.builtin.basic import BasicAgent
-from basu.agents.builtin.human import HumanAgent
+from basu.agents.builtin.basic import BasicAgent, HumanAgent
 from basu.cli import main as basu
 
 if TYPE_CHECKING:

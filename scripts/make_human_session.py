@@ -24,10 +24,8 @@ from typing import TYPE_CHECKING, Any
 import carla
 import numpy as np
 
-from basu.agents.builtin.basic import BasicAgent
-from basu.agents.builtin.human import HumanAgent
-from basu.agents.manual.inputs import Held, Input
-from basu.agents.manual.keyboard import Hands, after, steer_after
+from basu.agents.builtin.basic import BasicAgent, HumanAgent
+from basu.agents.manual.inputs import Hands, Held, Input, after, steer_after
 from basu.agents.manual.session import Session, Setting, write_session
 from basu.cli import main as basu
 from basu.options import STEP_S

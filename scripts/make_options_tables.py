@@ -1,4 +1,4 @@
-"""Fill the tables of options in docs/runs.md from the models: `python scripts/make_options_tables.py [--check]`.
+"""Fill the tables of options in docs/how-to/runs.md from the models: `python scripts/make_options_tables.py [--check]`.
 
 Each stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; the rest of the page is written by hand.
 """
@@ -16,7 +16,7 @@ from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import default_text
 from basu.settings.option import Field, bounds, fields_of
 
-PAGE = Path(__file__).parent.parent / "docs" / "runs.md"
+PAGE = Path(__file__).parent.parent / "docs" / "how-to" / "runs.md"
 MODELS = {
     "options of basu run": RunOptions,
     "scoring options": Scoring,
@@ -36,7 +36,7 @@ def main() -> int:
     if not check:
         PAGE.write_text(after, "utf-8")
     elif after != before:
-        print("docs/runs.md is not what the code says; run `python scripts/make_options_tables.py`", file=sys.stderr)
+        print("docs/how-to/runs.md is out of date; run `python scripts/make_options_tables.py`", file=sys.stderr)
         return 1
     return 0
 

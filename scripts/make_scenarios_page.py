@@ -1,4 +1,4 @@
-"""Fill the tables and files of docs/scenarios.md from the code: `python scripts/make_scenarios_page.py [--check]`.
+"""Fill the tables and files of docs/reference/scenarios.md from the code: `make_scenarios_page.py [--check]`.
 
 Each stands in the page between ``<!-- NAME -->`` and ``<!-- /NAME -->``; what is outside is written by hand.
 """
@@ -19,7 +19,7 @@ from basu.scenarios.listing import as_text, listed
 from basu.scenarios.nhtsa import Group, stands_for
 
 ROOT = Path(__file__).parent.parent
-PAGE = ROOT / "docs" / "scenarios.md"
+PAGE = ROOT / "docs" / "reference" / "scenarios.md"
 EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
 BASES = {
     "Trigger",
@@ -46,7 +46,7 @@ def main() -> int:
         PAGE.write_text(after, "utf-8")
     elif after != before:
         print(
-            "docs/scenarios.md is not what the code says; run `python scripts/make_scenarios_page.py`", file=sys.stderr
+            "docs/reference/scenarios.md is out of date; run `python scripts/make_scenarios_page.py`", file=sys.stderr
         )
         return 1
     return 0
@@ -57,7 +57,7 @@ def filled(page: str) -> str:
     for name, part in PARTS.items():
         pattern = re.compile(f"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
         if not pattern.search(page):
-            raise SystemExit(f"docs/scenarios.md has no <!-- {name} --> … <!-- /{name} -->")
+            raise SystemExit(f"docs/reference/scenarios.md has no <!-- {name} --> … <!-- /{name} -->")
         text = part()
         page = pattern.sub(lambda found, text=text: f"{found[1]}{text}\n{found[2]}", page)
     return page

@@ -10,12 +10,12 @@ from pathlib import Path
 import supported_client as client
 
 from linden import CARLA_VERSION, __version__
+from linden.blueprints.library import BlueprintLibrary
 from linden.errors import Refusal
-from linden.handlers import batch, registry
-from linden.simulation.spawning import NOT_YET, refuse_idle
-from linden.wire.commands import COMMANDS, SpawnActor
-from linden.wire.vocabulary import CARLA_FUNCTIONS
-from linden.world.blueprints import BlueprintLibrary
+from linden.protocol.wire.client_functions import CARLA_FUNCTIONS
+from linden.protocol.wire.commands import COMMANDS, SpawnActor
+from linden.sensors.runtime.measure import NOT_YET, refuse_idle
+from linden.server.rpc import batch, registry
 
 PAGE = Path(__file__).parent.parent / "docs" / "supported.md"
 

@@ -1,15 +1,16 @@
 """The tests of the official client, each file in a process of its own: ``run_compat.py [pytest's options]``.
 
-As many files at a time as WORKERS says (2).
+As many files at a time as WORKERS says (2); one at a time while the process runs whose number BESIDE gives.
 
 That client's threads race each other: when it drops a stream that it has just asked for it may end its process
 (``bad_weak_ptr``), and its Traffic Manager may miss the wake-up of a tick and stand still for ever, where no time-out
-of Python's reaches it. docs/traffic.md and benchmarks/soak.py have the evidence. So a file whose process was ended by
-a signal, or stood still, is run once more, and is said to have been; the second time counts. A test that fails has
-failed.
+of Python's reaches it. docs/explanation/traffic.md and benchmarks/soak.py have the evidence. So a file whose process
+was ended by a signal, or stood still, is run once more, and is said to have been; the second time counts. A test that
+fails has failed.
 """
 
 import os
+import select
 import selectors
 import signal
 import subprocess
@@ -33,8 +34,9 @@ NO_TESTS = 5
 def main(options: list[str]) -> int:
     """Run all files, some at a time; return 0 where all passed."""
     files = sorted((ROOT / "tests" / "compat").glob("test_*.py"))
-    with ThreadPoolExecutor(int(os.environ.get("WORKERS", "2"))) as workers:
-        ended = list(workers.map(lambda file: told(file.relative_to(ROOT).as_posix(), options), files))
+    turns = Turns(int(os.environ.get("WORKERS", "2")), int(os.environ.get("BESIDE", "0")))
+    with ThreadPoolExecutor(turns.workers) as workers:
+        ended = list(workers.map(lambda file: turns.take(file.relative_to(ROOT).as_posix(), options), files))
     again = [sentence for end in ended for sentence in end.again]
     failed = [end.name for end in ended if end.code not in {0, NO_TESTS}]
     for sentence in again:
@@ -42,6 +44,37 @@ def main(options: list[str]) -> int:
     for name in failed:
         print(f"run_compat: {name} failed")
     return 1 if failed else 0
+
+
+class Turns:
+    """How many files run at a time: one while a neighbour runs, else as many as there are workers."""
+
+    def __init__(self, workers: int, neighbour: int) -> None:
+        """Watch the process of that number; 0 is none."""
+        self.workers = workers
+        self._first = threading.Lock()
+        self._alone = threading.Event()
+        if neighbour:
+            threading.Thread(target=self._await_end, args=[neighbour], daemon=True).start()
+        else:
+            self._alone.set()
+
+    def _await_end(self, neighbour: int) -> None:
+        with suppress(ProcessLookupError):
+            ending = os.pidfd_open(neighbour)
+            select.select([ending], [], [])
+            os.close(ending)
+        self._alone.set()
+
+    def take(self, name: str, options: list[str]) -> "Ended":
+        """Run a file's tests when it is its turn."""
+        while not self._alone.is_set():
+            if self._first.acquire(timeout=1.0):
+                try:
+                    return told(name, options)
+                finally:
+                    self._first.release()
+        return told(name, options)
 
 
 class Ended(NamedTuple):

@@ -1,4 +1,4 @@
-"""Makes the pictures of docs/cameras.md and docs/pointcloud.md: what sensors see from the shuttle, through the client.
+"""Make the pictures of what sensors see from the shuttle, for docs/reference/cameras.md and docs/how-to/pointcloud.md.
 
     python scripts/sensor_pictures.py [--folder docs/images]
 

@@ -71,7 +71,7 @@ def refused(outcomes: Outcomes) -> list[str]:
     for member, found in outcomes.items():
         if found.kind in _TOLD:
             rows[found.kind, found.sentence].append(member)
-    lines = ["| members | who says so | the sentence |", "|---|---|---|"]
+    lines = ["| members | reported by | the sentence |", "|---|---|---|"]
     lines += [
         f"| {named(members)} | {_TOLD[kind]} | {cell(sentence)} |"
         for (kind, sentence), members in sorted(rows.items(), key=lambda row: row[1])

@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.builtin.driving.behavioral_driver import BehavioralDriver
-from basu.agents.builtin.driving.driver import Command, Driver
-from basu.agents.builtin.driving.longitudinal import DriveModel
+from basu.agents.builtin.driving.controllers import DriveModel
+from basu.agents.builtin.driving.driver import BehavioralDriver, Command, Driver
 from basu.agents.builtin.driving.manner import NORMAL, Manner
 from basu.agents.builtin.driving.task import make_task
 from basu.agents.builtin.passing.road import make_road
-from basu.agents.builtin.rules.traffic_lights import Light
+from basu.agents.builtin.rules.stopping_lines import Light
 from basu.agents.builtin.scene import Body, Ego, Kind, Other
 from basu.routing import Control, ControlKind, Route, Stop
 

@@ -6,12 +6,12 @@ import numba
 import numpy as np
 import pytest
 
-from linden.ground import Ground
+from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
 from linden.physics.contact.statics import STATIC_BOX, Statics
 from linden.physics.step import advance
-from linden.values.space import BoundingBox, Rotation, Transform, Vector2D, Vector3D
-from linden.values.vehicles import Gear, VehiclePhysicsControl, Wheel
+from linden.protocol.values.control import Gear, VehiclePhysicsControl, Wheel
+from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector2D, Vector3D
 
 slow_uncompiled = pytest.mark.slow if numba.config.DISABLE_JIT else pytest.mark.filterwarnings()
 """Marks what takes seconds where kernels run as plain Python (NUMBA_DISABLE_JIT=1, to measure coverage), only there."""

@@ -1,8 +1,8 @@
 """Two scenarios for ScenarioRunner in Linden: an unsignalised intersection and a roundabout.
 
 ScenarioRunner has no roundabout, and its ``NoSignalJunctionCrossing`` has the coordinates of Town03 in its code. These
-classes take all places from their XML, `linden_scenarios.xml` beside this file. `docs/scenario-runner.md` says how to
-run them.
+classes take all places from their XML, `linden_scenarios.xml` beside this file.
+`docs/how-to/scenario-runner.md` says how to run them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""A scenario of one's own: a bin lorry stands in the lane, and drives on after a while.
+"""An example of a scenario: a bin lorry stands in the lane, and drives on after a while.
 
 Its case is in bin_lorry.xml beside this file: `basu scenario run examples/scenarios/bin_lorry.xml --agent basic`
 """
@@ -46,5 +46,5 @@ class BinLorry(Scenario):
         )
 
     def criteria(self):
-        """The ego touches nobody, keeps off, and arrives in time."""
+        """The ego touches nothing, keeps its distance, and arrives in time."""
         return [NoCollision(), LeastDistance(0.5, to=LORRY), Arrives(), InTime()]

@@ -1,8 +1,8 @@
 """Runs other people's CARLA programs, unmodified, against servers of ours, and prints what came of it.
 
 ``unshare --net --map-root-user python scripts/outside/run.py PROGRAMS TOWNS OSM SUMO_HOME OUT``, where
-docs/outside-programs.md says what lies in those folders. A network of its own gives every program CARLA's own port
-2000, and a fresh server behind it.
+docs/reference/outside-programs.md says what lies in those folders. A network of its own gives every program CARLA's own
+port 2000, and a fresh server behind it.
 """
 
 import argparse
@@ -180,7 +180,7 @@ def _text(path: Path) -> str:
 
 
 def _line(program: Program, outcome: Outcome) -> str:
-    """One row for the eye; the table of docs/outside-programs.md is written from these by hand."""
+    """One row for the eye; the table of docs/reference/outside-programs.md is written from these by hand."""
     last = (outcome.output.strip().splitlines() or [""])[-1]
     verdict = "failed" if outcome.has_failed(program) else "ran"
     row = (

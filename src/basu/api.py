@@ -104,7 +104,7 @@ def run(
     simulator: OpenSimulator | None = None,
     scoring: Scoring | None = None,
     progress: bool = False,
-    **options: Any,  # noqa: ANN401 - a field of RunOptions each
+    **options: Any,  # noqa: ANN401 - a field of ScenarioOptions each
 ) -> RunResult | list[RunResult]:
     """Drive an agent along a route and score the drive, as ``basu run`` does.
 

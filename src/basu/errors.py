@@ -1,4 +1,4 @@
-"""The errors of a benchmark run, drawn as a tree: whose fault is it?
+"""The errors of a benchmark run, drawn as a tree by cause: agent, simulator, scenario or user.
 
 ::
 

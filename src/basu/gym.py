@@ -30,17 +30,17 @@ from typing import TYPE_CHECKING, Any
 import carla
 import numpy as np
 
-from basu.agents.config import AgentConfig
+from basu.agents.autonomous_agent import AgentConfig
 from basu.episode import Episode, EpisodeSpec, Towns, case_spec
 from basu.episode.world import weather_called
 from basu.errors import UserError
+from basu.files import find
 from basu.options import STEP_S, RunOptions, Traffic
 from basu.outcome import Status
 from basu.routing.route_file import read_routes
 from basu.scenarios.cases import by_id
-from basu.scenarios.on_way import scenarios_on
+from basu.scenarios.route_scenarios import scenarios_on
 from basu.simulator import simulator_for
-from basu.utils.packaged import find
 
 try:
     import gymnasium

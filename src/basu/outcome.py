@@ -1,4 +1,4 @@
-"""How a run ended and whose doing it was: the statuses of ``result.json`` and the exit codes of ``basu run``."""
+"""How a run ended and which party is at fault: the statuses of ``result.json`` and the exit codes of ``basu run``."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ EXIT_CODES = (
 
 
 class Fault(enum.Enum):
-    """Who answers for the end of a run; the value is the exit code."""
+    """The party at fault for the end of a run; the value is the exit code."""
 
     NOBODY = 0
     AGENT = 1
@@ -40,7 +40,7 @@ class Status(enum.Enum):
 
     @property
     def fault(self) -> Fault:
-        """Who answers for it."""
+        """The party at fault."""
         return FAULT_OF[self]
 
 

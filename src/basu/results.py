@@ -14,15 +14,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
+from basu.files import read_json
 from basu.outcome import Status
-from basu.output.report.folder import RESULT_FILE
-from basu.output.report.reading import RunRecord, read_run
-from basu.output.report.scenarios.console import matrix_text
-from basu.output.report.scenarios.page.records import MATRIX_FILE
+from basu.output.report.documents import RESULT_FILE, RunRecord, read_run
+from basu.output.report.runs_picture import Trace, paths_png, speeds_png
+from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
+from basu.output.report.scenarios.matrix_text import matrix_text
 from basu.output.report.scenarios.sweep.success_map import sweep_map
-from basu.output.report.trace import Trace, paths_png, speeds_png
 from basu.records.history.files import HISTORY_FILE, read_history
-from basu.utils.json_file import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -77,7 +76,7 @@ class RunResult:
 
     @property
     def result(self) -> Result:
-        """The judgement as one object, with the value of every metric; docs/result.md describes it."""
+        """The judgement as one object, with the value of every metric; docs/reference/result.md describes it."""
         return self._record.result
 
     @property
@@ -236,7 +235,7 @@ class ScenarioResults:
 
     @property
     def shares(self) -> dict[str, Any]:
-        """The share of the crash toll that each agent survives, as docs/scenarios.md describes it."""
+        """The share of the crash cost that each agent's passed cases stand for, as docs/scenarios.md describes it."""
         return dict(self.document["shares"])
 
     def to_pandas(self) -> pd.DataFrame:

@@ -53,7 +53,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
     """The simulator at --host, or one of our own that is ended in every case.
 
     Raises:
-        UserError: nobody answers at --host.
+        UserError: no server answers at --host.
         SimulatorError: our own did not start.
     """
     if options.host is not None:
@@ -70,7 +70,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
 
 
 def _silence(client: carla.Client, options: RunOptions) -> str | None:
-    """Ask somebody else's simulator whether it is still there."""
+    """Check that a simulator of another owner still answers."""
     try:
         client.get_server_version()
     except RuntimeError:
@@ -181,7 +181,7 @@ def connect(host: str, port: int, timeout_s: float) -> carla.Client:
     """A client that has been answered.
 
     Raises:
-        UserError: nobody answers there.
+        UserError: no server answers there.
     """
     try:
         client = carla.Client(host, port)

@@ -15,11 +15,28 @@ from typing import Any, TypeVar, cast
 import llvmlite.binding
 import numba
 import numpy as np
+from numba.core.caching import FunctionCache
 
 _UNCOUNTED: dict[str, Any] = {"_nrt": False}
 """An option of numba's that its own type hints do not know."""
 
+COMPILER_IS_OFF = bool(getattr(numba.config, "DISABLE_JIT", False))
+"""Whether functions stay Python's, as NUMBA_DISABLE_JIT=1 asks for."""
+
 Function = TypeVar("Function", bound=Callable[..., object])
+
+
+def _cached(function: Callable[..., object], **options: Any) -> Any:  # noqa: ANN401 - numba's own
+    """Compile with numba and keep what was compiled; for this process only, where no folder can be written to.
+
+    numba looks beside the source first, then in the user's cache folder.
+    """
+    try:
+        return numba.njit(cache=True, error_model="numpy", **options)(function)
+    except RuntimeError as error:
+        if "no locator available" not in str(error):
+            raise
+        return numba.njit(error_model="numpy", **options)(function)
 
 
 def kernel(function: Function) -> Function:
@@ -27,7 +44,7 @@ def kernel(function: Function) -> Function:
 
     For functions that call kernels of their own module only (of others, see :func:`part`).
     """
-    return cast("Function", numba.njit(cache=True, error_model="numpy")(function))
+    return cast("Function", _cached(function))
 
 
 def part(function: Function) -> Function:
@@ -39,23 +56,49 @@ def part(function: Function) -> Function:
     return cast("Function", numba.njit(error_model="numpy")(function))
 
 
+def kept_part(sources: int) -> Callable[[Function], Function]:
+    """Return a decorator that compiles as :func:`part` does, but keeps a file of its own.
+
+    So a kernel that takes long to compile can be cut into parts that several processes compile at once. ``sources``:
+    the fingerprint of every file that the part calls; with another one it is compiled anew.
+    """
+
+    def decorate(function: Function) -> Function:
+        compiled = _cached(function)
+        if not COMPILER_IS_OFF and compiled.stats.cache_path:
+            compiled._cache = _PartCache(cast("FunctionType", function), sources)  # noqa: SLF001 - as njit(cache=True)
+        return cast("Function", compiled)
+
+    return decorate
+
+
+class _PartCache(FunctionCache):
+    """numba's cache of one function, whose entries are those of one state of the sources."""
+
+    def __init__(self, function: FunctionType, sources: int) -> None:
+        super().__init__(function)  # type: ignore[no-untyped-call]
+        self._sources = sources
+
+    def _index_key(self, *of_function: object) -> tuple[object, ...]:
+        return (*super()._index_key(*of_function), self._sources)  # type: ignore[no-untyped-call]
+
+
 def unlocked(function: Function) -> Function:
     """Compile ``function`` as :func:`kernel` does, but let go of Python's lock while it runs.
 
     So threads may work on parts of one array at once; a function that writes no place twice gives the same bits
     however many there are.
     """
-    return cast("Function", numba.njit(cache=True, error_model="numpy", nogil=True)(function))
+    return cast("Function", _cached(function, nogil=True))
 
 
 def shading(function: Function) -> Function:
     """Compile as :func:`unlocked` does, and let sums be reordered: for light and colour, never for what is measured.
 
-    It makes no arrays, so that numba need not count who uses those it is given: that took as long as all the rest.
+    It makes no arrays, so that numba need not count their references: that took as long as all the rest.
     Numbers written in it are of 32 bits (see :func:`shading_part`).
     """
-    compiled = numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True, **_UNCOUNTED)
-    return cast("Function", compiled(_single(function)))
+    return cast("Function", _cached(_single(function), nogil=True, fastmath=True, **_UNCOUNTED))
 
 
 def shading_part(function: Function) -> Function:
@@ -76,7 +119,7 @@ def shading_stage(function: Function) -> Function:
 
 
 def _single(function: Callable[..., object]) -> Callable[..., object]:
-    """Return a function whose literal floats are of 32 bits."""
+    """Return the function with literal floats of 32 bits."""
     given = cast("FunctionType", function)
     code = given.__code__
     written = cast("tuple[object, ...]", _narrowed(code.co_consts))

@@ -8,7 +8,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.values.space import Rotation, Transform, Vector3D
+from linden.protocol.values.space import Rotation, Transform, Vector3D
 
 Matrix = NDArray[np.float64]
 

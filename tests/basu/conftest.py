@@ -1,12 +1,14 @@
 """A live simulator for the tests of whole runs, and a short piece of a Linden street to drive on."""
 
 from collections.abc import Iterator
+from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
-from basu.agents.leaderboard.modules import step_back
+from basu.agents.adapters.replacement_modules import step_back
 from servers import RunningServer, running_server
+from tracing import untraced
 
 SHORT_ROUTE = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"
 
@@ -21,7 +23,9 @@ def _no_stand_ins() -> Iterator[None]:
 @pytest.fixture(scope="session")
 def simulator() -> Iterator[RunningServer]:
     """One server for all runs of a session; each run puts its own things away."""
-    with running_server() as running:
+    with ExitStack() as stack:
+        with untraced():  # tests/compat and tests/linden measure the server's coverage
+            running = stack.enter_context(running_server())
         yield running
 
 

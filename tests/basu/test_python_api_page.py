@@ -1,4 +1,4 @@
-"""Claims about docs/python-api.md: every block of it runs, one after the other, as a reader would type them."""
+"""Claims about docs/how-to/python-api.md: every block of it runs, one after the other, as a reader would type them."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,7 @@ import pytest
 
 import basu
 
-PAGE = Path(__file__).parents[2] / "docs" / "python-api.md"
+PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "python-api.md"
 
 
 @pytest.mark.slow

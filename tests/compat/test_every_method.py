@@ -9,8 +9,8 @@ from every_method.observe import PROCESSES, rows
 from every_method.outcome import RECORD, Kind, Outcome, from_json
 from every_method.parent import observe_all
 from every_method.surface import surface
-from linden.handlers import registry
-from linden.wire.vocabulary import CARLA_FUNCTIONS
+from linden.protocol.wire.client_functions import CARLA_FUNCTIONS
+from linden.server.rpc import registry
 from servers import running_server
 
 pytestmark = pytest.mark.slow
@@ -61,4 +61,4 @@ def test_what_comes_of_every_call_is_what_the_page_says(
 ) -> None:
     assert outcomes.keys() == record.keys()
     differing = {member: (found, record[member]) for member, found in outcomes.items() if found != record[member]}
-    assert not differing, "run `make docs`, look at what has changed in docs/supported.md, and commit it"
+    assert not differing, "run `make observe pages`, look at what has changed in docs/supported.md, and commit it"

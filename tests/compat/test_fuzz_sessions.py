@@ -18,14 +18,15 @@ from hypothesis import strategies as st
 
 from fakes.eavesdropper import eavesdropping
 from linden.errors import ProtocolError
-from linden.handlers import frames, registry
-from linden.handlers.context import Context
-from linden.simulation import Simulation
-from linden.values.episode import EpisodeSettings
-from linden.wire.rpc import RpcConnection
-from linden.wire.stream import StreamTable
-from linden.world.map_cache import MapCache
-from linden.world.maps import HOME_MAP, MapLibrary
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, MapLibrary
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.wire.rpc import RpcConnection
+from linden.protocol.wire.stream import StreamTable
+from linden.server import frames
+from linden.server.rpc import registry
+from linden.server.rpc.context import Context
+from linden.world import World
 from servers import RunningServer
 
 SESSION = str(Path(__file__).parents[1] / "fakes" / "session.py")
@@ -49,7 +50,7 @@ def context() -> Context:
     registry.load_handlers()
     maps = MapLibrary((), MapCache.of_user().facts_of)
     return Context(
-        simulation=Simulation(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)),
+        simulation=World(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)),
         maps=maps,
         frames=frames,
         streams=StreamTable(2001),

@@ -8,7 +8,7 @@ import carla
 import pytest
 
 from fakes.own_map import TIMEOUT_S, world_of
-from linden.recording.read import Recording
+from linden.replay.file.read import Recording
 from opendrive_texts import street_through_junction
 from servers import RunningServer, running_server
 

@@ -12,7 +12,7 @@ import numpy as np
 from numba import cuda
 
 from fakes.plain_caster import PlainCaster
-from linden.casting.rays import Rays
+from linden.sensors.casting.caster import Rays
 
 WARP = ModuleType("warp")
 """What the modules under test name of it when they are loaded; what they would call of it is replaced below."""
@@ -24,12 +24,12 @@ for name in ("vec3", "int32", "mat44", "bool"):
 WARP.array = lambda **_: None
 sys.modules["warp"] = WARP
 
-from linden.casting.gpu import Letter  # noqa: E402 - once there is something that is called warp
-from linden.sensors.camera.darkroom import OnCpu  # noqa: E402 - likewise
-from linden.sensors.camera.gpu.darkroom import GpuDarkroom  # noqa: E402 - likewise
+from linden.protocol.values.space import Rotation, Transform, Vector3D  # noqa: E402 - likewise
+from linden.sensors.camera.gpu.renderer import GpuDarkroom  # noqa: E402 - likewise
+from linden.sensors.camera.renderer import OnCpu  # noqa: E402 - likewise
 from linden.sensors.camera.spec import CameraSpec, Film, Picture  # noqa: E402 - likewise
-from linden.sensors.looking import Look  # noqa: E402 - likewise
-from linden.values.space import Rotation, Transform, Vector3D  # noqa: E402 - likewise
+from linden.sensors.casting.gpu_memory import Letter  # noqa: E402 - once there is something that is called warp
+from linden.sensors.view import Look  # noqa: E402 - likewise
 
 SPEC = CameraSpec(12, 8)
 PICTURES = [
@@ -40,7 +40,7 @@ EYE, BEFORE = Transform(Vector3D(0.0, 0.0, 2.0), Rotation()), Transform(Vector3D
 
 
 class PlainGpu:
-    """As ``linden.casting.gpu.Gpu``; work that was captured is simply done again."""
+    """As ``linden.sensors.casting.gpu_memory.Gpu``; work that was captured is simply done again."""
 
     queue = None
 
@@ -77,7 +77,7 @@ class PlainGpu:
 
 
 class PlainGpuCaster(PlainCaster):
-    """As ``linden.casting.warp_caster.WarpCaster``."""
+    """As ``linden.sensors.casting.warp_caster.WarpCaster``."""
 
     device, gpu, trees = "cuda", PlainGpu(), 0
 

@@ -6,13 +6,13 @@ import numpy as np
 import warp as wp
 
 from fakes import street as streets
-from linden.casting.rays import CPU, Hits, Rays
-from linden.casting.warp_caster import WarpCaster
-from linden.sensors.camera.darkroom import OnCpu
-from linden.sensors.camera.gpu.darkroom import GpuDarkroom
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.sensors.camera.gpu.renderer import GpuDarkroom
+from linden.sensors.camera.renderer import OnCpu
 from linden.sensors.camera.spec import CameraSpec, Film, Picture
-from linden.sensors.looking import Look
-from linden.values.space import Rotation, Transform, Vector3D
+from linden.sensors.casting.caster import CPU, Hits, Rays
+from linden.sensors.casting.warp_caster import WarpCaster
+from linden.sensors.view import Look
 
 SPEC = CameraSpec(160, 122)
 EYE, BEFORE = Transform(Vector3D(0.0, 0.0, 2.0), Rotation()), Transform(Vector3D(-0.1, 0.0, 2.0), Rotation())

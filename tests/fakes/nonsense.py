@@ -6,10 +6,10 @@ from typing import Annotated, Any, get_args, get_origin, get_type_hints
 
 import msgpack
 
-from linden.handlers import registry
-from linden.wire.commands import COMMANDS, Batch, DestroyActor
-from linden.wire.decode import IntRange
-from linden.wire.vocabulary import CARLA_FUNCTIONS
+from linden.protocol.wire.client_functions import CARLA_FUNCTIONS
+from linden.protocol.wire.commands import COMMANDS, Batch, DestroyActor
+from linden.protocol.wire.decode import IntRange
+from linden.server.rpc import registry
 
 WITH_A_RIGHT_TO_CHANGE_THE_SESSION = {
     "load_new_episode",

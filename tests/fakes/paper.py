@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from py_trees.common import Status
 
 from basu.scenarios.stage import ActorSpec, Pose
-from basu.testing import PaperStage, paper_place, steady
+from basu.testing import OfflineStage, steady
+from basu.testing import offline_stage as offline_place
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -31,14 +32,14 @@ def stage_with(
     junctions_m: tuple[tuple[float, float], ...] = (),
     turn_share: float = 1.0,
     seed: int = 0,
-) -> PaperStage:
+) -> OfflineStage:
     """The ego begins at (0, 0) and drives east along y = 0, at 10 m/s if nobody says else."""
-    place = paper_place([(0.0, 0.0), (length_m, 0.0)], junctions_m=junctions_m)
-    return PaperStage(place, cast, driver or steady(10.0), turn_share=turn_share, seed=seed)
+    place = offline_place([(0.0, 0.0), (length_m, 0.0)], junctions_m=junctions_m)
+    return OfflineStage(place, cast, driver or steady(10.0), turn_share=turn_share, seed=seed)
 
 
 def play(
-    node: Behaviour, stage: PaperStage, until_s: float = 60.0, watch: Callable[[PaperStage], None] | None = None
+    node: Behaviour, stage: OfflineStage, until_s: float = 60.0, watch: Callable[[OfflineStage], None] | None = None
 ) -> float:
     """Tick a node until it is done, and say when that was; after ``until_s`` it fails."""
     for part in node.iterate():

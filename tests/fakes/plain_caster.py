@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from linden.casting.rays import CPU, NOTHING, STATIC, Hits, Instances, Rays
-from linden.meshes.mesh import Mesh
+from linden.scenery.mesh import Mesh
+from linden.sensors.casting.caster import CPU, NOTHING, STATIC, Hits, Instances, Rays
 
 
 class PlainCaster:
-    """See ``linden.casting.rays.Caster``."""
+    """See ``linden.sensors.casting.caster.Caster``."""
 
     device = CPU
 

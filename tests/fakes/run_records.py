@@ -5,8 +5,7 @@ from typing import Any
 
 from basu.metrics.result import judge
 from basu.outcome import Outcome, Status
-from basu.output.report.folder import CONFIG_FILE, RESULT_FILE, write_json
-from basu.output.report.reading import RunRecord
+from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, RunRecord, write_json
 from basu.output.report.streets import Line, write_streets
 from basu.records.history import History
 from basu.records.history.files import write_history

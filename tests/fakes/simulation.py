@@ -4,9 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from linden.errors import Refusal
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Transform
-from linden.wire.headers import SensorType, episode_header, sensor_header
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Transform
+from linden.protocol.wire.measurements import SensorType, episode_header, sensor_header
 
 EMPTY_MAP = '<?xml version="1.0"?><OpenDRIVE/>'
 

@@ -2,15 +2,14 @@
 
 import numpy as np
 
-from linden.casting.choose import caster_of
-from linden.casting.rays import Instances
-from linden.meshes.mesh import NO_OBJECT, Material, Mesh, faces
-from linden.scene.weather import CLEAR_NOON
-from linden.sensors.looking import Look
-from linden.sensors.seen import Seen, table_of
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.space import Transform
-from linden.world.blueprints import BlueprintLibrary
+from linden.blueprints.library import BlueprintLibrary
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.episode import CLEAR_NOON
+from linden.protocol.values.space import Transform
+from linden.scenery.mesh import NO_OBJECT, Material, Mesh, faces
+from linden.sensors.casting.caster import Instances
+from linden.sensors.casting.choose import caster_of
+from linden.sensors.view import Look, Seen, table_of
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float32)
 _SIDES = [

@@ -2,13 +2,12 @@
 
 import numpy as np
 
-from linden.casting.choose import caster_of
-from linden.casting.rays import Instances
-from linden.meshes.mesh import LampOf, Material, Mesh, faces, join
-from linden.scene.weather import CLEAR_NOON
-from linden.sensors.seen import Seen, table_of
-from linden.values.enums import SemanticTag
-from linden.values.episode import WeatherParameters
+from linden.protocol.values.enums import SemanticTag
+from linden.protocol.values.episode import CLEAR_NOON, WeatherParameters
+from linden.scenery.mesh import LampOf, Material, Mesh, faces, join
+from linden.sensors.casting.caster import Instances
+from linden.sensors.casting.choose import caster_of
+from linden.sensors.view import Seen, table_of
 
 WALL_M = 40.0
 """Where the wall stands along x."""

@@ -4,14 +4,13 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.vehicles import VehicleControl
-from linden.values.walkers import WalkerControl
-from linden.world.actors import ActorRecord
-from linden.world.map_facts import derive
-from linden.world.maps import LoadedMap
+from linden.maps.facts import derive
+from linden.maps.library import LoadedMap
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.control import VehicleControl, WalkerControl
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.simulation.actor_table import ActorRecord
+from linden.world import World
 from opendrive_texts import signal, street_through_junction
 
 STEP_S = 0.05
@@ -25,7 +24,7 @@ def street(name: str = "street") -> LoadedMap:
 
 
 def spawned(
-    simulation: Simulation, type_id: str, pose: Transform, parent_id: int = 0, role: str = "autopilot"
+    simulation: World, type_id: str, pose: Transform, parent_id: int = 0, role: str = "autopilot"
 ) -> ActorRecord:
     attributes = (AttributeValue("role_name", 4, role),)
     return simulation.spawn(ActorDescription(0, type_id, attributes), pose, parent_id=parent_id)
@@ -35,7 +34,7 @@ class Drive:
     """The cast on the street; every frame is another."""
 
     def __init__(self, world_map: LoadedMap | None = None) -> None:
-        self.simulation = Simulation(world_map or street())
+        self.simulation = World(world_map or street())
         lane = self.simulation.spawn_points[0]
         ahead = math.radians(lane.rotation.yaw)
 

@@ -15,25 +15,24 @@ from lxml import etree
 
 from fakes import recordings as made
 from linden.errors import UserError
-from linden.meshes.standing import standing
-from linden.navigation.areas import surfaces_of
-from linden.navigation.build import build
-from linden.navigation.tile import Obstacles
-from linden.opendrive.parse import parse
-from linden.recording.errors import RecordingError
-from linden.recording.read import Recording
-from linden.recording.reports.blocked import blocked
-from linden.recording.reports.collisions import collisions
-from linden.recording.reports.info import file_info
-from linden.recording.track import track_of
-from linden.simulation import Simulation
-from linden.simulation.replayer import Plan
-from linden.simulation.scenery import scenery_of
-from linden.values.episode import EpisodeSettings
-from linden.values.space import Transform
-from linden.world.map_facts import derive
-from linden.world.map_walls import walls_along
-from linden.world.maps import GENERATED_MAP, LoadedMap, Walls
+from linden.maps.facts import derive
+from linden.maps.library import GENERATED_MAP, LoadedMap, Walls
+from linden.maps.navigation.areas import surfaces_of
+from linden.maps.navigation.build import build
+from linden.maps.navigation.detour import Obstacles
+from linden.maps.opendrive.parse import parse
+from linden.maps.road_walls import walls_along
+from linden.protocol.values.episode import EpisodeSettings
+from linden.protocol.values.space import Transform
+from linden.replay.file.contents_report import file_info
+from linden.replay.file.packets import RecordingError
+from linden.replay.file.read import Recording
+from linden.replay.file.reports import blocked, collisions
+from linden.replay.file.track import track_of
+from linden.replay.replayer import Plan
+from linden.scenery.map_mesh import standing
+from linden.simulation.surroundings import scenery_of
+from linden.world import World
 from opendrive_texts import signal, street_through_junction
 
 SEED = 20_261_122
@@ -92,7 +91,7 @@ def use_map(text: str, *, seen: bool) -> None:
     feet = walls_along(opendrive, facts.ground, 0.6)
     world_map = LoadedMap(name=GENERATED_MAP, text=text, walls=Walls(feet, 1.0), **vars(facts))
     scenery = scenery_of(world_map)
-    simulation = Simulation(world_map, EpisodeSettings())
+    simulation = World(world_map, EpisodeSettings())
     simulation.step(0.05)
     assert np.isfinite(simulation.episode.actors.pose[: len(simulation.episode.actors)]).all()
     if seen:
@@ -172,7 +171,7 @@ REPORTS: list[Callable[[Recording], str]] = [
 ]
 
 
-def use_recording(path: Path, simulation: Simulation) -> None:
+def use_recording(path: Path, simulation: World) -> None:
     """Do with a recording what a server does.
 
     Raises:
@@ -198,11 +197,11 @@ def street() -> LoadedMap:
 def test_a_changed_recording_is_used_or_refused_by_a_sentence(street: LoadedMap, tmp_path: Path) -> None:
     chance, used, content, path = random.Random(SEED), 0, whole(), tmp_path / "changed.log"
     path.write_bytes(content)
-    use_recording(path, Simulation(street, EpisodeSettings()))  # unchanged it is good
+    use_recording(path, World(street, EpisodeSettings()))  # unchanged it is good
     for number in range(RECORDINGS):
         path.write_bytes(changed_recording(chance, content))
         try:
-            use_recording(path, Simulation(street, EpisodeSettings()))
+            use_recording(path, World(street, EpisodeSettings()))
             used += 1
         except RecordingError as error:
             assert len(str(error)) > 20  # noqa: PT017 - it may be used as well

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linden.geometry import compose, from_opendrive, rotation_matrix, rotation_of
-from linden.values.space import Rotation, Transform, Vector3D
+from linden.protocol.values.space import Rotation, Transform, Vector3D
 
 angles = st.floats(-179.0, 179.0)
 pitches = st.floats(-89.0, 89.0)

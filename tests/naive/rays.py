@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linden.ground import Ground, surface_under, triangle_under
+from linden.maps.ground import Ground, surface_under, triangle_under
 
 STEPS = 10_000
 

@@ -1,7 +1,10 @@
 """How the runner of the official client's tests tells a test that fails from a client that took its process along."""
 
 import importlib.util
+import subprocess
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 
@@ -40,3 +43,29 @@ def test_how_a_process_ended_is_told(runner: ModuleType, program: str, expected:
 def test_what_a_process_said_is_kept_in_order(runner: ModuleType) -> None:
     program = "import sys; print('first', flush=True); print('second', file=sys.stderr)"
     assert runner.run([sys.executable, "-c", program]) == (0, b"first\nsecond\n")
+
+
+def test_one_file_at_a_time_runs_while_the_neighbour_does(runner: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, both = threading.Semaphore(0), threading.Barrier(2, timeout=30.0)
+    running: list[str] = []
+
+    def told(name: str, _options: list[str]) -> str:
+        running.append(name)
+        begun.release()
+        if name != "alone":
+            both.wait()  # passes when two run at a time
+        else:
+            assert running == ["alone"]
+            neighbour.communicate(b"")
+        return name
+
+    monkeypatch.setattr(runner, "told", told)
+    with subprocess.Popen(
+        [sys.executable, "-c", "input()"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL
+    ) as neighbour:
+        turns = runner.Turns(2, neighbour.pid)
+        with ThreadPoolExecutor(2) as workers:
+            first = workers.submit(turns.take, "alone", [])
+            assert begun.acquire(timeout=30.0)
+            rest = [workers.submit(turns.take, name, []) for name in ("left", "right")]
+            assert [each.result(60.0) for each in (first, *rest)] == ["alone", "left", "right"]

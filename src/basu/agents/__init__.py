@@ -1,1 +1,1 @@
-"""Drivers to be judged, and the base class of everybody's own."""
+"""Agents under test, and their base class."""

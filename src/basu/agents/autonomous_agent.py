@@ -1,34 +1,22 @@
-"""The base class of every driver that BASU judges: what an agent is given, and the four methods it answers with.
+"""The base class of all agents: what an agent receives, its methods, and the checked answer of its ``config()``.
 
-A first agent of your own is a file with one class::
-
-    import carla
-    from basu.agents.autonomous_agent import AutonomousAgent
-
-    class Careful(AutonomousAgent):
-        def setup(self):
-            self.gnss_id = "GPS"
-
-        def run_step(self, sensor_data):
-            frame, fix = sensor_data[self.gnss_id]
-            return carla.VehicleControl(throttle=0.3)
-
-        def config(self):
-            return {"routes": "routes/linden_short.xml", "sensors": "config/sensors.json"}
-
-and is driven by ``basu run my_agent.py``. Nothing here has to be called by an agent: ``__init__`` needs no arguments
-and need not be overridden.
+``docs/reference/agent-api.md`` is generated from the docstrings of this file; ``examples/first_agent.py`` is a complete
+agent. ``basu run my_agent.py`` drives the agent of a file. An agent needs no ``__init__``.
 """
 
 from __future__ import annotations
 
+import difflib
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.sight import Sight
+from basu.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Sequence
 
     import carla
 
@@ -37,20 +25,25 @@ if TYPE_CHECKING:
 
 
 class AutonomousAgent(ABC):
-    """A driver. The life of one: ``config``, then ``bind`` (by BASU), ``setup``, ``run_step`` each tick, ``destroy``.
+    """An agent that drives one vehicle along one route.
 
-    From ``setup`` on, these are there:
+    BASU calls ``config`` and ``sensors``, then ``bind``, ``setup``, ``run_step`` in each tick, and ``destroy`` at the
+    end. All attributes have their values before ``setup``.
 
     Attributes:
-        client: the ``carla.Client`` BASU itself is connected with.
-        world: the ``carla.World`` of this run. It is in synchronous mode and BASU ticks it: an agent never does.
-        map: the ``carla.Map`` of the world.
-        vehicle: the ``carla.Vehicle`` to be driven. BASU applies what ``run_step`` returns.
-        route: the route to follow, joined along the lanes; None where the run has none.
-        config_values: what ``config`` returned, completed by BASU with what the command line overrode.
-        time_step_s: simulated seconds between two calls of ``run_step``.
-        server_address: host and port of the simulator, for an agent that connects by itself.
-        manual: whether a person drives at the moment; an agent that lets persons drive keeps it true meanwhile.
+        client: the agent's own connection to the simulator, in the agent's own process.
+        world: the world of this run, in synchronous mode. BASU ticks it; an agent that ticks it fails.
+        map: the map of the world.
+        vehicle: the vehicle to drive. BASU applies the control that ``run_step`` returns; CARLA's frame: m, m/s, m/s²,
+            degrees, x east, y south, z up, yaw clockwise from above.
+        route: the planned route along the lanes, about one point a metre; None where the run has no route.
+        config_values: the values of ``config``, completed with defaults and with the options of the command line.
+        time_step_s: simulated time between two calls of ``run_step``, in s (0.05).
+        server_address: host and port of the simulator, for an agent that opens a connection of its own.
+        manual: whether a person drives at present. An agent with manual control keeps this value up to date.
+        driven_by_person: whether a person drives from the start, without a window; true for the agent ``human``.
+        gives_sensors_late: whether BASU calls ``sensors`` after ``setup`` instead of before; true for agents of the
+            leaderboard and of ScenarioRunner.
     """
 
     client: carla.Client
@@ -63,7 +56,7 @@ class AutonomousAgent(ABC):
     server_address: tuple[str, int]
     manual: bool = False
     driven_by_person: bool = False  # whether a person drives at first, before a window; the human agent
-    gives_sensors_late: bool = False  # whether ``sensors`` is asked after ``setup``; for other programs' agents
+    gives_sensors_late: bool = False  # ``sensors`` is called after ``setup``; for foreign agents
     _sight: Sight | None = None
 
     def bind(
@@ -78,7 +71,7 @@ class AutonomousAgent(ABC):
         time_step_s: float,
         server_address: tuple[str, int] = ("127.0.0.1", 2000),
     ) -> None:
-        """Hand the agent its run. BASU calls this once, before ``setup``; an agent does not override it."""
+        """Set the attributes of the agent. BASU calls this once, before ``setup``; an agent does not override it."""
         self.client = client
         self.world = world
         self.map = map
@@ -90,46 +83,56 @@ class AutonomousAgent(ABC):
 
     @abstractmethod
     def setup(self) -> None:
-        """Get ready to drive: the world, the vehicle and the route are there; the first tick is still to come."""
+        """Prepare to drive. BASU calls this once, before the first tick; all attributes have their values.
+
+        It may take 120 s of wall time, for example to load a network. It may not change the weather, the vehicle or
+        the settings of the world.
+        """
 
     @abstractmethod
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
-        """Answer one tick with what the driver's hands and feet do until the next.
+        """Return the control of the vehicle until the next tick. BASU calls this once a tick, every ``time_step_s``.
 
         Args:
-            sensor_data: for each sensor id of the sensor set the frame it was measured in and the measurement,
-                a ``carla.SensorData``. A sensor with nothing new since the last tick still has its last one.
+            sensor_data: frame and measurement of each sensor, by the id of the sensor. A sensor without a new
+                measurement in this tick still has its last one. A measurement is a ``carla.SensorData``, or a numpy
+                array for a sensor with ``"data": "numpy"``.
 
         Returns:
-            A ``carla.VehicleControl`` with finite numbers. Anything else, an exception, or taking longer than the
-            time limit of a step ends the run, with all that was measured until then.
+            The control, with finite numbers. BASU ends the run, and keeps what it measured until then, if this method
+            raises, returns anything else or takes longer than the time limit of a step (10 s; ``--step-limit``).
         """
 
     @abstractmethod
     def config(self) -> Mapping[str, Any]:
-        """Say what the agent wants to be driven in; asked once, before there is a world.
+        """Return the vehicle, weather and route that the agent wants; called once, before there is a world.
 
-        Keys, all optional: ``routes`` (route XML), ``sensors`` (sensor JSON), ``vehicle`` (blueprint id), ``weather``
-        (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO network). File names are looked for from the
-        working folder, then from the agent's own file, then among the files BASU brings.
+        All keys are optional: ``routes`` (route XML), ``sensors`` (sensor JSON), ``vehicle`` (blueprint id),
+        ``weather`` (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO network; not used yet). BASU looks
+        for a file in the working folder, then beside the agent's file, then among its own files. Options of the
+        command line replace these values.
         """
 
     def sensors(self) -> Sequence[Mapping[str, Any]] | None:
-        """Give a sensor set of one's own, as the CARLA leaderboard's agents do; None, as here, takes the sensor file.
+        """Return a sensor set, as leaderboard agents do; None, as here, takes the sensor file of ``config``.
 
-        One dict a sensor, as an entry of the file: ``{"type": "sensor.camera.rgb", "id": "FRONT", "x": 1.5, "z": 2.4,
-        "width": 800, "height": 600, "fov": 90}``.
+        Each sensor is a dict, as an entry of the file: ``{"type": "sensor.camera.rgb", "id": "FRONT", "x": 1.5,
+        "z": 2.4, "width": 800, "height": 600, "fov": 90}``. Positions are in m and angles in degrees, in the frame of
+        the vehicle.
         """
         return None
 
     def get_initial_route_locations(self) -> Sequence[carla.Location] | None:
-        """Give a route of one's own as locations to be joined along the lanes; None, as here, takes the route file."""
+        """Return the points of a route, which BASU joins along the lanes; None, as here, takes the route file.
+
+        Points are locations, transforms, way points, ``(x, y, z)`` in m, or pairs of these with a ``RoadOption``.
+        """
         return None
 
     def visible_actors(self) -> list[Other]:
-        """Return the vehicles, walkers and props that the vehicle can see, or saw up to 2 s ago; call it once a tick.
+        """Return the vehicles, walkers and props that the vehicle sees now or saw up to 2 s ago; call it once a tick.
 
-        It is what BASU's own agents know of others: actors within 80 m whose line of sight from the roof is free of
+        BASU's own agents know the same of other actors: within 80 m, with a line of sight from the roof free of
         houses, trees, parked cars and other actors, within the range of light and weather. Each is a
         :class:`basu.agents.sight.Other` with its box's centre, heading, velocity and size in CARLA's world frame (m,
         rad, m/s; x east, y south, yaw clockwise). ``unseen_s`` is 0, or the time since it was last seen; its place is
@@ -140,4 +143,36 @@ class AutonomousAgent(ABC):
         return self._sight.others()
 
     def destroy(self) -> None:  # noqa: B027 - most agents have nothing to put away
-        """Put away what ``setup`` took (files, windows, processes); called once after the last step in every case."""
+        """Release what ``setup`` opened: files, windows, processes. BASU calls this once, however the run ends."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentConfig:
+    """An agent's wishes; file names as given, looked for later."""
+
+    routes: str = "routes/linden_leap.xml"
+    sensors: str | None = None
+    sumo: str | None = None
+    vehicle: str = "vehicle.easymile.ez10"
+    weather: str = "ClearNoon"
+
+
+def parse_config(given: Any, agent: str) -> AgentConfig:  # noqa: ANN401 - whatever a stranger's method returned
+    """Check what the ``config()`` of ``agent`` returned; None takes every default.
+
+    Raises:
+        UserError: it is no dict, has a key that means nothing, or a value that is no text.
+    """
+    if given is None:
+        return AgentConfig()
+    if not isinstance(given, Mapping):
+        raise UserError(f"config() of {agent} returned {type(given).__name__}; it must return a dict, such as {{}}")
+    known = [field.name for field in fields(AgentConfig)]
+    for key, value in given.items():
+        if key not in known:
+            close = difflib.get_close_matches(str(key), known, 1)
+            hint = f"did you mean '{close[0]}'?" if close else f"it may have {', '.join(known)}"
+            raise UserError(f"config() of {agent} has the key {key!r}, which means nothing here; {hint}")
+        if value is not None and (not isinstance(value, str) or not value):
+            raise UserError(f"config() of {agent}: '{key}' is {value!r}; it must be a text")
+    return AgentConfig(**{key: value for key, value in given.items() if value is not None})

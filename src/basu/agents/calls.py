@@ -1,28 +1,94 @@
-"""Calls of an agent's methods within their time limits; what goes wrong in one becomes the agent's failure."""
+"""Calls of an agent's methods within their time limits; an error in one becomes the agent's failure.
+
+In the main thread an interval timer's signal raises inside the call, at no cost that could be measured. Elsewhere, and
+where there are no such signals (Windows), the call runs in a thread of its own that is left behind when it overruns.
+"""
 
 from __future__ import annotations
 
 import math
+import queue
+import signal
+import threading
 import traceback
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 import carla
 
-from basu.agents.config import AgentConfig, parse_config
-from basu.agents.sensor_data import as_array
+from basu.agents.autonomous_agent import AgentConfig, parse_config
 from basu.agents.sensor_file import SensorSpec, parse_sensors
-from basu.agents.time_limit import OverrunError, call_within
+from basu.agents.sensor_streams import as_array
 from basu.errors import AgentCrashedError, AgentError, AgentInvalidControlError, AgentTimedOutError, UserError
 from basu.routing.route_file import RoutePoint
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from types import FrameType
 
     from basu.agents.autonomous_agent import AutonomousAgent
     from basu.agents.sensor_streams import SpawnedSensor
 
+
 T = TypeVar("T")
+AGAIN_S = 0.2  # the signal is repeated: code that swallows every exception is interrupted in its next line too
+
+
+class OverrunError(BaseException):
+    """The call took too long. Not an ``Exception``: an agent's ``except Exception`` must not swallow it."""
+
+
+def can_interrupt() -> bool:
+    """Whether calls from here are limited by a signal rather than by a thread."""
+    return hasattr(signal, "setitimer") and threading.current_thread() is threading.main_thread()
+
+
+def call_within(limit_s: float, function: Callable[[], T]) -> T:
+    """Call ``function``, at most for ``limit_s`` of wall time.
+
+    Raises:
+        OverrunError: the time is over.
+    """
+    return _call_interrupted(limit_s, function) if can_interrupt() else _call_abandoned(limit_s, function)
+
+
+def _overrun(_signal: int, _frame: FrameType | None) -> NoReturn:
+    raise OverrunError
+
+
+def _call_interrupted(limit_s: float, function: Callable[[], T]) -> T:
+    """With the interval timer of the main thread."""
+    before = signal.signal(signal.SIGALRM, _overrun)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, limit_s, AGAIN_S)
+        try:
+            return function()
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+
+
+def _call_abandoned(limit_s: float, function: Callable[[], T]) -> T:
+    """In a daemon thread that is not waited for any longer than the limit."""
+    answers: queue.SimpleQueue[tuple[T | None, BaseException | None]] = queue.SimpleQueue()
+
+    def work() -> None:
+        try:
+            answers.put((function(), None))
+        except BaseException as error:  # noqa: BLE001 - handed over to the waiting thread, whatever it is
+            answers.put((None, error))
+
+    threading.Thread(target=work, name="basu-agent", daemon=True).start()
+    try:
+        answer, error = answers.get(timeout=limit_s)
+    except queue.Empty:
+        raise OverrunError from None
+    if error is not None:
+        raise error
+    return answer  # type: ignore[return-value]  # no error: it is what the function returned
+
+
 SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first tick, not during it
 PEDALS_AND_WHEEL = (("throttle", 0.0), ("steer", -1.0), ("brake", 0.0))  # with the lowest value; the highest is 1
 PAIR = 2
@@ -50,7 +116,7 @@ class AgentCalls:
         self._is_ours = is_ours
         self._is_bound = False
         self._config: AgentConfig | None = None
-        self._as_numpy: frozenset[str] = frozenset()  # ids of the sensors whose measurements become arrays here
+        self._as_numpy: frozenset[str] = frozenset()  # ids of the sensors with measurements as arrays
         self.name = agent_class.__name__
         self.agent = self._call("__init__", self._setup_limit_s, agent_class)
 
@@ -188,7 +254,7 @@ def checked(answer: object, name: str) -> carla.VehicleControl:
     for value_name, low in PEDALS_AND_WHEEL:
         value = getattr(answer, value_name)
         if not math.isfinite(value):
-            raise AgentInvalidControlError(f"run_step() of {name} returned a control whose {value_name} is {value}")
+            raise AgentInvalidControlError(f"run_step() of {name} returned a control with {value_name} {value}")
         if not low <= value <= 1.0:
             setattr(answer, value_name, min(1.0, max(low, value)))
     return answer

@@ -11,26 +11,26 @@ from typing import NamedTuple
 
 import carla
 
+from basu.agents.adapters.adapted_agent import LeaderboardAgent, adapted
+from basu.agents.adapters.foreign_class import ENTRY_POINT, foreign_agent
+from basu.agents.adapters.replacement_modules import stand_in
 from basu.agents.autonomous_agent import AutonomousAgent
-from basu.agents.leaderboard.adapter import LeaderboardAgent, adapted
-from basu.agents.leaderboard.foreign import ENTRY_POINT, foreign_agent
-from basu.agents.leaderboard.modules import stand_in
+from basu.agents.calls import OverrunError, call_within
 from basu.agents.sight import Knowledge
-from basu.agents.time_limit import OverrunError, call_within
 from basu.errors import UserError
-from basu.utils.user_module import module_of
+from basu.files import module_of
 
 BUILT_IN = {
-    "basic": "basu.agents.builtin.basic",
+    "basic": "basu.agents.builtin.basic:BasicAgent",
     "behavioral": "basu.agents.builtin.behavioral:BehavioralAgent",
     "behavioral-cautious": "basu.agents.builtin.behavioral:CautiousAgent",
     "behavioral-aggressive": "basu.agents.builtin.behavioral:AggressiveAgent",
-    "blind": "basu.agents.builtin.controls:BlindAgent",
-    "creeper": "basu.agents.builtin.controls:CreeperAgent",
-    "standing": "basu.agents.builtin.controls:StandingAgent",
-    "deviating": "basu.agents.builtin.deviating",
-    "forward": "basu.agents.builtin.forward",
-    "human": "basu.agents.builtin.human",
+    "blind": "basu.agents.builtin.baselines:BlindAgent",
+    "creeper": "basu.agents.builtin.baselines:CreeperAgent",
+    "standing": "basu.agents.builtin.baselines:StandingAgent",
+    "deviating": "basu.agents.builtin.behavioral:DeviatingAgent",
+    "forward": "basu.agents.builtin.baselines:ForwardAgent",
+    "human": "basu.agents.builtin.basic:HumanAgent",
     "incident": "basu.agents.builtin.incident",
 }
 
@@ -70,7 +70,7 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     if agent_config is not None and not issubclass(loaded.agent_class, LeaderboardAgent):
         raise UserError(
             f"the agent '{wanted}' takes no --agent-config: that is for agents of the leaderboard and of "
-            "ScenarioRunner; leave it away"
+            "ScenarioRunner; remove the option"
         )
     return loaded
 

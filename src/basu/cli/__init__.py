@@ -9,11 +9,11 @@ import traceback
 from typing import TYPE_CHECKING, NamedTuple
 
 import basu
+from basu import client_threads
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.outcome import EXIT_CODES, Fault
 from basu.settings.command_line import Parser
 from basu.settings.option import suggestion
-from basu.utils import client_threads
 
 if TYPE_CHECKING:
     import argparse

@@ -69,11 +69,10 @@ def add_replay(replay: argparse.ArgumentParser) -> None:
 
 
 def ask_recording(arguments: argparse.Namespace) -> int:
-    """Run a metric on a recording alone; no simulator is asked."""
+    """Run a metric on a recording alone, without a simulator."""
     from basu.records.carla_log import read_log  # noqa: PLC0415 - brings in the client, which `--help` does not need
-    from basu.records.carla_log.metric_file import run_metric  # noqa: PLC0415 - likewise
+    from basu.records.carla_log.metric_file import drawn, off_screen, run_metric  # noqa: PLC0415 - likewise
     from basu.records.carla_log.metrics_log import MetricsLog  # noqa: PLC0415 - likewise
-    from basu.records.carla_log.pictures import drawn, off_screen  # noqa: PLC0415 - likewise, and matplotlib
     from basu.records.carla_log.sources import source  # noqa: PLC0415 - likewise
 
     where = source(arguments.recording, arguments.map)
@@ -122,12 +121,11 @@ def replay_run(arguments: argparse.Namespace) -> int:
 
 def _run_in_viewer(arguments: argparse.Namespace, folder: Path) -> int:
     """A run's folder, from its history."""
-    from basu.metrics.score import Scoring  # noqa: PLC0415 - as above
-    from basu.metrics.scoring_json import scoring_of_run  # noqa: PLC0415 - as above
-    from basu.output.report.folder import CONFIG_FILE  # noqa: PLC0415 - as above
-    from basu.output.viewer.from_record import show_run  # noqa: PLC0415 - as above
+    from basu.metrics.score import Scoring, scoring_of_run  # noqa: PLC0415 - as above
+    from basu.output.report.documents import CONFIG_FILE  # noqa: PLC0415 - as above
+    from basu.output.viewer.record_replay import show_run  # noqa: PLC0415 - as above
     from basu.output.viewer.stream import has_screen  # noqa: PLC0415 - as above
-    from basu.settings.resolve import resolve  # noqa: PLC0415 - as above
+    from basu.settings.resolve import resolve  # noqa: PLC0415 - pydantic, which `--help` does not need
 
     rrd = arguments.save or folder / RRD_FILE
     scoring = resolve(Scoring, [scoring_of_run(folder / CONFIG_FILE)])
@@ -139,7 +137,7 @@ def _run_in_viewer(arguments: argparse.Namespace, folder: Path) -> int:
 
 def _log_in_viewer(arguments: argparse.Namespace, file: Path) -> int:
     """A recorder file by itself."""
-    from basu.output.viewer.from_log import show_log  # noqa: PLC0415 - as above
+    from basu.output.viewer.log_replay import show_log  # noqa: PLC0415 - as above
     from basu.output.viewer.stream import has_screen  # noqa: PLC0415 - as above
     from basu.records.carla_log.sources import read_map  # noqa: PLC0415 - as above
 
@@ -154,7 +152,7 @@ def _log_in_viewer(arguments: argparse.Namespace, file: Path) -> int:
 
 def _on_simulator(arguments: argparse.Namespace) -> int:
     """The log on a simulator."""
-    from basu.output.viewer.on_server import Progress, Where, play  # noqa: PLC0415 - brings in the client
+    from basu.output.viewer.server_replay import Progress, Where, play  # noqa: PLC0415 - brings in the client
 
     if arguments.save is not None or arguments.map is not None:
         raise UserError("--save and --map belong to --viewer; add it, or leave them out")
@@ -172,8 +170,8 @@ def _on_simulator(arguments: argparse.Namespace) -> int:
 
 def _log(arguments: argparse.Namespace) -> tuple[Log, Path | None]:
     """The recorder file that is meant, and its map."""
-    from basu.records.carla_log import read_log  # noqa: PLC0415 - as above
-    from basu.records.carla_log.sources import source  # noqa: PLC0415 - as above
+    from basu.records.carla_log import read_log  # noqa: PLC0415 - brings in the client, which `--help` does not need
+    from basu.records.carla_log.sources import source  # noqa: PLC0415 - likewise
 
     where = source(arguments.recording, arguments.map)
     log = read_log(where.log)

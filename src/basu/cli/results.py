@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from basu.errors import UserError
-from basu.utils.json_file import read_json
+from basu.files import read_json
 
 
 def add_score(score: argparse.ArgumentParser) -> None:
@@ -60,14 +60,14 @@ def add_list(listing: argparse.ArgumentParser) -> None:
 
 
 def score_run(arguments: argparse.Namespace) -> int:
-    """Compute scores and infractions of a run again, from its history and facts; no simulator is asked."""
+    """Compute scores and infractions of a run again, from its history and facts, without a simulator."""
     from basu.cli.run import scoring_of  # noqa: PLC0415 - as above
-    from basu.metrics.registry import user_metrics  # noqa: PLC0415 - likewise
+    from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
     from basu.metrics.result import judge  # noqa: PLC0415 - likewise
-    from basu.metrics.scoring_json import scoring_of_run, scoring_to_json  # noqa: PLC0415 - as above
+    from basu.metrics.score import scoring_of_run, scoring_to_json  # noqa: PLC0415 - as above
     from basu.outcome import Outcome, Status  # noqa: PLC0415 - likewise
     from basu.output.report.console import judgement, score_lines  # noqa: PLC0415 - likewise
-    from basu.output.report.folder import CONFIG_FILE, RESULT_FILE  # noqa: PLC0415 - likewise
+    from basu.output.report.documents import CONFIG_FILE, RESULT_FILE  # noqa: PLC0415 - likewise
     from basu.records.history.files import read_history  # noqa: PLC0415 - pyarrow, which `--help` does not need
     from basu.running.series import SERIES_FILE  # noqa: PLC0415 - likewise
 
@@ -116,8 +116,8 @@ def _scores(document: dict[str, Any]) -> str:
 
 def write_reports(arguments: argparse.Namespace) -> int:
     """Write report.html: score card, map, timeline, plots and evidence in one file that opens offline."""
+    from basu.output.report.documents import read_run  # noqa: PLC0415 - pyarrow, likewise
     from basu.output.report.html.page import REPORT_FILE, write_report  # noqa: PLC0415 - numpy, which `--help` does not need
-    from basu.output.report.reading import read_run  # noqa: PLC0415 - pyarrow, likewise
 
     for folder in arguments.folders:
         write_report(folder, read_run(folder))
@@ -127,7 +127,7 @@ def write_reports(arguments: argparse.Namespace) -> int:
 
 def compare_runs(arguments: argparse.Namespace) -> int:
     """Print a table as table 5.1 of the thesis; with --output write compare.html, and compare.png as its figure 5.3."""
-    from basu.output.report.compare.writing import compare, compared  # noqa: PLC0415 - plots, which `--help` does not need
+    from basu.output.report.comparison_page import compare, compared  # noqa: PLC0415 - plots, which `--help` does not need
 
     folders: list[Path] = arguments.folders
     if len(folders) < 2:
@@ -143,8 +143,8 @@ def compare_runs(arguments: argparse.Namespace) -> int:
 def list_all(_arguments: argparse.Namespace) -> int:
     """Show the agents and routes that come with BASU."""
     from basu.agents.loader import BUILT_IN  # noqa: PLC0415 - brings in the client
+    from basu.files import PACKAGE_FOLDER  # noqa: PLC0415 - likewise
     from basu.routing.route_file import read_routes  # noqa: PLC0415 - likewise
-    from basu.utils.packaged import PACKAGE_FOLDER  # noqa: PLC0415 - likewise
 
     print("agents:")
     for name in BUILT_IN:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 
 from basu.cli.run import add_config, config_of, terminated_as_interrupted
 from basu.errors import UserError
+from basu.files import write_bytes
 from basu.outcome import EXIT_CODES
 from basu.settings.command_line import add_options, typed
 from basu.settings.option import Layer
-from basu.utils.atomic import write_bytes
 
 FORMS = ("text", "ascii", "svg", "dot", "json")  # of a drawn tree
 
@@ -70,7 +70,7 @@ def _add_run(run: argparse.ArgumentParser) -> None:
 
 def _add_draw(draw: argparse.ArgumentParser) -> None:
     """Add the arguments of ``basu scenario draw``."""
-    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - as above
+    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - numpy, not for other commands
 
     draw.description = draw_command.__doc__
     draw.add_argument("case", metavar="WHAT", help="a case's id, or a scenario: its first case")
@@ -86,7 +86,7 @@ def _options(arguments: argparse.Namespace, below: Layer) -> ScenarioOptions:
     Raises:
         UserError: an option that does not exist, or a value that it cannot have.
     """
-    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - as above
+    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - numpy, not for other commands
     from basu.settings.resolve import resolve  # noqa: PLC0415 - pydantic, which `--help` does not need
 
     return resolve(ScenarioOptions, [below, Layer(typed(ScenarioOptions, arguments), typed=True)])
@@ -119,7 +119,7 @@ def _condition(text: str) -> tuple[str, str]:
 
 def run_command(arguments: argparse.Namespace) -> int:
     """Play cases with agents: a verdict, a picture and a folder for each, and the matrix of all."""
-    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - as above
+    from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - numpy, not for other commands
 
     config = config_of(arguments, "scenario run", ScenarioOptions)
     if arguments.config is None and "what" not in typed(ScenarioOptions, arguments):
@@ -134,7 +134,7 @@ def run_command(arguments: argparse.Namespace) -> int:
 def draw_command(arguments: argparse.Namespace) -> int:
     """Draw the behaviour tree of a case as it stands before a run, with its criteria."""
     options = _options(arguments, Layer({"what": [arguments.case]}))
-    from basu.running.scenario_runs.draw import drawn  # noqa: PLC0415 - brings in the client
+    from basu.running.scenario_runs.one_case import drawn  # noqa: PLC0415 - brings in the client
 
     text = drawn(options, arguments.form)
     if arguments.output is None:
@@ -146,7 +146,7 @@ def draw_command(arguments: argparse.Namespace) -> int:
 
 def report_command(arguments: argparse.Namespace) -> int:
     """Make table, JUnit XML, page and maps of a run again, from what lies in its folder."""
-    from basu.output.report.scenarios.page.records import read_matrix  # noqa: PLC0415 - brings in what draws
+    from basu.output.report.scenarios.matrix_documents import read_matrix  # noqa: PLC0415 - brings in what draws
     from basu.running.scenario_runs.command import report_again  # noqa: PLC0415 - likewise
 
     folder: Path = arguments.folder.resolve()

@@ -23,25 +23,28 @@ from basu.errors import (
     SimulatorError,
     UserError,
 )
-from basu.managers.base_manager import BaseManager, Driver, Frame, Live, Run, ego_in
+from basu.managers import Live
+from basu.managers.base_manager import BaseManager, Driver, Frame, Run, ego_in
 from basu.managers.conduct import ticked
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
+from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
 from basu.outcome import Outcome, Status
 from basu.routing import plan
+from basu.simulator import linden_command
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from basu.episode.spec import EpisodeSpec
     from basu.episode.world import Town
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
     from basu.routing import Route
-    from basu.routing.progress import Progress
+    from basu.routing.planned_route import Progress
     from basu.routing.route_file import RouteDescription
     from basu.simulator import Simulator
 
@@ -86,6 +89,7 @@ class _Managers(NamedTuple):
     routes: RoutesManager
     metrics: MetricsManager
     traffic: TrafficManager
+    sumo: SumoManager | None
     sensors: SensorsManager
     observers: tuple[BaseManager, ...]
 
@@ -104,7 +108,7 @@ class Episode:
         observers: Callable[[Live], Sequence[BaseManager]] = lambda _live: (),
         folder: Path = Path(),
     ) -> None:
-        """Describe an episode; nothing is asked of the simulator yet.
+        """Describe an episode; the simulator gets no call yet.
 
         ``towns`` are shared by all episodes of a simulator. ``sensors`` makes the agent's sensors for one drive.
         ``participants`` are set up between the traffic and the sensors and are not ticked. ``observers`` makes managers
@@ -123,7 +127,7 @@ class Episode:
         self.outcome: Outcome | None = None
         self.bug: Exception | None = None  # an error of the benchmark itself
         self.agent_error: AgentError | None = None
-        self.traffic: Mapping[str, int] = {"vehicles": 0, "walkers": 0}  # what the drive has had, once it is over
+        self.traffic: dict[str, int] = {"vehicles": 0, "walkers": 0}  # what the drive has had, once it is over
         self.first_frame: int | None = None  # the server's number of the first recorded frame, likewise
         self._managers: _Managers | None = None
         self._run: Run | None = None
@@ -212,10 +216,12 @@ class Episode:
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)
+        sumo = None if self._spec.sumo is None else SumoManager(self._spec.sumo, linden_command())
         observers = tuple(self._new_observers(Live(self._driver, sensors, routes, metrics)))
-        self._managers = _Managers(routes, metrics, traffic, sensors, observers)
+        self._managers = _Managers(routes, metrics, traffic, sumo, sensors, observers)
         # participants before sensors: another program's agent says only once it is set up what it wants to sense
-        for manager in (traffic, *self._participants, sensors, routes, metrics, ground.scenarios, *observers):
+        joined = () if sumo is None else (sumo,)
+        for manager in (traffic, *joined, *self._participants, sensors, routes, metrics, ground.scenarios, *observers):
             self._set_up.append(manager)
             manager.setup(run)
         return self._observe(None)
@@ -248,12 +254,14 @@ class Episode:
         self.outcome = managers.routes.outcome or ground.scenarios.outcome
         if self.outcome is not None:
             return Step(observation, self.outcome, self.outcome)
-        # A simulator that has ended is asked for no step: the Traffic Manager's thread in the official client would run
+        # A simulator that has ended gets no further step: the Traffic Manager's thread in the official client would run
         # into its own time-out meanwhile, and that ends the whole process.
         if self._simulator.ended():
             raise SimulatorError("the simulator ended")
         applied = ground.scenarios.through(control)
         managers.metrics.applied(applied)
+        if managers.sumo is not None:
+            managers.sumo.tick(frame)
         run.vehicle.apply_control(applied)
         return Step(self._observe(frame), None, managers.routes.outcome)
 
@@ -325,7 +333,9 @@ class Episode:
                 if self.outcome is not None:  # the drive is over and keeps its status
                     self.outcome = self.outcome._replace(message=f"{self.outcome.message}; afterwards {error}")
         if self._managers is not None:
-            self.traffic, self.first_frame = self._managers.traffic.count, self._managers.metrics.first_frame
+            self.traffic, self.first_frame = dict(self._managers.traffic.count), self._managers.metrics.first_frame
+            if self._managers.sumo is not None:
+                self.traffic["vehicles"] += self._managers.sumo.count
         self._managers = self._run = self._unrecorded = None
         self._prepared = self._laid = False
         self._resources.close()
@@ -366,7 +376,7 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
         raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:
         raise UserError(
-            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (asked for: {number}); "
+            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (requested: {number}); "
             "another program ticks it too, and a benchmark has to be the only one"
         )
     return Frame(0 if before is None else before.tick + 1, snapshot.frame, snapshot, ego_in(ego))

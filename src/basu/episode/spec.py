@@ -9,16 +9,16 @@ from typing import TYPE_CHECKING
 
 import carla
 
-from basu.agents.config import AgentConfig
-from basu.managers.stage.weather import changed
+from basu.agents.autonomous_agent import AgentConfig
 from basu.metrics.score import Scoring
-from basu.options import NOBODY, STEP_S, Traffic
+from basu.options import NO_TRAFFIC, STEP_S, Sumo, Traffic
 from basu.routing.route_file import RouteDescription, RoutePoint
+from basu.routing.weather import changed
 from basu.scenarios.paths.lanes import followed, waypoint_at
 
 if TYPE_CHECKING:
-    from basu.routing.route_weather import WeatherMark
-    from basu.scenarios.cases import Playable
+    from basu.routing.weather import WeatherMark
+    from basu.scenarios.playable import Playable
     from basu.scenarios.scenario import Scenario
 
 POINT_M = 20.0  # between the points of a route that goes straight on
@@ -36,7 +36,8 @@ class EpisodeSpec:
     config: AgentConfig = field(default_factory=AgentConfig)  # its vehicle is the one under test
     weather: carla.WeatherParameters  # at the start
     weather_along: tuple[WeatherMark, ...] = ()  # along the route
-    traffic: Traffic = NOBODY
+    traffic: Traffic = NO_TRAFFIC
+    sumo: Sumo | None = None  # traffic of SUMO
     scenarios: tuple[Playable, ...] = ()  # on the route, or the one case
     is_case: bool = False  # the episode begins and ends with its one scenario
     reload: bool | None = None  # whether the world begins anew; None: see ``Towns.load``

@@ -1,4 +1,4 @@
-"""The agent under test: made, bound to its run, asked for a control every tick within its time limit."""
+"""The agent under test: made, bound to its run, called for a control every tick within its time limit."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from basu.managers.conduct import Conduct
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.config import AgentConfig
-    from basu.agents.manual.person import Person
+    from basu.agents.autonomous_agent import AgentConfig
+    from basu.agents.manual.inputs import Person
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sensor_streams import SpawnedSensor

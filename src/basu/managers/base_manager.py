@@ -12,14 +12,10 @@ import carla
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from basu.agents.config import AgentConfig
-    from basu.agents.manual.person import Person
-    from basu.managers.agents_manager import AgentsManager
-    from basu.managers.metrics_manager import MetricsManager
-    from basu.managers.routes_manager import RoutesManager
-    from basu.managers.sensors_manager import SensorsManager
+    from basu.agents.autonomous_agent import AgentConfig
+    from basu.agents.manual.inputs import Person
     from basu.routing import Route
-    from basu.routing.route_weather import WeatherMark
+    from basu.routing.weather import WeatherMark
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,15 +107,6 @@ class Driver:
     requested: carla.VehicleControl = field(default_factory=lambda: carla.VehicleControl(brake=1.0))
     manual: bool = False
     person: Person | None = None
-
-
-class Live(NamedTuple):
-    """The managers of a run, for observers."""
-
-    agents: Driver | AgentsManager
-    sensors: SensorsManager
-    routes: RoutesManager
-    metrics: MetricsManager
 
 
 class BaseManager(ABC):

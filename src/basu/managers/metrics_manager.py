@@ -9,10 +9,8 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
-from basu.managers.lane_under import LaneFinder
-from basu.managers.neighbours import Neighbours
-from basu.managers.route_lights import RouteLights
-from basu.metrics.so_far import SoFar
+from basu.managers.observations import LaneFinder, Neighbours, RouteLights
+from basu.metrics.incremental import SoFar
 from basu.records.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
 from basu.records.history.model import NO_LIGHT
 
@@ -29,7 +27,7 @@ MPS_PER_KMH = 1.0 / 3.6
 
 
 class MetricsManager(BaseManager):
-    """Records the run with a collision sensor of its own, and a lane-invasion sensor unless it is told not to.
+    """Records the run with a collision sensor of its own, and a lane-invasion sensor unless switched off.
 
     For that one the client reads the whole map, which of Linden's takes it 0.4 s in every world that it has begun anew.
     """
@@ -126,17 +124,17 @@ class MetricsManager(BaseManager):
         return self._neighbours.near(frame)
 
     def contacts_since(self, tick: int) -> tuple[Collision, ...]:
-        """The messages of the collision sensor from a tick on; asked for the latest ones, it costs next to nothing."""
+        """The messages of the collision sensor from a tick on; cheap for the latest ones."""
         self._take_events()
         return self._recorder.contacts_since(tick)
 
     def infractions_so_far(self) -> tuple[Evidence, ...]:
-        """Every infraction until now; may be asked each second of the longest run."""
+        """Every infraction until now; cheap enough for each second of the longest run."""
         self._look()
         return self._so_far.infractions
 
     def scores_so_far(self) -> Scores:
-        """The scores until now, the way ahead counted as not driven; may be asked as often."""
+        """The scores until now, the way ahead counted as not driven; as cheap."""
         self._look()
         return self._so_far.scores
 

@@ -1,4 +1,4 @@
-"""CARLA's own log of a run, written by the simulator: what a recorder file can be asked later, and replayed from."""
+"""CARLA's own log of a run, written by the simulator: the source of later queries and replays."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ import contextlib
 from typing import TYPE_CHECKING
 
 from basu.errors import UserError
+from basu.files import write_bytes
 from basu.managers.base_manager import BaseManager
 from basu.records.carla_log.sources import MAP_FILE
-from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
 
-ADDITIONAL_DATA = True  # velocities, boxes, physics: what questions are asked of
+ADDITIONAL_DATA = True  # velocities, boxes, physics: the input of queries
 
 
 class RecordingManager(BaseManager):
@@ -29,7 +29,7 @@ class RecordingManager(BaseManager):
         self.path: str | None = None
 
     def setup(self, run: Run) -> None:
-        """Begin; who is there already is written as of the first frame.
+        """Begin; present actors are written as of the first frame.
 
         Raises:
             UserError: the simulator cannot write it.

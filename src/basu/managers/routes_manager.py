@@ -8,11 +8,11 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
-from basu.metrics.arrival import has_arrived
 from basu.metrics.delays import BLOCKED_MPS, BLOCKED_S, time_limit_s
+from basu.metrics.path_following import has_arrived
 from basu.outcome import Outcome, Status
-from basu.routing.progress import Progress, advance
-from basu.routing.route_weather import weather_at
+from basu.routing.planned_route import Progress, advance
+from basu.routing.weather import weather_at
 
 if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run

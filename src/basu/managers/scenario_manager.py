@@ -14,38 +14,36 @@ import carla
 from py_trees.common import Status as NodeStatus
 
 from basu.errors import ScenarioError, UserError
-from basu.managers.asked import asked
 from basu.managers.base_manager import BaseManager
-from basu.managers.laid_out import is_behind, lay_out
-from basu.managers.stage.cast import bring, take_away
+from basu.managers.placed_scenario import call_scenario, is_behind, place_scenario
+from basu.managers.stage.environment import SharedWorld
 from basu.managers.stage.live_stage import LiveStage
-from basu.managers.stage.shared_world import SharedWorld
+from basu.managers.stage.scenario_actors import destroy_actors, spawn_actors
 from basu.outcome import Outcome, Status
 from basu.scenarios.criteria.criterion import Played, moved
+from basu.scenarios.scenario import set_on
 from basu.scenarios.stage import Controls
-from basu.scenarios.tree import set_on
 from basu.scenarios.verdict import judge
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.managers.base_manager import Frame, Run
-    from basu.managers.laid_out import LaidOut
     from basu.managers.metrics_manager import MetricsManager
+    from basu.managers.placed_scenario import PlacedScenario
     from basu.managers.routes_manager import RoutesManager
     from basu.records.history import History
     from basu.routing import Route
-    from basu.scenarios.cases import Playable
     from basu.scenarios.criteria.criterion import Thing
-    from basu.scenarios.scenario import Scenario
+    from basu.scenarios.playable import Playable
+    from basu.scenarios.scenario import Composed, Scenario
     from basu.scenarios.stage import ActorSpec
-    from basu.scenarios.tree import Composed
     from basu.scenarios.verdict import Judged
 
 NEAR_M = 100.0  # before its trigger point along the route, a scenario's actors come into the world
-LAST_CALL_M = 30.0  # until then, who finds no room, as others are on the road, is brought a moment later
+LAST_CALL_M = 30.0  # until then, an actor without room on a busy road is spawned a moment later
 AGAIN_TICKS = 10  # from one attempt to the next
-AFTERMATH_S = 1.0  # a scenario's own run goes on for so long after the ego has touched somebody
+AFTERMATH_S = 1.0  # a scenario's own run goes on for so long after the ego has touched an actor
 
 
 @dataclass(slots=True)
@@ -56,7 +54,7 @@ class Playing:
     scenario: Scenario
     composed: Composed
     stage: LiveStage
-    cast: Sequence[ActorSpec] | None = None  # None: nobody is in the world yet
+    cast: Sequence[ActorSpec] | None = None  # None: no actor is in the world yet
     armed_tick: int | None = None  # when it began
     touched_tick: int | None = None
     phase_ticks: dict[str, int] = field(default_factory=dict)  # when each phase began
@@ -85,17 +83,19 @@ class Playing:
 
     def judged(self, history: History, outcome: Outcome) -> Judged:
         """The verdict, by the record of the whole run; criteria that raise are the scenario's own fault."""
-        who = self.planned.case.name
+        name = self.planned.case.name
         try:
-            criteria = asked(who, self.scenario.criteria)
+            criteria = call_scenario(name, self.scenario.criteria)
             played = self.played(history, outcome)
             exercised = self.scenario.exercised
-            return asked(who, lambda: judge(criteria, played, outcome, triggered=self.triggered, exercised=exercised))
+            return call_scenario(
+                name, lambda: judge(criteria, played, outcome, triggered=self.triggered, exercised=exercised)
+            )
         except UserError as error:
             return judge((), None, Outcome(Status.SETUP_FAILED, str(error)), triggered=self.triggered)
 
     def actors(self) -> list[dict[str, Any]]:
-        """Everybody whom it brought, as plain values for a result."""
+        """All actors that it spawned, as plain values for a result."""
         types = self.stage.types
         return [{"id": actor, "role": role, "type": types[actor]} for actor, role in self.stage.roles.items()]
 
@@ -106,26 +106,26 @@ class ScenarioManager(BaseManager):
     def __init__(self, planned: Sequence[Playable], *, own: bool) -> None:
         """``own``: the run is the (one) scenario's, begins armed and ends with it."""
         self._planned, self._own = tuple(planned), own
-        self._laid: list[LaidOut] = []
+        self._placed: list[PlacedScenario] = []
         self.playing: list[Playing] = []
         self.outcome: Outcome | None = None
 
     def join(self, routes: RoutesManager, metrics: MetricsManager) -> None:
-        """Say whom it shares the run with; before ``setup``."""
+        """Set the managers that it shares the run with; before ``setup``."""
         self._routes, self._metrics = routes, metrics
 
     def setup(self, run: Run) -> None:
         """Lay every scenario on the route; the cast of a run's own scenario comes at once.
 
         Raises:
-            ScenarioError: one cannot be laid out.
+            ScenarioError: one cannot be placed.
         """
         self._step_s = run.step_s
         self._shared = SharedWorld(run.world)
         self.lay(run.route, run.carla_map)
-        for laid in self._laid:
-            stage = LiveStage(run, self._routes, self._metrics, laid.planned.case.name, self._shared, laid.way)
-            self.playing.append(Playing(laid.planned, laid.scenario, laid.composed, stage))
+        for placed in self._placed:
+            stage = LiveStage(run, self._routes, self._metrics, placed.planned.case.name, self._shared, placed.way)
+            self.playing.append(Playing(placed.planned, placed.scenario, placed.composed, stage))
         if self._own:
             for playing in self.playing:
                 self._bring(playing)
@@ -137,19 +137,19 @@ class ScenarioManager(BaseManager):
         Raises:
             ScenarioError: one has no place there.
         """
-        if len(self._laid) < len(self._planned):
-            self._laid = [lay_out(planned, route, carla_map, own=self._own) for planned in self._planned]
+        if len(self._placed) < len(self._planned):
+            self._placed = [place_scenario(planned, route, carla_map, own=self._own) for planned in self._planned]
 
     def try_out(self, client: carla.Client, world: carla.World) -> None:
         """Bring every cast, and take it away at once: what has no place in this world is known before the run begins.
 
         Raises:
-            ScenarioError: somebody cannot be brought.
+            ScenarioError: an actor cannot be spawned.
         """
-        for laid in self._laid:
-            who = laid.planned.case.name
-            cast = bring(client, world, asked(who, laid.scenario.actors), who)
-            take_away(client, [member.actor for member in cast])
+        for placed in self._placed:
+            name = placed.planned.case.name
+            cast = spawn_actors(client, world, call_scenario(name, placed.scenario.actors), name)
+            destroy_actors(client, [member.actor for member in cast])
 
     def tick(self, frame: Frame) -> None:
         """Play a frame of every scenario that has begun."""
@@ -184,7 +184,7 @@ class ScenarioManager(BaseManager):
         return True
 
     def through(self, control: carla.VehicleControl) -> carla.VehicleControl:
-        """What the ego is told after every disturbance; a control of its own where there is one."""
+        """The ego's control after every disturbance."""
         asked_for = now = Controls(control.throttle, control.steer, control.brake)
         for playing in self.playing:
             if not playing.over:
@@ -208,8 +208,8 @@ class ScenarioManager(BaseManager):
                 self._end(playing, None)
 
     def _bring(self, playing: Playing) -> None:
-        """Bring the cast; on a route, those whom the ego would come upon from behind come when it has passed."""
-        cast = asked(playing.planned.case.name, playing.scenario.actors)
+        """Bring the cast; on a route, actors that the ego would reach from behind come when it has passed."""
+        cast = call_scenario(playing.planned.case.name, playing.scenario.actors)
         playing.stage.enter(
             cast if self._own else [spec for spec in cast if not is_behind(playing.scenario.place, spec)]
         )
@@ -217,25 +217,25 @@ class ScenarioManager(BaseManager):
 
     def _begin(self, playing: Playing, tick: int) -> None:
         """Set the tree on its stage, and let the rest of the cast come."""
-        cast, stage, who = playing.cast or (), playing.stage, playing.planned.case.name
+        cast, stage, name = playing.cast or (), playing.stage, playing.planned.case.name
         playing.armed_tick = tick
         stage.begin(tick)
         if not self._own:
             stage.enter([spec for spec in cast if is_behind(playing.scenario.place, spec)])
         stage.set_off(cast)
-        asked(who, partial(set_on, playing.composed, stage))
+        call_scenario(name, partial(set_on, playing.composed, stage))
 
     def _play(self, playing: Playing, frame: Frame) -> None:
         """One frame of one scenario."""
-        stage, root = playing.stage, playing.composed.root.root  # without the visitors that nobody has
+        stage, root = playing.stage, playing.composed.root.root  # without visitors, which no tree has
         stage.look(frame)
-        if not playing.things and frame.tick > (playing.armed_tick or 0):  # who has just come is in no frame yet
+        if not playing.things and frame.tick > (playing.armed_tick or 0):  # a new actor is in no frame yet
             playing.things = stage.things()
-        asked(playing.planned.case.name, root.tick_once)
+        call_scenario(playing.planned.case.name, root.tick_once)
         for phase, node in playing.composed.phases.items():
             if phase not in playing.phase_ticks and node.status is not NodeStatus.INVALID:
                 playing.phase_ticks[phase] = frame.tick
-        asked(playing.planned.case.name, stage.carry_out)
+        call_scenario(playing.planned.case.name, stage.carry_out)
         if stage.ego_contacts and playing.touched_tick is None:
             playing.touched_tick = frame.tick
         end = self._judged(playing, frame.tick)

@@ -1,4 +1,4 @@
-"""Other traffic: vehicles led by CARLA's Traffic Manager, walkers by its crowd, all of it drawn from one seed."""
+"""Other traffic from one seed: vehicles led by CARLA's Traffic Manager, walkers led by its crowd."""
 
 from __future__ import annotations
 
@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING
 import carla
 import numpy as np
 
+from basu import client_threads
 from basu.errors import SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
-from basu.managers.traffic_places import CLEAR_M, REACH_M, suitable, vehicles_for
-from basu.utils import client_threads
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -23,12 +22,43 @@ if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
     from basu.options import Traffic
 
-GAP_M = 2.5  # that vehicles keep to whom they follow; generate_traffic.py of CARLA has the same
+
+REACH_M = 300.0
+"""Traffic begins within this of the route: about half a minute's drive, so that the vehicle under test can meet it."""
+
+CLEAR_M = 30.0
+"""No traffic begins nearer to the vehicle under test: a stop from 25 mph with time to see it coming."""
+
+COARSE_M = 10.0  # between the points of the route that distances are taken from; nothing next to REACH_M
+
+
+def distance_m(places_m: NDArray[np.float64], route_m: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(N,) how far each of the places (N, 2) lies from the nearest of a route's points (M, 2), a metre apart."""
+    nearest = np.full(len(places_m), np.inf)
+    for point in route_m[:: round(COARSE_M)]:
+        np.minimum(nearest, np.hypot(places_m[:, 0] - point[0], places_m[:, 1] - point[1]), out=nearest)
+    return nearest
+
+
+def suitable(
+    places_m: NDArray[np.float64], route_m: NDArray[np.float64], ego_m: tuple[float, float]
+) -> NDArray[np.int64]:
+    """The indices of the places (N, 2) within reach of the route and away from the vehicle under test."""
+    away_m = np.hypot(places_m[:, 0] - ego_m[0], places_m[:, 1] - ego_m[1])
+    return np.flatnonzero((distance_m(places_m, route_m) <= REACH_M) & (away_m >= CLEAR_M))
+
+
+def vehicles_for(density_per_km: float, lane_km: float) -> int:
+    """How many vehicles make up a density on so many km of driving lane."""
+    return round(density_per_km * lane_km)
+
+
+GAP_M = 2.5  # that vehicles keep to the one ahead; generate_traffic.py of CARLA has the same
 CROSSING_SHARE = 0.1  # of the walkers may leave the pavement where there is no crosswalk
 LANE_STEP_M = 10.0  # between the places that driving lanes are measured by
 DROP_M = 1.0  # walkers are put above the pavement, as in CARLA's examples
 ATTEMPTS_A_WALKER = 400  # places drawn from the whole town until one lies within reach
-PARTING_TICKS = 2  # for the client to forget who is gone
+PARTING_TICKS = 2  # for the client to forget destroyed actors
 
 
 class TrafficManager(BaseManager):
@@ -43,13 +73,13 @@ class TrafficManager(BaseManager):
         self.count = {"vehicles": 0, "walkers": 0}
 
     def setup(self, run: Run) -> None:
-        """Spawn everybody and hand them over to their leaders.
+        """Spawn all traffic and hand it over to Traffic Manager and crowd.
 
         Raises:
             UserError: there is no room for so many.
             SimulatorError: the simulator did not let us.
         """
-        if self._traffic.nobody:
+        if self._traffic.is_empty:
             return
         self._run, self._timeout_s = run, run.timeout_s
         self._route_m = run.route.points_m[:, :2]
@@ -67,13 +97,13 @@ class TrafficManager(BaseManager):
         self.count = {"vehicles": len(vehicles), "walkers": len(walkers)}
 
     def tick(self, frame: Frame) -> None:
-        """The client itself leads everybody in each step."""
+        """The client itself leads all traffic in each step."""
 
     def close(self) -> None:
-        """Take everybody away, the leaders first, and end the Traffic Manager.
+        """Destroy all traffic, the walkers' controllers first, and end the Traffic Manager.
 
-        Where the simulator is gone, so is everybody; then the Traffic Manager is left as it is: its end asks the
-        simulator, and the official client ends the whole process where nobody answers there.
+        Where the simulator is gone, so is the traffic; then the Traffic Manager is left as it is: its end asks the
+        simulator, and the official client ends the whole process where no server answers there.
         """
         with contextlib.suppress(RuntimeError):
             self._destroy_all()
@@ -96,7 +126,7 @@ class TrafficManager(BaseManager):
             self._run.world.tick(self._timeout_s)
 
     def _wanted_vehicles(self) -> int:
-        """The number that was asked for, or that makes up the density that was."""
+        """The requested number, or the number that makes the requested density."""
         if self._traffic.density_per_km is None:
             return self._traffic.vehicles
         lanes = [w for w in self._run.carla_map.generate_waypoints(LANE_STEP_M) if not w.is_junction]
@@ -119,7 +149,7 @@ class TrafficManager(BaseManager):
             spawned += self._spawned([(_painted(dice.choice(models), dice), point, 0) for point in batch])
         if len(spawned) < count:
             raise UserError(
-                f"{count} vehicles were asked for, and {len(spawned)} found room on the {len(near)} spawn points "
+                f"{count} vehicles were requested, and {len(spawned)} found room on the {len(near)} spawn points "
                 f"that lie within {REACH_M:.0f} m of the route and {CLEAR_M:.0f} m away from its start; ask for fewer"
             )
         return spawned
@@ -137,7 +167,7 @@ class TrafficManager(BaseManager):
             if len(spawned) == count:
                 return spawned
         raise UserError(
-            f"{count} walkers were asked for, and {len(spawned)} found room on the pavements within {REACH_M:.0f} m of "
+            f"{count} walkers were requested, and {len(spawned)} found room on the pavements within {REACH_M:.0f} m of "
             "the route; ask for fewer"
         )
 
@@ -146,7 +176,7 @@ class TrafficManager(BaseManager):
         drawn = [self._run.world.get_random_location_from_navigation() for _ in range(max(count, 20))]
         if any(place is None for place in drawn):
             raise UserError(
-                f"walkers were asked for, and {self._run.route.town} has no mesh of pavements for them to walk on; "
+                f"walkers were requested, and {self._run.route.town} has no mesh of pavements for them to walk on; "
                 "run without --walkers"
             )
         poses = [carla.Transform(place + carla.Location(z=DROP_M)) for place in drawn]
@@ -184,7 +214,7 @@ class TrafficManager(BaseManager):
         return sorted(self._run.world.get_blueprint_library().filter(pattern), key=lambda model: str(model.id))
 
     def _spawned(self, wanted: Sequence[tuple[carla.ActorBlueprint, carla.Transform, int]]) -> list[int]:
-        """Spawn by blueprint, pose and parent (0: none); the ids of those who found room."""
+        """Spawn by blueprint, pose and parent (0: none); the ids of the actors that found room."""
         spawn: Callable[..., object] = carla.command.SpawnActor
         commands = [spawn(model, pose, parent) if parent else spawn(model, pose) for model, pose, parent in wanted]
         answers = self._run.client.apply_batch_sync(commands, False)
@@ -217,7 +247,7 @@ def _painted(model: carla.ActorBlueprint, dice: random.Random) -> carla.ActorBlu
 
 
 def _free_port() -> int:
-    """A port that nobody listens on."""
+    """A port without a listener."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

@@ -1,14 +1,39 @@
-"""Collisions: the sensor's messages, one for each frame of contact, brought together into contacts."""
+"""Collisions: sensor messages brought together into contacts, and each contact's responsibility by nuPlan's rule.
+
+Source: ``no_ego_at_fault_collisions.py`` of motional/nuplan-devkit (``nuplan/planning/metrics/evaluation_metrics/
+common``), with ``is_agent_behind`` of ``planning/simulation/observation/idm/utils.py``. In its order:
+
+    the ego stands                                            not at fault
+    the other stands, or is a thing                           at fault
+    the other's middle lies behind the ego's rear axle        not at fault
+    the ego's front bumper meets the other                    at fault
+    otherwise the ego's side meets the other                  at fault where the ego is not within one lane
+
+nuPlan's bodies pass through one another, and it looks at the first frame of overlap. Here a contact changes both
+speeds, so speeds and headings are those of the frame before the contact. nuPlan calls an ego stopped at 0.05 m/s and
+another at 0.005 m/s; a body at rest in a physics engine creeps by more than that, so 0.05 m/s holds for both.
+
+The thesis counts every collision (section 5.2.1). The responsibility is reported beside it and changes no score.
+"""
 
 from __future__ import annotations
 
+import enum
 import math
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
 
-from basu.metrics.infraction import Evidence, Infraction, evidence
+import numpy as np
+
+from basu.metrics.boxes import other_boxes, own_boxes, touching
+from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
+from basu.metrics.json_schema import integer, record
+from basu.metrics.registry import Column, Drive, Metric, register
 
 if TYPE_CHECKING:
+    from basu.metrics.result import Result
     from basu.records.history import Collision, History
+
 
 # A contact with one party lasts until it has not been reported for so long: a vehicle that rebounds from a wall and
 # leans on it again has hit it once. The CARLA leaderboard, too, counts a second touch of one actor only after a while.
@@ -65,3 +90,172 @@ def _contact(history: History, event: Collision) -> Evidence:
         other=other,
         detail=f"hit {other} at {speed_mps:.2f} m/s with an impulse of {impulse_ns:.0f} N s",
     )
+
+
+STOPPED_MPS = 0.05
+BEHIND_RAD = math.radians(150.0)  # between the ego's heading and the direction to the other's middle
+BUMPER_M = 0.25  # a box this near to the front bumper meets it: in a step of 0.05 s, 5 m/s go as far
+
+
+class CollisionKind(enum.Enum):
+    """The five types of nuPlan's ``CollisionType``."""
+
+    STOPPED_EGO = "stopped_ego"
+    STOPPED_OTHER = "stopped_other"
+    REAR = "rear"
+    FRONT = "front"
+    LATERAL = "lateral"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Responsibility:
+    """Whether the vehicle under test is at fault for one collision, and by which clause of the rule."""
+
+    at_fault: bool
+    kind: CollisionKind
+    sentence: str
+
+    def document(self) -> dict[str, bool | str]:
+        """The responsibility as plain values."""
+        return {"at_fault": self.at_fault, "kind": self.kind.value, "sentence": self.sentence}
+
+
+def responsibilities(history: History) -> tuple[tuple[Evidence, Responsibility], ...]:
+    """Each collision of a drive, as `collisions` counts them, with its responsibility."""
+    return tuple(
+        (found, responsibility(history, event))
+        for found, event in zip(collisions(history), beginnings(history, {}), strict=True)
+    )
+
+
+def responsibility(history: History, event: Collision) -> Responsibility:
+    """The responsibility for the contact that begins with ``event``, from the record alone.
+
+    An actor that the record does not hold is taken for a thing that stands: every vehicle and walker that is near
+    enough to touch is in the record.
+    """
+    before = max(0, event.tick - 1)
+    speed_mps = float(history.speed_mps()[before])
+    if speed_mps <= STOPPED_MPS:
+        return _not_at_fault(CollisionKind.STOPPED_EGO, f"the ego stood ({speed_mps:.2f} m/s) when it was struck")
+    other = _row(history, event.other_id, before)
+    other_mps = 0.0 if other is None else math.hypot(other["velocity_x_mps"], other["velocity_y_mps"])
+    if other is None or other_mps <= STOPPED_MPS:
+        return _at_fault(CollisionKind.STOPPED_OTHER, f"the ego drove at {speed_mps:.2f} m/s into what stood still")
+    if _is_behind(history, before, other):
+        return _not_at_fault(CollisionKind.REAR, f"the ego was struck from behind at {other_mps:.2f} m/s")
+    if _meets_front(history, event):
+        return _at_fault(CollisionKind.FRONT, f"the ego's front met the other at {speed_mps:.2f} m/s")
+    if not within_one_lane(history, before):
+        return _at_fault(CollisionKind.LATERAL, "the ego's side met the other while the ego was not within one lane")
+    return _not_at_fault(CollisionKind.LATERAL, "the ego's side was struck while the ego was within its lane")
+
+
+def within_one_lane(history: History, tick: int) -> bool:
+    """Whether the whole box of the ego lies in one lane; in a junction, where lanes overlap, in the planned one.
+
+    nuPlan asks whether all corners of the ego's box lie in one lane or in connected ones.
+    """
+    frame, route = history.frames[tick], history.facts.route
+    if frame["in_junction"]:
+        index = max(0, int(np.searchsorted(route.s_m, frame["route_s_m"], side="right")) - 1)
+        offset_m, width_m = float(frame["lateral_m"]), float(route.lane_width_m[index])
+        heading_rad = float(frame["yaw_rad"]) - float(
+            np.interp(frame["route_s_m"], route.s_m, np.unwrap(route.yaw_rad))
+        )
+    else:
+        offset_m, width_m = float(frame["lane_offset_m"]), float(frame["lane_width_m"])
+        heading_rad = float(frame["lane_heading_rad"])
+    if not (math.isfinite(offset_m) and math.isfinite(width_m)) or frame["off_lane_m"] > 0.0:
+        return False
+    vehicle = history.facts.vehicle
+    corners_m = [
+        offset_m + along_m * math.sin(heading_rad) + beside_m * math.cos(heading_rad)
+        for along_m in (vehicle.front_m, -vehicle.rear_m)
+        for beside_m in (vehicle.width_m / 2.0, -vehicle.width_m / 2.0)
+    ]
+    return max(map(abs, corners_m)) <= width_m / 2.0
+
+
+def _row(history: History, other_id: int, tick: int) -> np.void | None:
+    """The row of an actor in a frame, or in the frame after it where it has only just appeared."""
+    if other_id == 0:
+        return None
+    rows = history.others[history.others["id"] == other_id]
+    rows = rows[(rows["tick"] >= tick) & (rows["tick"] <= tick + 1)]
+    return rows[0] if len(rows) else None
+
+
+def _is_behind(history: History, tick: int, other: np.void) -> bool:
+    """Whether the other's middle is behind the rear axle, which lies about halfway down the ego's rear half."""
+    frame, vehicle = history.frames[tick], history.facts.vehicle
+    middle_m, length_m = (vehicle.front_m - vehicle.rear_m) / 2.0, vehicle.front_m + vehicle.rear_m
+    yaw_rad, axle_m = float(frame["yaw_rad"]), middle_m - length_m / 4.0
+    dx_m = float(other["x_m"]) - float(frame["x_m"]) - axle_m * math.cos(yaw_rad)
+    dy_m = float(other["y_m"]) - float(frame["y_m"]) - axle_m * math.sin(yaw_rad)
+    turned_rad = math.atan2(dy_m, dx_m) - yaw_rad
+    return abs(math.atan2(math.sin(turned_rad), math.cos(turned_rad))) > BEHIND_RAD
+
+
+def _meets_front(history: History, event: Collision) -> bool:
+    """Whether the other's box meets the front bumper in the frame of the contact or in the one before."""
+    for tick in (event.tick, max(0, event.tick - 1)):
+        other = _row(history, event.other_id, tick)
+        if other is None:
+            continue
+        own = own_boxes(history.facts, history.frames[tick : tick + 1])
+        bumper = own.copy()
+        bumper[:, 0] += own[:, 3] * np.cos(own[:, 2])
+        bumper[:, 1] += own[:, 3] * np.sin(own[:, 2])
+        bumper[:, 3] = BUMPER_M
+        if touching(bumper, other_boxes(history.facts, np.array([other])))[0]:
+            return True
+    return False
+
+
+def _at_fault(kind: CollisionKind, sentence: str) -> Responsibility:
+    return Responsibility(at_fault=True, kind=kind, sentence=f"at fault: {sentence}")
+
+
+def _not_at_fault(kind: CollisionKind, sentence: str) -> Responsibility:
+    return Responsibility(at_fault=False, kind=kind, sentence=f"not at fault: {sentence}")
+
+
+@register
+class Collisions(Metric):
+    """How often the vehicle touched something, and how often it was at fault."""
+
+    name = "collisions"
+    title = "collisions"
+    order = 10
+    schema = record(
+        null_=True,
+        about_="contacts, and those for which the vehicle under test is at fault",
+        number=integer(low=0),
+        at_fault=integer(low=0),
+    )
+    penalties: ClassVar[dict[str, float]] = {
+        kind.value: DEFAULT_PENALTIES[kind]
+        for kind in (Infraction.COLLISION_PEDESTRIAN, Infraction.COLLISION_VEHICLE, Infraction.COLLISION_STATIC)
+    }
+
+    def compute(self, drive: Drive) -> dict[str, int]:
+        """The two numbers."""
+        found = [blame.at_fault for _, blame in responsibilities(drive.history)]
+        return {"number": len(found), "at_fault": sum(found)}
+
+    def find(self, drive: Drive) -> tuple[Evidence, ...]:
+        """Each contact."""
+        return collisions(drive.history)
+
+    def lines(self, result: Result) -> list[str]:
+        """A line where there was one."""
+        found = result.metrics[self.name]
+        if not found["number"]:
+            return []
+        return [f"{self.title:<18}{found['number']}, at fault for {found['at_fault']} of them"]
+
+    def columns(self, result: Result) -> list[Column]:
+        """The number, and that of the collisions at fault."""
+        found = result.metrics[self.name] or {"number": 0, "at_fault": 0}
+        return [Column("collisions", str(found["number"])), Column("collisions at fault", str(found["at_fault"]))]

@@ -1,4 +1,4 @@
-"""What can be held against a driver, what each costs, what is only told, and the evidence that all of it carries."""
+"""Infractions with their penalties, incidents without a penalty, and the evidence of both."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.metrics.responsibility import Responsibility
+    from basu.metrics.collisions import Responsibility
     from basu.records.history import History
 
 
@@ -26,7 +26,7 @@ class Infraction(enum.Enum):
 
 
 class Incident(enum.Enum):
-    """What is told and not scored."""
+    """What is reported and not scored."""
 
     OUTSIDE_LANES = "outside_lanes"
     WRONG_WAY = "wrong_way"
@@ -57,7 +57,7 @@ DEFAULT_PENALTIES: Mapping[Infraction, float] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evidence:
-    """One infraction or incident: when, where, how fast, and with whom."""
+    """One infraction or incident: time, place, speed, and the other party."""
 
     kind: Infraction | Incident | OwnKind
     tick: int

@@ -1,12 +1,12 @@
 """Outside the lanes and against them: how far, which share of the way, and where.
 
-Outside is, as in the CARLA leaderboard (ScenarioRunner, ``OutsideRouteLanesTest``), a vehicle whose middle is more than
-0.5 m beyond the edge of the nearest driving or parking lane; on a pavement it is told as such. A vehicle whose middle
-lies in a lane of traffic that comes towards it is in a wrong lane. Wrong way is to move against the direction of the
+Outside is, as in the CARLA leaderboard (ScenarioRunner, ``OutsideRouteLanesTest``), a vehicle with its middle more than
+0.5 m beyond the edge of the nearest driving or parking lane; the evidence names a pavement. A vehicle with its middle
+in a lane of oncoming traffic is in a wrong lane. Wrong way is to move against the direction of the
 lane under one's middle: overtaking through the opposite lane does, and so does reversing along one's own.
 
-In junctions, where lanes lie over one another, nobody is in a wrong lane or on the wrong way: the leaderboard says the
-same. Metres are of the driven path (equation 5.2), a share is of all of it.
+In junctions, where lanes lie over one another, no vehicle is in a wrong lane or on the wrong way: the leaderboard says
+the same. Metres are of the driven path (equation 5.2), a share is of all of it.
 """
 
 from __future__ import annotations
@@ -20,8 +20,7 @@ import numpy as np
 from basu.metrics.infraction import Incident
 from basu.metrics.json_schema import mapping, number
 from basu.metrics.registry import Drive, Metric, register
-from basu.metrics.shares import Share, share_line, share_of, share_record, share_row
-from basu.metrics.stretches import chords, path_m, total_m
+from basu.metrics.stretches import Share, chords, path_m, share_line, share_of, share_record, share_row, total_m
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -60,12 +59,12 @@ class OutsideLanes:
 def outside_lanes(history: History) -> OutsideLanes:
     """How far the vehicle went outside its lanes, one event for each stretch."""
     where = wheres(history)
-    told = [WORDS[way] for way in Where]
+    words = [WORDS[way] for way in Where]
     total = share_of(
         history,
         where >= 0,
         Incident.OUTSIDE_LANES,
-        lambda first, end: told[int(np.bincount(where[first:end]).argmax())],
+        lambda first, end: words[int(np.bincount(where[first:end]).argmax())],
     )
     pieces = chords(path_m(history.frames))
     at = where[pieces.end]

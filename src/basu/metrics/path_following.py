@@ -1,17 +1,64 @@
-"""Path following: how much of the planned length was driven (equations 5.2 and 5.3 of the thesis)."""
+"""Path following (equations 5.2 and 5.3 of the thesis), arrival at the route's end, and served stops.
+
+A vehicle has arrived within 1 m of the end of its route, or at rest within 5 m of it. A service stop is served where
+the vehicle comes to rest within 3 m of it along the route. At rest is below 0.1 m/s, the CARLA leaderboard's figure.
+The leaderboard's own end of a route (`metrics.leaderboard.ending`) is part of the leaderboard's rules, not of ours.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.metrics.arrival import PARKED_M
+import numpy as np
+
 from basu.metrics.stretches import chords, path_m, total_m
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
     from basu.records.history import History
+
+
+AT_END_M, PARKED_M = 1.0, 5.0
+SERVED_M = 3.0
+AT_REST_MPS = 0.1
+
+
+def has_arrived(left_m: float, speed_mps: float, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> bool:
+    """Whether a vehicle with ``left_m`` of its route ahead has arrived; the slacks widen the end and the rest."""
+    return left_m <= AT_END_M + slack_m or (left_m <= PARKED_M and speed_mps < AT_REST_MPS + slack_mps)
+
+
+def arrivals(history: History, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> NDArray[np.bool_]:
+    """(T,) the frames in which the vehicle has arrived, as `has_arrived` has it."""
+    left_m = history.facts.route.length_m - history.frames["route_s_m"]
+    at_rest = history.speed_mps() < AT_REST_MPS + slack_mps
+    there: NDArray[np.bool_] = (left_m <= AT_END_M + slack_m) | ((left_m <= PARKED_M) & at_rest)
+    return there
+
+
+def arrival_tick(history: History, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> int | None:
+    """The first frame in which the vehicle has arrived; None where it never has."""
+    there = arrivals(history, slack_m=slack_m, slack_mps=slack_mps)
+    return int(np.argmax(there)) if there.any() else None
+
+
+def completion(history: History) -> float:
+    """The share of the route that was driven, 0 to 1; 1 for a drive that arrived."""
+    if arrival_tick(history) is not None:
+        return 1.0
+    return min(1.0, max(0.0, float(history.frames["route_s_m"].max(initial=0.0))) / history.facts.route.length_m)
+
+
+def near_stop(history: History, stop_s_m: float) -> NDArray[np.bool_]:
+    """(T,) the frames in which the vehicle is near enough to a service stop to serve it."""
+    near: NDArray[np.bool_] = np.abs(history.frames["route_s_m"] - stop_s_m) <= SERVED_M
+    return near
+
+
+def serving(history: History, stop_s_m: float) -> NDArray[np.bool_]:
+    """(T,) the frames in which the vehicle rests at a service stop: the stop is served where there is one."""
+    return near_stop(history, stop_s_m) & (history.speed_mps() < AT_REST_MPS)
 
 
 class PathFollowing(NamedTuple):

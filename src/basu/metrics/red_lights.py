@@ -2,9 +2,9 @@
 
 The rule is that of the CARLA leaderboard (ScenarioRunner, ``RunningRedLightTest``, the same in its versions 1.0, 2.0
 and 2.1): a light is run when it is red in a frame in which the line lies under the vehicle's tail, the piece from 0.8
-of half its length behind its middle to 1 m behind its bumper. So who enters on yellow and has the tail on the line when
-it turns red has run it, and who stops beyond the line with the tail still before it has not. What it showed when the
-front crossed is told too.
+of half its length behind its middle to 1 m behind its bumper. So a vehicle that enters on
+yellow and has its tail on the line when it turns red has run it; one that stops beyond the line with its tail still
+before it has not. The record also states what the light showed when the front crossed.
 
 Off the planned lane the route's lights are not the vehicle's. There, leaving the zone of a light forwards while it is
 red has run it: the simulator says under which light a vehicle stands.
@@ -51,7 +51,7 @@ class LightPassed:
 
 
 def lights_passed(history: History) -> tuple[LightPassed, ...]:
-    """Every traffic light on the route whose line the vehicle's tail crossed, in order."""
+    """Every traffic light on the route with a line that the vehicle's tail crossed, in order."""
     vehicle, frames = history.facts.vehicle, history.frames
     s_m, shown = frames["route_s_m"], frames["route_light"]
     half_m = (vehicle.front_m + vehicle.rear_m) / 2.0

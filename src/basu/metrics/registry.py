@@ -19,8 +19,8 @@ from importlib.metadata import entry_points
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 from basu.errors import UserError
+from basu.files import module_of
 from basu.metrics.json_schema import Schema, number
-from basu.utils.user_module import module_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence

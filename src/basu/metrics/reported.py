@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from basu.metrics.arrival import near_stop, serving
 from basu.metrics.json_schema import flag, integer, listing, mapping, number, record, text
-from basu.metrics.path_following import path_following
+from basu.metrics.path_following import near_stop, path_following, serving
 from basu.metrics.registry import Drive, Metric, register
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 As equation 5.3 of the thesis compares lengths after equation 5.2, so does this: the deviation is L_O / L_A, the length
 of the driven path that lies farther than a threshold from the planned line, over the length of all of it. The threshold
-is adjustable; by default it is 2 m, which is beyond the edge of a lane of 3.5 m: a vehicle whose middle is there is out
+is adjustable; by default it is 2 m, which is beyond the edge of a lane of 3.5 m: a vehicle with its middle there is out
 of the planned lane.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 from basu.metrics.infraction import Incident
 from basu.metrics.json_schema import number
 from basu.metrics.registry import Drive, Metric, register
-from basu.metrics.shares import Share, share_line, share_of, share_record, share_row
+from basu.metrics.stretches import Share, share_line, share_of, share_record, share_row
 
 if TYPE_CHECKING:
     from basu.metrics.result import Result

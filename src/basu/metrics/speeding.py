@@ -25,7 +25,7 @@ LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of
 def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Evidence, ...]:
     """One infraction for each episode: it begins ``tolerance_mps`` over and ends back at the limit.
 
-    Whose limit holds, :func:`limits_mps` says.
+    :func:`limits_mps` says which limit holds.
     """
     speed_mps, limit_mps = history.speed_mps(), limits_mps(history)
     found = []
@@ -46,7 +46,7 @@ def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Ev
 
 
 def episode(history: History, first: int, *, top_mps: float, posted_mps: float, seconds: float) -> Evidence:
-    """The evidence for an episode that begins in frame ``first``; the speed told is where the excess is largest."""
+    """The evidence for an episode that begins in frame ``first``; its speed is that of the largest excess."""
     return evidence(
         history,
         Infraction.SPEEDING,

@@ -140,12 +140,13 @@ class StopSigns(Metric):
         return stop_signs(drive.history)
 
     def lines(self, result: Result) -> list[str]:
-        """How many were stopped at, and the lowest speed at the worst of them."""
+        """How many signs were obeyed, and the slowest speed before any line at most."""
         signs = result.metrics[self.name]
         if not signs:
             return []
         stopped, slowest = sum(sign["stopped"] for sign in signs), max(sign["lowest_speed_mps"] for sign in signs)
-        return [f"stop signs        {stopped} of {len(signs)} stopped at, highest lowest speed {slowest:.3f} m/s"]
+        obeyed = f"{stopped} of {len(signs)} obeyed"
+        return [f"stop signs        {obeyed}; slowest speed before any line at most {slowest:.3f} m/s"]
 
     def columns(self, result: Result) -> list[Column]:
         """How many were run."""

@@ -11,11 +11,12 @@ from tqdm import tqdm
 from basu.managers.base_manager import BaseManager
 
 if TYPE_CHECKING:
-    from basu.managers.base_manager import Frame, Live, Run
+    from basu.managers import Live
+    from basu.managers.base_manager import Frame, Run
 
 UPDATE_TICKS = 20  # a second of simulated time
 SCORE_TICKS = 2000  # scoring anew costs some ms
-QUIET_S = 10.0  # between two lines where nobody watches (a log file)
+QUIET_S = 10.0  # between two lines without a terminal (a log file)
 
 
 class ProgressBar(BaseManager):

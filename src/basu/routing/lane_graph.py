@@ -1,4 +1,4 @@
-"""The lanes of a map as a directed graph, made from what the official client knows of it.
+"""The lanes of a map as a directed graph, with posted limits and lane-section ends from the OpenDRIVE text.
 
 A node is a lane of one lane section; an edge leads to a lane that a vehicle reaches by driving straight on, its weight
 is the length of the lane that is left behind. Lane changes are not part of it: a shuttle's way keeps to its lane.
@@ -6,19 +6,78 @@ is the length of the lane that is left behind. Lane changes are not part of it: 
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import networkx as nx
 import numpy as np
-
-from basu.routing.roads import read_roads
+from lxml import etree
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     import carla
     from numpy.typing import NDArray
 
-    from basu.routing.roads import Road
+
+MPS_PER_UNIT = {"mph": 0.44704, "km/h": 1.0 / 3.6, "m/s": 1.0}  # OpenDRIVE 1.4, e_unitSpeed; without unit: m/s
+
+
+@dataclass(frozen=True, slots=True)
+class Road:
+    """One road; places are m along its reference line, ascending, speeds m/s."""
+
+    length_m: float
+    section_starts_m: tuple[float, ...]
+    limit_starts_m: tuple[float, ...]
+    limits_mps: tuple[float, ...]  # nan where a stretch posts none
+
+    def limit_at(self, s_m: float) -> float:
+        """The posted limit in m/s at ``s_m``, nan where there is none."""
+        index = bisect_right(self.limit_starts_m, s_m) - 1
+        return self.limits_mps[index] if index >= 0 else math.nan
+
+    def section_extent_m(self, section: int) -> tuple[float, float]:
+        """Where a lane section begins and ends."""
+        ends_m = (*self.section_starts_m[1:], self.length_m)
+        return self.section_starts_m[section], ends_m[section]
+
+
+def read_roads(opendrive: str) -> dict[int, Road]:
+    """Read the roads of an OpenDRIVE text, by id."""
+    root = etree.fromstring(
+        opendrive.encode(), etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
+    )
+    return {int(element.get("id", "-1")): _road(element) for element in root.iterfind("road")}
+
+
+def _road(element: etree._Element) -> Road:
+    """One <road>."""
+    posted = sorted((s, _limit_mps(e.find("speed"))) for s, e in _places(element.iterfind("type")))
+    return Road(
+        length_m=float(element.get("length", "0")),
+        section_starts_m=tuple(sorted(s for s, _ in _places(element.iterfind("lanes/laneSection")))),
+        limit_starts_m=tuple(s for s, _ in posted),
+        limits_mps=tuple(limit for _, limit in posted),
+    )
+
+
+def _places(elements: Iterable[etree._Element]) -> list[tuple[float, etree._Element]]:
+    """Elements with the place along the road that their ``s`` gives."""
+    return [(float(element.get("s", "0")), element) for element in elements]
+
+
+def _limit_mps(speed: etree._Element | None) -> float:
+    """The value of a ``<speed>`` element in m/s; nan for none, 'no limit' and 'undefined'."""
+    if speed is None:
+        return math.nan
+    try:
+        return float(speed.get("max", "")) * MPS_PER_UNIT.get(speed.get("unit", "m/s"), math.nan)
+    except ValueError:
+        return math.nan
+
 
 STEP_OVER_M = 0.1  # from just before a lane's end to just behind it
 SAMPLE_SPACING_M = 2.0  # of the points at which lanes are looked up by position

@@ -1,4 +1,4 @@
-"""Reads route XML: ScenarioRunner's and the leaderboard's, with this project's ``<stops>`` beside the way points.
+"""Reads route XML and selects routes of a file: ScenarioRunner's and the leaderboard's format, with ``<stops>``.
 
 Three spellings of a point are in use and all are read: ``<waypoint x y z yaw>`` directly below ``<route>``
 (ScenarioRunner, leaderboard 1.0), ``<waypoints><position x y z>`` (leaderboard 2.x), and ``<waypoints><waypoint …>``.
@@ -10,12 +10,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lxml import etree
 
 from basu.errors import UserError
-from basu.routing.route_weather import WeatherMark, read_weather
 from basu.routing.timetable import Timetable, read_timetable
+from basu.routing.weather import WeatherMark, read_weather
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +73,7 @@ def read_routes(path: Path) -> tuple[RouteDescription, ...]:
 
 
 def route_element(description: RouteDescription) -> etree._Element:
-    """The <route> that a description was read from, for those who read more of it.
+    """The <route> that a description was read from, for readers of its other elements.
 
     Raises:
         UserError: the file is no longer as it was.
@@ -178,3 +182,37 @@ def _number(element: etree._Element, name: str, path: Path) -> float | None:
             f"route file {path}, line {element.sourceline}: <{element.tag}> has {name}='{text}', which is no number"
         )
     return value
+
+
+def subset(routes: Sequence[RouteDescription], wanted: str) -> tuple[RouteDescription, ...]:
+    """The routes that ``wanted`` names, in the order of the file.
+
+    ``wanted`` is a list of ids and of ranges ``first-last``; a range runs from one id to the other in the file's order,
+    whatever the ids are. An id with a hyphen in it is taken for what it is.
+
+    Raises:
+        UserError: an id that the file does not have, a range backwards, or a route named twice.
+    """
+    ids = [route.id for route in routes]
+    chosen: set[int] = set()
+    for part in (text.strip() for text in wanted.split(",")):
+        for index in _indices(part, ids, wanted):
+            if index in chosen:
+                raise UserError(f"--routes-subset {wanted}: route '{ids[index]}' is named twice")
+            chosen.add(index)
+    return tuple(routes[index] for index in sorted(chosen))
+
+
+def _indices(part: str, ids: list[str], wanted: str) -> range:
+    """Where the routes of one part of the list stand in the file."""
+    if part in ids:
+        return range(ids.index(part), ids.index(part) + 1)
+    for cut in (position for position, letter in enumerate(part) if letter == "-"):
+        first, last = part[:cut].strip(), part[cut + 1 :].strip()
+        if first in ids and last in ids:
+            if ids.index(first) > ids.index(last):
+                raise UserError(
+                    f"--routes-subset {wanted}: '{last}' comes before '{first}' in the file; turn them round"
+                )
+            return range(ids.index(first), ids.index(last) + 1)
+    raise UserError(f"--routes-subset {wanted}: the route file has no '{part}'; it has {', '.join(ids)}")

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
-from basu.utils.json_file import read_json
+from basu.files import read_json
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable

@@ -12,15 +12,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.episode import Episode, EpisodeSpec
 from basu.episode.world import weather_called
 from basu.managers.recording_manager import RecordingManager
-from basu.managers.route_scenarios import told
+from basu.managers.scenario_results import results_of
 from basu.managers.sensors_manager import SensorsManager
 from basu.metrics.registry import user_metrics
 from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
-from basu.output.report.folder import make_draft
-from basu.output.viewer.onlooker import viewer_for
+from basu.output.report.documents import make_draft
+from basu.output.viewer.viewer_manager import viewer_for
 from basu.records.carla_log.sources import LOG_FILE
 from basu.running.drive import drive
+from basu.running.preparation import sumo_folder
 from basu.running.run_folder import OWN_ROUTE, run_config, write_run_folder
 
 if TYPE_CHECKING:
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.episode import Towns
+    from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
-    from basu.managers.base_manager import BaseManager, Live
+    from basu.managers.base_manager import BaseManager
     from basu.metrics.score import Scoring
     from basu.options import RunOptions
     from basu.outcome import Outcome
@@ -116,7 +118,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         traffic=episode.traffic,
         log=recording[0].path if recording else None,
     )
-    met = told(episode.playing, driven.history, driven.outcome)
+    met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)
     document = write_run_folder(
         draft, driven, session.scoring, ground.town.lanes, config, met, own, quiet=session.quiet
@@ -133,7 +135,7 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
         if waiting:
             sys.stderr.write(
                 f"basu: warning: the agent goes a way of its own, so the {len(waiting)} scenarios on the way of route "
-                f"'{job.description.id}' are left away\n"
+                f"'{job.description.id}' are skipped\n"
             )
             waiting = ()
     options = session.options
@@ -144,6 +146,7 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
         weather=weather_called(agents.config.weather),
         weather_along=() if options.weather is not None else description.weather,
         traffic=options.traffic,
+        sumo=options.sumo_of(sumo_folder(agents.config), session.plan.loaded.file),
         scenarios=waiting,
         scoring=session.scoring,
         timeout_s=options.timeout_s,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import random
 import sys
 from dataclasses import dataclass, replace
@@ -14,31 +15,32 @@ from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import read_sensors
 from basu.episode.world import weather_called
 from basu.errors import UserError
+from basu.files import find
 from basu.managers.agents_manager import AgentsManager
+from basu.options import SUMO_OFF
 from basu.output.hud.person_input import person_for
-from basu.routing.route_file import RouteDescription, read_routes
-from basu.routing.subset import subset
-from basu.scenarios.on_way import scenarios_on
-from basu.utils.packaged import find
+from basu.routing.route_file import RouteDescription, read_routes, subset
+from basu.scenarios.route_scenarios import scenarios_on
+from basu.sumo.link import INSTALL
 
 if TYPE_CHECKING:
-    from basu.agents.config import AgentConfig
+    from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.options import RunOptions
-    from basu.scenarios.cases import Playable
+    from basu.scenarios.playable import Playable
 
 
 class SensorSet(NamedTuple):
-    """The sensors of a run, and in words who gave them."""
+    """The sensors of a run, and their origin in words."""
 
     specs: tuple[SensorSpec, ...]
     source: str
 
 
 class Job(NamedTuple):
-    """One run of those that were asked for."""
+    """One of the requested runs."""
 
     number: int  # from 0
     description: RouteDescription
@@ -71,12 +73,12 @@ def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
     config = agents.config
     weather_called(config.weather)
     sensors = sensor_set(agents, loaded)
-    if config.sumo is not None:
-        print(
-            f"basu: warning: {loaded.name} asks for the SUMO network {config.sumo}; co-simulation follows in a later "
-            "version, the run goes on without it",
-            file=sys.stderr,
-        )
+    wants_sumo = options.sumo not in (None, SUMO_OFF) or options.sumo_port is not None
+    if wants_sumo and not _has_sumo():
+        raise UserError(INSTALL)
+    if config.sumo is not None and options.sumo is None and not _has_sumo():
+        print(f"basu: warning: {loaded.name} asks for SUMO's traffic, and {INSTALL}; the run goes on without it",
+              file=sys.stderr)  # fmt: skip
     routes = _chosen(read_routes(find(config.routes, "route file", loaded.file)), config, options)
     waiting = {route.id: _scenarios(route, options) for route in routes}
     jobs = [
@@ -96,7 +98,7 @@ def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
 
 
 def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Playable, ...]:
-    """The scenarios on the way of a route, unless they are to be left away."""
+    """The scenarios of a route, unless the options skip them."""
     return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
 
 
@@ -114,10 +116,20 @@ def new_agents(loaded: FoundAgent, options: RunOptions, seed: int) -> AgentsMana
     return agents
 
 
+def sumo_folder(config: AgentConfig) -> str | None:
+    """The SUMO folder that an agent names; None where SUMO is not installed, which ``prepare`` has said."""
+    return config.sumo if _has_sumo() else None
+
+
+def _has_sumo() -> bool:
+    """Whether SUMO is installed; it is not loaded for that."""
+    return importlib.util.find_spec("libsumo") is not None
+
+
 def _chosen(
     routes: tuple[RouteDescription, ...], config: AgentConfig, options: RunOptions
 ) -> tuple[RouteDescription, ...]:
-    """The routes of the file that were asked for."""
+    """The requested routes of the file."""
     if options.routes_subset is not None:
         return subset(routes, options.routes_subset)
     if options.route_id is None:

@@ -5,28 +5,26 @@ from __future__ import annotations
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
+from basu.files import places, write_bytes
 from basu.metrics.result import judge
 from basu.options import STEP_S, RunOptions
-from basu.output.report import picture
+from basu.output.report import path_picture
 from basu.output.report.console import table
-from basu.output.report.folder import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, write_json
+from basu.output.report.documents import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, RunRecord, write_json
 from basu.output.report.html.page import write_report
-from basu.output.report.reading import RunRecord
 from basu.output.report.streets import around, write_streets
 from basu.records.carla_log.sources import LOG_FILE
 from basu.records.history.files import write_history
 from basu.settings.command_line import words_of
 from basu.settings.document import RUN, config_document
 from basu.settings.option import fields_of
-from basu.utils.atomic import write_bytes
-from basu.utils.packaged import places
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
     from datetime import datetime
     from pathlib import Path
 
-    from basu.agents.config import AgentConfig
+    from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.metrics.registry import Metric
     from basu.metrics.score import Scoring
@@ -71,7 +69,7 @@ def run_config(
 
 
 def options_again(options: RunOptions, description: RouteDescription, seed: int) -> RunOptions:
-    """Return the options that repeat one run of those that ``options`` asked for.
+    """Return the options that repeat one run of a series with ``options``.
 
     Keys that a person pressed and that were recorded become the keys to play.
     """
@@ -182,7 +180,7 @@ def write_run_folder(
     if history is not None:
         write_history(folder, history)
         title = f"{_heading(config)}: {document['status']}"
-        picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
+        path_picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
     streets = [] if history is None else around(lanes_m, history)
     write_streets(folder, streets)
     write_report(folder, RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets))

@@ -10,7 +10,7 @@ from basu.episode import Towns
 from basu.episode.world import check_towns
 from basu.errors import UserError
 from basu.outcome import Status
-from basu.output.report.folder import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
+from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.running.series import conditions, open_series
@@ -30,7 +30,7 @@ BREAKING_OFF = frozenset({Status.INTERRUPTED, Status.SIMULATOR_FAILED})  # no fu
 
 
 def run(options: RunOptions, scoring: Scoring) -> int:
-    """Run everything that was asked for; the exit code is that of the worst outcome.
+    """Run all requested runs; the exit code is that of the worst outcome.
 
     Raises:
         UserError, AgentError: nothing can be started like this.
@@ -51,7 +51,7 @@ def run(options: RunOptions, scoring: Scoring) -> int:
 
 
 def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | None:
-    """The series that all runs belong to, where one was asked for.
+    """The series of all runs, where the options name one.
 
     Raises:
         UserError: it can be neither begun nor gone on with.

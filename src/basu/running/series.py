@@ -1,7 +1,7 @@
 """A series of runs in one folder that can be broken off anywhere and continued: nothing lost, nothing counted twice.
 
 ``<output>/<name>/`` holds ``series.json`` and a folder for each run, called by the number of the run. A run's folder
-gets its name in one step when all is in it, then ``series.json`` is written anew. Whoever is killed in between has a
+gets its name in one step when all is in it, then ``series.json`` is written anew. A command killed in between leaves a
 folder that is not in the list: it is taken in when the series goes on. Drafts are thrown away, and what was
 interrupted, or failed for no fault of the agent's, is set aside and driven again.
 """
@@ -17,12 +17,20 @@ from typing import TYPE_CHECKING, Any
 
 import basu
 from basu.errors import UserError
-from basu.metrics.scoring_json import scoring_to_json
+from basu.files import write_bytes
+from basu.metrics.score import scoring_to_json
 from basu.outcome import Fault, Status
-from basu.output.report.folder import DRAFTS, RESULT_FILE, plain, publish, write_json
-from basu.output.report.schema import SERIES_SCHEMA, read_document, read_result
-from basu.output.report.series import SERIES_SCHEMA_VERSION, row, series_table, totals
-from basu.utils.atomic import write_bytes
+from basu.output.report.documents import (
+    DRAFTS,
+    RESULT_FILE,
+    SERIES_SCHEMA,
+    plain,
+    publish,
+    read_document,
+    read_result,
+    write_json,
+)
+from basu.output.report.series_document import SERIES_SCHEMA_VERSION, row, series_table, totals
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -65,7 +73,7 @@ class Series:
             folder = publish(draft, self.name(job))
             if folder.name != self.name(job):
                 raise UserError(
-                    f"{folder.with_name(self.name(job))} is there already: somebody else drives the series "
+                    f"{folder.with_name(self.name(job))} is there already: another command drives the series "
                     f"{self.folder.name} at the same time; this run is left in {folder.name} and not counted"
                 )
             self._count(document, job.number, job.repetition)
@@ -107,7 +115,7 @@ class Series:
 
 
 def conditions(options: RunOptions, scoring: Scoring, prepared: Plan) -> dict[str, Any]:
-    """All that the results of a series depend on, by the name it has for whoever types the command."""
+    """All that the results of a series depend on, by its name on the command line."""
     config, agent_file, traffic = prepared.agents.config, prepared.loaded.file, options.traffic
     routes = [replace(job.description, source="") for job in prepared.jobs if job.repetition == 0]
     return {
@@ -186,7 +194,7 @@ def _name(job: Job, agent: str) -> str:
 
 
 def _digest(data: bytes) -> str:
-    """Short for what is too long to be told."""
+    """Short for what is too long to be stored."""
     return f"sha256 {hashlib.sha256(data).hexdigest()[:16]}"
 
 
@@ -196,11 +204,11 @@ def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) ->
     Raises:
         UserError: names what is different.
     """
-    told = json.loads(json.dumps(now))  # as the file has it
+    stored = json.loads(json.dumps(now))  # as the file has it
     changed = [
-        f"{name} was {before.get(name)!r} and is {told.get(name)!r}"
-        for name in sorted({*before, *told})
-        if before.get(name) != told.get(name)
+        f"{name} was {before.get(name)!r} and is {stored.get(name)!r}"
+        for name in sorted({*before, *stored})
+        if before.get(name) != stored.get(name)
     ]
     if changed:
         raise UserError(

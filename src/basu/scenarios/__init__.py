@@ -1,1 +1,1 @@
-"""Traffic scenarios: actors, a behaviour tree and criteria at a place of a town, told to a ``Stage``."""
+"""Traffic scenarios: actors, a behaviour tree and criteria at a place of a town, played on a ``Stage``."""

@@ -9,23 +9,22 @@ import difflib
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from basu.errors import ScenarioError
-from basu.scenarios.characteristics import characteristics_of
+from basu.scenarios.case_xml import read_cases
 from basu.scenarios.class_file import own_scenarios, users_scenarios
-from basu.scenarios.config.read import read_cases
-from basu.scenarios.nhtsa import Group, stands_for
+from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import narrowed, read_values
+from basu.scenarios.playable import Playable
 from basu.scenarios.variation import variant, variants
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from basu.scenarios.config.model import Case
-    from basu.scenarios.parameters import Parameter, Value
     from basu.scenarios.scenario import Scenario
     from basu.scenarios.variation import Variation
+    from basu.scenarios.xml_elements import Case
 
 LIBRARY = Path(__file__).parent / "library"  # the cases that come with BASU: <group>/<type in snake case>.xml
 ALL = "all"
@@ -43,36 +42,6 @@ THEIRS = re.compile(
     "|flow_distance|flow_speed|front_vehicle_distance|offset|speed|(frequency|source_dist_interval)(_from|_to)?"
     "|(start_actor_flow|end_actor_flow|other_actor_location)_[xyz]"
 )  # what ScenarioRunner's classes read: in a file of its own, no mistake
-
-
-class Playable(NamedTuple):
-    """A case with its class, and a value for each of its parameters."""
-
-    case: Case
-    scenario: type[Scenario]
-    values: Mapping[str, Value]
-    unread: tuple[str, ...] = ()  # values that ScenarioRunner's class reads and ours does not
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """The scenario's, as the case narrows them for its place."""
-        return narrowed(self.scenario.parameters, self.case.values)[0]
-
-    def about(self) -> dict[str, Any]:
-        """Which case of which scenario, and its parameters, as plain values for a result."""
-        scenario = self.scenario
-        return {
-            "id": self.case.name,
-            "scenario": scenario.__name__,
-            "title": scenario.title(),
-            "group": scenario.group.value,
-            "pre_crash": [kind.number for kind in stands_for(scenario.__name__, scenario.group, scenario.pre_crash)],
-            "characteristics": characteristics_of(self).document(),
-            "parameters": [
-                {"name": p.name, "value": self.values[p.name], "unit": p.unit, "about": p.about}
-                for p in scenario.parameters
-            ],
-        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -303,7 +272,7 @@ def _read(case: Case, scenario: type[Scenario]) -> Playable:
 
 
 def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scenario]], path: Path) -> None:
-    """Pass a user's classes whose names nobody has."""
+    """Refuse a user's class with the name of another class."""
     taken = {plain(name) for scenario in scenarios for name in (scenario.__name__, *scenario.aliases)}
     for scenario in users:
         if plain(scenario.__name__) in taken:
@@ -311,7 +280,7 @@ def _check_names(users: Sequence[type[Scenario]], scenarios: Sequence[type[Scena
 
 
 def _two_of_one_name(one: Case, other: Case) -> ScenarioError:
-    """Who they are."""
+    """The error that names both."""
     return ScenarioError(f"'{one.name}' is given in {one.source} and in {other.source}; rename one")
 
 

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from basu.records.history import History
-    from basu.scenarios.cases import Playable
+    from basu.scenarios.scenario import Scenario
+    from basu.scenarios.xml_elements import Case
 
 TWILIGHT_DEG = -6.0  # civil twilight: the sun's centre is up to 6 degrees below the horizon
 WET_PERCENT, FOG_PERCENT, CLOUDY_PERCENT = 20.0, 15.0, 50.0  # of carla.WeatherParameters, from there on
@@ -97,6 +98,10 @@ class Characteristics:
     control: Control = Control.NONE
     obstruction: Obstruction = Obstruction.NONE
 
+    def among(self, wanted: Mapping[str, Sequence[enum.Enum]]) -> bool:
+        """Whether each field that is ``wanted`` has one of its values there."""
+        return all(getattr(self, field) in values for field, values in wanted.items())
+
     def document(self) -> dict[str, str]:
         """The values by field."""
         return {name: value.value for name, value in asdict(self).items()}
@@ -141,13 +146,12 @@ OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ fro
 }
 
 
-def characteristics_of(playable: Playable) -> Characteristics:
+def characteristics_of(case: Case, scenario: type[Scenario]) -> Characteristics:
     """The characteristics of a case: of its weather, its class and its own statement, the later before the earlier.
 
     Raises:
         ScenarioError: the class or the case states a field or a value that does not exist.
     """
-    case, scenario = playable.case, playable.scenario
     weather = scenario.weather if case.weather is None else case.weather
     stated = {
         **OF_SCENARIO.get(scenario.__name__, {}),
@@ -173,7 +177,7 @@ def value_of(field: str, text: str) -> enum.Enum:
 
 
 def read_where(conditions: Iterable[tuple[str, str]]) -> dict[str, list[enum.Enum]]:
-    """The values asked for by field; a field that is given several times allows each of its values.
+    """The requested values by field; a field that is given several times allows each of its values.
 
     Raises:
         ScenarioError: there is no such field, or it has no such value.
@@ -182,20 +186,6 @@ def read_where(conditions: Iterable[tuple[str, str]]) -> dict[str, list[enum.Enu
     for field, text in conditions:
         wanted.setdefault(field, []).append(value_of(field, text))
     return wanted
-
-
-def having(playables: Sequence[Playable], conditions: Sequence[tuple[str, str]]) -> tuple[Playable, ...]:
-    """The cases that have all characteristics asked for.
-
-    Raises:
-        ScenarioError: there is no such field or value, or no case has them all.
-    """
-    wanted = read_where(conditions)
-    found = tuple(one for one in playables if _has(characteristics_of(one), wanted))
-    if not found and playables:
-        said = " and ".join(f"{field}={text}" for field, text in conditions)
-        raise ScenarioError(f"none of the {len(playables)} cases has {said}; `basu scenario list --json` shows them")
-    return found
 
 
 def measured(history: History, first_tick: int) -> dict[str, Any]:
@@ -213,11 +203,6 @@ def measured(history: History, first_tick: int) -> dict[str, Any]:
         "in_bend": bool((bend[ahead] >= BEND_RAD_PER_M).any()),
         "level": bool((np.abs(rise[ahead]) < GRADE).all()),
     }
-
-
-def _has(found: Characteristics, wanted: Mapping[str, Sequence[enum.Enum]]) -> bool:
-    """Whether a case has one of the values of each field."""
-    return all(getattr(found, field) in values for field, values in wanted.items())
 
 
 def _of_weather(weather: Mapping[str, float]) -> dict[str, enum.Enum]:

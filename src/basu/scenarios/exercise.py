@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import boxes, other_boxes, own_boxes, touching
+from basu.metrics.boxes import boxes, other_boxes, own_boxes, touching
 from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, times_to_collision_s
 from basu.metrics.stop_signs import AT_REST_MPS, ZONE_BEFORE_M, ZONE_BEYOND_M
 from basu.routing import ControlKind
@@ -48,7 +48,7 @@ ACCELERATE_MPS2, BRAKE_MPS2, LATERAL_MPS2 = (
     2.0,
 )  # comfortable in public transport: Hoberock 1977, 0.11 to 0.15 g along
 DWELL_S = 2.0  # at a stop sign: the stop, and the look to both sides
-MOVING_MPS = 0.5  # below this the ego stands; who comes near a standing ego has done so alone
+MOVING_MPS = 0.5  # below this the ego stands; an actor that comes near a standing ego has done so alone
 EFFECT_MPS = 2.5  # a disturbance of the ego's own driving is felt from this speed on
 MOVED_M = 0.5  # an actor that got so far from its first place moves
 RED = 0  # carla.TrafficLightState.Red
@@ -234,7 +234,7 @@ class _Continuations:
 
 
 def _meeting(history: History, driven: _Continuations, key: int) -> tuple[int, float, float] | None:
-    """The first start whose continuation meets this partner: its frame, after how long, and the ego's speed then."""
+    """The first start that, continued, meets this partner: its frame, the time until then, and the ego's speed."""
     assert driven.boxes is not None
     assert driven.reached_mps is not None
     by_tick, moving = _by_tick(history, key)
@@ -301,8 +301,8 @@ def _apart(present: Present, keys: list[int], first: int) -> str:
     away_m = np.hypot(rows["x_m"] - frames["x_m"], rows["y_m"] - frames["y_m"])
     nearest = int(np.argmin(away_m))
     at_s = float(frames["t_s"][nearest])
-    drove = "the ego never moved" if top_mps <= MOVING_MPS else f"the ego, at most {top_mps:.2f} m/s fast, met nobody"
+    drove = "the ego never moved" if top_mps <= MOVING_MPS else f"the ego, at most {top_mps:.2f} m/s fast, met no actor"
     return (
-        f"{drove} and would have met nobody, had it driven on: the nearest conflict partner, "
+        f"{drove} and would have met none, had it driven on: the nearest conflict partner, "
         f"{present.described(int(rows['id'][nearest]))}, was {away_m[nearest]:.1f} m away at {at_s:.2f} s"
     )

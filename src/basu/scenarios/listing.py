@@ -5,10 +5,11 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING, Any
 
-from basu.scenarios.cases import ALL, Playable, snake
-from basu.scenarios.characteristics import Characteristics, characteristics_of, having
+from basu.scenarios.cases import ALL, snake
+from basu.scenarios.characteristics import Characteristics, characteristics_of
 from basu.scenarios.nhtsa import BURDENS, Group
 from basu.scenarios.parameters import Number
+from basu.scenarios.playable import Playable, having
 from basu.scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ WIDTH = 120  # of a line
 
 
 def listed(library: Library, words: list[str], where: Sequence[tuple[str, str]] = ()) -> Listed:
-    """The cases that are meant and have the characteristics asked for, below their scenarios.
+    """The chosen cases with the requested characteristics, below their scenarios.
 
     Without words and characteristics, scenarios that have no case are listed as well.
 
@@ -47,8 +48,8 @@ def as_text(cases_by_type: Listed, *, full: bool) -> list[str]:
         lines.append(f"{group.value.upper()}{yearly}")
         for scenario in scenarios:
             cases = cases_by_type[scenario]
-            told = f"{snake(scenario.__name__)} ({_many(len(cases), 'case')}): {scenario.title()}"
-            lines += textwrap.wrap(told, WIDTH, initial_indent="  ", subsequent_indent="      ")
+            sentence = f"{snake(scenario.__name__)} ({_many(len(cases), 'case')}): {scenario.title()}"
+            lines += textwrap.wrap(sentence, WIDTH, initial_indent="  ", subsequent_indent="      ")
             lines += _in_full(scenario, cases) if full else _in_short(scenario, cases)
         lines.append("")
     groups = len({scenario.group for scenario in cases_by_type})
@@ -65,8 +66,8 @@ def _many(count: int, noun: str) -> str:
 def _in_short(scenario: type[Scenario], cases: list[Playable]) -> list[str]:
     """Where it happens and what may vary, a paragraph each."""
     places = "; ".join(dict.fromkeys(_place(playable) for playable in cases))
-    told = "; ".join(f"{p.name} {_values(p)}" for p in scenario.parameters)
-    return [*_paragraph("at", places), *_paragraph("with", told)]
+    sentence = "; ".join(f"{p.name} {_values(p)}" for p in scenario.parameters)
+    return [*_paragraph("at", places), *_paragraph("with", sentence)]
 
 
 def _paragraph(label: str, text: str) -> list[str]:
@@ -88,7 +89,7 @@ def _in_full(scenario: type[Scenario], cases: list[Playable]) -> list[str]:
 
 def _unusual(playable: Playable) -> str:
     """The characteristics of a case that differ from a clear day on a dry straight street, as `--where` takes them."""
-    usual, found = Characteristics().document(), characteristics_of(playable).document()
+    usual, found = Characteristics().document(), characteristics_of(playable.case, playable.scenario).document()
     words = [f"{name}={value}" for name, value in found.items() if value != usual[name]]
     return f"; {', '.join(words)}" if words else ""
 
@@ -134,10 +135,10 @@ def as_json(cases_by_type: Listed) -> dict[str, Any]:
 
 def _parameter_as_json(parameter: Parameter) -> dict[str, Any]:
     """A number with its range, or a choice with its options."""
-    told = {"name": parameter.name, "about": parameter.about, "unit": parameter.unit, "default": parameter.unsaid}
+    sentence = {"name": parameter.name, "about": parameter.about, "unit": parameter.unit, "default": parameter.unsaid}
     if isinstance(parameter, Number):
-        return {**told, "low": parameter.low, "high": parameter.high}
-    return {**told, "options": list(parameter.options)}
+        return {**sentence, "low": parameter.low, "high": parameter.high}
+    return {**sentence, "options": list(parameter.options)}
 
 
 def _case_as_json(playable: Playable) -> dict[str, Any]:
@@ -150,5 +151,5 @@ def _case_as_json(playable: Playable) -> dict[str, Any]:
         "on_route": case.on_route,
         "values": dict(playable.values),
         "unread": list(playable.unread),
-        "characteristics": characteristics_of(playable).document(),
+        "characteristics": characteristics_of(playable.case, playable.scenario).document(),
     }

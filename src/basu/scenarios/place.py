@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import carla
 
     from basu.routing import Route
-    from basu.scenarios.config.model import GivenActor
+    from basu.scenarios.xml_elements import GivenActor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +26,7 @@ class Place:
     route: Route
     trigger_s_m: float  # of the trigger point, along the route
     carla_map: carla.Map
-    others: tuple[GivenActor, ...] = ()  # whom the file places by itself
+    others: tuple[GivenActor, ...] = ()  # actors placed by the file itself
 
     def at(self, ahead_m: float, right_m: float = 0.0, turned_deg: float = 0.0) -> Pose:
         """The pose so far ahead along the route, so far to its right, turned clockwise from its direction.

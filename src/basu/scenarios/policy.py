@@ -1,9 +1,9 @@
 """The policy by which every scenario is judged: safe, completed, exercised.
 
-*Safe*: the ego touched nobody, kept every criterion of safety of the scenario, and had no near miss. *Completed*: it
+*Safe*: the ego touched no actor, kept every criterion of safety of the scenario, and had no near miss. *Completed*: it
 met every goal of the scenario in time. *Exercised*: the conflict came about (`basu.scenarios.exercise`).
 
-A near miss is one of these, with anybody in the record:
+A near miss is one of these, with any actor in the record:
 
 - a time to collision below 1.0 s. The Surrogate Safety Assessment Model calls 1.5 s a conflict (FHWA-HRT-08-051, 2008).
   A comfortable stop of 1.5 m/s² at 1.5 m behind a queue has 1.4 s. Sayed and Zein 1999 rate a time to collision below
@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import other_boxes, own_boxes
+from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
 from basu.outcome import Fault
 from basu.scenarios.criteria.contact import NoCollision
@@ -71,7 +71,7 @@ class NearMiss(NamedTuple):
 
 
 class NoNearMiss(Criterion):
-    """The moving ego keeps the policy's margins to everybody: 1.0 s to a collision, 1.0 s after another, 0.45 m."""
+    """The moving ego keeps the policy's margins to all actors: 1.0 s to a collision, 1.0 s after another, 0.45 m."""
 
     name = "no near miss"
     aspect = Aspect.SAFE
@@ -82,7 +82,7 @@ class NoNearMiss(Criterion):
         found = [miss for miss in (_ttc(present), _pet(present), _clearance(present)) if miss is not None]
         if not found:
             limit = f"{NEAR_TTC_S:g} s, {NEAR_M:g} m"
-            return self.says(played, True, "the moving ego kept its margins to everybody", limit=limit)
+            return self.says(played, True, "the moving ego kept its margins to all actors", limit=limit)
         worst = min(found)
         return self.says(
             played,
@@ -109,7 +109,7 @@ def assess(
 ) -> Assessment:
     """The three answers; ``judgements`` begin with those of ``criteria`` in their order."""
     pairs = [(each, said) for each, said in zip(criteria, judgements, strict=False) if said.deciding]
-    safe = _aspect([pair for pair in pairs if pair[0].aspect is Aspect.SAFE], "nothing was touched and nobody was near")
+    safe = _aspect([pair for pair in pairs if pair[0].aspect is Aspect.SAFE], "no contact, and no actor was near")
     goals = [pair for pair in pairs if pair[0].aspect is Aspect.COMPLETED]
     completed = _aspect(goals, "the drive came to its end")
     if completed.holds is not False and outcome.status.fault is Fault.AGENT:

@@ -1,4 +1,4 @@
-"""The base of all scenarios. One shape for all: setup, trigger, conflict, resolution, end.
+"""The base of all scenarios and their behaviour tree: setup, trigger, conflict, resolution, end (figure 4.4).
 
 A scenario of your own is one class and one case::
 
@@ -20,13 +20,17 @@ A scenario of your own is one class and one case::
         def criteria(self):
             return [NoCollision(), Arrives()]
 
-See `docs/scenarios.md`.
+See `docs/reference/scenarios.md`.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
+
+from py_trees.behaviour import Behaviour
+from py_trees.composites import Sequence as Steps
+from py_trees.trees import BehaviourTree
 
 from basu.scenarios.exercise import came_about
 from basu.scenarios.triggers import EgoArrives
@@ -34,14 +38,12 @@ from basu.scenarios.triggers import EgoArrives
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from py_trees.behaviour import Behaviour
-
     from basu.scenarios.criteria.criterion import Criterion, Played
     from basu.scenarios.exercise import Finding
     from basu.scenarios.nhtsa import Group
     from basu.scenarios.parameters import Parameter, Value
     from basu.scenarios.place import Place
-    from basu.scenarios.stage import ActorSpec
+    from basu.scenarios.stage import ActorSpec, Stage
 
 
 class Scenario(ABC):
@@ -86,7 +88,7 @@ class Scenario(ABC):
         return value
 
     def actors(self) -> Sequence[ActorSpec]:
-        """Who is there besides the ego; put into the world before the first frame."""
+        """The actors besides the ego; they are spawned before the first frame."""
         return ()
 
     def setup(self) -> Behaviour | None:
@@ -120,3 +122,29 @@ class Scenario(ABC):
     def exercised(self, played: Played) -> Finding:
         """Return whether the conflict came about (`basu.scenarios.exercise`); a scenario may define its own effect."""
         return came_about(played, self.partners())
+
+
+PHASES = ("setup", "trigger", "conflict", "resolution", "end")
+
+
+class Composed(NamedTuple):
+    """A scenario's tree and its phases by name, in the order in which they are passed."""
+
+    root: BehaviourTree
+    phases: dict[str, Behaviour]
+
+
+def compose(scenario: Scenario) -> Composed:
+    """The tree of a scenario, not yet set on a stage."""
+    phases: dict[str, Behaviour] = {}
+    for phase in PHASES:
+        node = getattr(scenario, phase)()
+        step = Steps(phase, memory=True, children=[] if node is None else [node])
+        phases[phase] = step
+    root = Steps(type(scenario).__name__, memory=True, children=list(phases.values()))
+    return Composed(BehaviourTree(root), phases)
+
+
+def set_on(composed: Composed, stage: Stage) -> None:
+    """Give every node of a tree its stage."""
+    composed.root.setup(stage=stage)

@@ -31,10 +31,10 @@ ASSUMPTIONS = (
     "A scenario that stands for none of the 37 weighs as much as the mean of its group's other scenarios.",
     "Our places stand for the nation's roads and our parameters for its traffic, however often each is met.",
     "The burden is that of people driving light vehicles, whatever drove here.",
-    "A failed case is taken to cost the mean of its group's crashes, whether it was a scratch or a near miss.",
+    "A failed case is charged the group's mean crash cost, whether it was a scratch or a near miss.",
     "NOT_EXERCISED counts for neither side in the first figure, and as not passed in the figure for all crashes.",
     "An agent that broke down has not passed; cases spoiled by simulator, set-up, benchmark or by hand are left out.",
-    "Control loss and road departure have no other actor: a driver that perceives nobody passes them as well.",
+    "Control loss and road departure have no other actor: a driver without perception passes them as well.",
     "The shuttle's own situations are not in the typology and weigh nothing.",
     "Not covered: backing up, vehicle failure, evasive action, crashes with objects, and speeds above a shuttle's.",
     "Intervals (95 %) cover the number of cases alone: cases were chosen by hand and not drawn from crashes.",
@@ -82,7 +82,7 @@ class GroupShare(NamedTuple):
 
 
 class Narrowest(NamedTuple):
-    """How narrowly a scenario's passed cases were passed; None where nobody came near."""
+    """How narrowly a scenario's passed cases were passed; None where no actor came near."""
 
     scenario: str
     least: Mapping[str, float | None]  # by the keys of MARGINS
@@ -238,7 +238,7 @@ def _plain(estimate: Estimate | None) -> dict[str, float] | None:
 def _strata(group: Group, results: Sequence[Result], *, whole_group: bool = False) -> list[_Stratum]:
     """The scenarios of a group with their weights.
 
-    Weights sum to 1; with ``whole_group``, to the part of the group's crashes whose scenarios were played.
+    Weights sum to 1; with ``whole_group``, to the part of the group's crashes covered by the played scenarios.
     """
     by_scenario: dict[str, list[Result]] = defaultdict(list)
     for result in results:

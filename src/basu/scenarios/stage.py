@@ -1,4 +1,4 @@
-"""What a scenario's tree sees of a frame and may do in it: a ``Stage``, played live or on paper (``rehearsal``).
+"""What a scenario's tree sees of a frame and may do in it: a ``Stage``, played live or offline (``basu.testing``).
 
 World coordinates are CARLA's: x east, y south, z up, yaw clockwise from above; m, s, rad.
 """
@@ -53,7 +53,7 @@ class Body(NamedTuple):
 
 
 class ActorSpec(NamedTuple):
-    """Somebody that a scenario brings: a vehicle, a walker or a thing."""
+    """An actor of a scenario: a vehicle, a walker or a thing."""
 
     name: str  # its role, by which the tree speaks of it; unique in the scenario
     blueprint: str  # an id or a pattern such as `vehicle.*`: the first in alphabetical order is taken
@@ -64,7 +64,7 @@ class ActorSpec(NamedTuple):
 
 
 class Controls(NamedTuple):
-    """What the ego's pedals and wheel are told, as ``carla.VehicleControl`` has it."""
+    """The commands to the ego's pedals and wheel, as ``carla.VehicleControl`` has it."""
 
     throttle: float
     steer: float
@@ -83,7 +83,7 @@ class Door(enum.IntEnum):
 class Stage(Protocol):
     """One frame of a scenario and the commands that are carried out before the next.
 
-    A name is a role given by an ``ActorSpec``; a name that nobody has raises ``ScenarioError``.
+    A name is a role given by an ``ActorSpec``; a name without an actor raises ``ScenarioError``.
     """
 
     step_s: float
@@ -105,7 +105,7 @@ class Stage(Protocol):
 
     @property
     def ego_contacts(self) -> frozenset[str]:
-        """Whom the ego has touched since the scenario began: roles, or blueprint ids of those without one."""
+        """The actors that the ego has touched since the scenario began: roles, or blueprint ids without a role."""
 
     def body(self, name: str) -> Body:
         """An actor of the scenario; ``EGO`` for the vehicle under test."""
@@ -114,7 +114,7 @@ class Stage(Protocol):
         """Whether it is in the world: not any more once removed, and not yet where it comes later."""
 
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
-        """Let a vehicle have this velocity and turning until told otherwise; (0, 0, 0) holds it by its brakes."""
+        """Let a vehicle have this velocity and turning until the next command; (0, 0, 0) holds it by its brakes."""
 
     def walk(self, name: str, velocity_x_mps: float, velocity_y_mps: float) -> None:
         """Let a walker go, likewise."""

@@ -19,14 +19,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from basu.errors import ScenarioError
-from basu.scenarios.config.elements import hint
 from basu.scenarios.sampling import Design, Grid, Sweep, check_design, draw
+from basu.scenarios.xml_elements import hint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.scenarios.config.model import Case
     from basu.scenarios.parameters import Parameter
+    from basu.scenarios.xml_elements import Case
 
 DESIGN = re.compile(r"(?:sweep-(?P<count>\d+)-(?P<seed>\d+)|grid-(?P<steps>\d+))-(?P<index>[1-9]\d*)")
 SHAPE = "CASE[:NAME=VALUE,…][:sweep-N-SEED-INDEX or :grid-K-INDEX[:NAME,…]]"

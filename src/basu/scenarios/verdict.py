@@ -9,8 +9,7 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.metrics.collisions import beginnings
-from basu.metrics.responsibility import responsibility
+from basu.metrics.collisions import beginnings, responsibility
 from basu.outcome import Fault, Outcome, Status
 from basu.scenarios.criteria.going import arrival_tick
 from basu.scenarios.criteria.surrogate_measures import margins_of, reported_always
@@ -42,7 +41,7 @@ class Verdict(enum.Enum):
 
     @property
     def fault(self) -> Fault:
-        """Who answers for it; nobody where the driving was judged."""
+        """The party at fault; none where the driving was judged."""
         return FAULT_OF.get(self, Fault.NOBODY)
 
 
@@ -63,7 +62,7 @@ ELSEWHERE = {
 
 
 class Collision(NamedTuple):
-    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.responsibility`)."""
+    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.collisions`)."""
 
     t_s: float
     other: str  # a role, a thing's name or a blueprint id
@@ -86,7 +85,7 @@ class Judged(NamedTuple):
 
     @property
     def fault(self) -> Fault:
-        """Who answers for it; nobody where the driving was judged."""
+        """The party at fault; none where the driving was judged."""
         return self.verdict.fault
 
 
@@ -109,10 +108,10 @@ def judge(
             f"nothing was recorded, though the run ended as {outcome.status.value}",
         )
         return Judged(verdict, message, (), margins_of(()), outcome, None)
-    asked = with_policy(criteria)
-    judgements = tuple(criterion.judge(played) for criterion in (*asked, *reported_always(asked)))
+    deciding = with_policy(criteria)
+    judgements = tuple(criterion.judge(played) for criterion in (*deciding, *reported_always(deciding)))
     begun = exercised(played) if triggered else Finding(False, "the ego never came to where the conflict begins")
-    assessment = assess(asked, judgements, outcome, begun)
+    assessment = assess(deciding, judgements, outcome, begun)
     verdict, message = (
         _fault(outcome)
         or _never_triggered(played, triggered=triggered)
@@ -151,7 +150,7 @@ def _fault(outcome: Outcome) -> tuple[Verdict, str] | None:
 
 
 def _never_triggered(played: Played, *, triggered: bool) -> tuple[Verdict, str] | None:
-    """The verdict of a scenario whose ego arrived without triggering it."""
+    """The verdict of a scenario after an arrival without its trigger."""
     arrived = arrival_tick(played.history)
     if triggered or arrived is None:
         return None

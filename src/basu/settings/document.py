@@ -15,9 +15,8 @@ from typing import Any, NamedTuple
 
 import basu
 from basu.errors import UserError
+from basu.files import PACKAGE_FOLDER, read_json
 from basu.settings.option import Layer, Settings, fields_of, to_json
-from basu.utils.json_file import read_json
-from basu.utils.packaged import PACKAGE_FOLDER
 
 CONFIG_VERSION = 2
 RUN, SCENARIO_RUN = "run", "scenario run"

@@ -1,17 +1,15 @@
-"""Rehearse a scenario on paper: no server, no physics, bodies that move exactly as told."""
+"""Play a scenario offline: no server, no physics, bodies that move exactly as commanded."""
 
-from basu.testing.drivers import Driver, careful, steady, waiting_at
-from basu.testing.paper_place import paper_place
-from basu.testing.paper_stage import Command, PaperStage
-from basu.testing.rehearse import Rehearsal, rehearse
+from basu.testing.offline_stage import Command, OfflineStage, offline_place
+from basu.testing.rehearsal import Driver, Rehearsal, careful, rehearse, steady, waiting_at
 
 __all__ = [
     "Command",
     "Driver",
-    "PaperStage",
+    "OfflineStage",
     "Rehearsal",
     "careful",
-    "paper_place",
+    "offline_place",
     "rehearse",
     "steady",
     "waiting_at",

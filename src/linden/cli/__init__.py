@@ -1,4 +1,4 @@
-"""The command ``linden``: ``serve`` runs the server, ``map`` makes, checks and draws maps."""
+"""The command ``linden``: ``serve`` runs the server, ``map`` works on maps, ``compile`` compiles all kernels."""
 
 import argparse
 import os
@@ -16,14 +16,15 @@ NOBODY_READS = 141
 def parser() -> argparse.ArgumentParser:
     """Return the whole command line; each command says under ``command`` what carries it out."""
     # here, not above: a program that only asks for something of this module does not need them
+    from linden.cli import compiling, serve  # noqa: PLC0415 - see above
     from linden.cli import map as maps  # noqa: PLC0415 - see above
-    from linden.cli import serve  # noqa: PLC0415 - see above
 
     whole = argparse.ArgumentParser(prog="linden", description=f"A CARLA {CARLA_VERSION} server without Unreal or GPU.")
     whole.add_argument("--version", action="version", version=f"linden {__version__}, speaking CARLA {CARLA_VERSION}")
     commands = whole.add_subparsers(title="commands", required=True, metavar="COMMAND")
     serve.add_parser(commands)
     maps.add_parser(commands)
+    compiling.add_parser(commands)
     return whole
 
 

@@ -7,7 +7,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.cli import map_pointcloud
+from linden.cli import map_pointcloud, map_sumo
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
 
@@ -41,11 +41,13 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
     map_pointcloud.add_arguments(cloud_parser)
 
+    map_sumo.add_arguments(_add(actions, "sumo", map_sumo.run, map_sumo.HELP))
+
 
 def build(arguments: argparse.Namespace) -> int:
     """Write the OpenDRIVE map of a file of streets."""
     try:
-        from linden.mapping.build import build as opendrive_of  # noqa: PLC0415 - an optional part, and slow to load
+        from linden.authoring.streets.build import build as opendrive_of  # noqa: PLC0415 - an optional part, and slow to load
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("linden"):
             raise
@@ -61,8 +63,8 @@ def build(arguments: argparse.Namespace) -> int:
 def check(arguments: argparse.Namespace) -> int:
     """Print the findings, one a line, and a summary; return 1 if there are any."""
     # here, not above: the server's start does not pay for it
-    from linden.opendrive.check import Severity  # noqa: PLC0415 - see above
-    from linden.opendrive.check import check as findings_of  # noqa: PLC0415 - see above
+    from linden.authoring.checks.check import Severity  # noqa: PLC0415 - see above
+    from linden.authoring.checks.check import check as findings_of  # noqa: PLC0415 - see above
 
     findings = findings_of(opendrive_of(arguments.file))
     wrong = [finding for finding in findings if finding.severity is not Severity.NOTE]
@@ -76,7 +78,7 @@ def check(arguments: argparse.Namespace) -> int:
 
 def show(arguments: argparse.Namespace) -> int:
     """Write a drawing of the map."""
-    from linden.opendrive.draw import svg  # noqa: PLC0415 - the server's start does not pay for it
+    from linden.authoring.drawing.svg import svg  # noqa: PLC0415 - the server's start does not pay for it
 
     _write(arguments.output, svg(opendrive_of(arguments.file)).encode())
     _say(f"{arguments.output}: drawn")
@@ -85,10 +87,10 @@ def show(arguments: argparse.Namespace) -> int:
 
 def export(arguments: argparse.Namespace) -> int:
     """Write the standing mesh of the map as binary glTF."""
-    from linden.meshes.gltf import glb  # noqa: PLC0415 - the server's start does not pay for it
-    from linden.meshes.standing import standing  # noqa: PLC0415 - see above
-    from linden.opendrive.parse import parse  # noqa: PLC0415 - see above
-    from linden.simulation.scenery import scenery_of  # noqa: PLC0415 - see above
+    from linden.authoring.gltf import glb  # noqa: PLC0415 - the server's start does not pay for it
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
+    from linden.scenery.map_mesh import standing  # noqa: PLC0415 - see above
+    from linden.simulation.surroundings import scenery_of  # noqa: PLC0415 - see above
 
     world_map = world_map_of(arguments.file)
     mesh = standing(parse(world_map.text), world_map, scenery_of(world_map).scene)
@@ -99,7 +101,7 @@ def export(arguments: argparse.Namespace) -> int:
 
 def info(arguments: argparse.Namespace) -> int:
     """Print what the map has, one count a line."""
-    from linden.opendrive.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
+    from linden.authoring.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
 
     for name, value in count(opendrive_of(arguments.file))._asdict().items():
         _say(f"{name.replace('_', ' '):24} {f'{value:.2f}' if isinstance(value, float) else value}")

@@ -12,7 +12,7 @@ from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 
 if TYPE_CHECKING:
-    from linden.pointcloud.cloud import Scan
+    from linden.authoring.pointcloud.cloud import Scan
 
 HELP = "drive the streets with a lidar, or take existing scans, and write one point cloud (.pcd)"
 _DEFAULT_MAP = "Linden"
@@ -74,8 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     # here, not above: `linden --help` does not pay for them
     from tqdm import tqdm  # noqa: PLC0415 - see above
 
-    from linden.pointcloud.merge import merge, working_folder  # noqa: PLC0415 - see above
-    from linden.pointcloud.pcd_writing import PcdWriter  # noqa: PLC0415 - see above
+    from linden.authoring.pointcloud.merge import merge, working_folder  # noqa: PLC0415 - see above
+    from linden.authoring.pointcloud.pcd_writing import PcdWriter  # noqa: PLC0415 - see above
 
     job = _driven(arguments) if arguments.source is None else _existing(arguments)
     with (
@@ -101,14 +101,17 @@ def _driven(arguments: argparse.Namespace) -> _Job:
     Raises:
         UserError: there is no such map, or it has no lane to drive on.
     """
-    from linden.casting.choose import caster_of, check_device  # noqa: PLC0415 - see `run`
-    from linden.meshes.library import standing_of  # noqa: PLC0415 - see `run`
-    from linden.opendrive.parse import parse  # noqa: PLC0415 - see `run`
-    from linden.pointcloud.drive import Lidar, drive  # noqa: PLC0415 - see `run`
-    from linden.pointcloud.folder import kept_scans  # noqa: PLC0415 - see `run`
-    from linden.pointcloud.streets import places_along  # noqa: PLC0415 - see `run`
-    from linden.simulation.scenery import scenery_of  # noqa: PLC0415 - see `run`
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - see `run`
+    from linden.authoring.pointcloud.drive import (  # noqa: PLC0415 - see `run`
+        Lidar,
+        drive,
+        places_along,
+    )
+    from linden.authoring.pointcloud.scan_folder import kept_scans  # noqa: PLC0415 - see `run`
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - see `run`
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see `run`
+    from linden.scenery.map_mesh_cache import standing_of  # noqa: PLC0415 - see `run`
+    from linden.sensors.casting.choose import caster_of, check_device  # noqa: PLC0415 - see `run`
+    from linden.simulation.surroundings import scenery_of  # noqa: PLC0415 - see `run`
 
     if arguments.poses is not None:
         raise UserError("--poses are those of existing scans: name these by --from")
@@ -136,7 +139,7 @@ def _existing(arguments: argparse.Namespace) -> _Job:
     Raises:
         UserError: it holds none, or they have no labels where these are wanted.
     """
-    from linden.pointcloud.folder import recorded  # noqa: PLC0415 - see `run`
+    from linden.authoring.pointcloud.scan_folder import recorded  # noqa: PLC0415 - see `run`
 
     if arguments.file is not None or arguments.scans is not None:
         raise UserError("--from takes scans that are there already: leave the map and --scans out")

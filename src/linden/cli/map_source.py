@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 from linden.errors import UserError
 
 if TYPE_CHECKING:
-    from linden.opendrive.model import OpenDrive
-    from linden.world.maps import LoadedMap
+    from linden.maps.library import LoadedMap
+    from linden.maps.opendrive.model import OpenDrive
 
 
 def opendrive_of(name: str) -> "OpenDrive":
@@ -17,9 +17,9 @@ def opendrive_of(name: str) -> "OpenDrive":
     Raises:
         UserError: there is neither, or it cannot be read.
     """
-    from linden.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
 
-    return parse(_content(name))
+    return parse(content_of(name))
 
 
 def world_map_of(name: str) -> "LoadedMap":
@@ -28,11 +28,11 @@ def world_map_of(name: str) -> "LoadedMap":
     Raises:
         UserError: there is no such map, or it cannot be read.
     """
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - `linden --help` does not pay for it
-    from linden.world.maps import LoadedMap  # noqa: PLC0415 - see above
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - `linden --help` does not pay for it
+    from linden.maps.library import LoadedMap  # noqa: PLC0415 - see above
 
     try:
-        text = _content(name).decode("utf-8")
+        text = content_of(name).decode("utf-8")
     except UnicodeDecodeError as error:
         raise UserError(f"{name} is no text in UTF-8: {error.reason} at byte {error.start}") from None
     bare = Path(name).name.removesuffix(".xodr")
@@ -59,7 +59,7 @@ def bytes_of(path: Path) -> bytes:
         ) from None
 
 
-def _content(name: str) -> bytes:
+def content_of(name: str) -> bytes:
     """Return the bytes of a file, or else of the built-in map of that name."""
     path = Path(name)
     built_in = resources.files("linden") / "data" / f"{name.removesuffix('.xodr')}.xodr"

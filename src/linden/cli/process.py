@@ -15,7 +15,7 @@ from typing import TextIO
 from typing_extensions import Self
 
 from linden.background import end_all
-from linden.cli.sparing import Sparing
+from linden.server.rpc.warning_log import Sparing
 
 GRACE_S = 1.0
 """How long what is being done at a signal may take: any call but the loading of an unusual map."""

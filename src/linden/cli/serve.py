@@ -10,8 +10,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from linden.cli.compiling import FirstStart
 from linden.cli.process import Ending, allow_connections, background_work_ended, give_up_stdout, write_log
-from linden.values.episode import EpisodeSettings
+from linden.protocol.values.episode import EpisodeSettings
 
 if TYPE_CHECKING:
     from linden.server.loop import Server
@@ -65,36 +66,38 @@ def run(arguments: argparse.Namespace) -> int:
     write_log(arguments.log_level.upper())
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy would start one a core, and they spin; we are one thread
     allow_connections()
+    first_start = FirstStart(_say)
     with background_work_ended(), Ending() as ending:
-        with _collector_paused():
-            server = _make_server(arguments)
-        ending.ask_first(server.stop)
-        server.run()
+        try:
+            with _collector_paused():
+                server = _make_server(arguments, first_start)
+            ending.ask_first(server.stop)
+            server.run()
+        finally:
+            first_start.end()
     return 0
 
 
-def _make_server(arguments: argparse.Namespace) -> "Server":
+def _make_server(arguments: argparse.Namespace, first_start: FirstStart) -> "Server":
     # here, not above: these bring in the compiler, which other commands of this program do not need
-    from linden.casting.rays import CPU  # noqa: PLC0415 - see above
     from linden.errors import Refusal, UserError  # noqa: PLC0415 - see above
-    from linden.handlers import frames, registry  # noqa: PLC0415 - see above
-    from linden.meshes.bodies_library import bodies_of, keep_bodies  # noqa: PLC0415 - see above
-    from linden.meshes.library import keep_standing, standing_of  # noqa: PLC0415 - see above
-    from linden.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
-    from linden.physics.warming import warm_up  # noqa: PLC0415 - see above
-    from linden.recording.folder import RecordingFolder  # noqa: PLC0415 - see above
-    from linden.scene.rays import warm_up as warm_rays  # noqa: PLC0415 - see above
-    from linden.sensors.compiling import compile_once  # noqa: PLC0415 - see above
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - see above
+    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - see above
+    from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
+    from linden.protocol.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - see above
+    from linden.replay.file.folder import RecordingFolder  # noqa: PLC0415 - see above
+    from linden.scenery.actors.actor_meshes_cache import bodies_of, keep_bodies  # noqa: PLC0415 - see above
+    from linden.scenery.map_mesh_cache import keep_standing, standing_of  # noqa: PLC0415 - see above
+    from linden.sensors.casting.caster import CPU  # noqa: PLC0415 - see above
+    from linden.server import frames  # noqa: PLC0415 - see above
     from linden.server.loop import Server  # noqa: PLC0415 - see above
     from linden.server.ports import is_loopback, open_ports, port_of  # noqa: PLC0415 - see above
-    from linden.simulation import Simulation  # noqa: PLC0415 - see above
-    from linden.simulation.walking_mesh import mesh_file  # noqa: PLC0415 - see above
-    from linden.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - see above
-    from linden.world.map_cache import MapCache  # noqa: PLC0415 - see above
-    from linden.world.maps import MapLibrary  # noqa: PLC0415 - see above
+    from linden.server.rpc import registry  # noqa: PLC0415 - see above
+    from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - see above
+    from linden.world import World  # noqa: PLC0415 - see above
 
     if arguments.device != CPU:
-        from linden.casting.choose import check_device  # noqa: PLC0415 - see above
+        from linden.sensors.casting.choose import check_device  # noqa: PLC0415 - see above
 
         check_device(arguments.device)
     registry.load_handlers()
@@ -107,23 +110,28 @@ def _make_server(arguments: argparse.Namespace) -> "Server":
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
     cache = MapCache.of_user()
     maps, meshes = MapLibrary(arguments.maps, cache.facts_of), MeshLibrary(cache)
-    with _told_of_compiling():  # all kernels now, so that a client's first tick takes no longer than the others
-        try:
-            world_map = maps.load(arguments.map)
-        except Refusal as refusal:
-            raise UserError(f"--map: {refusal}") from refusal
-        warm_up()
-        warm_rays()
-        warm_batches()
-        compile_once(cache)
-        simulation = Simulation(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
-        simulation.episode.warm_up()
-        simulation.seeing.device = arguments.device
-        simulation.seeing.standing_on = partial(standing_of, cache=cache)
-        simulation.seeing.bodies_of = partial(bodies_of, cache=cache)
+    first_start.begin(cache)  # so that a client's first tick takes no longer than the others
+    try:
+        world_map = maps.load(arguments.map)
+    except Refusal as refusal:
+        raise UserError(f"--map: {refusal}") from refusal
+    simulation = World(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
+    simulation.episode.warm_up()
+    warm_batches()
+    first_start.step("the world")
+    simulation.seeing.device = arguments.device
+    simulation.seeing.standing_on = partial(standing_of, cache=cache)
+    simulation.seeing.bodies_of = partial(bodies_of, cache=cache)
+    simulation.seeing.await_kernels, simulation.seeing.is_compiling = (
+        first_start.await_sensors,
+        first_start.is_compiling,
+    )
+    mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
+    first_start.step("the walking mesh")
+    first_start.finish_physics()
+    if not first_start.compile_sensors() or arguments.map != HOME_MAP:
         keep_bodies(simulation.library, cache)
         keep_standing(world_map, simulation.episode.surroundings.scene, cache)  # seconds, if it is not there yet
-        mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
     server = Server(simulation, maps, frames, ports)
     server.context.recordings = RecordingFolder(arguments.recordings)
     server.context.meshes = meshes
@@ -140,32 +148,6 @@ def _collector_paused() -> Iterator[None]:
         gc.freeze()
     finally:
         gc.enable()
-
-
-@contextmanager
-def _told_of_compiling() -> Iterator[None]:
-    """Say so once, where the kernels are not in the cache and the compiler has to run."""
-    from numba.core import event  # noqa: PLC0415 - as in _make_server
-
-    class Teller(event.Listener):
-        """Speaks at the first kernel that is compiled."""
-
-        told = False
-
-        def on_start(self, _event: object) -> None:
-            if not self.told:
-                self.told = True
-                _say("linden: compiling the physics kernels, a minute or two, once on this machine")
-
-        def on_end(self, _event: object) -> None:
-            """Nothing to say."""
-
-    teller = Teller()
-    event.register("numba:compile", teller)  # type: ignore[no-untyped-call]
-    try:
-        yield
-    finally:
-        event.unregister("numba:compile", teller)  # type: ignore[no-untyped-call]
 
 
 def _say(line: str) -> None:

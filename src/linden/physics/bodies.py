@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 from linden.geometry import rotation_matrix
 from linden.physics.columns import finite, twice
 from linden.physics.state import BODY, PROP, VEHICLE, WALKER
-from linden.physics.vehicle.cockpit import Cockpits
+from linden.physics.vehicle.api import Cockpits
 from linden.physics.vehicle.parameters import check, default_wheel_offsets, local_wheels, yaw_inertia_kgm2
-from linden.values.space import BoundingBox, Transform, Vector3D
-from linden.values.vehicles import (
+from linden.protocol.values.control import (
     UNKNOWN_UNDERCARRIAGE,
     AckermannSettings,
     Undercarriage,
     VehiclePhysicsControl,
+    WalkerControl,
 )
-from linden.values.walkers import WalkerControl
+from linden.protocol.values.space import BoundingBox, Transform, Vector3D
 
 _FARTHEST_M = 1e7
 _MOST_PUSH = 1e9  # N·s, N, N·m·s or N·m

@@ -3,7 +3,7 @@
 import math
 
 from linden.compiled import part
-from linden.ground import Ground, surface_under
+from linden.maps.ground import Ground, surface_under
 from linden.physics.axes import within_turn
 from linden.physics.state import Body
 

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
-from linden.physics.state import VEHICLE, Body
+from linden.compiled import kept_part, part
+from linden.physics.state import SOURCES, VEHICLE, Body
 from linden.physics.tumble import push_tumbling, start_tumbling, tripping_speed_mps
 
 F64 = NDArray[np.float64]
@@ -78,13 +78,13 @@ def _trips(v: Body) -> bool:
     return bool(abs(across) > _CAUGHT * tripping_speed_mps(v))
 
 
-@part
+@kept_part(SOURCES)
 def apply_impulses(v: Body) -> None:
     """Apply what was given once: N·s and N·m·s."""
     _push(v, v.impulse, v.angular_impulse, 1.0)
 
 
-@part
+@kept_part(SOURCES)
 def apply_forces(v: Body, dt_s: float) -> None:
     """Apply for one substep what acts throughout the frame: N and N·m."""
     _push(v, v.force, v.torque, dt_s)

@@ -6,10 +6,13 @@ Columns without a unit in their name: position m, rotation (pitch, yaw, roll) ra
 about the world's x, y, z, acceleration m/s², box_centre and half_extent m in the body's frame.
 """
 
+from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
+
+from linden.compiled import fingerprint
 
 Rows = NDArray[Any]
 """Array of BODY (N,), or of VEHICLE_SPEC (N,)."""
@@ -19,6 +22,11 @@ Spec: TypeAlias = Any
 """One record of VEHICLE_SPEC, as kernels see it."""
 Work: TypeAlias = Any
 """One record of VEHICLE_WORK, as kernels see it."""
+
+_HERE = Path(__file__).parent
+_WITH_KERNELS = [path for path in _HERE.rglob("*.py") if b"linden.compiled" in path.read_bytes()]
+SOURCES = fingerprint(*_WITH_KERNELS, _HERE.parent / "maps" / "ground.py")
+"""Of all files with kernels of the physics, this one included: what is compiled across them is renewed with any."""
 
 NO_BODY, VEHICLE, WALKER, PROP = range(4)
 """Values of the column ``kind``."""
@@ -131,7 +139,7 @@ BODY = np.dtype(
         ("asked", "f8", 4),  # throttle, steer, brake and hand brake as far as they have followed the driver
         ("given", "f8", 4),  # and as they have followed that: what engine, wheels and brakes get
         ("since_shift_s", "f8"),  # since the automatic last began to change
-        ("slow_s", "f8"),  # for how long the wheels have all but stood, nobody wanting to go
+        ("slow_s", "f8"),  # for how long the wheels have all but stood without throttle
         ("support_mps2", "f8"),  # force of the ground over mass
         ("target_gear", "i4"),
         ("shift_left_s", "f8"),
@@ -150,7 +158,7 @@ BODY = np.dtype(
         ("constant_velocity_on", "?"),
         ("constant_velocity", "f8", 3),  # m/s in the body's frame
         ("ackermann_on", "?"),
-        ("ackermann", "f8", 5),  # the target; as linden.values.AckermannControl
+        ("ackermann", "f8", 5),  # the target; as linden.protocol.values.AckermannControl
         ("ackermann_gains", "f8", 6),
         ("ackermann_memory", "f8", 8),  # of its two controllers
     ],

@@ -1,20 +1,19 @@
 """One frame of physics: pushes, vehicles, walkers, props, contacts, in as many substeps as asked. No clock, no I/O."""
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import fingerprint, kernel, part
-from linden.ground import Ground
-from linden.physics.contact.impulses import JX, JZ, PX, PZ, TOUCHED, part_bodies
+from linden.compiled import kept_part, kernel, part
+from linden.maps.ground import Ground
+from linden.physics.contact.impulses import JX, PX, TOUCHED, part_bodies
 from linden.physics.contact.pairs import find_pairs, is_fixed
 from linden.physics.contact.statics import Statics
 from linden.physics.prop import advance_prop
 from linden.physics.pushes import apply_forces, apply_impulses, clear_pushes, hold_velocity
-from linden.physics.state import VEHICLE, WALKER, Body, Rows, Spec, Work
+from linden.physics.state import SOURCES, VEHICLE, WALKER, Body, Rows, Spec, Work
 from linden.physics.tumble import is_upset, start_tumbling, tumble
 from linden.physics.vehicle.ackermann import drive_to_target
 from linden.physics.vehicle.driver import follow_control, let_go
@@ -56,8 +55,9 @@ def _advance_bodies(
         if not v.alive:
             continue
         if is_fixed(v):
-            v.velocity[:] = 0.0
-            v.angular_velocity[:] = 0.0
+            for axis in range(3):
+                v.velocity[axis] = 0.0
+                v.angular_velocity[axis] = 0.0
             continue
         apply_forces(v, dt_s)
         if v.kind == VEHICLE and not v.tumbling and is_upset(v, specs[i]):
@@ -77,8 +77,8 @@ def _advance_bodies(
             advance_prop(v, ground, gravity_mps2, dt_s)
 
 
-@part
-def _heed_driver(v: Body, spec: Spec, dt_s: float) -> None:
+@kept_part(SOURCES)
+def heed_driver(v: Body, spec: Spec, dt_s: float) -> None:
     """Bring what a vehicle's driver does up to date for a frame."""
     let_go(v)
     if is_fixed(v):
@@ -86,6 +86,20 @@ def _heed_driver(v: Body, spec: Spec, dt_s: float) -> None:
     if v.ackermann_on:
         drive_to_target(v, spec, dt_s)
     follow_control(v, dt_s)
+
+
+@part
+def _keep_velocity(v: Body) -> None:
+    """Write a body's velocity where :func:`_write_acceleration` finds it."""
+    for axis in range(3):
+        v.acceleration[axis] = v.velocity[axis]
+
+
+@part
+def _write_acceleration(v: Body, dt_s: float) -> None:
+    """Write the acceleration since :func:`_keep_velocity`."""
+    for axis in range(3):
+        v.acceleration[axis] = (v.velocity[axis] - v.acceleration[axis]) / dt_s
 
 
 @part
@@ -97,8 +111,9 @@ def _report(pairs: NDArray[np.int32], account: F64) -> F64:
         pressed = account[n, JX] != 0.0 or account[n, JX + 1] != 0.0
         if account[n, TOUCHED] != 0.0 and pressed:
             rows[found, 0], rows[found, 1] = pairs[n, 0], pairs[n, 1]
-            rows[found, 2:5] = account[n, JX : JZ + 1]
-            rows[found, 5:8] = account[n, PX : PZ + 1]
+            for axis in range(3):
+                rows[found, 2 + axis] = account[n, JX + axis]
+                rows[found, 5 + axis] = account[n, PX + axis]
             found += 1
     return rows[:found]
 
@@ -120,11 +135,11 @@ def _build(sources: int) -> _Advance:
         _fingerprint = sources
         for i in range(count):
             v = rows[i]
-            v.acceleration[:] = v.velocity
+            _keep_velocity(v)
             if v.alive and not is_fixed(v):
                 apply_impulses(v)
             if v.kind == VEHICLE:
-                _heed_driver(v, specs[i], dt_s)
+                heed_driver(v, specs[i], dt_s)
         pairs = find_pairs(rows, count, statics, dt_s)
         account = np.zeros((len(pairs), 7))
         for n in range(substeps):
@@ -134,7 +149,7 @@ def _build(sources: int) -> _Advance:
                 part_bodies(rows, pairs, statics, account)
         for i in range(count):
             v = rows[i]
-            v.acceleration[:] = (v.velocity - v.acceleration) / dt_s
+            _write_acceleration(v, dt_s)
             clear_pushes(v)
             if v.tumbling or v.rollover_stage > 0:
                 watch_rollover(v, dt_s)
@@ -143,9 +158,7 @@ def _build(sources: int) -> _Advance:
     return kernel(advance)
 
 
-_HERE = Path(__file__).parent
-_WITH_KERNELS = [path for path in _HERE.rglob("*.py") if b"linden.compiled" in path.read_bytes()]
-_advance = _build(fingerprint(*_WITH_KERNELS, _HERE / "state.py", _HERE.parent / "ground.py"))
+_advance = _build(SOURCES)
 
 
 def advance(

@@ -1,4 +1,4 @@
-"""Bodies off their feet: a rigid box in space, whose wheels, sides and roof meet the ground, until it stands again.
+"""Bodies off their feet: a rigid box in space; its wheels, sides and roof meet the ground until it stands again.
 
 The vehicle of ``vehicle.motion`` keeps its wheels down; what a push, a fall or a client puts on its side or roof is
 moved here. Contacts are impulses in sequence, accumulated and clamped: Catto 2005, "Iterative dynamics with temporal
@@ -10,10 +10,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
-from linden.ground import Ground, surface_under
+from linden.compiled import kept_part, part
+from linden.maps.ground import Ground, surface_under
 from linden.physics.axes import body_axes, within_turn
-from linden.physics.state import Body, Spec
+from linden.physics.state import SOURCES, Body, Spec
 
 F64 = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ _UPRIGHT_COSINE = math.cos(math.radians(10.0))
 _UPRIGHT_RADPS = 0.7
 _UPSET_RAD = 0.6  # a vehicle put down or falling steeper than this does not land on its wheels
 _UPSET_TWO_WHEELER_RAD = 1.0  # it leans into bends, up to 0.7 (vehicle.suspension)
-_HALF_TRACK = 0.75  # over half the width: where wheels sit when nobody says
+_HALF_TRACK = 0.75  # over half the width: where wheels sit when the blueprint does not say
 _NEAR_GROUND_M = 0.08
 
 
@@ -47,7 +47,7 @@ def is_upset(v: Body, spec: Spec) -> bool:
 
 @part
 def tripping_speed_mps(v: Body) -> float:
-    """Return the sideways speed from which a vehicle whose wheels are caught tips over.
+    """Return the sideways speed from which a vehicle with caught wheels tips over.
 
     The spin about the caught wheels, m v h = I w, must lift the centre of mass over them: critical sliding velocity,
     Jones 1975 (in Gillespie, Fundamentals of Vehicle Dynamics, eq. 9-17).
@@ -77,7 +77,7 @@ def start_tumbling(v: Body) -> None:
     v.still_s = 0.0
 
 
-@part
+@kept_part(SOURCES)
 def tumble(v: Body, spec: Spec, ground: Ground, gravity_mps2: float, dt_s: float) -> None:
     """Advance a tumbling vehicle by one substep."""
     if v.resting and _is_still(v, 0.0):

@@ -1,9 +1,9 @@
-"""Walkers: they go where they are told, at the speed they are told, on the ground that they can step onto."""
+"""Walkers: motion in the direction and at the speed of their control, on ground that they can step onto."""
 
 import math
 
 from linden.compiled import part
-from linden.ground import Ground, surface_under
+from linden.maps.ground import Ground, surface_under
 from linden.physics.axes import within_turn
 from linden.physics.state import Body
 

@@ -1,1 +1,1 @@
-"""What sensors measure: pure functions of the state, one file a sensor."""
+"""Sensors: devices, cameras, ray casting, and the runtime that measures in each frame."""

@@ -7,20 +7,19 @@ from collections.abc import Callable
 
 import numpy as np
 
-from linden.casting.choose import caster_of
-from linden.casting.rays import Instances, Rays
-from linden.meshes.mesh import Material, Mesh, faces
-from linden.scene.weather import CLEAR_NOON
+from linden.blueprints.library import BlueprintLibrary
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.enums import AttributeType, SemanticTag
+from linden.protocol.values.episode import CLEAR_NOON
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.scenery.mesh import Material, Mesh, faces
 from linden.sensors.camera.cameras import CAMERAS
-from linden.sensors.lidar.fan import Fan, aim, fire
-from linden.sensors.lidar.sensor import whose
-from linden.sensors.lidar.sweep import Chances, Losses, points_of, semantic_points_of
-from linden.sensors.looking import Look
-from linden.sensors.seen import Seen, table_of
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.enums import AttributeType, SemanticTag
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.world.blueprints import BlueprintLibrary
+from linden.sensors.casting.caster import Instances, Rays
+from linden.sensors.casting.choose import caster_of
+from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
+from linden.sensors.devices.lidar.sensor import owners_of
+from linden.sensors.devices.lidar.sweep import Chances, Losses, points_of, semantic_points_of
+from linden.sensors.view import Look, Seen, table_of
 
 _FAN = Fan(2, 0.0, -90.0, 360.0, 10.0, 80, 10.0)
 _LOSSES = Losses(0.004, 0.45, 0.8, 0.4, 0.0, 0)
@@ -48,7 +47,7 @@ def warm_rays() -> None:
     hits = seen.caster.closest(rays, _FAN.range_m, coherent=True, outer=True)
     zero = np.zeros(fired.rays, np.float32)
     points_of(fired, number, hits, _LOSSES, Chances(zero, zero))
-    semantic_points_of(fired, rays.direction, hits, whose(seen))
+    semantic_points_of(fired, rays.direction, hits, owners_of(seen))
     seen.caster.blocked(Rays(*rays), _FAN.range_m)
 
 

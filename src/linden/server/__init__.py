@@ -1,1 +1,1 @@
-"""Sockets, ports and the clock: one thread that waits for whatever comes next."""
+"""Sockets, ports, sessions and the clock, in one thread; `rpc` holds the functions that clients call."""

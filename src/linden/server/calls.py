@@ -6,17 +6,16 @@ import time
 from collections.abc import Callable
 
 from linden.errors import ProtocolError
-from linden.handlers import registry
-from linden.handlers.context import Context
-from linden.handlers.registry import Unanswered
+from linden.protocol.wire.rpc import Call
+from linden.protocol.wire.stream import WORLD_OBSERVER_ID
 from linden.server.cue import QUESTION, TICK, Cue, bring_question_forward
-from linden.server.driven import BATCH, DESTROY, Driven
-from linden.server.expected import Expected
-from linden.server.handover import GATHERING_S, OF_A_LOAD, Handover, Phase
+from linden.server.driven_vehicles import BATCH, DESTROY, Driven
+from linden.server.load_answers import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
-from linden.server.subscribers import Subscribers
-from linden.wire.rpc import Call
-from linden.wire.stream import WORLD_OBSERVER_ID
+from linden.server.rpc import registry
+from linden.server.rpc.context import Context
+from linden.server.rpc.registry import Unanswered
+from linden.server.subscribers import Expected, Subscribers
 
 log = logging.getLogger("linden")
 

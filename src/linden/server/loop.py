@@ -14,18 +14,18 @@ import time
 from functools import partial
 
 from linden.errors import ProtocolError
-from linden.handlers import session
-from linden.handlers.context import Context, Frames
+from linden.maps.library import MapLibrary
+from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
+from linden.server.accept import Entrance
 from linden.server.calls import Calls
-from linden.server.entrance import Entrance
-from linden.server.pace import Pace
+from linden.server.frame_clock import Pace
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports, port_of
+from linden.server.rpc import session
+from linden.server.rpc.context import Context, Frames
+from linden.server.stall_log import Waiting
 from linden.server.subscribers import Subscribers
-from linden.server.waiting import Waiting
-from linden.simulation import Simulation
-from linden.wire.stream import WORLD_OBSERVER_ID, StreamTable
-from linden.world.maps import MapLibrary
+from linden.world import World
 
 log = logging.getLogger("linden")
 
@@ -53,7 +53,7 @@ _BUG = "internal error in %s; the server goes on"
 class Server:
     """Listens on two ports and serves one simulation until it is told to stop."""
 
-    def __init__(self, simulation: Simulation, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
+    def __init__(self, simulation: World, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
         self._clock = time.monotonic
         self._pace = Pace(self._clock())
         self.context = Context(

@@ -1,11 +1,61 @@
-"""The two kinds of connection: one whose client calls, one whose client listens. Each owns its socket."""
+"""Connections: the send queue, connections that call, connections that subscribe.
+
+Bytes on their way to a peer that may read slowly or never: a queue before a socket that does not block.
+
+The two kinds of connection: one whose client calls, one whose client listens. Each owns its socket.
+"""
 
 import socket
 from collections import deque
 
-from linden.server.outgoing import Outgoing
-from linden.wire.rpc import Call, RpcConnection
-from linden.wire.stream import Subscription, size_prefix
+from linden.protocol.wire.rpc import Call, RpcConnection
+from linden.protocol.wire.stream import Subscription, size_prefix
+
+JOINED_BYTES = 64 * 1024
+"""Up to this size a message is copied behind its prefix, which is quicker than a second call of the system."""
+
+
+class Outgoing:
+    """What waits to be sent over one socket, in order, none of it copied."""
+
+    def __init__(self, sock: socket.socket) -> None:
+        self._socket = sock
+        self._queue: deque[memoryview] = deque()
+        self.waiting_bytes = 0
+
+    def send(self, *parts: bytes) -> None:
+        """Send now what the system takes, and queue the rest.
+
+        Raises:
+            OSError: the peer is gone.
+        """
+        if sum(map(len, parts)) <= JOINED_BYTES:
+            parts = (b"".join(parts),)
+        was_idle = not self._queue
+        for part in parts:
+            self._queue.append(memoryview(part))
+            self.waiting_bytes += len(part)
+        if was_idle:  # else the system takes nothing yet, and the selector will say when it does
+            self.flush()
+
+    def flush(self) -> None:
+        """Send what the system takes of what waits.
+
+        Raises:
+            OSError: the peer is gone.
+        """
+        while self._queue:
+            first = self._queue[0]
+            try:
+                sent = self._socket.send(first)
+            except (BlockingIOError, InterruptedError):
+                return
+            self.waiting_bytes -= sent
+            if sent < len(first):
+                self._queue[0] = first[sent:]
+                return
+            self._queue.popleft()
+
 
 RECEIVED_AT_ONCE = 256 * 1024
 """Bytes read from a connection before the others have their turn."""

@@ -1,5 +1,1 @@
-"""One step of the world; the only place where physics, sensors and traffic meet."""
-
-from linden.simulation.simulation import Simulation
-
-__all__ = ["Simulation"]
+"""The state of an episode and the functions that change it; no sensors, no network."""

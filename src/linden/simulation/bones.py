@@ -4,20 +4,18 @@ Walkers have CARLA's skeleton; a vehicle has its body and its wheels, which stee
 a socket too. What else there is (props, sensors, signs) has one component and no bones.
 """
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.blueprints.library import Kind
+from linden.blueprints.skeleton import blended, frame_of, in_component, skeleton, transform_of, walking_pose
 from linden.errors import Refusal
 from linden.physics.columns import finite
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.world.actors import NO_BODY, ActorRecord, ActorRefusal
-from linden.world.blueprints import Kind
-from linden.world.skeleton import blended, frame_of, in_component, skeleton, transform_of, walking_pose
-
-if TYPE_CHECKING:
-    from linden.simulation.episode import Episode
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal
+from linden.simulation.state import EpisodeState
 
 F64 = NDArray[np.float64]
 
@@ -60,7 +58,7 @@ class Poses:
         self._custom: dict[int, F64] = {}
         self._blend: dict[int, float] = {}
 
-    def set(self, episode: "Episode", actor_id: int, bones: dict[str, Transform]) -> None:
+    def set(self, episode: EpisodeState, actor_id: int, bones: dict[str, Transform]) -> None:
         """Set bones of the custom pose; the others stay, at first as the animation has them now.
 
         Raises:
@@ -76,7 +74,7 @@ class Poses:
         for name, transform in bones.items():
             self._custom[actor_id][skeleton().row(name)] = frame_of(transform)
 
-    def take(self, episode: "Episode", actor_id: int) -> None:
+    def take(self, episode: EpisodeState, actor_id: int) -> None:
         """Make the pose that the animation has now the custom pose."""
         self._custom[actor_id] = _animated(episode, actor_id)
 
@@ -93,14 +91,14 @@ class Poses:
         self._custom.pop(actor_id, None)
         self._blend.pop(actor_id, None)
 
-    def shown(self, episode: "Episode", actor_id: int) -> F64:
+    def shown(self, episode: EpisodeState, actor_id: int) -> F64:
         """Return the pose that a walker shows, (N, 4, 4) in the parents' frames."""
         animated, share = _animated(episode, actor_id), self._blend.get(actor_id, 0.0)
         custom = self._custom.get(actor_id)
         return animated if custom is None or share == 0.0 else blended(animated, custom, share)
 
 
-def _animated(episode: "Episode", actor_id: int) -> F64:
+def _animated(episode: EpisodeState, actor_id: int) -> F64:
     slot = episode.walker(actor_id)
     stature_m = 2.0 * episode.actors.get(actor_id).box.extent.z
     velocity = episode.bodies.velocity[slot]
@@ -108,7 +106,7 @@ def _animated(episode: "Episode", actor_id: int) -> F64:
     return walking_pose(stature_m, episode.walkers.walked_m(actor_id), speed_mps)
 
 
-def bones_of(episode: "Episode", actor_id: int) -> Bones:
+def bones_of(episode: EpisodeState, actor_id: int) -> Bones:
     """Return the bones of an actor as they are now.
 
     Raises:
@@ -124,18 +122,18 @@ def bones_of(episode: "Episode", actor_id: int) -> Bones:
     raise ActorRefusal("Component could not be found in this actor:  Component Name: SkinnedMeshComponent", actor_id)
 
 
-def in_skeleton(episode: "Episode", actor_id: int, bones: Bones) -> F64:
+def in_skeleton(episode: EpisodeState, actor_id: int, bones: Bones) -> F64:
     """Return the frames of bones in that of the component they belong to."""
     frames: F64 = np.linalg.inv(component(episode, actor_id, _mesh_name(episode, actor_id))) @ bones.in_actor
     return frames
 
 
-def _mesh_name(episode: "Episode", actor_id: int) -> str:
+def _mesh_name(episode: EpisodeState, actor_id: int) -> str:
     """Return the component that has the bones."""
     return _COMPONENTS.get(episode.actors.get(actor_id).kind, _ROOT)[-1]
 
 
-def sockets_of(episode: "Episode", actor_id: int) -> Bones:
+def sockets_of(episode: EpisodeState, actor_id: int) -> Bones:
     """Return what can be attached to of an actor; nothing where it has no bones.
 
     Raises:
@@ -147,7 +145,7 @@ def sockets_of(episode: "Episode", actor_id: int) -> Bones:
     return Bones((), np.empty((0, 4, 4)), np.empty((0, 4, 4)))
 
 
-def _wheels(episode: "Episode", slot: int) -> list[F64]:
+def _wheels(episode: EpisodeState, slot: int) -> list[F64]:
     """Return the frame of each wheel's hub in the vehicle's."""
     bodies = episode.bodies
     spec = bodies.specs[slot]
@@ -164,7 +162,7 @@ def _mesh_frame(record: ActorRecord) -> F64:
     return frame_of(Transform(Vector3D(0.0, 0.0, -record.box.extent.z), Rotation(0.0, 0.0, 0.0)))
 
 
-def component_names(episode: "Episode", actor_id: int) -> tuple[str, ...]:
+def component_names(episode: EpisodeState, actor_id: int) -> tuple[str, ...]:
     """Return the names of an actor's components.
 
     Raises:
@@ -175,7 +173,7 @@ def component_names(episode: "Episode", actor_id: int) -> tuple[str, ...]:
     return (*names, *_BLINKERS) if _has_blinkers(episode, record) else names
 
 
-def component(episode: "Episode", actor_id: int, name: str) -> F64:
+def component(episode: EpisodeState, actor_id: int, name: str) -> F64:
     """Return the frame (4, 4) of a component in the actor's.
 
     Raises:
@@ -190,7 +188,7 @@ def component(episode: "Episode", actor_id: int, name: str) -> F64:
     return _mesh_frame(record) if record.kind is Kind.WALKER and name != names[0] else np.eye(4)
 
 
-def _has_blinkers(episode: "Episode", record: ActorRecord) -> bool:
+def _has_blinkers(episode: EpisodeState, record: ActorRecord) -> bool:
     """Whether this is a vehicle with four wheels; CARLA's bicycles have no lamps, and its motorcycles other ones."""
     has_body = record.kind is Kind.VEHICLE and record.slot != NO_BODY
     return has_body and int(episode.bodies.specs[record.slot]["wheel_count"]) == len(_WHEELS[4])
@@ -203,7 +201,7 @@ def _blinker_frame(record: ActorRecord, forward: float, right: float) -> F64:
     return frame_of(Transform(place, Rotation(0.0, 0.0 if forward > 0.0 else 180.0, 0.0)))
 
 
-def in_world(episode: "Episode", actor_id: int, frames: F64) -> list[Transform]:
+def in_world(episode: EpisodeState, actor_id: int, frames: F64) -> list[Transform]:
     """Return frames (N, 4, 4) of the actor's as transforms of the world's."""
     actor = frame_of(episode.transform(actor_id))
     return [transform_of(actor @ frame) for frame in frames]

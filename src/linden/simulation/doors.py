@@ -9,7 +9,7 @@ from enum import IntEnum
 from types import MappingProxyType
 
 from linden.errors import Refusal
-from linden.world.actors import ActorRecord
+from linden.simulation.actor_table import ActorRecord
 
 
 class Door(IntEnum):

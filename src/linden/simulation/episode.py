@@ -3,31 +3,24 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.physics.bodies import Bodies
+from linden.blueprints.library import DOT, Kind
+from linden.maps.library import LoadedMap
 from linden.physics.contact.statics import Statics
-from linden.physics.step import CONTACT
-from linden.scene.weather import CLEAR_NOON
-from linden.sensors.instrument import Instrument
-from linden.simulation import rows
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, WALKER_ROW
+from linden.protocol.values.space import BoundingBox, Transform
+from linden.simulation import snapshot_rows as rows
+from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal
+from linden.simulation.attachments import Sockets
 from linden.simulation.bones import Poses
-from linden.simulation.buried import Buried
 from linden.simulation.doors import Doors
-from linden.simulation.eyes import Eye
 from linden.simulation.foresight import Foresight
-from linden.simulation.grip import Grip
-from linden.simulation.motion import MOTION_OFFSET, gather_motion
-from linden.simulation.scenery import scenery_of
-from linden.simulation.sockets import Sockets
-from linden.simulation.surroundings import Surroundings
+from linden.simulation.friction import Grip
+from linden.simulation.snapshot_rows import MOTION_OFFSET, gather_motion
+from linden.simulation.state import EpisodeState
+from linden.simulation.surroundings import Surroundings, scenery_of
 from linden.simulation.walkers import Walkers
-from linden.traffic.lights import Traffic
-from linden.values.actors import ActorDescription
-from linden.values.episode import WeatherParameters
-from linden.values.snapshot import ROW, TRAFFIC_LIGHT_ROW, TRAFFIC_SIGN_ROW, WALKER_ROW
-from linden.values.space import BoundingBox, Transform
-from linden.world.actors import NO_BODY, ActorRecord, ActorRefusal, ActorTable
-from linden.world.blueprints import DOT, Kind
-from linden.world.maps import LoadedMap
+from linden.traffic.traffic import Traffic
 
 DEFAULT_SPEED_LIMIT_KMH = 30.0
 """What CARLA's vehicles start with until a sign says otherwise."""
@@ -41,43 +34,32 @@ _MOTION = np.dtype(
 )
 
 
-class Episode:
+class Episode(EpisodeState):
     """Everything that ends with a load.
 
     Attributes:
-        map: what is driven on.
-        first_frame: number of the frame before the episode's first.
-        elapsed_s: simulated time since it began.
-        actors: who is there, with the packed rows of the snapshot.
-        bodies: what occupies space and moves.
         foresight: the bodies of the next frame, where they are known.
-        buried: whose physics is withheld, far below the ground.
         surroundings: what stands there, its lamps, and what clients drew.
         traffic: the lights.
-        contacts: of the last step, as ``physics`` reports them.
         doors: of the vehicles, which stand open.
         grip: of the road, and who is in a friction trigger.
         walkers: who is led, who is dead, and how far each has walked.
         poses: of walkers, as clients set them.
         sockets: what is attached to a bone.
-        instruments: sensors that measure by themselves, by actor id.
-        eyes: sensors that look around, by actor id.
     """
 
+    walkers: Walkers
+    poses: Poses
+
     def __init__(self, world_map: LoadedMap, *, first_frame: int) -> None:
-        self.map = world_map
-        self.first_frame = first_frame
-        self.elapsed_s = 0.0
-        self.actors = ActorTable()
-        self.bodies = Bodies()
+        super().__init__(world_map, first_frame)
+        self.walkers, self.poses = Walkers(), Poses()
         self.foresight = Foresight()
-        self.buried = Buried(world_map.ground, self.bodies)
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)
         self.traffic = Traffic(scenery.signals)
-        self.weather: WeatherParameters = CLEAR_NOON
         self.doors, self.grip = Doors(), Grip()
-        self.walkers, self.poses, self.sockets = Walkers(), Poses(), Sockets()
+        self.sockets = Sockets()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
         self.light_ids = self._add_traffic()
@@ -88,9 +70,6 @@ class Episode:
         self._light_actor_id = np.array(self.light_ids, np.int32)
         lanes = world_map.lanes  # those in a junction lie over one another: there the limit of the way in goes on
         self._limit_of_lane_kmh = np.where(lanes["junction"] < 0, lanes["speed_limit_mps"] * _MPS_TO_KMH, np.nan)
-        self.contacts: NDArray[np.void] = np.zeros(0, CONTACT)
-        self.instruments: dict[int, Instrument] = {}
-        self.eyes: dict[int, Eye] = {}
         self._speed_limit_kmh: dict[int, float] = {}
         self._seen_version = -1
 
@@ -128,27 +107,6 @@ class Episode:
         """Oriented boxes that stand in the way, as ``physics`` takes them."""
         return self.surroundings.statics
 
-    # -- who is meant --------------------------------------------------------------------------------------------
-
-    def body(self, actor_id: int) -> int:
-        """Return the slot of an actor's body.
-
-        Raises:
-            ActorRefusal: no such actor, or it occupies no space.
-        """
-        record = self.actors.get(actor_id)
-        if record.slot == NO_BODY:
-            raise ActorRefusal("Actor does not match the expected type", actor_id)
-        return record.slot
-
-    def vehicle(self, actor_id: int) -> int:
-        """Return the slot of a vehicle.
-
-        Raises:
-            ActorRefusal: no such actor, or no vehicle.
-        """
-        return self._slot_of_kind(actor_id, Kind.VEHICLE, "Actor is not a Vehicle")
-
     def vehicles(self, actor_ids: NDArray[np.int64]) -> NDArray[np.int32] | None:
         """Return the slots (K,) of vehicles (K,), None where one of them is no vehicle."""
         if self._seen_version != self.actors.version:
@@ -160,32 +118,6 @@ class Episode:
         places[places == len(ids)] = 0
         return slots[places] if np.array_equal(ids[places], actor_ids) else None
 
-    def walker(self, actor_id: int) -> int:
-        """Return the slot of a walker.
-
-        Raises:
-            ActorRefusal: no such actor, or no walker.
-        """
-        return self._slot_of_kind(actor_id, Kind.WALKER, "Actor is not a Walker")
-
-    def _slot_of_kind(self, actor_id: int, kind: Kind, otherwise: str) -> int:
-        record = self.actors.get(actor_id)
-        if record.kind is not kind or record.slot == NO_BODY:
-            raise ActorRefusal(otherwise, actor_id)
-        return record.slot
-
-    def carrier(self, record: ActorRecord) -> ActorRecord | None:
-        """Return what moves an attached actor: the nearest that has a body of those it hangs on, None without one."""
-        carrier = self.actors.find(record.parent_id)
-        while carrier is not None and carrier.slot == NO_BODY:
-            carrier = self.actors.find(carrier.parent_id)
-        return carrier
-
-    def forget_contacts(self, slot: int) -> None:
-        """Forget what a body has touched, for it is leaving; whoever looks for it later finds nobody there."""
-        if len(self.contacts):
-            self.contacts = self.contacts[(self.contacts["a"] != slot) & (self.contacts["b"] != slot)]
-
     def light(self, actor_id: int) -> int:
         """Return the number of a traffic light.
 
@@ -195,37 +127,6 @@ class Episode:
         if self.actors.get(actor_id).kind is not Kind.TRAFFIC_LIGHT:
             raise ActorRefusal("Actor is not a traffic light", actor_id)
         return self.light_ids.index(actor_id)
-
-    # -- where things are ----------------------------------------------------------------------------------------
-
-    def transform(self, actor_id: int) -> Transform:
-        """Return where an actor is in the world."""
-        slot = self.actors.get(actor_id).slot
-        return self.actors.transform(actor_id) if slot == NO_BODY else self.bodies.pose(slot)
-
-    def own_transform(self, actor_id: int) -> Transform:
-        """Return where an actor is as :meth:`place` takes it: relative to its parent where it has one."""
-        if self.actors.get(actor_id).parent_id:
-            return self.actors.relative_transform(actor_id)
-        return self.transform(actor_id)
-
-    def place(self, actor_id: int, pose: Transform) -> None:
-        """Put an actor somewhere in the world, or relative to its parent where it has one.
-
-        Raises:
-            ActorRefusal: there is none of that id.
-        """
-        record = self.actors.get(actor_id)
-        if record.slot == NO_BODY:
-            self.actors.place(actor_id, pose)
-        else:
-            self.bodies.set_pose(record.slot, pose)
-            self.buried.settle(record.slot)
-
-    def place_bodies(self, slots: NDArray[np.integer], poses: NDArray[np.float64]) -> None:
-        """Put many bodies somewhere in the world: (K,) slots, each once, and (K, 6) x, y, z in m, pitch, yaw, roll."""
-        self.bodies.set_poses(slots, poses)
-        self.buried.settle_all(slots)
 
     # -- what the snapshot shows ---------------------------------------------------------------------------------
 

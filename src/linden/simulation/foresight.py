@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.ground import Ground
+from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
 from linden.physics.contact.statics import Statics
 from linden.physics.step import Contacts, advance

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.physics.bodies import Bodies
-from linden.values.space import BoundingBox, Transform
+from linden.protocol.values.space import BoundingBox, Transform
 
 F64 = NDArray[np.float64]
 

@@ -5,17 +5,17 @@ from typing import NamedTuple
 
 import numpy as np
 
+from linden.blueprints.library import Kind
 from linden.errors import Refusal
 from linden.geometry import rotation_matrix
 from linden.physics.contact.statics import Statics
-from linden.scene.bins import Bins
-from linden.scene.rays import MovingBoxes, StandingBoxes, Surface, crossings
+from linden.plane_bins import Bins
+from linden.protocol.values.enums import SemanticTag
+from linden.protocol.values.episode import EnvironmentObject, LabelledPoint
+from linden.protocol.values.space import BoundingBox, Transform, Vector3D
+from linden.scenery.ray_query import MovingBoxes, StandingBoxes, Surface, crossings
+from linden.simulation.actor_table import NO_BODY, ActorRecord
 from linden.simulation.episode import Episode
-from linden.values.enums import SemanticTag
-from linden.values.episode import EnvironmentObject, LabelledPoint
-from linden.values.space import BoundingBox, Transform, Vector3D
-from linden.world.actors import NO_BODY, ActorRecord
-from linden.world.blueprints import Kind
 
 SAME_SURFACE_M = 0.05
 """Lanes lie over one another in junctions, and share their edges: road met again this soon is the same road."""

@@ -1,20 +1,57 @@
-"""Actors come and go: what is checked before one is spawned, and what goes with one that is destroyed."""
+"""Spawning and destroying actors: checks, free room, bodies; the size and mass of props.
+
+What CARLA tags as dynamic lies loose (cones, bins, boxes, barriers), and so do warning signs on stands: a car that hits
+one pushes it away. The rest stands fast until ``set_simulate_physics(True)`` lets it go, as scripts for CARLA do with
+containers; from then on its mass decides. ``static.prop.mesh`` is loose if its ``mass`` is above 0, as in CARLA; its
+mesh is Unreal's and nobody has it here, so it is a cube of 1 m times its ``scale``.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 
+from linden.blueprints.library import Blueprint, Kind
 from linden.errors import Refusal
 from linden.geometry import compose
-from linden.sensors.collision import scenery_type
-from linden.sensors.instrument import instrument
+from linden.physics.contact.statics import scenery_type
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.enums import SemanticTag
+from linden.protocol.values.space import BoundingBox, Transform, Vector3D
+from linden.simulation.actor_table import NO_BODY, ActorRecord
 from linden.simulation.episode import Episode
-from linden.simulation.eyes import MAKERS, eye_of
-from linden.simulation.grip import FRICTION_TRIGGER, trigger
+from linden.simulation.friction import FRICTION_TRIGGER, trigger
 from linden.simulation.overlap import touching, world_centres
-from linden.simulation.props import solid
-from linden.values.actors import ActorDescription
-from linden.values.space import BoundingBox, Transform
-from linden.world.actors import NO_BODY, ActorRecord
-from linden.world.blueprints import Blueprint, Kind
+
+MESH = "static.prop.mesh"
+LOOSE_SIGNS = ("static.prop.warningaccident", "static.prop.warningconstruction")
+MESH_DENSITY_KGPM3 = 60.0
+"""Of a mesh whose mass nobody says, once it is let go; as ``world.blueprints`` estimates other props."""
+
+
+class Solid(NamedTuple):
+    """A prop's box in its own frame, its mass, and whether it moves when it is hit."""
+
+    box: BoundingBox
+    mass_kg: float
+    loose: bool
+
+
+def solid(blueprint: Blueprint, description: ActorDescription) -> Solid:
+    """Return what is put into the world for a checked description of a prop.
+
+    Raises:
+        Refusal: the scale of a mesh is 0.
+    """
+    if description.id != MESH:
+        loose = bytes([SemanticTag.DYNAMIC]) == blueprint.semantic_tags or description.id in LOOSE_SIGNS
+        return Solid(blueprint.box, blueprint.mass_kg, loose)
+    mass_kg, scale = float(description.attribute("mass")), float(description.attribute("scale"))
+    if scale == 0.0:
+        raise Refusal(f"Spawn failed because of invalid actor description: {MESH} needs a scale above 0")
+    centre, half = (Vector3D(*(scale * value for value in vector)) for vector in blueprint.box[:2])
+    weight_kg = mass_kg or MESH_DENSITY_KGPM3 * scale**3
+    return Solid(BoundingBox(centre, half), weight_kg, mass_kg > 0.0)
+
 
 _NEEDS_ROOM = (Kind.VEHICLE, Kind.WALKER)
 """Props are put where the caller says, as CARLA does; vehicles and walkers only where nothing stands."""
@@ -23,32 +60,6 @@ _REACH_M = 8.0
 """No corner of a vehicle or walker lies further from its origin; the longest, a bus, has 5.5 m."""
 
 _OF_THE_MAP = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
-
-
-MEASURING = ("sensor.other.gnss", "sensor.other.imu", "sensor.other.collision", "sensor.other.lane_invasion")
-"""The sensors that measure; the last does so in the client."""
-
-NOT_YET = {
-    "sensor.other.rss": "it is computed in a client that is built with the ad-rss library; the wheel is not",
-    "sensor.other.v2x": "it would need a model of the radio channel between vehicles",
-    "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
-}
-"""Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
-
-
-def refuse_idle(blueprint_id: str) -> None:
-    """Refuse a blueprint that the library lists, as CARLA's does, but behind which nothing is.
-
-    Raises:
-        Refusal: CARLA has it, this server not yet.
-    """
-    if blueprint_id in MEASURING or blueprint_id in MAKERS:
-        return
-    for beginning, instead in NOT_YET.items():
-        if blueprint_id.startswith(beginning):
-            raise Refusal(
-                f"Spawn failed because of invalid actor description: linden has no {blueprint_id} yet; {instead}"
-            )
 
 
 def spawn(
@@ -82,10 +93,6 @@ def spawn(
         episode.buried.arrive(record.slot)
     if made_trigger is not None:
         episode.grip.add(record.id, made_trigger)
-    if (made := instrument(description)) is not None:
-        episode.instruments[record.id] = made
-    if (eye := eye_of(description)) is not None:
-        episode.eyes[record.id] = eye
     return record
 
 
@@ -162,8 +169,6 @@ def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
     if record.slot != NO_BODY:
         episode.bodies.remove(record.slot)
         episode.forget_contacts(record.slot)
-    episode.instruments.pop(actor_id, None)
-    episode.eyes.pop(actor_id, None)
     episode.doors.forget(actor_id)
     episode.grip.forget(actor_id)
     episode.poses.forget(actor_id)

@@ -1,24 +1,28 @@
-"""Walkers beyond their bodies: those led from outside, how far each has walked, and those that were struck dead.
+"""Walkers beyond their bodies: control from outside, distance walked, death; the walking mesh of the map.
+
+Walkers beyond their bodies: those led from outside, how far each has walked, and those that were struck dead.
 
 An AI controller lives in the client: every tick it says where its walker is, and the walker, without physics and
 without collisions, is put there. What the snapshot shows of its motion is how far it was moved.
+
+The walking mesh of an episode's map, clear of what stands on it.
 """
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.maps.navigation.detour import Obstacles
+from linden.maps.navigation.library import MeshFile, MeshLibrary
 from linden.physics.bodies import Bodies
 from linden.physics.state import PROP, VEHICLE, WALKER
-from linden.values.space import Transform, Vector3D
-from linden.values.walkers import WalkerControl
-from linden.world.actors import ActorRecord, ActorRefusal
-
-if TYPE_CHECKING:
-    from linden.simulation.episode import Episode
+from linden.protocol.values.control import WalkerControl
+from linden.protocol.values.space import Transform, Vector3D
+from linden.simulation.actor_table import ActorRecord, ActorRefusal
+from linden.simulation.state import EpisodeState
+from linden.simulation.surroundings import scenery_of
 
 F64 = NDArray[np.float64]
 
@@ -43,7 +47,9 @@ class Walkers:
 
     # -- told by clients -----------------------------------------------------------------------------------------
 
-    def lead(self, episode: "Episode", actor_ids: Sequence[int], poses: Sequence[Transform], speeds_mps: F64) -> None:
+    def lead(
+        self, episode: EpisodeState, actor_ids: Sequence[int], poses: Sequence[Transform], speeds_mps: F64
+    ) -> None:
         """Put walkers onto the ground, z of each pose being that of the surface under its feet, going on at a speed.
 
         The ids must be those of living walkers (:meth:`refuse_dead`).
@@ -74,7 +80,7 @@ class Walkers:
         if actor_id in self._dead:
             raise ActorRefusal("Walker is already dead", actor_id)
 
-    def die(self, episode: "Episode", actor_id: int) -> None:
+    def die(self, episode: EpisodeState, actor_id: int) -> None:
         """Let a walker fall and lie; ``LIES_FOR_S`` later it is gone. The dead do not die again."""
         slot = episode.walker(actor_id)
         if actor_id in self._dead:
@@ -100,7 +106,7 @@ class Walkers:
 
     # -- every frame ---------------------------------------------------------------------------------------------
 
-    def step(self, episode: "Episode", dt_s: float) -> list[int]:
+    def step(self, episode: EpisodeState, dt_s: float) -> list[int]:
         """Let a frame pass, after its physics; returns the ids of the dead who have lain long enough."""
         if self._before or self._velocity:
             self._show_motion(episode, dt_s)
@@ -120,7 +126,7 @@ class Walkers:
         self._count_steps(episode, dt_s)
         return gone
 
-    def _show_motion(self, episode: "Episode", dt_s: float) -> None:
+    def _show_motion(self, episode: EpisodeState, dt_s: float) -> None:
         """Give those that were led the velocity, turn and acceleration that their new places mean."""
         bodies, after = episode.bodies, {}
         for actor_id, before in self._before.items():
@@ -138,7 +144,7 @@ class Walkers:
             after[actor_id] = velocity
         self._before, self._velocity = {}, after
 
-    def _count_steps(self, episode: "Episode", dt_s: float) -> None:
+    def _count_steps(self, episode: EpisodeState, dt_s: float) -> None:
         ids, slots = episode.walker_ids_and_slots()
         if not ids:
             self._walked_m = {}
@@ -148,7 +154,7 @@ class Walkers:
         self._walked_m = {i: known.get(i, 0.0) + step_m for i, step_m in zip(ids, stride_m.tolist(), strict=True)}
 
 
-def _struck(episode: "Episode") -> list[int]:
+def _struck(episode: EpisodeState) -> list[int]:
     """Return the ids of the walkers that a vehicle struck down in this frame."""
     bodies, contacts = episode.bodies, episode.contacts
     found = []
@@ -176,3 +182,9 @@ def _lay_down(bodies: Bodies, slot: int, share: float, upright_half_m: F64) -> N
     bodies.position[slot, 2] += lies[2] - bodies.half_extent[slot, 2]
     bodies.half_extent[slot] = lies
     bodies.rotation[slot, 0] = lean_rad
+
+
+def mesh_file(episode: EpisodeState, meshes: MeshLibrary) -> MeshFile | None:
+    """Return the mesh as clients fetch it; None where the map has no pavements."""
+    statics = scenery_of(episode.map).statics  # all of it, whatever clients made disappear: the file is the map's
+    return meshes.file_of(episode.map, Obstacles(statics.centre, statics.half, statics.yaw_rad))

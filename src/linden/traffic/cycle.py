@@ -1,8 +1,12 @@
-"""How traffic lights change: a pure transition over arrays, step for step as CARLA's groups and controllers do.
+"""The cycle of traffic lights: a pure function of state and time.
+
+How traffic lights change: a pure transition over arrays, step for step as CARLA's groups and controllers do.
 
 The lights of a controller share one colour; the controllers of a group (a junction) take turns: green, yellow, red,
 then the next one's green, all others red meanwhile. So the time of red is that between two turns, when all are red.
 Source: CARLA 0.9.16, TrafficLightGroup.cpp, TrafficLightController.cpp and .h.
+
+Lights as somebody else saw them: the state in which they show given colours and times.
 """
 
 from collections.abc import Sequence
@@ -11,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.values.enums import TrafficLightState
+from linden.protocol.values.enums import TrafficLightState
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -187,3 +191,34 @@ def is_frozen(plan: LightPlan, state: LightState) -> Flags:
     """Return for each light (L,) whether time stands still for it."""
     frozen: Flags = state.pace[plan.group_of_light] == 0.0
     return frozen
+
+
+def restored(
+    plan: LightPlan,
+    state: LightState,
+    lights: NDArray[np.integer[Any]],
+    colour: U8,
+    elapsed_s: F64,
+    frozen: NDArray[np.bool_],
+) -> LightState:
+    """Return the state with these lights (N,) as given, each (N,); all others stay as they are.
+
+    A group's turn is that of the controller whose time has begun to pass, or whose lights are not red; where neither
+    tells, it stays. Frozen is the group of a frozen light.
+    """
+    colours = state.colour.copy()
+    colours[lights] = colour
+    stage, turn, since_s = state.stage.copy(), state.turn.copy(), state.elapsed_s.copy()
+    groups, controllers = plan.group_of_light[lights], plan.controller_of_light[lights]
+    since_s[groups] = 0.0
+    tells = (colour != STAGES[-1]) | (elapsed_s > 0.0)
+    for light in np.flatnonzero(tells).tolist():
+        group, controller = groups[light], controllers[light]
+        if elapsed_s[light] >= since_s[group]:
+            turn[group], since_s[group] = controller, elapsed_s[light]
+            found = np.flatnonzero(colour[light] == STAGES)
+            stage[controller] = found[0] if len(found) else stage[controller]
+    state = state._replace(colour=colours, stage=stage, turn=turn, elapsed_s=since_s)
+    for is_frozen in (True, False):
+        state = with_frozen(state, np.unique(groups[frozen == is_frozen]), frozen=is_frozen)
+    return state

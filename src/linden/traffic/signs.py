@@ -1,6 +1,6 @@
-"""Stop and yield signs as CARLA's server puts them to whoever drives: a red light without a light.
+"""Stop and yield signs as CARLA's server reports them to drivers: as a red light.
 
-A vehicle that reaches a stop sign's volume reads red for :data:`STOP_S`, and then for as long as somebody is where its
+A vehicle that reaches a stop sign's volume reads red for :data:`STOP_S`, and then for as long as an actor is where its
 way crosses (``opendrive.give_way``); at a yield sign only as long as that. The Traffic Manager asks for no more: under
 such a red it halts, and goes when those who came before it have gone. Source: CARLA 0.9.16, StopSignComponent.cpp and
 YieldSignComponent.cpp. There a vehicle that drives off at red reads red until the next sign or light; here it does not.
@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import kernel
-from linden.traffic.triggers import REACH_M, TriggerGrid, boxes_touch, owners_over
-from linden.values.enums import TrafficLightState
+from linden.protocol.values.enums import TrafficLightState
+from linden.traffic.trigger_volumes import REACH_M, TriggerGrid, boxes_touch, owners_over
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -24,7 +24,7 @@ Flags = NDArray[np.bool_]
 STOP_S = 2.0
 """How long one stands at a stop sign at least."""
 CLEAR_S = 0.5
-"""How long nobody must have been in the way."""
+"""How long the way must have been free."""
 NOWHERE = -1
 
 _RED = int(TrafficLightState.RED)
@@ -76,30 +76,30 @@ def sign_rules(grid: TriggerGrid, is_stop: Flags, squares: list[NDArray[np.void]
 
 
 class Waiting(NamedTuple):
-    """What is remembered of whoever is under a sign; a row for each body's slot."""
+    """The state of the vehicles under signs; a row for each body's slot."""
 
-    who: I32
+    actor_id: I32
     """The actor, for a slot may get another one."""
     sign: I32
     since_s: F64
     """When it came."""
     busy_until_s: F64
-    """Until when somebody is taken to be in its way."""
+    """Until when the way counts as occupied."""
 
     @staticmethod
     def none(slots: int) -> "Waiting":
-        """Return room for that many slots, nobody waiting."""
+        """Return room for that many slots without waiting vehicles."""
         nowhere = np.full(slots, NOWHERE, np.int32)
         return Waiting(nowhere.copy(), nowhere, np.zeros(slots), np.full(slots, -math.inf))
 
     def with_room(self, slots: int) -> "Waiting":
         """Return the same with room for that many slots."""
-        more = slots - len(self.who)
+        more = slots - len(self.actor_id)
         if more <= 0:
             return self
         grown = Waiting.none(more)
         return Waiting(
-            np.concatenate([self.who, grown.who]),
+            np.concatenate([self.actor_id, grown.actor_id]),
             np.concatenate([self.sign, grown.sign]),
             np.concatenate([self.since_s, grown.since_s]),
             np.concatenate([self.busy_until_s, grown.busy_until_s]),
@@ -116,7 +116,7 @@ class Columns(NamedTuple):
 
 
 class SignWatch:
-    """Who waits at the signs of one episode."""
+    """The vehicles that wait at the signs of one episode."""
 
     def __init__(self, rules: SignRules) -> None:
         self._rules = rules
@@ -128,7 +128,7 @@ class SignWatch:
         Args:
             bodies: where everybody is.
             slots: (V,) of the vehicles.
-            actor_ids: (V,) who they are.
+            actor_ids: (V,) ids of their actors.
             now_s: simulated time; the same twice gives the same twice.
         """
         rules = self._rules
@@ -148,12 +148,12 @@ def _colours(
     colours = np.full(len(slots), _GREEN, np.uint8)
     for i in range(len(slots)):
         slot, sign = slots[i], over[i]
-        if waiting.who[slot] != actor_ids[i] or waiting.sign[slot] != sign:
-            waiting.who[slot], waiting.sign[slot] = actor_ids[i], sign
+        if waiting.actor_id[slot] != actor_ids[i] or waiting.sign[slot] != sign:
+            waiting.actor_id[slot], waiting.sign[slot] = actor_ids[i], sign
             waiting.since_s[slot], waiting.busy_until_s[slot] = now_s, -math.inf
         if sign < 0:
             continue
-        if _somebody_in_the_way(rules, sign, over, bodies, slots):
+        if _way_is_occupied(rules, sign, over, bodies, slots):
             waiting.busy_until_s[slot] = now_s + CLEAR_S
         stopping = rules.is_stop[sign] and now_s < waiting.since_s[slot] + STOP_S - _ROUNDING_S
         if stopping or now_s < waiting.busy_until_s[slot] - _ROUNDING_S:
@@ -162,7 +162,7 @@ def _colours(
 
 
 @kernel
-def _somebody_in_the_way(
+def _way_is_occupied(
     rules: SignRules, sign: int, over: I32, bodies: Columns, slots: I32
 ) -> bool:  # pragma: no cover - compiled
     """Whether a vehicle that is not itself under the sign touches one of its squares."""

@@ -64,7 +64,7 @@ def test_a_run_folder_brings_map_and_criteria(recording: Path, capsys: pytest.Ca
     (folder / "result.json").write_text(json.dumps({"infractions": [], "scoring": {"penalties": {"speeding": 0.8}}}))
     metric = folder / "told.py"
     metric.write_text(
-        "from basu.records.carla_log.basic_metric import BasicMetric\n"
+        "from basu.records.carla_log.metric_file import BasicMetric\n"
         "class Told(BasicMetric):\n"
         "    def _create_metric(self, town_map, log, criteria):\n"
         "        print(town_map.name, log.get_total_frame_count(), criteria['speeding']['test_status'])\n"

@@ -11,7 +11,7 @@ from basu.managers.base_manager import Ego, Frame
 from basu.managers.metrics_manager import MetricsManager
 from basu.metrics.score import Scoring, infractions, score
 from basu.records.history.model import NO_LIGHT
-from basu.routing.progress import Progress, advance
+from basu.routing.planned_route import Progress, advance
 from fakes.crossing_map import LANE_M, crossing
 from fakes.drives import STEP_S, straight_route
 

@@ -9,8 +9,7 @@ import pytest
 
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import LoadedAgent
-from basu.agents.manual.inputs import Held, Input, Strike
-from basu.agents.manual.person import Person
+from basu.agents.manual.inputs import Held, Input, Person, Strike
 from basu.agents.manual.session import Played, Session, Setting
 from basu.errors import AgentCrashedError
 from basu.managers.agents_manager import AgentsManager

@@ -14,15 +14,15 @@ from basu.metrics import registry
 from basu.metrics.registry import Metric, built_in, user_metrics
 from basu.metrics.result import Result, judge
 from basu.outcome import Outcome, Status
-from basu.output.report.compare.table import rows, text
+from basu.output.report.comparison import rows, text
 from basu.output.report.console import table
+from basu.output.report.documents import RESULT_SCHEMA, mistakes, read_schema
 from basu.output.report.html.page import report
-from basu.output.report.schema import RESULT_SCHEMA, mistakes, read_schema
 from fakes.drives import at, driven, ramp
 from fakes.results import META
 from fakes.run_records import record
 
-PAGE = Path(__file__).parents[3] / "docs" / "metrics.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "metrics.md"
 DONE = Outcome(Status.COMPLETED, "arrived")
 
 

@@ -1,4 +1,4 @@
-"""Claims about route files: every spelling that is in use, and a sentence for every mistake."""
+"""Tests of ``basu.routing.route_file``."""
 
 import math
 from pathlib import Path
@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from basu.errors import UserError
-from basu.routing.route_file import read_routes
+from basu.routing.route_file import RouteDescription, read_routes, subset
 
 LEADERBOARD_1 = """<routes><route id="3" town="Town01"><waypoint x="1.5" y="-2" z="0.1" yaw="90.0" pitch="0" roll="0"/>
 <waypoint x="10" y="-2" z="0"/></route></routes>"""
@@ -91,3 +91,38 @@ def test_files_that_include_each_other_get_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "other.xml").write_text('<routes><include file="route.xml"/></routes>')
     with pytest.raises(UserError, match="must name another file"):
         read_routes(tmp_path / "route.xml")
+
+
+ROUTES = [
+    RouteDescription(id=name, town="T", points=(), stops=(), source="r.xml")
+    for name in ("0", "1", "2", "3", "7", "24", "A-B")
+]
+
+
+@pytest.mark.parametrize(
+    ("wanted", "ids"),
+    [
+        ("0-3,7", ["0", "1", "2", "3", "7"]),
+        ("7, 0", ["0", "7"]),
+        ("3-24", ["3", "7", "24"]),
+        ("A-B", ["A-B"]),
+        ("24-A-B", ["24", "A-B"]),
+    ],
+)
+def test_ids_and_ranges_choose_routes_in_the_files_order(wanted: str, ids: list[str]) -> None:
+    assert [route.id for route in subset(ROUTES, wanted)] == ids
+
+
+@pytest.mark.parametrize(
+    ("wanted", "sentence"),
+    [
+        ("5", "the route file has no '5'; it has 0, 1, 2, 3, 7, 24, A-B"),
+        ("0-5", "the route file has no '0-5'"),
+        ("", "the route file has no ''"),
+        ("3-1", "'1' comes before '3' in the file"),
+        ("0-3,2", "route '2' is named twice"),
+    ],
+)
+def test_a_mistake_in_a_subset_gets_a_sentence(wanted: str, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        subset(ROUTES, wanted)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from basu.errors import UserError
-from basu.records.history.route_json import route_from_json, route_to_json
+from basu.records.history.files import route_from_json, route_to_json
 from basu.routing.route_file import read_routes
 from basu.routing.timetable import read_timetable, timetable_from_json, timetable_to_json
 from fakes.drives import straight_route

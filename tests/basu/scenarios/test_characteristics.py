@@ -13,11 +13,11 @@ from basu.scenarios.characteristics import (
     Junction,
     Lighting,
     characteristics_of,
-    having,
     measured,
     value_of,
 )
 from basu.scenarios.class_file import own_scenarios
+from basu.scenarios.playable import having
 from fakes.drives import at, driven
 
 CASE = """<scenarios><scenario name="mine_1" type="PedestrianCrossing" town="Linden">
@@ -29,7 +29,8 @@ def characteristics_in(folder: Path, more: str) -> Characteristics:
     """Those of a case with more elements."""
     path = folder / "mine.xml"
     path.write_text(CASE.format(more=more))
-    return characteristics_of(cases_of(str(path))[0])
+    (playable,) = cases_of(str(path))
+    return characteristics_of(playable.case, playable.scenario)
 
 
 @pytest.mark.parametrize(
@@ -83,11 +84,14 @@ def test_conditions_choose_cases_that_have_all_of_them() -> None:
     every = cases_of("all")
     dark = having(every, [("lighting", "dark")])
     assert dark
-    assert {characteristics_of(case).lighting for case in dark} == {Lighting.DARK}
+    assert {characteristics_of(case.case, case.scenario).lighting for case in dark} == {Lighting.DARK}
     round_ = having(every, [("junction", "roundabout")])
     assert {case.scenario.__name__ for case in round_} == {"Roundabout"}
     both = having(every, [("junction", "roundabout"), ("junction", "intersection")])
-    assert {characteristics_of(case).junction for case in both} == {Junction.ROUNDABOUT, Junction.INTERSECTION}
+    assert {characteristics_of(case.case, case.scenario).junction for case in both} == {
+        Junction.ROUNDABOUT,
+        Junction.INTERSECTION,
+    }
     with pytest.raises(ScenarioError, match="none of the 4 cases has lighting=dusk and alignment=curve"):
         having(round_[:4], [("lighting", "dusk"), ("alignment", "curve")])
     assert having(every, []) == every

@@ -42,7 +42,7 @@ def test_a_file_may_import_what_lies_beside_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "holds no subclass of Scenario; see docs/scenarios.md"),
+        ("", "holds no subclass of Scenario; see docs/reference/scenarios.md"),
         ("class Mine(:", "is no Python: line 1"),
         (HEAD + "\nspeed = fast\n", "does not load: line 11: NameError: name 'fast' is not defined"),
         ("import no_such_thing", "does not load: line 1: ModuleNotFoundError"),

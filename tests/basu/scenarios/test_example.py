@@ -1,11 +1,12 @@
-"""Claims about the example of docs/scenarios.md: it is found, and it tells drivers apart on paper."""
+"""Claims about the example of docs/reference/scenarios.md: it is found, and it tells drivers apart on paper."""
 
 from pathlib import Path
 
 import pytest
 
-from basu.scenarios.cases import Playable, cases_of
-from basu.testing import Driver, Rehearsal, careful, paper_place, rehearse, steady
+from basu.scenarios.cases import cases_of
+from basu.scenarios.playable import Playable
+from basu.testing import Driver, Rehearsal, careful, offline_place, rehearse, steady
 
 ROOT = Path(__file__).parents[3]
 EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
@@ -18,7 +19,7 @@ def playable_() -> Playable:
 
 
 def rehearsed(playable: Playable, driver: Driver) -> Rehearsal:
-    place = paper_place([(0.0, 0.0), (100.0, 0.0)])
+    place = offline_place([(0.0, 0.0), (100.0, 0.0)])
     return rehearse(playable.scenario(place, playable.values), driver)
 
 

@@ -1,4 +1,4 @@
-"""Claims about docs/scenarios.md: its tables and files are what the code says, and its ids mean cases."""
+"""Claims about docs/reference/scenarios.md: its tables and files are what the code says, and its ids mean cases."""
 
 import re
 import subprocess
@@ -22,7 +22,7 @@ def test_the_page_is_what_the_code_says() -> None:
 
 
 def test_every_id_on_the_page_means_a_case() -> None:
-    page = (ROOT / "docs" / "scenarios.md").read_text("utf-8")
+    page = (ROOT / "docs" / "reference" / "scenarios.md").read_text("utf-8")
     ids = set(re.findall(r"\b[a-z_]+_\d+:[\w=.,:-]*\w", page))
     assert len(ids) >= 5
     for identity in ids:

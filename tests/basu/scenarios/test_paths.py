@@ -25,7 +25,7 @@ from basu.scenarios.paths import (
 )
 from basu.scenarios.place import Place
 from basu.scenarios.stage import Pose
-from basu.testing import paper_place
+from basu.testing import offline_place
 from fakes.crossing_map import crossing as crossing_map
 
 QUARTER = [(20.0 * math.sin(a), 20.0 - 20.0 * math.cos(a)) for a in np.linspace(0.0, math.pi / 2.0, 60)]  # to the right
@@ -114,7 +114,7 @@ def test_a_stretch_that_is_not_there_is_refused() -> None:
 
 
 def test_a_stretch_of_the_route_keeps_to_its_right() -> None:
-    place = paper_place([(0.0, 0.0), (50.0, 0.0)])
+    place = offline_place([(0.0, 0.0), (50.0, 0.0)])
     kerb = Path.of_route(place.route, 10.0, 30.0, right_m=2.0)
     assert kerb.length_m == pytest.approx(20.0)
     assert kerb.points_m[:, 1] == pytest.approx(2.0)
@@ -177,7 +177,7 @@ def test_of_all_ways_through_a_junction_only_those_are_given_that_meet_the_egos(
 
 
 def test_a_way_that_is_not_there_is_refused_with_those_that_are(westward: Place) -> None:
-    with pytest.raises(ScenarioError, match=r"nobody comes from the opposite going straight.*there are: left"):
+    with pytest.raises(ScenarioError, match=r"no path comes from the opposite going straight.*there are: left"):
         crossing(westward, "opposite", "straight")
 
 
@@ -220,12 +220,12 @@ def test_the_pavement_is_beyond_whoever_parks(in_linden: Place) -> None:
 
 
 def test_without_a_map_pavement_and_parking_are_where_they_mostly_are() -> None:
-    place = paper_place([(0.0, 0.0), (50.0, 0.0)])
+    place = offline_place([(0.0, 0.0), (50.0, 0.0)])
     assert pavement_m(place, 10.0, "right") == -pavement_m(place, 10.0, "left") == 5.6
     assert parked_m(place, 10.0) == pytest.approx(1.75 + 1.05)
 
 
 def test_without_a_map_who_comes_the_other_way_drives_a_lanes_width_to_the_left() -> None:
-    path = oncoming(paper_place([(0.0, 0.0), (50.0, 0.0)], lane_width_m=3.0), 40.0, 5.0)
+    path = oncoming(offline_place([(0.0, 0.0), (50.0, 0.0)], lane_width_m=3.0), 40.0, 5.0)
     assert path.points_m[:, 1] == pytest.approx(-3.0)
     assert path.at(0.0).yaw_rad == pytest.approx(math.pi)

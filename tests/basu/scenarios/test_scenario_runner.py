@@ -22,7 +22,7 @@ import carla
 import pytest
 
 from basu.episode.spec import description_of
-from basu.managers.laid_out import lay_out
+from basu.managers.placed_scenario import place_scenario
 from basu.routing import plan
 from basu.scenarios.cases import by_id, cases_of
 from servers import RunningServer
@@ -98,7 +98,7 @@ def test_an_element_in_its_format_is_a_case_of_ours(name: str, town: carla.Map) 
     playable = by_id(name, [SPOTS])
     assert playable.case.type == playable.scenario.__name__ or playable.case.type in playable.scenario.aliases
     route = plan(town, description_of(playable, town))
-    laid = lay_out(playable, route, town, own=True)
+    laid = place_scenario(playable, route, town, own=True)
     assert laid.scenario.place.trigger_s_m == pytest.approx(0.0, abs=1.0)
 
 

@@ -5,7 +5,7 @@ import math
 import pytest
 from py_trees.common import Status
 
-from basu.metrics import arrival
+from basu.metrics import path_following
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import Pose
 from basu.scenarios.triggers import (
@@ -32,7 +32,7 @@ from basu.scenarios.triggers import (
     TimeToArrival,
     along_route,
 )
-from basu.testing import PaperStage, steady, waiting_at
+from basu.testing import OfflineStage, steady, waiting_at
 from fakes.paper import play, somebody, stage_with
 
 FRAME_S = 0.051  # a frame, and what rounding adds
@@ -54,7 +54,7 @@ def test_near_may_be_between_two_others() -> None:
 def test_near_a_place_may_be_asked_of_anybody() -> None:
     assert play(NearPlace(Pose(50.0, 0.0), 10.0), stage_with()) == pytest.approx(4.0, abs=FRAME_S)
     stage = stage_with(somebody(0.0, 9.0, speed_mps=5.0))
-    assert play(NearPlace(Pose(50.0, 9.0), 10.0, who="other"), stage) == pytest.approx(8.0, abs=FRAME_S)
+    assert play(NearPlace(Pose(50.0, 9.0), 10.0, actor="other"), stage) == pytest.approx(8.0, abs=FRAME_S)
 
 
 @pytest.mark.parametrize(
@@ -84,7 +84,7 @@ def test_a_line_is_crossed_by_the_front_and_only_in_its_direction() -> None:
     assert play(CrossesLine(line), stage_with()) == pytest.approx(4.8, abs=FRAME_S)  # the front is 2 m ahead
     against = stage_with(somebody(80.0, 0.0, math.pi, speed_mps=10.0), driver=steady(0.0))
     with pytest.raises(AssertionError, match="not done"):
-        play(CrossesLine(line, who="other"), against, until_s=10.0)
+        play(CrossesLine(line, actor="other"), against, until_s=10.0)
 
 
 def test_who_passes_beside_the_line_does_not_cross_it() -> None:
@@ -139,11 +139,11 @@ def test_speeds_of_the_ego_and_of_others() -> None:
     falling = stage_with(driver=lambda stage: 10.0 - 2.0 * stage.time_s)
     play(Elapsed(0.5), falling)
     assert play(Slower(4.0), falling) == pytest.approx(3.05, abs=FRAME_S)
-    assert play(Faster(3.0, who="other"), stage_with(somebody(30.0, speed_mps=3.5))) == 0.0
+    assert play(Faster(3.0, actor="other"), stage_with(somebody(30.0, speed_mps=3.5))) == 0.0
 
 
 def test_standing_counts_only_without_a_break() -> None:
-    def driver(stage: PaperStage) -> float:
+    def driver(stage: OfflineStage) -> float:
         return 1.0 if stage.time_s < 2.0 or 3.0 <= stage.time_s < 4.0 else 0.0
 
     trigger = StandsStill(2.0)
@@ -173,14 +173,14 @@ def test_arriving_is_known_no_later_than_the_run_knows_it(speed_mps: float) -> N
     stage = stage_with(driver=steady(speed_mps), length_m=60.0)
     play(EgoArrives(), stage, until_s=200.0)
     left_m = 60.0 - stage.ego_s_m
-    assert left_m > arrival.AT_END_M or left_m + speed_mps * stage.step_s > arrival.AT_END_M
+    assert left_m > path_following.AT_END_M or left_m + speed_mps * stage.step_s > path_following.AT_END_M
 
 
 def test_who_parks_near_the_end_has_arrived_as_the_run_has_it() -> None:
     assert min(along_route.SLACK_M, along_route.SLACK_MPS) >= 0.0
     stage = stage_with(driver=waiting_at(56.5, 100.0, 8.0), length_m=60.0)
     play(EgoArrives(), stage)
-    assert 3.0 < 60.0 - stage.ego_s_m <= arrival.PARKED_M
+    assert 3.0 < 60.0 - stage.ego_s_m <= path_following.PARKED_M
 
 
 def test_a_trigger_that_waits_again_has_nothing_to_say() -> None:

@@ -5,11 +5,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from basu.errors import ScenarioError
-from basu.scenarios.config.model import Case, GivenActor
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.sampling import Grid, Sweep
 from basu.scenarios.stage import Pose
 from basu.scenarios.variation import Variation, parse_id, variant, variants
+from basu.scenarios.xml_elements import Case, GivenActor
 
 PARAMETERS = (
     Number("speed", 5.0, 2.0, 10.0, "m/s", "of the leader"),

@@ -13,8 +13,8 @@ from linden.physics.contact.boxes import overlap
 from linden.physics.contact.pairs import find_pairs
 from linden.physics.contact.statics import STATIC_BOX, Statics
 from linden.physics.step import CONTACT, advance, step
-from linden.values.space import BoundingBox, Vector3D
-from linden.values.vehicles import VehicleControl
+from linden.protocol.values.control import VehicleControl
+from linden.protocol.values.space import BoundingBox, Vector3D
 from naive.physics import near_pairs, shared_area
 
 NEUTRAL = VehicleControl(manual_gear_shift=True, gear=0)

@@ -28,8 +28,8 @@ from linden.physics.bodies import Bodies
 from linden.physics.step import advance
 from linden.physics.vehicle.powertrain import AUTOBOX_LATENCY_S
 from linden.physics.vehicle.wheels import ROAD_FRICTION, WHEEL_MASS_KG, grip_load
-from linden.values.space import Vector2D, Vector3D
-from linden.values.vehicles import AckermannControl, Gear, VehicleControl
+from linden.protocol.values.control import AckermannControl, Gear, VehicleControl
+from linden.protocol.values.space import Vector2D, Vector3D
 from naive.physics import on_curve
 
 NEUTRAL = VehicleControl(manual_gear_shift=True, gear=0)

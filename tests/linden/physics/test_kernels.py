@@ -17,7 +17,7 @@ from linden.physics.vehicle.parameters import check
 from linden.physics.vehicle.powertrain import on_curve as kernel_curve
 from linden.physics.vehicle.tyre import brush_force, cornering_stiffness, free_slip, tyre_push, worked_slip
 from linden.physics.vehicle.wheels import grip_load
-from linden.values.space import Rotation
+from linden.protocol.values.space import Rotation
 from naive.physics import brush, on_curve
 
 angle = st.floats(-3.0, 3.0)

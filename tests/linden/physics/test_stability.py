@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from fleet import BOX, FLAT, NOTHING, OFFSETS, G, at, one, run, sedan, slick, slope, slow_uncompiled, wall, wheels
-from linden.ground import Ground
+from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
 from linden.physics.step import advance
-from linden.values.vehicles import VehicleControl
+from linden.protocol.values.control import VehicleControl
 
 NEUTRAL = VehicleControl(manual_gear_shift=True, gear=0)
 

@@ -7,7 +7,7 @@ import pytest
 
 from fleet import one, run
 from linden.physics.bodies import Bodies
-from linden.values.vehicles import AckermannControl, VehicleControl
+from linden.protocol.values.control import AckermannControl, VehicleControl
 
 FULL = VehicleControl(throttle=1.0, steer=0.5, hand_brake=True)
 NONE = VehicleControl()

@@ -12,8 +12,8 @@ from linden.physics.bodies import Bodies
 from linden.physics.step import advance
 from linden.physics.tumble import BODY_FRICTION, tripping_speed_mps
 from linden.physics.vehicle.rollover import FLAG_AFTER_S, ROLLOVER
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.vehicles import VehicleControl
+from linden.protocol.values.control import VehicleControl
+from linden.protocol.values.space import Rotation, Transform, Vector3D
 
 MASS_KG = 1696.0
 ROOF_M = BOX.location.z + BOX.extent.z

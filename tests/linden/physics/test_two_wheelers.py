@@ -7,8 +7,8 @@ from fleet import BOX, at, run, sedan, wheels
 from linden.errors import Refusal
 from linden.physics.bodies import Bodies
 from linden.physics.vehicle.parameters import axle_wheel
-from linden.values.space import Vector3D
-from linden.values.vehicles import VehicleControl, VehiclePhysicsControl
+from linden.protocol.values.control import VehicleControl, VehiclePhysicsControl
+from linden.protocol.values.space import Vector3D
 
 OFFSETS = (Vector3D(0.7, 0.0, 0.3), Vector3D(-0.7, 0.0, 0.3))
 FRONT, REAR = wheels()[0]._replace(max_steer_angle=40.0), wheels()[2]

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from fleet import BOX, FLAT, NOTHING, OFFSETS, at, run, slick, wall
-from linden.ground import Ground
+from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
-from linden.values.space import BoundingBox, Vector3D
-from linden.values.vehicles import VehicleControl
-from linden.values.walkers import WalkerControl
+from linden.protocol.values.control import VehicleControl, WalkerControl
+from linden.protocol.values.space import BoundingBox, Vector3D
 
 BODY = BoundingBox(Vector3D(), Vector3D(0.188, 0.188, 0.93))
 

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from linden.maps.cache import MapCache
 from linden.sensors import compiling, warming
 from linden.sensors.compiling import compile_once
-from linden.world.map_cache import MapCache
 
 
 @pytest.fixture
@@ -22,7 +22,7 @@ def machine_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Return a file that stands for what was compiled."""
     file = tmp_path / "kernel.nbc"
     file.touch()
-    monkeypatch.setattr(compiling, "_compiled_files", lambda: [str(file)])
+    monkeypatch.setattr(compiling, "_compiled_files", lambda _kernels: [str(file)])
     return file
 
 
@@ -58,7 +58,7 @@ def test_a_list_that_is_none_is_made_again(
 ) -> None:
     assert machine_code.exists()
     cache = MapCache(tmp_path / "kept")
-    cache.replace(compiling._name(), content)
+    cache.replace(compiling._name(compiling.OF_SENSORS), content)
     for _ in range(2):
         compile_once(cache)
     assert warmed == ["warm"]

@@ -5,8 +5,8 @@ from collections import deque
 from types import SimpleNamespace
 
 from fakes.raw_client import RawClient
+from linden.protocol.wire.rpc import Call
 from linden.server.cue import MOST_LATE, PATIENCE_S, SETTLING_S, TRUSTED_AGAIN, Cue
-from linden.wire.rpc import Call
 from servers import running_server
 
 

@@ -16,13 +16,14 @@ import pytest
 from fakes.raw_client import RawClient, RawSubscriber
 from fakes.simulation import FakeFrames, FakeMaps, FakeSimulation
 from linden.errors import Refusal
-from linden.handlers import registry
-from linden.server import loop, subscribers, waiting
+from linden.protocol.values.episode import EpisodeSettings
+from linden.server import loop, subscribers
+from linden.server import stall_log as waiting
 from linden.server.calls import CALLS_PER_TURN
 from linden.server.loop import Server
 from linden.server.peers import StreamPeer
 from linden.server.ports import open_ports, port_of
-from linden.values.episode import EpisodeSettings
+from linden.server.rpc import registry
 
 SYNCHRONOUS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)
 RESET_ALL_LAYERS = (True, 0xFFFF)

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 
 import pytest
 
+from linden.protocol.wire.stream import StreamTable
 from linden.server import subscribers
 from linden.server.peers import StreamPeer
 from linden.server.subscribers import PATIENCE_S, Subscribers
-from linden.wire.stream import StreamTable
 
 STREAM = 5
 MESSAGE_BYTES = 200_000

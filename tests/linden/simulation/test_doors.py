@@ -2,13 +2,13 @@
 
 import pytest
 
+from linden.blueprints.library import Kind
 from linden.errors import Refusal
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.enums import AttributeType
+from linden.protocol.values.space import BoundingBox
+from linden.simulation.actor_table import ActorRecord
 from linden.simulation.doors import SIDE_DOORS, Door, Doors
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.enums import AttributeType
-from linden.values.space import BoundingBox
-from linden.world.actors import ActorRecord
-from linden.world.blueprints import Kind
 
 
 def vehicle(actor_id: int, *, has_doors: bool = True) -> ActorRecord:

@@ -5,15 +5,16 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from linden.maps.facts import derive
+from linden.maps.library import LoadedMap
 from linden.physics.bodies import Bodies
-from linden.simulation import Simulation, foresight
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.control import VehicleControl
+from linden.protocol.values.episode import EpisodeSettings, WeatherParameters
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.simulation import foresight
 from linden.simulation.foresight import MOST_IN_VAIN, TRIED_AGAIN
-from linden.values.actors import ActorDescription
-from linden.values.episode import EpisodeSettings, WeatherParameters
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.vehicles import VehicleControl
-from linden.world.map_facts import derive
-from linden.world.maps import LoadedMap
+from linden.world import World
 from opendrive_texts import street_through_junction
 
 STREET = street_through_junction()
@@ -21,9 +22,9 @@ STEP_S = 0.05
 SETTINGS = EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=STEP_S)
 
 
-def street(cars: int = 6) -> Simulation:
+def street(cars: int = 6) -> World:
     """Cars that drive, the last two of them into each other."""
-    simulation = Simulation(LoadedMap(name="street", text=STREET, **vars(derive(STREET))), SETTINGS)
+    simulation = World(LoadedMap(name="street", text=STREET, **vars(derive(STREET))), SETTINGS)
     for place in range(cars):
         pose = Transform(Vector3D(12.0 * place, 300.0, 1.0), Rotation())
         simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), pose)
@@ -44,7 +45,7 @@ def counted(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     return computed
 
 
-def same(ours: Simulation, theirs: Simulation) -> bool:
+def same(ours: World, theirs: World) -> bool:
     """Whether two worlds are equal, byte for byte."""
     ours_now, theirs_now = ours.episode, theirs.episode
     return (

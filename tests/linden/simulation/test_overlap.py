@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 from shapely.geometry import box as rectangle
 
+from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
 from linden.simulation.overlap import touching
-from linden.values.space import BoundingBox, Rotation, Transform, Vector3D
 
 sizes = st.floats(0.1, 5.0)
 angles = st.floats(-180.0, 180.0)

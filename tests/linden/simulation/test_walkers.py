@@ -5,16 +5,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from linden.maps.facts import derive
+from linden.maps.library import LoadedMap
 from linden.physics.step import CONTACT
-from linden.recording.read import Recording
-from linden.simulation import Simulation
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.enums import AttributeType
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.values.walkers import WalkerControl
-from linden.world.actors import ActorRefusal
-from linden.world.map_facts import derive
-from linden.world.maps import LoadedMap
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.control import WalkerControl
+from linden.protocol.values.enums import AttributeType
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.replay.file.read import Recording
+from linden.simulation.actor_table import ActorRefusal
+from linden.world import World
 from opendrive_texts import street_through_junction
 
 DT_S = 0.05
@@ -28,24 +28,24 @@ def at(x: float, y: float, z: float, yaw: float = 0.0) -> Transform:
     return Transform(Vector3D(x, y, z), Rotation(0.0, yaw, 0.0))
 
 
-def walker(simulation: Simulation, pose: Transform, *, invincible: bool = True) -> int:
+def walker(simulation: World, pose: Transform, *, invincible: bool = True) -> int:
     attribute = AttributeValue("is_invincible", AttributeType.BOOL, "true" if invincible else "false")
     return simulation.spawn(ActorDescription(0, "walker.pedestrian.0001", (attribute,)), pose).id
 
 
-def led(simulation: Simulation, actor_id: int, pose: Transform, speed_mps: float = 1.5) -> None:
+def led(simulation: World, actor_id: int, pose: Transform, speed_mps: float = 1.5) -> None:
     episode = simulation.episode
     episode.walkers.lead(episode, [actor_id], [pose], np.array([speed_mps]))
     simulation.step(DT_S)
 
 
 @pytest.fixture
-def simulation() -> Simulation:
-    return Simulation(MAP)
+def simulation() -> World:
+    return World(MAP)
 
 
 @pytest.fixture
-def follower(simulation: Simulation) -> int:
+def follower(simulation: World) -> int:
     """A walker as a controller takes it over: no physics, no collisions."""
     actor_id = walker(simulation, at(10.0, 4.25, 2.0))
     slot = simulation.episode.walker(actor_id)
@@ -54,25 +54,25 @@ def follower(simulation: Simulation) -> int:
     return actor_id
 
 
-def row(simulation: Simulation, actor_id: int) -> np.void:
+def row(simulation: World, actor_id: int) -> np.void:
     actors = simulation.episode.actors
     return actors.rows[actors.row(actor_id)]
 
 
 @pytest.mark.parametrize("told_m", [0.0, PAVEMENT_M, 0.5])
 def test_a_led_walker_stands_on_the_ground_however_roughly_the_mesh_lies(
-    simulation: Simulation, follower: int, told_m: float
+    simulation: World, follower: int, told_m: float
 ) -> None:
     led(simulation, follower, at(12.0, 4.25, told_m))
     assert simulation.episode.transform(follower).location.z == pytest.approx(PAVEMENT_M + HALF_M, abs=1e-9)
 
 
-def test_one_led_where_no_ground_is_stays_where_it_is_told(simulation: Simulation, follower: int) -> None:
+def test_one_led_where_no_ground_is_stays_where_it_is_told(simulation: World, follower: int) -> None:
     led(simulation, follower, at(12.0, 4.25, 8.0))
     assert simulation.episode.transform(follower).location.z == pytest.approx(8.0 + HALF_M)
 
 
-def test_its_velocity_turn_and_acceleration_are_those_of_its_places(simulation: Simulation, follower: int) -> None:
+def test_its_velocity_turn_and_acceleration_are_those_of_its_places(simulation: World, follower: int) -> None:
     led(simulation, follower, at(10.0, 4.25, PAVEMENT_M))
     led(simulation, follower, at(10.0, 4.25, PAVEMENT_M))
     led(simulation, follower, at(10.06, 4.33, PAVEMENT_M, yaw=5.0))
@@ -85,12 +85,12 @@ def test_its_velocity_turn_and_acceleration_are_those_of_its_places(simulation: 
     assert simulation.episode.walkers.walked_m(follower) == pytest.approx(0.1, abs=1e-6)
 
 
-def test_a_jump_to_another_place_is_no_motion(simulation: Simulation, follower: int) -> None:
+def test_a_jump_to_another_place_is_no_motion(simulation: World, follower: int) -> None:
     led(simulation, follower, at(40.0, 4.25, PAVEMENT_M))
     assert not row(simulation, follower)["velocity"].any()
 
 
-def test_one_that_nobody_leads_any_more_stands(simulation: Simulation, follower: int) -> None:
+def test_one_that_nobody_leads_any_more_stands(simulation: World, follower: int) -> None:
     led(simulation, follower, at(10.0, 4.25, PAVEMENT_M))
     led(simulation, follower, at(10.1, 4.25, PAVEMENT_M))
     simulation.step(DT_S)
@@ -98,7 +98,7 @@ def test_one_that_nobody_leads_any_more_stands(simulation: Simulation, follower:
     assert not row(simulation, follower)["velocity"].any()
 
 
-def strike(simulation: Simulation, speed_mps: float) -> None:
+def strike(simulation: World, speed_mps: float) -> None:
     """Drive a car at a walker at (20, 1.75) and let it hit."""
     car = simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), at(8.0, 1.75, 0.3)).id
     for _ in range(20):
@@ -109,7 +109,7 @@ def strike(simulation: Simulation, speed_mps: float) -> None:
         simulation.step(DT_S)
 
 
-def test_a_walker_struck_by_a_car_falls_lies_and_is_gone_after_ten_seconds(simulation: Simulation) -> None:
+def test_a_walker_struck_by_a_car_falls_lies_and_is_gone_after_ten_seconds(simulation: World) -> None:
     victim = walker(simulation, at(20.0, 1.75, 1.0), invincible=False)
     strike(simulation, 10.0)
     episode = simulation.episode
@@ -127,7 +127,7 @@ def test_a_walker_struck_by_a_car_falls_lies_and_is_gone_after_ten_seconds(simul
     assert victim not in episode.actors
 
 
-def test_an_invincible_one_is_pushed_and_lives(simulation: Simulation) -> None:
+def test_an_invincible_one_is_pushed_and_lives(simulation: World) -> None:
     victim = walker(simulation, at(20.0, 1.75, 1.0))
     strike(simulation, 10.0)
     episode = simulation.episode
@@ -136,13 +136,13 @@ def test_an_invincible_one_is_pushed_and_lives(simulation: Simulation) -> None:
     assert episode.transform(victim).rotation.pitch == pytest.approx(0.0)
 
 
-def test_a_shove_kills_nobody(simulation: Simulation) -> None:
+def test_a_shove_kills_nobody(simulation: World) -> None:
     victim = walker(simulation, at(20.0, 1.75, 1.0), invincible=False)
     strike(simulation, 1.5)
     assert not simulation.episode.walkers.is_dead(victim)
 
 
-def test_the_dead_do_not_move_on_their_own(simulation: Simulation, follower: int) -> None:
+def test_the_dead_do_not_move_on_their_own(simulation: World, follower: int) -> None:
     episode = simulation.episode
     episode.bodies.set_walker_control(episode.walker(follower), WalkerControl(Vector3D(1.0, 0.0, 0.0), 1.5))
     episode.walkers.die(episode, follower)
@@ -155,7 +155,7 @@ def test_the_dead_do_not_move_on_their_own(simulation: Simulation, follower: int
 
 
 def test_what_touches_a_corpse_when_it_goes_breaks_no_frame(
-    simulation: Simulation, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    simulation: World, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     episode = simulation.episode
     victim = walker(simulation, at(20.0, 1.75, 1.0), invincible=False)
@@ -171,7 +171,7 @@ def test_what_touches_a_corpse_when_it_goes_breaks_no_frame(
 
     simulation.recorder.start(tmp_path / "end.log", episode, "street", lambda: 0.0, additional_data=False)
     episode.walkers.die(episode, victim)
-    monkeypatch.setattr("linden.simulation.step.advance", touching)
+    monkeypatch.setattr("linden.world.advance", touching)
     collisions = 0
     while victim in episode.actors:
         simulation.step(DT_S)

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linden.protocol.values.enums import TrafficLightState
 from linden.traffic import cycle
 from linden.traffic.cycle import LightPlan, LightState
-from linden.values.enums import TrafficLightState
 
 RED, YELLOW, GREEN = TrafficLightState.RED, TrafficLightState.YELLOW, TrafficLightState.GREEN
 CROSSING = cycle.plan([[[0, 2], [1, 3]]])

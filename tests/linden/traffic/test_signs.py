@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from linden.opendrive.placed import GIVE_WAY
+from linden.maps.records import GIVE_WAY
+from linden.protocol.values.enums import TrafficLightState
+from linden.protocol.values.space import BoundingBox, Rotation, Vector3D
 from linden.traffic.signs import CLEAR_S, STOP_S, Columns, SignWatch, sign_rules
-from linden.traffic.triggers import trigger_grid
-from linden.values.enums import TrafficLightState
-from linden.values.space import BoundingBox, Rotation, Vector3D
+from linden.traffic.trigger_volumes import trigger_grid
 
 RED, GREEN = int(TrafficLightState.RED), int(TrafficLightState.GREEN)
 AT_SIGN, FAR, IN_THE_WAY = (-12.0, 0.0, 0.0), (-40.0, 0.0, 0.0), (0.0, 8.0, math.pi / 2.0)

@@ -1,7 +1,10 @@
-"""The basic agent: follows the route smoothly, keeps the rules of the road, and stops for whoever is in its way.
+"""The basic agent, which follows the route and keeps the rules of the road, and the human agent with it as relief.
 
 This file joins the official client to ``driving`` and ``rules``, which decide and know nothing of it. The agent uses no
 sensors and no clock: the same ticks give the same drive.
+
+The human agent's driver decides in every step, as a driving instructor does. Its decision counts while the person does
+not drive. ``basu.agents.manual.inputs`` decides between the two.
 """
 
 from __future__ import annotations
@@ -12,11 +15,10 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.builtin.driving.controllers import HOLD_BRAKE
 from basu.agents.builtin.driving.driver import Driver
-from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
 from basu.agents.builtin.driving.task import make_task
-from basu.agents.builtin.perception import Lights, see_ego
-from basu.agents.builtin.vehicle_facts import SHUTTLE, read_facts
+from basu.agents.builtin.perception import SHUTTLE, Lights, read_facts, see_ego
 from basu.agents.sight import RADIUS_M, Knowledge, Sight
 from basu.errors import UserError
 from basu.routing import ControlKind
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from basu.agents.builtin.driving.driver import Command
-    from basu.agents.builtin.vehicle_facts import VehicleFacts
+    from basu.agents.builtin.perception import VehicleFacts
 
 
 class BasicAgent(AutonomousAgent):
@@ -68,7 +70,7 @@ class BasicAgent(AutonomousAgent):
         }
 
     def _get_in(self, pose: carla.Transform) -> tuple[Driver, VehicleFacts]:
-        """Read the vehicle and lay out the route for it."""
+        """Read the vehicle and plan its task."""
         assert self.route is not None  # setup refuses
         facts = read_facts(self.vehicle, pose)
         task = make_task(self.route, facts.body, min(self.cruise_mps, facts.top_mps))
@@ -82,3 +84,18 @@ def _control(command: Command, facts: VehicleFacts, speed_mps: float) -> carla.V
         steer=facts.steering.command(command.steer_rad, speed_mps),
         brake=command.brake,
     )
+
+
+class HumanAgent(BasicAgent):
+    """The driver while the person does not drive; BASU adds a person's input to agents of this class."""
+
+    driven_by_person = True
+
+    def config(self) -> dict[str, str]:
+        """The route, sensors, car and weather of the thesis's test runs."""
+        return {
+            "routes": "routes/linden_short.xml",
+            "sensors": "config/sensors.json",
+            "vehicle": "vehicle.tesla.model3",
+            "weather": "ClearSunset",
+        }

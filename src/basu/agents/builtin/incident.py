@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.agents.builtin.basic import BasicAgent
-from basu.agents.builtin.driving.longitudinal import HOLD_BRAKE
-from basu.agents.builtin.vehicle_facts import SHUTTLE
+from basu.agents.builtin.driving.controllers import HOLD_BRAKE
+from basu.agents.builtin.perception import SHUTTLE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -41,12 +41,12 @@ class IncidentAgent(BasicAgent):
         self._rested = 0  # steps at rest since the stop began
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
-        """Drive; look whether the wheels do as they were told; stop where they do not."""
+        """Drive; compare the wheels with their command; stop where they deviate."""
         if self._stopping:
             return self._stop()
-        told = super().run_step(sensor_data)
-        done = carla.VehicleControl(throttle=told.throttle, brake=told.brake, steer=told.steer + self._deviation())
-        self._stopping = abs(done.steer - told.steer) > TOLERATED_STEER
+        given = super().run_step(sensor_data)
+        done = carla.VehicleControl(throttle=given.throttle, brake=given.brake, steer=given.steer + self._deviation())
+        self._stopping = abs(done.steer - given.steer) > TOLERATED_STEER
         return done
 
     def config(self) -> dict[str, str]:

@@ -31,7 +31,7 @@ class Ego(NamedTuple):
     y_m: float
     yaw_rad: float
     speed_mps: float  # along its own axis, negative when rolling backwards
-    gear: int = 1  # 0 while the gearbox shifts, and where nobody has pressed the throttle yet
+    gear: int = 1  # 0 while the gearbox shifts, and before the first throttle
 
 
 class Urgency(enum.IntEnum):
@@ -39,7 +39,7 @@ class Urgency(enum.IntEnum):
 
     GENTLE = 0  # a speed to slow down to, a service stop: late is better than rough
     FIRM = 1  # a stop line: firm braking, no more
-    VITAL = 2  # somebody's body: all that the tyres give
+    VITAL = 2  # a person's life: all that the tyres give
     RESERVE = 3  # likewise, where comfort is looked after already: hard braking as soon as nothing less will do
 
 

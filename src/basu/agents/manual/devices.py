@@ -1,4 +1,4 @@
-"""Reads keyboard, gamepad or wheel through pygame: the one place that touches devices. Whoever needs it needs a window.
+"""Reads keyboard, gamepad or wheel through pygame: the one place that touches devices. It needs a window.
 
 The rest of this package works without pygame, which is an extra.
 """
@@ -68,7 +68,7 @@ def check_display() -> None:
             "draw without showing"
         ) from error
     if driver == "offscreen" and os.environ.get("SDL_VIDEODRIVER") != "offscreen":
-        pygame.display.quit()  # whoever asks next may have another driver
+        pygame.display.quit()  # the next caller may have another driver
         raise UserError(
             "no window can be opened here: there is no display; run where there is one, or with SDL_VIDEODRIVER=dummy "
             "to draw without showing"

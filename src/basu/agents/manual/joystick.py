@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.manual.inputs import Axes, Strike
 from basu.errors import UserError
-from basu.utils.packaged import PACKAGE_FOLDER
+from basu.files import PACKAGE_FOLDER
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,7 +86,7 @@ def _sections(path: Path) -> configparser.ConfigParser:
 
 
 def _named(sections: configparser.ConfigParser, device: str) -> str | None:
-    """The section whose name is part of the device's, the longest of several."""
+    """The section with a name that is part of the device's, the longest of several."""
     known = [name for name in sections.sections() if name.lower() in device.lower()]
     return max(known, key=len, default=None)
 

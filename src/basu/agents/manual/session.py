@@ -2,9 +2,9 @@
 
 A session is JSON: where and with what it was recorded, and ``keys``, words in lines. A word is a number of ticks and
 what was down in them: ``35W`` is 1.75 s of throttle at 20 ticks a second, ``2WA`` throttle and left for two ticks,
-``4-`` hands and feet off. W S A D are pedals and wheel, ``_`` is the space bar (hand brake); Q and P are struck in
-each tick they stand in. Behind an ``@`` stands a gamepad or wheel in hundredths: ``3-@-12,50,0,0`` is steer -0.12,
-throttle 0.50, brake 0, hand brake off. A session is played by tick, open loop: nobody looks where it goes.
+``4-`` hands and feet off. W S A D are pedals and wheel, ``_`` is the space bar (hand brake); Q and P are struck in each
+tick they stand in. Behind an ``@`` stands a gamepad or wheel in hundredths: ``3-@-12,50,0,0`` is steer -0.12, throttle
+0.50, brake 0, hand brake off. A session is played by tick, open loop: no input depends on where the vehicle goes.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
 from basu.errors import UserError
-from basu.utils.atomic import write_bytes
+from basu.files import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -57,7 +57,7 @@ class Session:
 
     setting: Setting
     inputs: tuple[Input, ...]  # one a tick
-    by: str = "a person"  # who pressed the keys
+    by: str = "a person"  # the source of the keys
 
     def read(self, tick: int) -> Input:
         """What was done in a tick; afterwards nothing."""
@@ -79,7 +79,7 @@ class Session:
 
 
 class Played:
-    """A session that is played, maybe before a window whose own keys go on working."""
+    """A session that is played, with or without a window; the window's own keys go on working."""
 
     def __init__(self, session: Session, window: InputSource | None) -> None:
         self.session = session

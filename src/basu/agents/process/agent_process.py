@@ -1,4 +1,4 @@
-"""A process in which agents live, seen from the benchmark: started, asked within limits, and killed where it hangs."""
+"""The process of agents, from the benchmark's side: start, calls within limits, and end of a hanging process."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 GB = 1e9
 
 
-class Death(Exception):  # noqa: N818 - it becomes an error once it is known whose
+class Death(Exception):  # noqa: N818 - it becomes an error of the agent or of the simulator
     """The process is gone or useless; the text is a half sentence that says what happened to it."""
 
 
@@ -62,7 +62,7 @@ class AgentProcess:
     """One process. It is its own group and session: Ctrl-C at the terminal does not reach it."""
 
     def __init__(self, memory: Memory | None = None) -> None:
-        """Start it; it is asked for nothing yet."""
+        """Start the process; no call is sent yet."""
         ours, theirs = socket.socketpair()
         is_main = threading.current_thread() is threading.main_thread()
         # the system ends a child with the thread that started it: only the main thread lives as long as the process
@@ -85,7 +85,7 @@ class AgentProcess:
 
     @property
     def alive(self) -> bool:
-        """Whether it can be asked."""
+        """Whether it can take calls."""
         return self._process.poll() is None and not self._own_kill
 
     def call(self, operation: str, argument: Any, *, limit_s: float, begin_limit_s: float = START_LIMIT_S) -> Any:  # noqa: ANN401

@@ -189,7 +189,7 @@ class Child:
 
     @property
     def _agent(self) -> AgentCalls:
-        assert self._calls is not None, "made before it is asked"
+        assert self._calls is not None, "an agent is made before its methods are called"
         return self._calls
 
     def _seed(self, seed: int) -> None:
@@ -233,7 +233,7 @@ def _with_waypoints(route: Route, places_m: Sequence[float], carla_map: carla.Ma
 
 
 def main() -> None:
-    """Serve the benchmark at the other end of the socket whose descriptor is the second argument."""
+    """Serve the benchmark at the other end of the socket; its descriptor is the second argument."""
     descriptor, is_of_main_thread = int(sys.argv[2]), sys.argv[3] == "1"
     sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
     if is_of_main_thread and sys.platform == "linux":

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 import carla
 
+from basu.agents.autonomous_agent import AgentConfig
 from basu.agents.calls import SETUP_LIMIT_S, checked, timed_out
-from basu.agents.config import AgentConfig
 from basu.agents.loader import BUILT_IN, LOAD_LIMIT_S, LoadedAgent, load_agent
 from basu.agents.process.agent_process import AgentProcess, CallError, Death, Memory, OverLimitError
 from basu.agents.process.child import Place, Wanted
@@ -38,12 +38,12 @@ ERRORS: dict[str, type[BasuError]] = {
     "user": UserError,
     "simulator": SimulatorError,
 }
-MARGIN_S = 5.0  # beyond the simulator's time-out for a step to begin: the process itself says who kept it waiting
+MARGIN_S = 5.0  # beyond the simulator's time-out for a step to begin: the process itself reports the cause of the wait
 BUILT_IN_KEY = ""  # BASU's own agents share a process: none of them leaves anything behind
 
 
 class AgentInProcess(NamedTuple):
-    """An agent whose code is loaded in a process of its own, and not here."""
+    """An agent with its code in a process of its own, and not here."""
 
     name: str  # for folders and tables
     file: Path | None  # None: BASU's own

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import carla
 
 LOOK_AGAIN_TICKS = 10  # an actor may come in the tick in which another goes: then the number stays
-SMALLEST_M = 0.15  # half size of a body whose box the server leaves empty
+SMALLEST_M = 0.15  # half size of a body with an empty box from the server
 USUAL_HALF_HEIGHT_M = 0.75  # a car's, where no height is given
 
 
@@ -36,13 +36,13 @@ class Other(NamedTuple):
     Attributes:
         id: CARLA's actor id.
         kind: vehicle, walker or prop.
-        x_m, y_m: centre of its bounding box in the world.
-        yaw_rad: its heading, clockwise from east as seen from above.
-        velocity_x_mps, velocity_y_mps: over ground, in the world's axes.
-        yaw_rate_radps: clockwise as seen from above.
+        x_m, y_m: centre of its bounding box, in CARLA's world frame.
+        yaw_rad: its heading, clockwise from east, as seen from above.
+        velocity_x_mps, velocity_y_mps: its velocity over ground, in the world's axes.
+        yaw_rate_radps: its rate of turn, clockwise as seen from above.
         half_length_m, half_width_m, half_height_m: half the sides of its box.
         z_m: height of the box's centre in the world.
-        unseen_s: 0 where it is seen now; else the time since it was seen, and the place is extrapolated since then.
+        unseen_s: 0 for a visible actor, else the time since it was last seen; the place is extrapolated since then.
     """
 
     id: int

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 # Buildings, Walls, … : names of carla.CityObjectLabel. Poles and signs are too thin to hide a body.
 HIDING_LABELS = ("Buildings", "Fences", "Walls", "GuardRail", "Vegetation", "Car", "Truck", "Bus", "Train", "Static")
-LEAST_HALF_M = 0.15  # half the width of what is worth a ray: a thinner thing hides nobody
+LEAST_HALF_M = 0.15  # least half width of a blocking box: a thinner thing hides no actor
 CROWN_HALF_M = 2.0  # a wider box of vegetation is a crown, which one looks through under and beside its leaves
 SAMPLES = np.array(  # of a body's box, as shares of its half sides: below the top, the middle, four corners
     [(0.0, 0.0, 0.9), (0.0, 0.0, 0.0), (0.8, 0.8, 0.2), (0.8, -0.8, 0.2), (-0.8, 0.8, 0.2), (-0.8, -0.8, 0.2)]
@@ -85,7 +85,7 @@ def hidden(sensor_m: NDArray[np.float64], bodies: Boxes, boxes: Boxes) -> NDArra
 def _candidates(
     sensor_m: NDArray[np.float64], bodies: Boxes, boxes: Boxes
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return pairs of a body and a box whose circle, seen from above, touches the fan of rays to the body."""
+    """Return pairs of a body and a box: seen from above, the box's circle touches the fan of rays to the body."""
     to_body, to_box = bodies.centre_m[:, :2] - sensor_m[:2], boxes.centre_m[:, :2] - sensor_m[:2]
     away_m = np.maximum(np.hypot(to_body[:, 0], to_body[:, 1]), 1e-6)
     ahead = to_body / away_m[:, None]
@@ -162,17 +162,17 @@ class StaticBoxes:
         return self._near
 
 
-_KEPT: dict[int, Boxes] = {}  # of the town that was asked for last, by a hash of its objects' names
+_BOXES_OF_TOWN: dict[int, Boxes] = {}  # of the last town, by a hash of its objects' names
 
 
 def static_boxes(world: carla.World) -> StaticBoxes:
     """Return what stands beside a town's streets; asks the server once per town and process."""
     key = hash(tuple(world.get_names_of_all_objects()))
-    if key not in _KEPT:
+    if key not in _BOXES_OF_TOWN:
         rows = [row for name in HIDING_LABELS for row in _rows(world, name)]
-        _KEPT.clear()
-        _KEPT[key] = make_boxes(np.array(rows, dtype=np.float64).reshape(-1, 7))
-    return StaticBoxes(_KEPT[key])
+        _BOXES_OF_TOWN.clear()
+        _BOXES_OF_TOWN[key] = make_boxes(np.array(rows, dtype=np.float64).reshape(-1, 7))
+    return StaticBoxes(_BOXES_OF_TOWN[key])
 
 
 def _rows(world: carla.World, label: str) -> list[tuple[float, ...]]:

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.errors import ScenarioError
-from basu.managers.stage.cast import bring, member_of, take_away
-from basu.managers.stage.puppets import Puppets
-from basu.managers.stage.surroundings import Surroundings
+from basu.managers.stage.environment import Surroundings
+from basu.managers.stage.scenario_actors import Puppets, destroy_actors, member_of, spawn_actors
 from basu.scenarios.criteria.criterion import Move, Thing
 from basu.scenarios.stage import EGO, Body
 
@@ -22,8 +21,8 @@ if TYPE_CHECKING:
     from basu.managers.base_manager import Frame, Run
     from basu.managers.metrics_manager import MetricsManager
     from basu.managers.routes_manager import RoutesManager
-    from basu.managers.stage.cast import Member
-    from basu.managers.stage.shared_world import SharedWorld
+    from basu.managers.stage.environment import SharedWorld
+    from basu.managers.stage.scenario_actors import Member
     from basu.routing import Route
     from basu.scenarios.stage import ActorSpec, Controls, Door, Pose
 
@@ -36,17 +35,17 @@ class LiveStage:
     """See ``basu.scenarios.stage.Stage``. ``look`` begins a frame, ``carry_out`` ends it, ``clear`` ends all."""
 
     def __init__(
-        self, run: Run, routes: RoutesManager, metrics: MetricsManager, who: str, shared: SharedWorld, route: Route
+        self, run: Run, routes: RoutesManager, metrics: MetricsManager, case: str, shared: SharedWorld, route: Route
     ) -> None:
-        """Set it in a run; ``who`` is the case, for sentences, ``route`` the part of the run's that is its own."""
+        """Set it in a run; ``case`` is its name for messages, ``route`` the part of the run's that is its own."""
         self.step_s, self.route, self.carla_map = run.step_s, route, run.carla_map
-        self.rng = random.Random(f"{run.seed} {who}")  # noqa: S311 - chance that can be had again
-        self._run, self._routes, self._metrics, self._who = run, routes, metrics, who
+        self.rng = random.Random(f"{run.seed} {case}")  # noqa: S311 - chance that can be had again
+        self._run, self._routes, self._metrics, self._case = run, routes, metrics, case
         self._cast: dict[str, Member] = {EGO: member_of(run.vehicle, EGO)}
-        self._roles: dict[int, str] = {}  # of everybody who was ever in the cast
+        self._roles: dict[int, str] = {}  # of all actors that were ever in the cast
         self._types: dict[int, str] = {}
         self._puppets = Puppets(run.client)
-        self._surroundings = Surroundings(run.client, run.world, shared, who)
+        self._surroundings = Surroundings(run.client, run.world, shared, case)
         self._changes: dict[str, Callable[[Controls], Controls]] = {}
         self._bodies: dict[str, Body] = {}
         self._frame: Frame | None = None
@@ -56,7 +55,7 @@ class LiveStage:
 
     @property
     def roles(self) -> Mapping[int, str]:
-        """The role of everybody who was ever in the cast, by actor id."""
+        """The roles of all actors that were ever in the cast, by id."""
         return self._roles
 
     @property
@@ -65,12 +64,12 @@ class LiveStage:
         return self._types
 
     def enter(self, specs: Sequence[ActorSpec]) -> None:
-        """Bring a part of the cast into the world; nobody moves yet, and vehicles are held by their brakes.
+        """Bring a part of the cast into the world; no actor moves yet, and vehicles are held by their brakes.
 
         Raises:
-            ScenarioError: somebody cannot be brought.
+            ScenarioError: an actor cannot be spawned.
         """
-        for member, spec in zip(bring(self._run.client, self._run.world, specs, self._who), specs, strict=True):
+        for member, spec in zip(spawn_actors(self._run.client, self._run.world, specs, self._case), specs, strict=True):
             self._cast[spec.name] = member
             self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
             if member.kind == "vehicle":
@@ -78,7 +77,7 @@ class LiveStage:
         self._puppets.carry_out()
 
     def set_off(self, specs: Sequence[ActorSpec]) -> None:
-        """Let those who come moving move."""
+        """Set off the actors that begin in motion."""
         for spec in specs:
             if spec.speed_mps:
                 yaw_rad, speed_mps, kind = spec.pose.yaw_rad, spec.speed_mps, self._member(spec.name).kind
@@ -112,7 +111,7 @@ class LiveStage:
         """Leave the world as it was before."""
         self._changes.clear()
         self._surroundings.give_back()
-        take_away(self._run.client, [member.actor for name, member in self._cast.items() if name != EGO])
+        destroy_actors(self._run.client, [member.actor for name, member in self._cast.items() if name != EGO])
         self._cast = {EGO: self._cast[EGO]}
         self._puppets.forget()
 
@@ -132,7 +131,7 @@ class LiveStage:
 
     @property
     def moves(self) -> tuple[Move, ...]:
-        """Who was put elsewhere or taken away, and when on the record's clock."""
+        """The actors that were moved or removed, and when on the record's clock."""
         return tuple(self._moves)
 
     # what a tree may ask ------------------------------------------------------------------------------------------
@@ -154,7 +153,7 @@ class LiveStage:
 
     @property
     def ego_contacts(self) -> frozenset[str]:
-        """Whom the ego has touched since the scenario began."""
+        """The actors that the ego has touched since the scenario began."""
         return self._touched
 
     def body(self, name: str) -> Body:
@@ -164,13 +163,13 @@ class LiveStage:
         return self._bodies[name]
 
     def is_there(self, name: str) -> bool:
-        """Whether somebody is in the world."""
+        """Whether an actor is in the world."""
         return name in self._cast
 
     # what a tree may do -------------------------------------------------------------------------------------------
 
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
-        """Let a vehicle have this velocity and turning until told otherwise."""
+        """Let a vehicle have this velocity and turning until the next command."""
         self._puppets.move(self._kind(name, "vehicle"), velocity_x_mps, velocity_y_mps, yaw_rate_radps)
 
     def walk(self, name: str, velocity_x_mps: float, velocity_y_mps: float) -> None:
@@ -192,7 +191,7 @@ class LiveStage:
         """Take an actor out of the world."""
         member = self._member(name)
         self._puppets.let_go(member)
-        take_away(self._run.client, [self._cast.pop(name).actor])
+        destroy_actors(self._run.client, [self._cast.pop(name).actor])
         self._moves.append(Move(name, self._next_s, None))
         self._bodies.pop(name, None)
 
@@ -238,13 +237,13 @@ class LiveStage:
         except KeyError:
             there = ", ".join(self._cast)
             raise ScenarioError(
-                f"{self._who} speaks of '{name}', and nobody there is called so; there are {there}"
+                f"{self._case} speaks of '{name}', and no actor has this name; there are {there}"
             ) from None
 
     def _kind(self, name: str, kind: str) -> Member:
         member = self._member(name)
         if member.kind != kind:
-            raise ScenarioError(f"{self._who} leads '{name}' as a {kind}; it is a {member.actor.type_id}")
+            raise ScenarioError(f"{self._case} leads '{name}' as a {kind}; it is a {member.actor.type_id}")
         return member
 
     def _seen(self, member: Member) -> Body:
@@ -264,4 +263,4 @@ class LiveStage:
                 member.half_length_m,
                 member.half_width_m,
             )
-        raise ScenarioError(f"{self._who}: '{member.name}' is gone from the world")
+        raise ScenarioError(f"{self._case}: '{member.name}' is gone from the world")

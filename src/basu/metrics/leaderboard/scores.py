@@ -11,13 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from basu.metrics.arrival import has_arrived
 from basu.metrics.json_schema import integer, listing, mapping, number, record, text
-from basu.metrics.leaderboard.contacts import collisions
 from basu.metrics.leaderboard.ending import Ending, completion_percent, ending
-from basu.metrics.leaderboard.lanes import outside_lanes
-from basu.metrics.leaderboard.minimum_speed import too_slow
+from basu.metrics.leaderboard.infractions import collisions, outside_lanes, too_slow
 from basu.metrics.leaderboard.rules import SCENARIOS_ONLY, Event, Kind, Version, penalty
+from basu.metrics.path_following import has_arrived
 from basu.metrics.red_lights import red_lights
 from basu.metrics.registry import Column, Drive, Metric, register, shown
 from basu.metrics.stop_signs import stop_signs
@@ -86,7 +84,7 @@ def _completion(history: History, end: Ending, version: Version) -> float:
     """The share of the route in per cent; all of it where the drive ended at its end.
 
     A drive that the benchmark took for arrived, and ended, is let arrive: on a route of less than 100 m the leaderboard
-    asks for its last metre, which nobody was given the time for.
+    requires its last metre, and no drive had the time for it.
     """
     last = history.frames[-1]
     remaining_m = history.facts.route.length_m - float(last["route_s_m"])

@@ -1,6 +1,6 @@
 """What was ahead when a harsh stop began, found in the record: a line, a stop, an actor, a bend, or nothing.
 
-Looked for is whatever asks for less speed within the reach of a braking that nobody minds: a second to think, then
+A cause is anything that demands less speed within the reach of a comfortable braking: a second of reaction, then
 1.0 m/s² (`balance.STEP_MPS2`), and two metres to spare. What is farther away is no reason to brake harshly yet. A stop
 with no such reason is a phantom stop, as that of 20 February 2020 was. An actor is ahead where its box, moving on,
 touches the corridor that the vehicle is about to sweep.
@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.balance import STEP_MPS2
-from basu.metrics.passengers.boxes import distance_m, other_boxes
+from basu.metrics.boxes import distance_m, other_boxes
+from basu.metrics.passengers.felt import STEP_MPS2
 from basu.metrics.speeding import limits_mps
 from basu.routing import ControlKind
 
@@ -31,12 +31,12 @@ if TYPE_CHECKING:
 MARGIN_M = 0.3  # beside the vehicle
 SPACING_M = 0.5
 HORIZON_S, LOOK_S = 3.0, 0.25  # how far ahead others are moved on, and how finely
-SLACK_S = 2.0  # who is at a place within this of the vehicle's own arrival is in its way
+SLACK_S = 2.0  # an actor at a place within this of the vehicle's own arrival is in its way
 OFF_ROUTE_M = 2.0  # beyond this the vehicle is taken to go straight on
 
 
 class InTheWay(NamedTuple):
-    """Somebody ahead."""
+    """An actor ahead."""
 
     name: str  # blueprint id and actor id
     away_m: float  # from the front bumper along the corridor
@@ -44,7 +44,7 @@ class InTheWay(NamedTuple):
 
 
 def in_the_way(history: History, tick: int, reach_m: float) -> Iterator[InTheWay]:
-    """All who stood or were about to be in the corridor within ``reach_m``, in the frame ``tick``."""
+    """All actors in the corridor within ``reach_m``, or about to be there, in the frame ``tick``."""
     facts, frame = history.facts, history.frames[tick]
     path_m = _corridor(history, frame, reach_m)
     near = history.others[history.others["tick"] == frame["tick"]]
@@ -59,7 +59,7 @@ def in_the_way(history: History, tick: int, reach_m: float) -> Iterator[InTheWay
             if blocked.any():
                 first = int(np.argmax(blocked))
                 yield InTheWay(
-                    name=f"{facts.actor_types.get(int(row['id']), 'somebody')} (actor {int(row['id'])})",
+                    name=f"{facts.actor_types.get(int(row['id']), 'an unknown type')} (actor {int(row['id'])})",
                     away_m=first * SPACING_M,
                     speed_mps=_along(path_m, first, float(row["velocity_x_mps"]), float(row["velocity_y_mps"])),
                 )
@@ -83,7 +83,7 @@ def _corridor(history: History, frame: np.void, reach_m: float) -> NDArray[np.fl
 
 
 def _along(path_m: NDArray[np.float64], index: int, velocity_x_mps: float, velocity_y_mps: float) -> float:
-    """The part of a velocity that goes the corridor's way, not below 0: who comes towards one is as good as a wall."""
+    """The part of a velocity that goes the corridor's way, not below 0: an oncoming actor counts as a wall."""
     first = min(index, len(path_m) - 2)
     ahead = path_m[first + 1] - path_m[first]
     length_m = float(np.hypot(*ahead))
@@ -126,7 +126,7 @@ class Cause(NamedTuple):
 
 
 def cause(history: History, stop: HarshStop) -> Cause:
-    """A contact, else the reason that asked for most, else `Kind.NOTHING` with what can be said about it."""
+    """A contact, else the reason with the largest demand, else `Kind.NOTHING` with its details."""
     contact = _contact(history, stop)
     if contact is not None:
         return contact
@@ -140,7 +140,7 @@ def reach_m(speed_mps: float) -> float:
 
 
 def _reasons(history: History, stop: HarshStop) -> Iterator[Cause]:
-    """Everything within reach that asked for less speed."""
+    """All reasons for less speed within reach."""
     yield from _lines(history, stop)
     yield from _halts(history, stop)
     yield from _slowdowns(history, stop)
@@ -152,7 +152,7 @@ def _reason(kind: Kind, stop: HarshStop, away_m: float, target_mps: float, name:
     """A reason to be no faster than ``target_mps`` after ``away_m``."""
     excess = max(0.0, stop.from_mps**2 - target_mps**2)
     needed_mps2 = excess / (2.0 * max(away_m, 0.5))
-    return Cause(kind, away_m, needed_mps2, f"{name} {away_m:.1f} m ahead asked for {needed_mps2:.2f} m/s²")
+    return Cause(kind, away_m, needed_mps2, f"{name} {away_m:.1f} m ahead demanded {needed_mps2:.2f} m/s²")
 
 
 def _contact(history: History, stop: HarshStop) -> Cause | None:
@@ -194,7 +194,7 @@ def _slowdowns(history: History, stop: HarshStop) -> Iterator[Cause]:
     here_mps = float(limits_mps(history)[tick])
     if here_mps < stop.from_mps - SLOWER_MPS:
         needed_mps2 = (stop.from_mps**2 - here_mps**2) / (2.0 * reach_m(stop.from_mps))
-        detail = f"the limit of {here_mps:.1f} m/s, exceeded already, asked for {needed_mps2:.2f} m/s²"
+        detail = f"the limit of {here_mps:.1f} m/s, exceeded already, demanded {needed_mps2:.2f} m/s²"
         yield Cause(Kind.LIMIT, 0.0, needed_mps2, detail)
     ahead = np.flatnonzero((route.s_m > at_m) & (route.s_m <= at_m + reach_m(stop.from_mps)))
     for index in ahead.tolist():

@@ -1,9 +1,13 @@
-"""The comfort score: a ride as its standing passengers found it, 0 (bad) to 1 (good). No part of the driving score.
+"""The comfort score, 0 (bad) to 1 (good), and the vibration of ISO 2631-1:1997 in it. No part of the driving score.
+
+Equations by the standard's numbers: r.m.s. (1), running r.m.s. and its maximum MTVV (2, 4), fourth-power dose VDV (5),
+vibration total value (10) with all k = 1 for the comfort of standing persons (clause 8.2); comfort reactions from annex
+C.2.3; motion sickness dose from annex D.
 
 It is a convention of this project, made of figures that are each defined by a source; the weights are adjustable.
 Harm goes before comfort: a ride falls into the first of these levels that holds, and no comfort lifts it out.
 
-    0             the vehicle touched somebody or something
+    0             the vehicle touched an actor or a thing
     0 .. 0.2      the ride did not arrive: 0.2 times the share of the route, times 0.6 for each near miss
     0.2 .. 0.4    near misses: 0.2 + 0.2 x 0.6 ** (n - 1)
     0.4 .. 0.6    breaches, which are rules broken, stops passed and phantom stops: 0.4 + 0.2 x 0.8 ** n
@@ -11,7 +15,7 @@ Harm goes before comfort: a ride falls into the first of these levels that holds
 
 The parts, each in 0 .. 1:
 
-    balance       1 - share of the moving time in which one has to step / 0.1, at least 0; 0 once a step was not enough
+    balance       1 - share of the moving time with balancing steps / 0.1, at least 0; 0 once a step was not enough
     harsh_stops   0.7 for each harsh stop that had a cause, 0.4 for each that had none, multiplied
     vibration     1 where the total value is "not uncomfortable" (0.315 m/s²), 0 from "very uncomfortable" (1.25 m/s²)
     near_misses   0.6 for each party that was nearly hit, multiplied
@@ -31,14 +35,83 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.errors import UserError
+from basu.metrics.passengers.filters import WD, WF, WK, weigh
 from basu.settings.option import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from basu.metrics.passengers.balance import Balance
+    from numpy.typing import NDArray
+
+    from basu.metrics.passengers.felt import Balance, Felt
     from basu.metrics.passengers.service import Visit
-    from basu.metrics.passengers.vibration import Vibration
+
+
+RUNNING_S = 1.0  # integration time of the running r.m.s., 6.3.1
+# Annex C.2.3, likely reactions in public transport; the bands overlap, and a value in two of them is called both.
+REACTIONS: tuple[tuple[str, float, float], ...] = (
+    ("not uncomfortable", 0.0, 0.315),
+    ("a little uncomfortable", 0.315, 0.63),
+    ("fairly uncomfortable", 0.5, 1.0),
+    ("uncomfortable", 0.8, 1.6),
+    ("very uncomfortable", 1.25, 2.5),
+    ("extremely uncomfortable", 2.0, math.inf),
+)
+
+
+class Vibration(NamedTuple):
+    """Over the whole ride; accelerations in m/s²."""
+
+    along_mps2: float  # weighted r.m.s., Wd
+    across_mps2: float  # Wd
+    up_mps2: float  # Wk
+    total_mps2: float  # vibration total value a_v
+    transient_mps2: float  # MTVV: the worst second, of all axes together
+    dose_mps175: float  # VDV, m/s^1.75, of the worst axis
+    crest_factor: float  # the largest of the axes; above 9 the r.m.s. alone may understate (6.2.1)
+    sickness_dose_mps15: float  # MSDVz, m/s^1.5
+    reactions: tuple[str, ...]  # to the total value
+
+
+def vibration(felt: Felt) -> Vibration:
+    """Weigh what is felt."""
+    step_s = float(felt.t_s[1] - felt.t_s[0])
+    weighted = np.stack(
+        [
+            weigh(WD, felt.along_mps2, step_s),
+            weigh(WD, felt.across_mps2, step_s),
+            weigh(WK, felt.up_mps2, step_s),
+        ]
+    )
+    rms = np.sqrt(np.mean(weighted**2, axis=1))
+    total = float(np.sqrt(np.sum(rms**2)))
+    doses = (np.sum(weighted**4, axis=1) * step_s) ** 0.25
+    crests = np.abs(weighted).max(axis=1) / np.where(rms > 0.0, rms, np.inf)
+    return Vibration(
+        along_mps2=float(rms[0]),
+        across_mps2=float(rms[1]),
+        up_mps2=float(rms[2]),
+        total_mps2=total,
+        transient_mps2=float(np.sqrt(_running_mean(np.sum(weighted**2, axis=0), step_s).max())),
+        dose_mps175=float(doses.max()),
+        crest_factor=float(crests.max()),
+        sickness_dose_mps15=float(math.sqrt(np.sum(weigh(WF, felt.up_mps2, step_s) ** 2) * step_s)),
+        reactions=reactions(total),
+    )
+
+
+def reactions(total_mps2: float) -> tuple[str, ...]:
+    """What passengers call a total value: one reaction, or two where the bands overlap."""
+    return tuple(name for name, low, high in REACTIONS if low <= total_mps2 < high)
+
+
+def _running_mean(values: NDArray[np.float64], step_s: float) -> NDArray[np.float64]:
+    """Means over each full second; over the whole where it is shorter."""
+    width = min(len(values), max(1, round(RUNNING_S / step_s)))
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    mean: NDArray[np.float64] = (total[width:] - total[:-width]) / width
+    return np.maximum(mean, 0.0)
+
 
 STEP_SHARE = 0.1
 CAUSED, PHANTOM, NEAR_MISS, BREACH = 0.7, 0.4, 0.6, 0.8

@@ -1,7 +1,7 @@
 """Harsh stops: brakings that are felt above a threshold: when, how hard, from what speed, to what speed.
 
 The threshold is 1.5 m/s²: the medium level of Karekla and Tyler 2018 (see `balance`), half as much again as what
-volunteers who hold on to nothing answered without a step. It is a definition, and adjustable.
+volunteers without a handhold answered without a step. It is a definition, and adjustable.
 """
 
 from __future__ import annotations

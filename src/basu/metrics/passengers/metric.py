@@ -6,8 +6,8 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.json_schema import choice, flag, integer, listing, mapping, number, record, text
-from basu.metrics.passengers.balance import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.causes import Kind
+from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
 from basu.metrics.passengers.near_misses import NEAR_S
 from basu.metrics.passengers.verdict import judge
 from basu.metrics.registry import Column, Drive, Metric, register
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 _PLACE = record(
-    about_="where somebody stands, from the vehicle's origin",
+    about_="where the passenger stands, from the vehicle's origin",
     forward_m=number("m"),
     right_m=number("m"),
     up_m=number("m"),
@@ -122,7 +122,7 @@ class Passengers(Metric):
     order = 95
     schema = record(
         null_=True,
-        about_="the ride as its standing passengers would judge it: docs/passengers.md",
+        about_="the ride as its standing passengers would judge it: docs/reference/passengers.md",
         passed=flag(),
         reasons=listing(text()),
         comfort_score=number(low=0, high=1, null=True),
@@ -143,7 +143,7 @@ class Passengers(Metric):
         balance=_BALANCE,
         vibration=_VIBRATION,
         harsh_stops=listing(_HARSH_STOP, "brakings felt above the threshold, with what was ahead"),
-        near_misses=listing(_NEAR_MISS, "who came close, by time to collision or post-encroachment time"),
+        near_misses=listing(_NEAR_MISS, "actors that came close, by time to collision or post-encroachment time"),
         service=listing(_VISIT, "each stop against the timetable"),
     )
 
@@ -194,7 +194,8 @@ class Passengers(Metric):
             *(f"                  {reason}" for reason in value["reasons"]),
             (
                 f"                  up to {largest['braking_mps2']:.2f} m/s² braking, {largest['across_mps2']:.2f} "
-                f"across; one has to step {100.0 * value['balance']['step_share']:.1f} % of the time; "
+                "across; standing passengers need a balancing step "
+                f"{100.0 * value['balance']['step_share']:.1f} % of the time; "
                 f"{' or '.join(value['vibration']['reactions'])}"
             ),
             *_timetable(value["service"]),
@@ -264,7 +265,7 @@ def _stop(history: History, stop: HarshStop, why: Cause) -> dict[str, Any]:
 
 
 def _party(history: History, party: Party) -> dict[str, Any]:
-    """Somebody who came close, and where the vehicle was when it was closest."""
+    """An actor that came close, and where the vehicle was when it was closest."""
     tick = party.ttc_tick if party.ttc_s <= party.pet_s else party.pet_tick
     frame = history.frames[tick]
     return {

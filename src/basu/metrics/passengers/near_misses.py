@@ -1,11 +1,11 @@
-"""Near misses: with whom the vehicle would soon have collided, and whose place it took just before or after.
+"""Near misses: actors that the vehicle nearly hit, by time to collision and post-encroachment time.
 
 Time to collision (Hayward 1972): how long until both boxes touch if both go on as they do, the vehicle under test on
 its present bend, the other straight ahead. Post-encroachment time (Allen, Shin and Cooper 1978): how long between one's
-leaving a place and the other's coming to it; asked only where their ways cross at 30 degrees or more, for who follows
-in a lane takes the same places all the time. Crossings and the 1.5 s of time to collision are those of the Surrogate
-Safety Assessment Model (FHWA-HRT-08-051, 2008), which screens with a post-encroachment time of 5 s; what is called a
-near miss here is one of 1.5 s, a definition of ours.
+leaving a place and the other's coming to it. It applies only where their ways cross at 30 degrees or more, since a
+follower in a lane takes the same places all the time. Crossings and the 1.5 s of time to collision are those of the
+Surrogate Safety Assessment Model (FHWA-HRT-08-051, 2008), which screens with a post-encroachment time of 5 s; what is
+called a near miss here is one of 1.5 s, a definition of ours.
 
 To stop close before a thing is no near miss. With a thing that stands, the time to collision counts only while the
 braking that is needed to stop before it, speed squared over twice the distance (Cooper and Ferguson 1976), is above the
@@ -19,8 +19,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.balance import GRIP_MPS2
-from basu.metrics.passengers.boxes import other_boxes, own_boxes, time_to_touch_s, touching
+from basu.metrics.boxes import other_boxes, own_boxes, time_to_touch_s, touching
+from basu.metrics.passengers.felt import GRIP_MPS2
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -28,14 +28,14 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 NEAR_S = 1.5  # a time to collision or a post-encroachment time up to this is a near miss
-SEEN_S = 3.0  # up to this it is told of
+SEEN_S = 3.0  # up to this it is listed
 LEG_S = 0.25  # the vehicle's bend is followed in straight legs of this
 CROSSING_RAD = math.radians(30.0)
-STILL_MPS = 0.1  # two who both stand are in no danger from each other
+STILL_MPS = 0.1  # two standing actors are in no danger from each other
 
 
 class Party(NamedTuple):
-    """Somebody who came close; times are inf where they never fell to `SEEN_S`."""
+    """An actor that came close; times are inf where they never fell to `SEEN_S`."""
 
     name: str  # blueprint id and actor id
     ttc_s: float  # least time to collision
@@ -47,7 +47,7 @@ class Party(NamedTuple):
 
 
 def near_misses(history: History) -> tuple[Party, ...]:
-    """Everybody who came within `SEEN_S` of the vehicle in one of the two measures, by actor id."""
+    """All actors that came within `SEEN_S` of the vehicle in one of the two measures, by id."""
     if len(history.others) == 0:
         return ()
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
@@ -75,7 +75,7 @@ def _is_calm_before_thing(history: History, ttc_s: NDArray[np.float64]) -> NDArr
 
 def _party(history: History, key: int, ttc_s: float, soonest: int, pet_s: float, pet_tick: int) -> Party:
     """The evidence about one actor."""
-    name = f"{history.facts.actor_types.get(key, 'somebody')} (actor {key})"
+    name = f"{history.facts.actor_types.get(key, 'an unknown type')} (actor {key})"
     row, ttc_tick = history.others[soonest], int(history.others["tick"][soonest])
     said = []
     if ttc_s <= SEEN_S:
@@ -124,7 +124,7 @@ def times_to_collision_s(
 
 
 def _come_close(a: NDArray[np.float64], b: NDArray[np.float64], approach_mps: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(N,) whether the circles round each pair's boxes meet within a leg: who does not need no closer look."""
+    """(N,) whether the circles round each pair's boxes meet within a leg; the others need no closer look."""
     gap_m = b[:, :2] - a[:, :2]
     speed2 = np.maximum(np.einsum("nd,nd->n", approach_mps, approach_mps), 1e-12)
     nearest_s = np.clip(-np.einsum("nd,nd->n", gap_m, approach_mps) / speed2, 0.0, LEG_S)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.arrival import serving
+from basu.metrics.path_following import serving
 
 if TYPE_CHECKING:
     from basu.records.history import History

@@ -1,9 +1,9 @@
 """Would its passengers have stood the ride? Pass or fail with reasons, and every figure behind it.
 
 A ride fails for harm: any contact, a near miss, a rule of the road that was broken, a service stop that was passed, and
-a route that was not driven to its end. It fails when somebody who stands could have been thrown: by a harsh stop,
-whatever its cause, or by any push above what volunteers recovered from with a step. It fails for shaking that people
-call uncomfortable. Being late, or having to take a step now and then, lowers the comfort score but fails nobody.
+a route that was not driven to its end. It fails when a standing passenger could have been thrown: by a harsh
+stop of any cause, or by any push above what volunteers recovered from with a step. It fails for shaking that people
+call uncomfortable. Delays and single balancing steps lower the comfort score and fail no ride.
 """
 
 from __future__ import annotations
@@ -11,17 +11,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from basu.metrics.arrival import completion
 from basu.metrics.collisions import collisions
 from basu.metrics.lanes import off_road
-from basu.metrics.passengers.balance import GRIP_MPS2, Balance, balance
 from basu.metrics.passengers.causes import Cause, Kind, cause
-from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_score, parts
-from basu.metrics.passengers.felt import STANDING, Felt, Place, felt
+from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, Vibration, comfort_score, parts, vibration
+from basu.metrics.passengers.felt import GRIP_MPS2, STANDING, Balance, Felt, Place, balance, felt
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2, HarshStop, harsh_stops
 from basu.metrics.passengers.near_misses import Party, near_misses
 from basu.metrics.passengers.service import Visit, service
-from basu.metrics.passengers.vibration import Vibration, vibration
+from basu.metrics.path_following import completion
 from basu.metrics.red_lights import red_lights
 from basu.metrics.speeding import TOLERANCE_MPS, speeding
 from basu.metrics.stop_signs import stop_signs
@@ -68,7 +66,7 @@ def judge(
     tolerance_mps: float = TOLERANCE_MPS,
     ended_early: bool = False,
 ) -> Judged | None:
-    """Judge a ride as somebody standing at ``place``; None for a record too short to feel anything.
+    """Judge a ride as a passenger standing at ``place``; None for a record too short to feel anything.
 
     ``tolerance_mps`` is of speeding. ``ended_early`` says that the benchmark ended the drive before the end of its
     route because all that it asks for was driven, as at the end of a scenario.
@@ -148,7 +146,7 @@ def _pushes(upright: Balance, stops: tuple[tuple[HarshStop, Cause], ...], shaken
     if upright.grip_s > 0.0:
         found.append(
             f"for {upright.grip_s:.2f} s pushed by more than {GRIP_MPS2} m/s², up to {upright.worst_mps2:.2f} at "
-            f"{upright.worst_t_s:.1f} s: a passenger who holds on to nothing may fall"
+            f"{upright.worst_t_s:.1f} s: a standing passenger without a handhold may fall"
         )
     if shaken.total_mps2 >= UNCOMFORTABLE_MPS2:
         found.append(f"shaken by {shaken.total_mps2:.2f} m/s²: {' or '.join(shaken.reactions)}")

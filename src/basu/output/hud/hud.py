@@ -1,4 +1,4 @@
-"""The head-up display: looks on at a run, shows it in a window, and lets time pass as it does where a person drives.
+"""The head-up display: shows a run in a window, and lets time pass as it does where a person drives.
 
 Wall time decides when is drawn and how long is waited, and nothing else: the record of a run is the same without it.
 """
@@ -14,29 +14,29 @@ from typing import TYPE_CHECKING
 
 from basu.agents.manual.inputs import Strike
 from basu.errors import SimulatorError, UserError
+from basu.files import write_bytes
 from basu.managers.base_manager import BaseManager
-from basu.managers.neighbours import Neighbours
-from basu.output.hud.camera import ChaseCamera
+from basu.managers.observations import Neighbours
 from basu.output.hud.canvas import GREY, RED, WHITE, Canvas
 from basu.output.hud.notices import Judge, Notices
 from basu.output.hud.panel import WIDTH, Panel, draw_help
 from basu.output.hud.readings import Around, Rates, read, setting_of
-from basu.output.hud.sensor_view import SensorView
+from basu.output.hud.sensor_view import ChaseCamera, SensorView
 from basu.output.hud.top_down import Body, TopDown
-from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
-    from basu.agents.manual.person import Person
-    from basu.managers.base_manager import Frame, Live, Run
+    from basu.agents.manual.inputs import Person
+    from basu.managers import Live
+    from basu.managers.base_manager import Frame, Run
     from basu.options import RunOptions
     from basu.output.hud.readings import Setting
 
 DRAW_EVERY_S = 0.05  # wall time, where the run is faster than that
 RUN_TO_DRAW = 4.0  # there the run gets at least so many times what drawing takes
-WATCH_EVERY_S = 0.1  # simulated time between two pictures where nobody steers by them
+WATCH_EVERY_S = 0.1  # simulated time between two pictures where no person steers by them
 SETTING_EVERY_S = 2.0  # wall time between two questions for the weather, which a route may change
 RATE_S = 2.0  # of wall time, over which rates are taken
-LATE_S = 0.25  # a person who fell behind real time by more starts anew from there, rather than to race after it
+LATE_S = 0.25  # a larger lag behind real time is dropped, not caught up
 PICTURE = Path("hud.png")
 
 
@@ -133,7 +133,7 @@ class Hud(BaseManager):
         return Strike.SCREENSHOT in strikes
 
     def _tell_driver(self, now_s: float) -> None:
-        """Say it when somebody else drives from now on."""
+        """Show a notice when person or agent takes over."""
         if self._live.agents.manual != self._was_manual:
             self._was_manual = self._live.agents.manual
             other = "the autopilot drives" if self._person.drives_first else "the agent drives"

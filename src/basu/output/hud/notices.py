@@ -1,4 +1,4 @@
-"""What is told while a run lasts: lines that fade, the score so far, and infractions as they fall."""
+"""Notices during a run: lines that fade, the score so far, and infractions as they happen."""
 
 from __future__ import annotations
 

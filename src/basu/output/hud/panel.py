@@ -52,7 +52,7 @@ class Panel:
         self._y += 5
 
     def _who(self, shown: Readings) -> None:
-        """Agent, vehicle, and who drives."""
+        """Agent, vehicle, and driver."""
         word, colour = driver_word(shown)
         self._canvas.text((MARGIN, self._y), self._agent, size=24)
         self._canvas.rectangle((WIDTH - MARGIN - 82, self._y - 1, 82, 18), colour, rounded=4)
@@ -158,14 +158,14 @@ class Panel:
         self._gap()
 
     def _nearby(self, shown: Readings) -> None:
-        """Who is near, as far as there is room."""
+        """Actors nearby, as far as there is room."""
         room = int((self._canvas.size[1] - self._y - 24) // ROW)
         for type_id, away_m in shown.nearby[: min(MOST_NEARBY, max(0, room))]:
             self._row(type_id.split(".", maxsplit=1)[-1], f"{away_m:.0f} m")
 
 
 def driver_word(shown: Readings) -> tuple[str, Colour]:
-    """Who drives, and its colour."""
+    """The driver, and its colour."""
     if shown.manual:
         return "MANUAL", YELLOW
     return ("AUTOPILOT", BLUE) if shown.autopilot else ("AGENT", GREEN)

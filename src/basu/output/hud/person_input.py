@@ -7,18 +7,19 @@ from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from basu.agents.manual.devices import Devices, check_display
-from basu.agents.manual.person import Person
+from basu.agents.manual.inputs import Person
 from basu.agents.manual.session import Played, Session, Setting, Tape, read_session, write_session
 from basu.errors import UserError
+from basu.files import find
 from basu.managers.base_manager import BaseManager
 from basu.output.hud.hud import Hud
-from basu.utils.packaged import find
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.manual.inputs import InputSource
-    from basu.managers.base_manager import Frame, Live, Run
+    from basu.managers import Live
+    from basu.managers.base_manager import Frame, Run
     from basu.options import RunOptions
 
 
@@ -98,5 +99,5 @@ class KeysManager(BaseManager):
     def close(self) -> None:
         """Write the session, where one was recorded."""
         if self._path is not None and self._here is not None and self._tape is not None:
-            with contextlib.suppress(UserError):  # a disk that is full by now is told of by what is written next
+            with contextlib.suppress(UserError):  # the next write reports a full disk
                 write_session(self._path, Session(setting=self._here, inputs=tuple(self._tape.inputs)))

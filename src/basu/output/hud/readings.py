@@ -10,7 +10,8 @@ import carla
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.managers.base_manager import Ego, Frame, Live, Run
+    from basu.managers import Live
+    from basu.managers.base_manager import Ego, Frame, Run
     from basu.output.hud.notices import Judgement
 
 GRAVITY_MPS2 = 9.81
@@ -76,7 +77,7 @@ class Readings(NamedTuple):
     traffic: tuple[int, int]  # other vehicles and walkers in the world
     rates: Rates
     manual: bool
-    autopilot: bool  # the one who drives while a person lets it, in a run that is the person's
+    autopilot: bool  # whether the agent drives in a person's run
     tick: int
     simulated_s: float
     wall_s: float
@@ -106,7 +107,7 @@ class Around(NamedTuple):
 
 
 def read(run: Run, live: Live, frame: Frame, judgement: Judgement, around: Around) -> Readings:
-    """Read everything; the server is not asked."""
+    """Read all instruments, without a call of the server."""
     ego, person = frame.ego, live.agents.person
     limit_mps = float(run.vehicle.get_speed_limit()) * MPS_PER_KMH
     return Readings(

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 SPACING_M = 2.0  # between the points of a lane's edges
 PIECE = 20  # points of a lane that are drawn or left out together
-STRAIGHT_RAD, SAME_WIDTH_M = 0.02, 0.05  # changes that nobody sees
+STRAIGHT_RAD, SAME_WIDTH_M = 0.02, 0.05  # changes too small to see
 ACROSS_M = 110.0  # of street from the top to the bottom of the window
 EGO_AT = 0.66  # of the window's height: more is seen ahead than behind
 TRAIL_M = 1.0  # between the points of the way driven
@@ -42,7 +42,7 @@ class Lanes(NamedTuple):
 
 
 class Body(NamedTuple):
-    """Somebody on the road."""
+    """An actor on the road."""
 
     x_m: float
     y_m: float

@@ -1,18 +1,18 @@
-"""The table at the end of a run, for a person's eyes."""
+"""The table at the end of a run on the console: scores, metrics, and the scenarios of its route."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from basu.metrics.registry import NAME_WIDTH, built_in, shown
-from basu.output.report.scenarios.on_way import met
+from basu.output.report.scenarios.tally import LOOKS
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from typing import Any
+    from collections.abc import Mapping, Sequence
 
     from basu.metrics.infraction import Evidence
     from basu.metrics.result import Result
+
 
 SCORES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
 NOT_COMPARABLE = "NOT COMPARABLE"
@@ -67,3 +67,28 @@ def _simulated(meta: Mapping[str, Any]) -> list[str]:
         return []
     pace = f", {meta['simulated_s'] / meta['wall_s']:.2f}x real time" if meta["wall_s"] > 0.0 else ""
     return [f"{'simulated':<{NAME_WIDTH}}{meta['simulated_s']:.1f} s in {meta['wall_s']:.1f} s of wall time{pace}"]
+
+
+NOT_REACHED = "not reached"
+
+
+def met(scenarios: Sequence[dict[str, Any]]) -> list[str]:
+    """A line for all of them, and one for each: when, which, the verdict, and why."""
+    if not scenarios:
+        return []
+    reached = [row for row in scenarios if row["reached"]]
+    passed = sum(row["verdict"] == "SUCCESS" for row in scenarios)
+    judged = sum(row["verdict"] is not None and LOOKS[row["verdict"]].is_judged for row in scenarios)
+    lines = [f"scenarios         {passed} of {judged} passed; {len(reached)} of {len(scenarios)} reached"]
+    return [*lines, *(_line(row) for row in scenarios)]
+
+
+def verdict_word(row: dict[str, Any]) -> str:
+    """The verdict of a scenario in a word or two."""
+    return NOT_REACHED if row["verdict"] is None else LOOKS[row["verdict"]].word
+
+
+def _line(row: dict[str, Any]) -> str:
+    """One scenario."""
+    when = f"{row['began_s']:8.1f} s" if row["began_s"] is not None else " " * 10
+    return f"  {when}  {verdict_word(row):<21} {row['id']} ({row['scenario']}): {row['message']}"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.errors import UserError
+from basu.files import write_bytes
 from basu.output.report.plots.decimate import path
-from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -77,7 +77,7 @@ def open_stream(file: Path, name: str, parts: Parts, *, screen: bool) -> Stream:
 
 
 def close_stream(stream: Stream) -> None:
-    """Let everything arrive, and end the recording; the file is whole though somebody has closed the window."""
+    """Let everything arrive, and end the recording; the file is whole even after the window was closed."""
     with contextlib.suppress(RuntimeError):
         stream.recording.flush(timeout_sec=FLUSH_LIMIT_S)
     stream.recording.disconnect()

@@ -1,21 +1,24 @@
-"""``--viewer``: looks on at a run and streams it to Rerun; the run does not know."""
+"""``--viewer``: streams a run to Rerun; the run is not affected."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from basu.managers.base_manager import BaseManager, ego_in
-from basu.managers.neighbours import Neighbours
-from basu.output.viewer import moment, scenery, senses
-from basu.output.viewer.frames import Pose
-from basu.output.viewer.layout import Parts
+from basu.managers.observations import Neighbours
+from basu.output.viewer import entities
+from basu.output.viewer.entities import EVERY_S, log_map, log_route, log_vehicle, show
+from basu.output.viewer.layout import Parts, Pose
 from basu.output.viewer.stream import Stream, close_stream, has_screen, open_stream
 from basu.records.history import Vehicle
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from basu.managers.base_manager import Frame, Live, Run
+    from basu.managers import Live
+    from basu.managers.base_manager import Frame, Run
+    from basu.options import RunOptions
+
 
 RRD_FILE = "run.rrd"  # in the run's folder
 SCORE_EVERY_S = 1.0  # of simulated time
@@ -26,7 +29,7 @@ class ViewerManager(BaseManager):
     """Shows each tick as it was recorded."""
 
     def __init__(self, live: Live, say: Callable[[str], None]) -> None:
-        """Look on at ``live``; ``say`` tells the user where it can be seen."""
+        """Observe ``live``; ``say`` prints the viewer's address."""
         self._live, self._say = live, say
         self._stream: Stream | None = None
 
@@ -43,17 +46,17 @@ class ViewerManager(BaseManager):
         parts = Parts(start, cameras=cameras, judged=True)
         self._stream = open_stream(run.folder / RRD_FILE, name, parts, screen=has_screen())
         recording = self._stream.recording
-        self._shower = moment.Shower(recording)
+        self._shower = entities.Shower(recording)
         self._neighbours = Neighbours(run.world, run.vehicle.id)
         self._shown_at_s: dict[str, float] = {}
-        scenery.log_map(recording, run.carla_map)
-        scenery.log_route(recording, run.route)
-        scenery.log_vehicle(recording, _vehicle(run))
+        log_map(recording, run.carla_map)
+        log_route(recording, run.route)
+        log_vehicle(recording, _vehicle(run))
 
     def tick(self, frame: Frame) -> None:
         """Show a tick."""
         t_s, ego, control = frame.tick * self._run.step_s, frame.ego, self._live.agents.control
-        driving = moment.Driving(
+        driving = entities.Driving(
             (ego.velocity_x_mps, ego.velocity_y_mps, ego.velocity_z_mps),
             (ego.acceleration_x_mps2, ego.acceleration_y_mps2, ego.acceleration_z_mps2),
             self._run.vehicle.get_speed_limit() * MPS_PER_KMH,
@@ -76,10 +79,10 @@ class ViewerManager(BaseManager):
         close_stream(stream)
         self._say(f"viewer            {RRD_FILE} in the result folder ({stream.said}); `rerun {RRD_FILE}` opens it")
 
-    def _others(self, frame: Frame) -> list[moment.Other]:
-        """Who is near, as the record has them."""
+    def _others(self, frame: Frame) -> list[entities.Other]:
+        """The actors nearby, from the record."""
         return [
-            moment.Other(
+            entities.Other(
                 int(actor_id),
                 self._neighbours.met[int(actor_id)],
                 x_m,
@@ -95,9 +98,9 @@ class ViewerManager(BaseManager):
         """Show what the agent's sensors measured, not more often than ``EVERY_S``."""
         types = self._live.sensors.types
         for sensor_id, (_, measured) in self._live.sensors.data.items():
-            if t_s >= self._shown_at_s.get(sensor_id, -1.0) + senses.EVERY_S - self._run.step_s / 2.0:
+            if t_s >= self._shown_at_s.get(sensor_id, -1.0) + EVERY_S - self._run.step_s / 2.0:
                 self._shown_at_s[sensor_id] = t_s
-                senses.show(self._shower.recording, sensor_id, types[sensor_id], measured)
+                show(self._shower.recording, sensor_id, types[sensor_id], measured)
 
     def _judgement(self) -> None:
         """Show the scores so far, and what is held against the driver."""
@@ -114,3 +117,11 @@ def _vehicle(run: Run) -> Vehicle:
         rear_m=box.extent.x - box.location.x,
         width_m=2.0 * box.extent.y,
     )
+
+
+def viewer_for(options: RunOptions, live: Live) -> list[BaseManager]:
+    """The manager that streams to Rerun, where ``--viewer`` is given."""
+    if not options.viewer:
+        return []
+
+    return [ViewerManager(live, print)]

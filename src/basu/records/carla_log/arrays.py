@@ -1,4 +1,4 @@
-"""A whole run of one actor as arrays, for numpy rather than for one question a frame."""
+"""The run of one actor as numpy arrays, with positions in m."""
 
 from __future__ import annotations
 
@@ -14,6 +14,23 @@ if TYPE_CHECKING:
     from basu.records.carla_log.log import Log
 
     F64 = NDArray[np.float64]
+
+
+CM_PER_M = np.float32(100.0)
+
+
+def locations_m(log: Log) -> NDArray[np.float32]:
+    """(R, 3) a place for each record of positions, CARLA's frame; exact to the last bit in a file of Linden's."""
+    positions, bits = log.table(Kind.POSITIONS), log.table(Kind.LAST_BITS)
+    plain: NDArray[np.float32] = np.divide(positions.rows["location_cm"], CM_PER_M, dtype=np.float32)
+    if not len(bits):
+        return plain
+    off = np.zeros(plain.shape, dtype=np.int32)
+    length = log.frames + 1
+    paired = np.bincount(positions.frame, minlength=length) == np.bincount(bits.frame, minlength=length)
+    off[paired[positions.frame]] = bits.rows["off"][paired[bits.frame]]
+    exact: NDArray[np.float32] = (plain.view(np.int32) + off).view(np.float32)
+    return exact
 
 
 class ActorArrays(NamedTuple):
@@ -58,7 +75,7 @@ def actor_arrays(log: Log, locations_m: NDArray[np.float32], actor_id: int) -> A
 
 
 def _column(log: Log, kind: Kind, name: str, actor_id: int, frame: NDArray[np.int64]) -> F64:
-    """A column of another table in the frames asked for; nan where the actor has no record."""
+    """A column of another table in the requested frames; nan where the actor has no record."""
     found = log.table(kind).of(actor_id)
     values = found.rows[name].astype(np.float64)
     out = np.full((len(frame), *values.shape[1:]), np.nan)

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.records.carla_log.parts import Physics
+    from basu.records.carla_log.layouts import Physics
 
 CM_PER_M = 100.0
 _COPIED = (
@@ -81,7 +81,7 @@ def lamps(bits: int) -> list[carla.VehicleLightState]:
 
 
 def box(row: np.void) -> carla.BoundingBox:
-    """A record of ``BOXES`` or ``TRIGGER_VOLUMES``; zeros for who has no size, as sensors."""
+    """A record of ``BOXES`` or ``TRIGGER_VOLUMES``; zeros for an actor without a size, such as a sensor."""
     centre, extent = (
         np.nan_to_num(row[name] / np.float32(CM_PER_M), nan=0.0, posinf=0.0, neginf=0.0)
         for name in ("centre_cm", "extent_cm")

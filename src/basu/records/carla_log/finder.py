@@ -9,15 +9,15 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from basu.records.carla_log import carla_values as values
+from basu.records.carla_log.arrays import locations_m
 from basu.records.carla_log.layouts import Kind
-from basu.records.carla_log.places import locations_m
 
 if TYPE_CHECKING:
     import carla
     from numpy.typing import NDArray
 
+    from basu.records.carla_log.layouts import Physics
     from basu.records.carla_log.log import Log
-    from basu.records.carla_log.parts import Physics
 
 Actor: TypeAlias = int | str  # an id, or a role name
 
@@ -29,17 +29,17 @@ class Finder:
         self._log = log
 
     def id(self, actor: Actor) -> int:
-        """An actor's id; of a role name, that of the first who has it.
+        """An actor's id; of a role name, that of the first actor with it.
 
         Raises:
-            IndexError: nobody has the role. (An index is what ScenarioRunner's log stumbles over here.)
+            IndexError: no actor has the role. (ScenarioRunner's log fails here with an index, too.)
         """
         if not isinstance(actor, str):
             return actor
         found = self._log.ids_of(role_name=actor)
         if not found:
             roles = sorted({dict(one.attributes).get("role_name", "") for one in self._log.created} - {""})
-            raise IndexError(f"nobody in the recording has the role '{actor}'; roles are {', '.join(roles) or 'none'}")
+            raise IndexError(f"no actor of the recording has the role '{actor}'; it has {', '.join(roles) or 'none'}")
         return found[0]
 
     def index(self, frame: int) -> int:
@@ -79,11 +79,11 @@ class Finder:
         return values.transform(self.locations_m[row], positions.rows["rotation_deg"][row])
 
     def physics(self, actor: Actor, frame: int) -> Physics | None:
-        """What a vehicle is made of, as last told until a frame."""
+        """A vehicle's parts, by the last record until a frame."""
         self.index(frame)
         wanted = self.id(actor)
-        told = [made_of for made_of in self._log.physics if made_of.id == wanted and made_of.frame <= frame]
-        return told[-1] if told else None
+        earlier = [made_of for made_of in self._log.physics if made_of.id == wanted and made_of.frame <= frame]
+        return earlier[-1] if earlier else None
 
     def over(
         self, ask: Callable[[Actor, int], Any], actor: Actor, first_frame: int | None, last_frame: int | None
@@ -95,7 +95,7 @@ class Finder:
         return [ask(wanted, frame) for frame in range(first, last + 1)]
 
     def among(self, ask: Callable[[Actor, int], Any], frame: int, actors: Iterable[int] | None) -> dict[int, Any]:
-        """Answers in one frame, by actor; who has none is left out."""
+        """Values in one frame, by actor; an actor without one is left out."""
         self.index(frame)
         wanted = None if actors is None else set(actors)
         there = (int(row["id"]) for row in self._log.table(Kind.POSITIONS).in_frame(frame))

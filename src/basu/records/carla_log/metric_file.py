@@ -1,4 +1,4 @@
-"""A user's metric: its class found in a Python file, and run; what goes wrong in it is told with its line.
+"""Runs a user's ScenarioRunner metric from a Python file, and keeps or shows its pictures.
 
 Files written for ScenarioRunner import its ``BasicMetric``. Where ScenarioRunner is not installed, ours stands in
 under that name as long as the file runs.
@@ -9,20 +9,45 @@ from __future__ import annotations
 import contextlib
 import importlib.util
 import inspect
+import os
+import platform
 import sys
 import traceback
+import warnings
+from abc import ABC, abstractmethod
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+import matplotlib as mpl
+
 from basu.errors import UserError
-from basu.records.carla_log.basic_metric import BasicMetric
-from basu.utils.user_module import module_of
+from basu.files import module_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    import carla
+
     from basu.records.carla_log.metrics_log import MetricsLog
+
+
+class BasicMetric(ABC):
+    """A question to a recording; a file with one class of this kind is what ``basu metrics --metric`` takes."""
+
+    def __init__(self, town_map: carla.Map, log: MetricsLog, criteria: Mapping[str, Any] | None = None) -> None:
+        self._create_metric(town_map, log, criteria)
+
+    @abstractmethod
+    def _create_metric(self, town_map: carla.Map, log: MetricsLog, criteria: Mapping[str, Any] | None) -> None:
+        """Ask the log, and print, draw or write what comes of it.
+
+        Args:
+            town_map: the map the run lay in.
+            log: the recording.
+            criteria: what the run was judged by, a dict a criterion; None without a judgement.
+        """
+
 
 BASE = BasicMetric.__name__
 _THEIRS = "srunner.metrics.examples.basic_metric"
@@ -112,3 +137,56 @@ def _scenario_runner() -> Iterator[None]:
     finally:
         for name in names:
             del sys.modules[name]
+
+
+def off_screen(plot: Path | None) -> None:
+    """Draw without a window where pictures are to be kept, or where there is no screen to show them on."""
+    if plot is not None and not plot.parent.is_dir():
+        raise UserError(f"--plot {plot}: there is no folder {plot.parent}; make it, or name another place")
+    if plot is not None or not _screen():
+        mpl.use("Agg")
+        warnings.filterwarnings("ignore", message=".*is non-interactive, and thus cannot be shown")
+
+
+def drawn(plot: Path | None) -> list[str]:
+    """Keep the figures that are open, and say what became of them, a line each.
+
+    Raises:
+        UserError: a picture cannot be written.
+    """
+    import matplotlib.pyplot as plt  # noqa: PLC0415 - after the backend is chosen
+
+    numbers = plt.get_fignums()
+    try:
+        if plot is not None:
+            return _kept(plot, numbers)
+        if not numbers or _screen():
+            return []
+        several = f"{len(numbers)} figures" if len(numbers) > 1 else "a figure"
+        return [f"drew {several}; --plot FILE.png keeps what is drawn"]
+    finally:
+        plt.close("all")
+
+
+def _kept(plot: Path, numbers: list[int]) -> list[str]:
+    """Write each figure to its file."""
+    import matplotlib.pyplot as plt  # noqa: PLC0415 - after the backend is chosen
+
+    if not numbers:
+        raise UserError(f"the metric drew nothing, so there is no {plot}")
+    lines = []
+    for count, number in enumerate(numbers, start=1):
+        path = plot if count == 1 else plot.with_stem(f"{plot.stem}-{count}")
+        try:
+            plt.figure(number).savefig(path, dpi=150)
+        except (OSError, ValueError) as error:
+            raise UserError(f"{path} could not be written: {error}") from error
+        lines.append(f"plot              {path}")
+    return lines
+
+
+def _screen() -> bool:
+    """Whether there is a screen that a window could be on."""
+    if platform.system() == "Linux":
+        return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
+    return True

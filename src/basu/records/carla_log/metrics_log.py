@@ -1,6 +1,6 @@
 """Questions to a recording, under the names of ScenarioRunner's ``MetricsLog``, so that its metric classes run on it.
 
-Frames count from 1. Wherever an actor is asked for, its id or its role name will do. What the recording does not have
+Frames count from 1. An actor is named by its id or its role name. What the recording does not have
 is None. Where the answers differ from ScenarioRunner's, and why: docs/recording.md.
 """
 
@@ -33,7 +33,7 @@ class Collision(NamedTuple):
 
 
 class MetricsLog:
-    """A recording to be asked. ``log`` has its columns."""
+    """Queries of a recording. ``log`` has its columns."""
 
     def __init__(self, log: Log) -> None:
         self.log = log
@@ -68,7 +68,7 @@ class MetricsLog:
         ]
 
     def get_actor_collisions(self, actor_id: Actor) -> dict[int, list[int]]:
-        """Whom an actor touched, by frame."""
+        """The actors that an actor touched, by frame."""
         wanted, found = self._find.id(actor_id), dict[int, list[int]]()
         for contact in self.get_collisions():
             pair = (contact.actor_id, contact.other_id)
@@ -82,7 +82,7 @@ class MetricsLog:
     # --- the actors
 
     def get_ego_vehicle_id(self) -> int:
-        """The id of the first actor whose role is ``hero``."""
+        """The id of the first actor with the role ``hero``."""
         return self._find.id("hero")
 
     def get_actor_ids_with_role_name(self, role_name: str) -> list[int]:
@@ -145,12 +145,12 @@ class MetricsLog:
         return None if row is None else values.control(row)
 
     def get_vehicle_physics_control(self, vehicle_id: Actor, frame: int) -> carla.VehiclePhysicsControl | None:
-        """What a vehicle is made of, as last told until a frame."""
+        """A vehicle's parts, by the last record until a frame."""
         made_of = self._find.physics(vehicle_id, frame)
         return None if made_of is None else values.physics_control(made_of)
 
     def get_walker_speed(self, walker_id: Actor, frame: int) -> float | None:
-        """The speed a walker was told, m/s."""
+        """The commanded speed of a walker, m/s."""
         row = self._find.row(Kind.WALKER_SPEEDS, walker_id, frame)
         return None if row is None else float(row["speed_mps"])
 
@@ -162,7 +162,7 @@ class MetricsLog:
         return None if row is None else values.light_state(int(row["state"]))
 
     def is_traffic_light_frozen(self, traffic_light_id: Actor, frame: int) -> bool | None:
-        """Whether somebody stopped its cycle."""
+        """Whether a client stopped its cycle."""
         row = self._find.row(Kind.LIGHT_STATES, traffic_light_id, frame)
         return None if row is None else bool(row["frozen"])
 
@@ -174,7 +174,7 @@ class MetricsLog:
     def get_traffic_light_state_time(
         self, traffic_light_id: Actor, state: carla.TrafficLightState, frame: int
     ) -> float | None:
-        """How long a colour lasts, s, as last told until a frame."""
+        """How long a colour lasts, s, by the last record until a frame."""
         row = self._find.last(Kind.LIGHT_TIMES, traffic_light_id, frame)
         column = {"Green": "green_s", "Yellow": "yellow_s", "Red": "red_s"}.get(str(state))
         return None if row is None or column is None else float(row[column])

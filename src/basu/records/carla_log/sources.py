@@ -43,7 +43,7 @@ def source(run_or_log: Path, map_file: Path | None = None) -> Source:
 
 
 def read_map(path: Path, name: str) -> carla.Map:
-    """The map in an OpenDRIVE file, as the client reads it; no server is asked.
+    """The map in an OpenDRIVE file, as the client reads it, without a server.
 
     Raises:
         UserError: it cannot be read.
@@ -55,7 +55,7 @@ def read_map(path: Path, name: str) -> carla.Map:
 
 
 class AbsentMap:
-    """Stands for a map nobody has given, until it is asked for something."""
+    """Replaces a missing map; any use of it raises an error."""
 
     def __init__(self, name: str) -> None:
         self._name = name

@@ -7,20 +7,54 @@ from __future__ import annotations
 
 import io
 import json
-from typing import TYPE_CHECKING
+import math
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
 from basu.errors import UserError
-from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle
-from basu.records.history.route_json import route_from_json, route_to_json
-from basu.records.history.tables import to_arrow
-from basu.utils.atomic import write_bytes
+from basu.files import write_bytes
+from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle, to_arrow
+from basu.routing import Control, ControlKind, Route, Stop
+from basu.routing.timetable import timetable_from_json, timetable_to_json
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+
+ARRAYS = ("points_m", "s_m", "yaw_rad", "lane_width_m", "speed_limit_mps", "is_junction", "road_id", "lane_id")
+
+
+def route_to_json(route: Route) -> dict[str, Any]:
+    """The route without its client handles; a limit that is not posted (nan) becomes null."""
+    document: dict[str, Any] = {"id": route.id, "town": route.town}
+    for name in ARRAYS:
+        document[name] = getattr(route, name).tolist()
+    document["speed_limit_mps"] = [None if math.isnan(limit) else limit for limit in document["speed_limit_mps"]]
+    document["stops"] = [asdict(stop) for stop in route.stops]
+    if route.timetable is not None:
+        document["timetable"] = timetable_to_json(route.timetable)
+    document["controls"] = [{**asdict(control), "kind": control.kind.value} for control in route.controls]
+    return document
+
+
+def route_from_json(document: dict[str, Any]) -> Route:
+    """Read what :func:`route_to_json` wrote."""
+    limits = [math.nan if limit is None else limit for limit in document["speed_limit_mps"]]
+    arrays: dict[str, Any] = {name: np.array(document[name]) for name in ARRAYS if name != "speed_limit_mps"}
+    return Route(
+        id=document["id"],
+        town=document["town"],
+        speed_limit_mps=np.array(limits, dtype=np.float64),
+        stops=tuple(Stop(**stop) for stop in document["stops"]),
+        timetable=timetable_from_json(document["timetable"]) if "timetable" in document else None,
+        controls=tuple(Control(**{**c, "kind": ControlKind(c["kind"])}) for c in document["controls"]),
+        **arrays,
+    )
+
 
 HISTORY_FILE, FACTS_FILE = "history.parquet", "route.json"
 FACTS_SCHEMA_VERSION = 3
@@ -80,7 +114,7 @@ def facts_from_json(text: str) -> Facts:
     document = json.loads(text)
     version = document["schema_version"]
     if version not in (WITHOUT_APPLIED, FACTS_SCHEMA_VERSION):
-        lacks = ", which lacks what the metrics ask for (lanes, lights, who drives)" if version == 1 else ""
+        lacks = ", which lacks what the metrics ask for (lanes, lights, the driver)" if version == 1 else ""
         raise ValueError(
             f"{FACTS_FILE} has schema version {version}{lacks}, and this one reads {FACTS_SCHEMA_VERSION}; score it "
             "with the version of basu that its config.json names, or drive it again by the command there"

@@ -1,4 +1,4 @@
-"""Collects a run's frames and events while it lasts; one cheap call a tick, packed when somebody asks."""
+"""Collects a run's frames and events while it lasts; one cheap call a tick, packed on request."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Recorder:
                 self._packed[name][self._packed_ticks - 1] = value
 
     def others(self, rows: Iterable[Sequence[float]]) -> None:
-        """Add who is near in the latest frame: one number a column of ``OTHER``, in order."""
+        """Add an actor near in the latest frame: one number a column of ``OTHER``, in order."""
         for row in rows:
             self._others.extend(row)
 
@@ -79,10 +79,10 @@ class Recorder:
         )
 
     def window(self, first: int, facts: Facts) -> History:
-        """The frames from ``first`` on and the contacts in them, whose ticks count from there.
+        """The frames from ``first`` on and the contacts in them; ticks count from there.
 
-        Neither others nor lane invasions are in it, and it costs no more than what is new since the last call: for
-        who asks again and again while the run lasts. Its frames must not be written to.
+        It holds neither other actors nor lane invasions, and costs no more than what is new since the last call: for
+        repeated use while the run lasts. Its frames must not be written to.
         """
         contacts = (replace(event, tick=event.tick - first) for event in self.contacts_since(first))
         return History(

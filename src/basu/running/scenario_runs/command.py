@@ -13,23 +13,21 @@ from tqdm import tqdm
 
 from basu.agents.process.remote_agent import find_agent
 from basu.errors import UserError
+from basu.files import write_bytes
 from basu.outcome import Fault
-from basu.output.report.folder import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
-from basu.output.report.scenarios.console import matrix_text
+from basu.output.report.documents import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.junit import junit_xml
+from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
+from basu.output.report.scenarios.matrix_text import matrix_text
 from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, write_matrix_page
-from basu.output.report.scenarios.page.records import MATRIX_FILE
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import sweep_map
-from basu.running.scenario_runs.document import lost, run_config
-from basu.running.scenario_runs.matrix import matrix_of
-from basu.running.scenario_runs.worker import Job, play
-from basu.running.scenario_runs.worker_pool import Lost, WorkerPool
+from basu.running.scenario_runs.case_documents import lost, matrix_of, run_config
+from basu.running.scenario_runs.worker_pool import Job, Lost, WorkerPool, play
 from basu.scenarios.cases import cases_of, varied
-from basu.scenarios.characteristics import having
 from basu.scenarios.nhtsa import Group
+from basu.scenarios.playable import having
 from basu.scenarios.variation import Variation
-from basu.utils.atomic import write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -38,8 +36,8 @@ if TYPE_CHECKING:
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
     from basu.running.scenario_runs.options import ScenarioOptions
-    from basu.running.scenario_runs.worker import Done
-    from basu.scenarios.cases import Playable
+    from basu.running.scenario_runs.worker_pool import Done
+    from basu.scenarios.playable import Playable
 
 TEXT_FILE, JUNIT_FILE = "matrix.txt", "junit.xml"
 TIMES = "%Y-%m-%dT%H-%M-%S"
@@ -54,7 +52,7 @@ class MatrixRun(NamedTuple):
 
 
 def run_scenarios(options: ScenarioOptions) -> int:
-    """Play everything that was asked for and show the matrix; the exit code is that of the worst verdict.
+    """Play all requested cases and show the matrix; the exit code is that of the worst verdict.
 
     Raises:
         UserError: nothing can be played like this.
@@ -141,7 +139,7 @@ def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> 
 
 
 def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
-    """The cases that were asked for in the order of the typology, sampled where that was.
+    """The requested cases in the order of the typology, with samples where requested.
 
     Raises:
         UserError: there is none of that name, or it cannot be sampled like this.
@@ -167,7 +165,7 @@ def _exit_code(document: dict[str, Any]) -> int:
 
 
 def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
-    """The agents, loaded before anything begins, so that a wrong one is told at once.
+    """The agents, loaded before anything begins, so that a wrong one is refused at once.
 
     Raises:
         UserError: one cannot be had, or two have one name.

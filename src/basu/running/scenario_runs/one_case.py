@@ -1,4 +1,4 @@
-"""One case with one agent: a fresh world, the ego at its place, the scenario played, its verdict and its folder."""
+"""Plays one case with one agent in a fresh world and writes its folder, or draws its behaviour tree."""
 
 from __future__ import annotations
 
@@ -6,21 +6,29 @@ import shutil
 import time
 import traceback
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.episode import Episode, case_spec
+from basu.episode.spec import description_of
+from basu.episode.world import asking, towns_of, world_of
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
+from basu.files import write_bytes
+from basu.managers.placed_scenario import call_scenario, place_scenario
 from basu.managers.sensors_manager import SensorsManager
 from basu.outcome import Outcome, Status
-from basu.output.report.folder import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
-from basu.output.report.scenarios.pictures import PICTURE_FILE, case_picture
+from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
+from basu.output.report.scenarios.drawing.picture import PICTURE_FILE, case_picture
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
+from basu.routing import lane_graph, plan
 from basu.running.drive import drive
 from basu.running.preparation import SensorSet, new_agents, sensor_set
-from basu.running.scenario_runs.document import case_config, document_of
+from basu.running.scenario_runs.case_documents import case_config, document_of
+from basu.scenarios.cases import cases_of
+from basu.scenarios.tree_picture import draw
 from basu.scenarios.verdict import judge
-from basu.utils.atomic import write_bytes
+from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,9 +43,9 @@ if TYPE_CHECKING:
     from basu.records.history import History
     from basu.running.drive import Driven
     from basu.running.scenario_runs.options import ScenarioOptions
-    from basu.scenarios.cases import Playable
-    from basu.scenarios.config.model import Case
+    from basu.scenarios.playable import Playable
     from basu.scenarios.verdict import Judged
+    from basu.scenarios.xml_elements import Case
     from basu.simulator import Simulator
 
 
@@ -153,9 +161,26 @@ def _streets(episode: Episode | None) -> list[NDArray[np.float64]]:
 
 
 def _sensors(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
-    """What the agent senses with; those of our own read no sensors, theirs are for who looks on, as nobody does here.
+    """The agent's sensors; built-in agents read none, and theirs serve observers, which a case has not.
 
     Raises:
         UserError: the agent asks for what is no sensor set.
     """
     return SensorSet((), loaded.name) if loaded.file is None else sensor_set(agents, loaded)
+
+
+def drawn(options: ScenarioOptions, form: str) -> str:
+    """The tree of the first case that ``options.what`` means, in a form of ``basu.scenarios.tree_picture.FORMS``.
+
+    Raises:
+        UserError: there is no such case, or it cannot be laid on its map.
+        SimulatorError: there is no simulator to ask for the map.
+    """
+    playable = cases_of(options.what, options.files)[0]
+    case = playable.case
+    with simulator_for(options.run_options("basic")) as simulator, asking(f"loading {case.town}"):
+        check_town(case, towns_of(simulator.client))
+        carla_map = world_of(simulator.client, case.town).get_map()
+        route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))
+        placed = place_scenario(playable, route, carla_map, own=True)
+        return call_scenario(case.name, partial(draw, placed.scenario, form))

@@ -160,7 +160,7 @@ class ScenarioOptions(Settings):
 
     @property
     def drive_seed(self) -> int:
-        """The seed of what is random in the drives: 0 for samples, whose ids hold no other."""
+        """The seed of what is random in the drives: 0 for samples; their ids hold no other."""
         return 0 if self.sweep is not None else self.seed
 
     @property

@@ -1,18 +1,23 @@
 """What scenarios do: lead vehicles and walkers, disturb the ego, change weather, road and lights."""
 
-from basu.scenarios.actions.composition import Action, Either, InTurn, Meanwhile, Together, Wait
 from basu.scenarios.actions.driving import DriveAlong, FollowEgo, ReachAtEgosArrival
 from basu.scenarios.actions.ego_controls import Bump, JitterControls, PullSteering
 from basu.scenarios.actions.maneuvers import Accelerate, Brake, ChangeLane, Drift, Hold
-from basu.scenarios.actions.moments import (
+from basu.scenarios.actions.one_frame import (
+    Action,
     CloseDoor,
+    Either,
+    InTurn,
     LetGo,
+    Meanwhile,
     OpenDoor,
     PutAt,
     Remove,
     SetFriction,
     SetLight,
     SetWeather,
+    Together,
+    Wait,
 )
 from basu.scenarios.actions.puppet import Limits, Puppet
 from basu.scenarios.actions.walking import WalkAlong

@@ -148,7 +148,7 @@ class ReachAtEgosArrival(Puppet):
 
     A negative offset is before the ego. Each frame the ego is taken to go on at the speed it has, and the vehicle makes
     for the speed that meets it, between ``low_mps`` and ``high_mps``; in the last ``settled_s`` seconds before the
-    point it keeps its speed, as a driver who does not see the ego would. Done at the point; the vehicle goes on
+    point it keeps its speed, as a driver with no view of the ego would. Done at the point; the vehicle goes on
     straight, so let a ``DriveAlong`` on the same path follow. ScenarioRunner has the idea as ``SyncArrival``.
 
     ``ego_stops`` is for an ego that has a stop sign: it is taken to come to rest at its place, and the offset counts
@@ -186,7 +186,7 @@ class ReachAtEgosArrival(Puppet):
         self.low_mps, self.high_mps, self.settled_s, self.ego_stops = low_mps, high_mps, settled_s, ego_stops
 
     def begin(self) -> None:
-        """Nobody is there yet."""
+        """The vehicle is not there yet."""
         super().begin()
         self.settled_mps: float | None = None
         self.rested_at_s: float | None = None

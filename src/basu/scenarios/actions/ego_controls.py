@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.stage import Controls
 
 

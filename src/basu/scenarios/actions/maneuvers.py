@@ -148,7 +148,7 @@ class ChangeLane(Puppet):
 
 
 class Drift(ChangeLane):
-    """Let a vehicle stray sideways at ``rate_mps``, as who nods off does, to ``to_right_m`` beside its path."""
+    """Let a vehicle stray sideways at ``rate_mps``, as with a sleepy driver, to ``to_right_m`` beside its path."""
 
     def __init__(
         self,

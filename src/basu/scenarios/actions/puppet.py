@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from basu.errors import ScenarioError
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, Pose
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 AtEnd = Literal["hold", "go on", "vanish"]
 BACKWARDS_RAD = math.radians(100.0)  # a path that begins farther off a vehicle's heading leads behind it
-STRAIGHT_M = 400.0  # of a path for who is given none
+STRAIGHT_M = 400.0  # of the path of a vehicle without one
 PULL_PER_S = 2.0  # of the way off its path that a puppet makes good in a second
 SIDEWAYS = 0.35  # of its speed that it may do so with
 TURN_RADPS = 2.0  # no command turns faster
@@ -52,7 +52,7 @@ class Puppet(Action):
         at_end: AtEnd = "go on",
         minds: Sequence[str] = (),
     ) -> None:
-        """``path`` None: straight on from where it is. ``minds``: whom it brakes for ahead on its path."""
+        """``path`` None: straight on from where it is. ``minds``: the actors on its path that it brakes for."""
         super().__init__(name)
         self.actor, self.given, self.limits, self.at_end, self.minds = actor, path, limits, at_end, tuple(minds)
         self.s_m = self.speed_mps = 0.0
@@ -88,7 +88,7 @@ class Puppet(Action):
         return words
 
     def leave(self, *, broken_off: bool) -> None:
-        """Hold, go on straight or vanish; who was touched rolls."""
+        """Hold, go on straight or vanish; a touched vehicle rolls."""
         if not self.stage.is_there(self.actor):
             return
         if self.touched:
@@ -122,7 +122,7 @@ class Puppet(Action):
         lead(self.stage, self.actor, self.path, self.near, speed_mps)
 
     def _followed_mps(self, body: Body) -> float:
-        """The speed by the intelligent driver model towards the nearest of those minded; inf with nobody ahead.
+        """The speed by the intelligent driver model towards the nearest minded actor; inf without one ahead.
 
         Treiber, Hennecke and Helbing 2000, "Congested traffic states", eq. 2-3.
         """
@@ -145,7 +145,7 @@ class Puppet(Action):
 
 
 class Ahead(NamedTuple):
-    """Somebody on the path."""
+    """An actor on the path."""
 
     gap_m: float  # from the front of one to the nearest point of the other
     speed_mps: float  # of the other, along the path
@@ -196,5 +196,5 @@ def lead(stage: Stage, actor: str, path: Path, near: OnPath, speed_mps: float) -
 
 
 def minded(*, considerate: bool, minds: Sequence[str]) -> tuple[str, ...]:
-    """Whom a puppet brakes for: those named, and the ego where it is considerate."""
+    """The actors that a puppet brakes for: the named ones, and the ego where it is considerate."""
     return (EGO, *minds) if considerate else tuple(minds)

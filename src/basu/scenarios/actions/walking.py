@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Literal
 
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 
 if TYPE_CHECKING:
     from basu.scenarios.paths import Path
@@ -17,7 +17,7 @@ class WalkAlong(Action):
     """Let a walker go along a path.
 
     ``pause_at_m`` along the path it stands for ``pause_s``. At the end it stands, goes on straight, turns back to
-    where it came from, or vanishes. One whom the ego touches stands.
+    where it came from, or vanishes. A touched walker stands.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class WalkAlong(Action):
         return None
 
     def leave(self, *, broken_off: bool) -> None:
-        """Stand, go on or vanish; who is broken off in the middle of a walk stands, unless it was to go on."""
+        """Stand, go on or vanish; a walker broken off in the middle of a walk stands, unless it was to go on."""
         if not self.stage.is_there(self.actor):
             return
         if self.at_end == "vanish" and self.moving and not broken_off:

@@ -17,8 +17,6 @@ from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played, Thing
 from basu.scenarios.criteria.going import Arrives, InTime, Reaches, ReachesPoint
 from basu.scenarios.criteria.lane import KeepsLane, Regains
-from basu.scenarios.criteria.signals import HeedsRedLights, HeedsStopSigns
-from basu.scenarios.criteria.speed import KeepsSpeed, MinimumSpeed
 from basu.scenarios.criteria.stopping import StoppedFor
 from basu.scenarios.criteria.surrogate_measures import (
     KeepsHeadway,
@@ -28,6 +26,7 @@ from basu.scenarios.criteria.surrogate_measures import (
     margins_of,
     reported_always,
 )
+from basu.scenarios.criteria.traffic_rules import HeedsRedLights, HeedsStopSigns, KeepsSpeed, MinimumSpeed
 
 __all__ = [
     "Arrives",

@@ -21,7 +21,7 @@ class Gentle(Criterion):
     """No braking is felt with ``harsh_mps2`` or more where one stands.
 
     With ``phantom_only`` only stops count for which nothing in the record was a reason: no line, no stop, no bend,
-    nobody and no thing of the scenario's ahead. ``since`` is a phase from which on it is judged.
+    no actor and no thing of the scenario's ahead. ``since`` is a phase from which on it is judged.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class Gentle(Criterion):
         stops = [(s, cause(record, s)) for s in harsh_stops(sensed, self.harsh_mps2) if s.tick >= first]
         counting = [(s, why) for s, why in stops if why.kind is Kind.NOTHING or not self.phantom_only]
         if not counting:
-            return self._calm(played, sensed, first, limit, told=len(stops))
+            return self._calm(played, sensed, first, limit, caused=len(stops))
         worst, _ = max(counting, key=lambda found: found[0].strongest_mps2)
         said = [
             f"{'phantom' if why.kind is Kind.NOTHING else 'harsh'} stop at {s.t_s:.2f} s from {s.from_mps:.2f} to "
@@ -65,7 +65,7 @@ class Gentle(Criterion):
             limit=limit,
         )
 
-    def _calm(self, played: Played, sensed: Felt, first: int, limit: str, *, told: int) -> Judgement:
+    def _calm(self, played: Played, sensed: Felt, first: int, limit: str, *, caused: int) -> Judgement:
         """Nothing counted: the hardest braking all the same."""
         braking_mps2 = -sensed.filtered_along_mps2 * np.where(sensed.speed_mps < 0.0, -1.0, 1.0)
         worst = first + int(np.argmax(braking_mps2[first:]))
@@ -75,6 +75,6 @@ class Gentle(Criterion):
             f"the hardest braking felt was {hardest_mps2:.2f} m/s² at {float(sensed.t_s[worst]):.2f} s, "
             f"the largest jerk {jerk_mps3:.1f} m/s³"
         )
-        if told:
-            sentence += f"; {told} harsh stop{'s' if told > 1 else ''} had a cause"
+        if caused:
+            sentence += f"; {caused} harsh stop{'s' if caused > 1 else ''} had a cause"
         return self.says(played, True, sentence, tick=worst, measured=hardest_mps2, unit="m/s²", limit=limit)

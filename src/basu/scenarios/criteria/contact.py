@@ -1,4 +1,4 @@
-"""No collision: nobody and nothing is touched."""
+"""The criterion of no collision with actors or things."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ TOLD = 3  # contacts that the sentence tells of one by one
 
 
 class NoCollision(Criterion):
-    """The ego touches nobody and nothing.
+    """The ego touches no actor and no thing.
 
     ``except_with`` names roles that may be touched. Where ``standing_counts`` is False, a contact in which the ego
-    stood (below 0.1 m/s in the frame before) is told and not held against it, as in the leaderboard 2.x. Messages of
+    stood (below 0.1 m/s in the frame before) is reported and does not count, as in the leaderboard 2.x. Messages of
     the sensor are brought together into contacts as ``basu.metrics.collisions`` does.
     """
 
@@ -45,7 +45,7 @@ class NoCollision(Criterion):
         more = f"; and {len(said) - TOLD} more" if len(said) > TOLD else ""
         sentence = "; ".join(said[:TOLD]) + more
         if not counting:
-            return self.says(played, True, sentence or "it touched nobody and nothing", unit="m/s", limit="none")
+            return self.says(played, True, sentence or "it touched no actor and no thing", unit="m/s", limit="none")
         event = begun[counting[0]]
         return self.says(
             played,
@@ -60,7 +60,7 @@ class NoCollision(Criterion):
 
 
 def _sentence(played: Played, event: Collision, before_mps: float) -> str:
-    """Who, when, how fast, and how fast the other was where the record has it."""
+    """The other party, the time, the ego's speed, and the other's speed where the record has it."""
     history = played.history
     role = played.roles.get(event.other_id)
     other = event.other_type if role is None else f"{role} ({event.other_type})"

@@ -1,4 +1,4 @@
-"""What a criterion is asked and what it answers."""
+"""The base of criteria: their input, and the judgement that they return."""
 
 from __future__ import annotations
 
@@ -88,8 +88,8 @@ class Judgement(NamedTuple):
     deciding: bool  # whether the verdict depends on it
     measured: float | None  # in `unit`; None where there is no figure
     unit: str
-    limit: str  # what it was held against, such as "at least 0.5 m"; "" for what is only told
-    sentence: str  # when, where, with whom, how fast
+    limit: str  # what it was held against, such as "at least 0.5 m"; "" for a reported figure
+    sentence: str  # time, place, other party, speed
     t_s: float | None = None  # of the moment that decided
     x_m: float | None = None  # of the ego then
     y_m: float | None = None

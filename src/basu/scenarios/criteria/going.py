@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics import arrival
+from basu.metrics import path_following
 from basu.outcome import Status
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.triggers.along_route import SLACK_M, SLACK_MPS
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 def arrival_tick(history: History) -> int | None:
     """The first frame in which the ego has arrived, with the slack of `EgoArrives`; None where it never has."""
-    return arrival.arrival_tick(history, slack_m=SLACK_M, slack_mps=SLACK_MPS)
+    return path_following.arrival_tick(history, slack_m=SLACK_M, slack_mps=SLACK_MPS)
 
 
 class Arrives(Criterion):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
     from basu.scenarios.criteria.criterion import Judgement, Played
 
-HOLD_S = 1.0  # who is back for so long has regained its lane, and not swung through it
+HOLD_S = 1.0  # a vehicle back for so long has regained its lane, and not swung through it
 LEAST_S = 0.2  # shorter stretches outside are forgiven: the lookup of lanes may skip where they meet
 
 

@@ -37,17 +37,17 @@ class Present(NamedTuple):
 
     def name_of(self, key: int) -> str:
         """For ``Judgement.other``: a role, a thing's name or a blueprint id."""
-        return self.names.get(key, self.history.facts.actor_types.get(key, "somebody"))
+        return self.names.get(key, self.history.facts.actor_types.get(key, "an unknown type"))
 
     def described(self, key: int) -> str:
         """For a sentence."""
         kind = self.history.facts.actor_types.get(key)
         if key in self.names:
             return self.names[key] if kind is None else f"{self.names[key]} ({kind})"
-        return f"{kind or 'somebody'} (actor {key})"
+        return f"{kind or 'an unknown type'} (actor {key})"
 
     def rows_of(self, name: str | None) -> NDArray[np.int64]:
-        """Rows of the record's others: of one role or thing, or of everybody."""
+        """Rows of the record's others: of one role or thing, or of all."""
         if name is None:
             return np.arange(len(self.history.others))
         keys = [key for key, known in self.names.items() if known == name]
@@ -57,7 +57,7 @@ class Present(NamedTuple):
 def present_in(played: Played) -> Present:
     """The record with a row for each thing in each frame in which it was as near as others are recorded.
 
-    Things are actors without a row of their own, so contacts with them are told under the same ids.
+    Things are actors without a row of their own, so their contacts have the same ids.
     """
     history, facts = played.history, played.history.facts
     names, sizes = dict(played.roles), dict(facts.actor_sizes)
@@ -87,8 +87,8 @@ def present_in(played: Played) -> Present:
 class Margin(Criterion):
     """Stays ``at_least`` away from others: vehicles, walkers and the scenario's things alike.
 
-    ``to`` is a role or a thing's name, None for everybody; ``since`` a phase from which on it is judged. Without
-    ``at_least`` it only tells. Whom the ego's collision sensor named was 0 away.
+    ``to`` is a role or a thing's name, None for all actors; ``since`` a phase from which on it is judged. Without
+    ``at_least`` it only reports. A party named by the ego's collision sensor was 0 away.
     """
 
     called: ClassVar[str]
@@ -121,7 +121,7 @@ class Margin(Criterion):
         """What the least figure means, after a party's name."""
 
     def never(self) -> str:
-        """What is said where nobody came within the horizon."""
+        """The sentence where no actor came within the horizon."""
         return f"it never was below {self.horizon:g} {self.unit}"
 
     def frames(self, present: Present) -> NDArray[np.bool_]:
@@ -146,8 +146,8 @@ class Margin(Criterion):
         ticks = present.history.others["tick"][rows]
         rows = rows[(ticks >= first) & self.frames(present)[ticks]]
         if len(rows) == 0:
-            who = "nobody" if self.to is None else f"{self.to} never"
-            return self.says(played, None, f"{who} was within {NEAR_M:g} m of the ego", unit=self.unit, limit=limit)
+            party = "no actor" if self.to is None else f"{self.to} never"
+            return self.says(played, None, f"{party} was within {NEAR_M:g} m of the ego", unit=self.unit, limit=limit)
         touched = self.touched(present, rows)
         if touched.any():
             return self._touched(played, present, int(rows[np.argmax(touched)]), limit)
@@ -186,7 +186,7 @@ class Margin(Criterion):
         )
 
     def _touched(self, played: Played, present: Present, row: int, limit: str) -> Judgement:
-        """The judgement of a contact; the speed told is that of the frame before."""
+        """The judgement of a contact; its speed is that of the frame before."""
         key, tick = int(present.history.others["id"][row]), int(present.history.others["tick"][row])
         before_mps = float(played.history.speed_mps()[max(0, tick - 1)])
         t_s = float(played.history.frames["t_s"][tick])

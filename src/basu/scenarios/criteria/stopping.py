@@ -1,4 +1,4 @@
-"""Stopping for something: coming to rest before a line, an obstacle or somebody."""
+"""Criteria of stopping: coming to rest before a line, an obstacle or an actor."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.errors import ScenarioError
-from basu.metrics.passengers.boxes import other_boxes, own_boxes
+from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.stretches import stretches
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margin import present_in

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import other_boxes, own_boxes, touching
+from basu.metrics.boxes import other_boxes, own_boxes, touching
 from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, post_encroachment_s, times_to_collision_s
 from basu.scenarios.criteria.margin import Margin
 
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.metrics.passengers.boxes import Boxes
+    from basu.metrics.boxes import Boxes
     from basu.scenarios.criteria.criterion import Criterion, Judgement
-    from basu.scenarios.criteria.margin import Margin, Present
+    from basu.scenarios.criteria.margin import Present
 
 
 CORNERS = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)])
@@ -59,8 +59,8 @@ MOVING_MPS = 0.1
 class LeastDistance(Margin):
     """The ego's box stays ``at_least`` m away from the boxes of others, seen from above.
 
-    With ``while_moving`` only frames count in which the ego moved: who comes close to a vehicle at rest has done so
-    alone. The rest is as for every `Margin`.
+    With ``while_moving`` only frames count in which the ego moved: the ego did nothing to a party that comes close
+    to it at rest. The rest is as for every `Margin`.
     """
 
     called = "least distance"
@@ -103,7 +103,7 @@ class LeastTtc(Margin):
 
     Hayward 1972, by oriented boxes, as ``basu.metrics.passengers.near_misses`` has it: each frame, both are moved on
     with the speeds they have, the ego on its present bend, the other straight ahead, until their boxes touch. It is
-    measured up to 5 s. Two who both stand are in no danger.
+    measured up to 5 s. Two standing actors are in no danger.
     """
 
     called = "least time to collision"
@@ -129,9 +129,9 @@ class Pet(Margin):
     """The post-encroachment time stays at ``at_least`` s or more.
 
     Allen, Shin and Cooper 1978, over the places that both boxes swept: the least over all of them, as the Surrogate
-    Safety Assessment Model (FHWA-HRT-08-051) takes it, to a frame. Only where the ways cross at 30 degrees or more, for
-    who follows in a lane takes the same places all the time. It is measured up to 5 s; the frame told is that in which
-    the second of the two came to the place.
+    Safety Assessment Model (FHWA-HRT-08-051) takes it, to a frame. Only where the ways cross at 30 degrees or more,
+    since a follower in a lane takes the same places all the time. It is measured up to 5 s; the reported frame is that
+    in which the second of the two came to the place.
     """
 
     called = "post-encroachment time"
@@ -146,7 +146,7 @@ class Pet(Margin):
         return found_s[rows], later[rows]
 
     def touched(self, present: Present, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Only who was coming across the ego's way: not who was run into from behind, and not who stood."""
+        """Only actors that crossed the ego's way, neither those hit from behind nor standing ones."""
         history = present.history
         others = history.others[rows]
         came = history.others[np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > STILL_MPS]
@@ -159,7 +159,7 @@ class Pet(Margin):
 
     def never(self) -> str:
         """That no way was crossed."""
-        return f"nobody crossed its way within {self.horizon:g} s"
+        return f"no actor crossed its way within {self.horizon:g} s"
 
     def words(self, value: float) -> str:
         """How long between the two."""
@@ -172,11 +172,11 @@ SAME_WAY_RAD = math.radians(45.0)
 
 
 class KeepsHeadway(Margin):
-    """The time gap to who drives ahead stays at ``at_least`` s or more.
+    """The time gap to the vehicle ahead stays at ``at_least`` s or more.
 
     From the ego's front bumper to the leader's rear along the ego's heading, over the ego's speed (the time gap of ISO
-    15622). Ahead is who overlaps the ego's width and heads the same way within 45 degrees. Frames count in which the
-    ego drives faster than 3 m/s.
+    15622). Ahead is an actor that overlaps the ego's width and heads the same way within 45 degrees. Frames count in
+    which the ego drives faster than 3 m/s.
     """
 
     called = "headway"
@@ -188,7 +188,7 @@ class KeepsHeadway(Margin):
         return np.asarray(present.history.speed_mps() > DRIVING_MPS)
 
     def measure(self, present: Present, rows: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-        """In each row's frame; inf for who is not ahead."""
+        """In each row's frame; inf for an actor that is not ahead."""
         history = present.history
         rows_of = history.others[rows]
         ticks = rows_of["tick"].astype(np.int64)
@@ -213,13 +213,13 @@ MARGINS: dict[str, type[Margin]] = {"distance_m": LeastDistance, "ttc_s": LeastT
 
 
 def reported_always(criteria: Sequence[Criterion] = ()) -> tuple[Criterion, ...]:
-    """The three margins to everybody, not deciding, without those that ``criteria`` have already."""
+    """The three margins to all actors, not deciding, without the ones that ``criteria`` already hold."""
     names = {criterion.name for criterion in criteria}
     return tuple(margin() for margin in MARGINS.values() if margin.called not in names)
 
 
 def margins_of(judgements: Sequence[Judgement]) -> dict[str, float | None]:
-    """How narrowly: the least figure told of each margin, by the keys of ``MARGINS``; None where nobody was near."""
+    """How narrowly: the least figure of each margin, by the keys of ``MARGINS``; None where no actor was near."""
     return {
         key: min(
             (
@@ -234,5 +234,5 @@ def margins_of(judgements: Sequence[Judgement]) -> dict[str, float | None]:
 
 
 def _is_of(margin: type[Margin], name: str) -> bool:
-    """Whether a criterion's name is this margin's, to everybody or to somebody."""
+    """Whether a criterion's name is this margin's, to all actors or to one."""
     return name == margin.called or name.startswith(f"{margin.called} to ")

@@ -28,11 +28,11 @@ HALF_LENGTH_M = {  # of their boxes, rounded up, for places that must be known b
     "bicycle": 0.9,
 }
 EGO_HALF_LENGTH_M = 2.0  # of the shuttle: gaps are meant between bumpers; a longer ego has a little less
-SETS_OFF_MPS2 = 3.5  # somebody in a hurry: half of what tyres give
+SETS_OFF_MPS2 = 3.5  # a hurried driver: half of what tyres give
 
 
 def run_up_m(speed_mps: float, notice_s: float) -> float:
-    """How far before a place one stands who has to be there, at that speed, so long after setting off."""
+    """The run-up, in m, of a vehicle that reaches a place at that speed so long after setting off."""
     rise_s = speed_mps / SETS_OFF_MPS2
     if notice_s <= rise_s:
         return 0.5 * SETS_OFF_MPS2 * notice_s * notice_s
@@ -55,12 +55,12 @@ def across(place: Place, ahead_m: float, from_right_m: float, to_right_m: float)
 
 
 def facing_deg(from_right_m: float) -> float:
-    """How somebody beside the route is turned who looks across it."""
+    """The heading of a person beside the route that looks across it."""
     return -90.0 if from_right_m > 0.0 else 90.0
 
 
 def walking_s(distance_m: float, speed_mps: float) -> float:
-    """How long somebody who stands needs for a way."""
+    """The time that a standing walker needs for a distance."""
     return distance_m / speed_mps + speed_mps / (2.0 * STARTS_MPS2)
 
 

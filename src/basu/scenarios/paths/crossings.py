@@ -1,4 +1,4 @@
-"""Who crosses the ego's way at a junction: the ways through it, and where they meet the ego's."""
+"""Paths that cross the ego's way at a junction, and where they meet it."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def crossing(
             return fitting[0]
     there = ", ".join(sorted({f"{c.side} {c.turn}" for c in all_of_them})) or "none"
     raise ScenarioError(
-        f"at the junction {at.from_m:.0f} m from the trigger point nobody comes from the {side}"
+        f"at the junction {at.from_m:.0f} m from the trigger point no path comes from the {side}"
         f"{f' going {turn}' if turn else ''} across the ego's way; there are: {there}"
     )
 
@@ -137,7 +137,7 @@ def meeting(path: Path, place: Place, junction: JunctionAhead, slack_m: float = 
 
 
 def _side_of(angle_rad: float) -> Side:
-    """From where somebody comes whose heading differs by this from the ego's."""
+    """The side of origin of an actor with a heading that differs by this from the ego's."""
     if abs(angle_rad) < math.pi / 4.0:
         return "same"
     if abs(angle_rad) > 3.0 * math.pi / 4.0:

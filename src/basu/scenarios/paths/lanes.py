@@ -116,8 +116,8 @@ def back_along_lane(end: carla.Waypoint, length_m: float) -> list[carla.Waypoint
 def oncoming(place: Place, from_ahead_m: float, to_ahead_m: float, right_m: float = 0.0) -> Path:
     """The opposite lane beside the ego's route, towards the ego: from far ahead of the trigger point to nearer.
 
-    ``right_m`` is to the right of who drives there. Where the map has no opposite lane, the path is the route's
-    mirrored about its left edge, so that a one-way street can be driven against.
+    ``right_m`` is to the right in the direction of driving there. Where the map has no opposite lane, the path is the
+    route's mirrored about its left edge, so that a one-way street can be driven against.
 
     Raises:
         ScenarioError: ``from_ahead_m`` is not beyond ``to_ahead_m``.
@@ -151,7 +151,7 @@ def lanes_apart_m(place: Place, ahead_m: float) -> float:
 
 
 PAVEMENT_M = 5.6  # from the middle of the lane to the pavement's, where the map knows of none
-PARKING_M = 1.05  # from the edge of the lane to the middle of who is parked there, likewise
+PARKING_M = 1.05  # from the edge of the lane to the middle of a parked vehicle, likewise
 LANES = 12  # no street has more beside one another
 STANDS_IN = (carla.LaneType.Parking, carla.LaneType.Shoulder)
 
@@ -163,7 +163,7 @@ def pavement_m(place: Place, ahead_m: float, side: str) -> float:
 
 
 def parked_m(place: Place, ahead_m: float) -> float:
-    """How far to the right of the route somebody parked at the kerb has its middle."""
+    """How far to the right of the route a vehicle parked at the kerb has its middle."""
     return _away_m(place, ahead_m, "right", STANDS_IN) or place.width_m(ahead_m) / 2.0 + PARKING_M
 
 

@@ -141,7 +141,7 @@ class Path:
     def swerved(self, from_m: float, over_m: float, left_at_m: float, to_m: float) -> Path:
         """The path with a smooth way from ``left_at_m`` to ``to_m`` on its right: the change begins at ``from_m``.
 
-        Both are offsets to the right; the profile is the quintic 10u^3 - 15u^4 + 6u^5, whose ends have neither slope
+        Both are offsets to the right; the profile is the quintic 10u^3 - 15u^4 + 6u^5; its ends have neither slope
         nor curvature.
         """
         inner_m = np.arange(from_m, from_m + over_m, SWERVE_STEP_M)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from basu.metrics.arrival import has_arrived
+from basu.metrics.path_following import has_arrived
 from basu.scenarios.triggers.motion import Trigger
 
 if TYPE_CHECKING:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 
 from basu.scenarios.stage import EGO
-from basu.scenarios.tree import Node
+from basu.scenarios.tree_node import Node
 
 
-def named(who: str) -> str:
-    """What the tree calls somebody."""
-    return "ego" if who == EGO else who
+def named(actor: str) -> str:
+    """An actor's name in the tree."""
+    return "ego" if actor == EGO else actor
 
 
 class Trigger(Node):
@@ -29,37 +29,37 @@ STILL_MPS = 0.1  # slower than this stands
 
 
 class Faster(Trigger):
-    """Somebody is at least so fast."""
+    """An actor is at least so fast."""
 
-    def __init__(self, speed_mps: float, *, who: str = EGO) -> None:
-        super().__init__(f"{named(who)} at {speed_mps:g} m/s or more")
-        self.speed_mps, self.who = speed_mps, who
+    def __init__(self, speed_mps: float, *, actor: str = EGO) -> None:
+        super().__init__(f"{named(actor)} at {speed_mps:g} m/s or more")
+        self.speed_mps, self.actor = speed_mps, actor
 
     def has_come(self) -> str | None:
         """How fast, once it is."""
-        speed_mps = self.stage.body(self.who).speed_mps
+        speed_mps = self.stage.body(self.actor).speed_mps
         return f"{speed_mps:.1f} m/s" if speed_mps >= self.speed_mps else None
 
 
 class Slower(Trigger):
-    """Somebody is at most so fast."""
+    """An actor is at most so fast."""
 
-    def __init__(self, speed_mps: float, *, who: str = EGO) -> None:
-        super().__init__(f"{named(who)} at {speed_mps:g} m/s or less")
-        self.speed_mps, self.who = speed_mps, who
+    def __init__(self, speed_mps: float, *, actor: str = EGO) -> None:
+        super().__init__(f"{named(actor)} at {speed_mps:g} m/s or less")
+        self.speed_mps, self.actor = speed_mps, actor
 
     def has_come(self) -> str | None:
         """How fast, once it is."""
-        speed_mps = self.stage.body(self.who).speed_mps
+        speed_mps = self.stage.body(self.actor).speed_mps
         return f"{speed_mps:.1f} m/s" if speed_mps <= self.speed_mps else None
 
 
 class StandsStill(Trigger):
-    """Somebody has stood for so long, without a break."""
+    """An actor has stood for so long, without a break."""
 
-    def __init__(self, seconds: float, *, who: str = EGO) -> None:
-        super().__init__(f"{named(who)} stands for {seconds:.3g} s")
-        self.seconds, self.who = seconds, who
+    def __init__(self, seconds: float, *, actor: str = EGO) -> None:
+        super().__init__(f"{named(actor)} stands for {seconds:.3g} s")
+        self.seconds, self.actor = seconds, actor
 
     def begin(self) -> None:
         """Count from now."""
@@ -68,14 +68,14 @@ class StandsStill(Trigger):
     def has_come(self) -> str | None:
         """How long, once it has."""
         now_s = self.stage.time_s
-        if self.stage.body(self.who).speed_mps >= STILL_MPS:
+        if self.stage.body(self.actor).speed_mps >= STILL_MPS:
             self.moved_s = now_s
         stood_s = now_s - self.moved_s
         return f"stood for {stood_s:.1f} s" if stood_s >= self.seconds - 1e-6 else None
 
 
 class ClosesIn(Trigger):
-    """The ego would be at an actor within ``seconds`` if the distance went on to shrink as it does, edge to edge."""
+    """The ego would reach an actor within ``seconds`` at the present closing speed, edge to edge."""
 
     def __init__(self, actor: str, seconds: float) -> None:
         super().__init__(f"ego {seconds:.3g} s from {actor}")
@@ -96,7 +96,7 @@ class ClosesIn(Trigger):
 
 
 class Elapsed(Trigger):
-    """So much time has gone since the scenario began."""
+    """``seconds`` have passed since the scenario began."""
 
     def __init__(self, seconds: float) -> None:
         super().__init__(f"{seconds:.3g} s since the beginning")
@@ -109,14 +109,14 @@ class Elapsed(Trigger):
 
 
 class EgoTouches(Trigger):
-    """The ego has touched an actor, or anybody."""
+    """The ego has touched an actor, or any actor."""
 
     def __init__(self, actor: str | None = None) -> None:
-        super().__init__(f"ego touches {actor or 'somebody'}")
+        super().__init__(f"ego touches {actor or 'an actor'}")
         self.actor = actor
 
     def has_come(self) -> str | None:
-        """Whom, once it has."""
+        """The touched actors, once there is a contact."""
         touched = sorted(self.stage.ego_contacts)
         if not touched or (self.actor is not None and self.actor not in touched):
             return None

@@ -40,16 +40,16 @@ class EgoNear(Near):
 
 
 class NearPlace(Trigger):
-    """Somebody is nearer to a place than ``distance_m``."""
+    """An actor is nearer to a place than ``distance_m``."""
 
-    def __init__(self, place: Pose, distance_m: float, *, who: str = EGO, what: str = "") -> None:
-        super().__init__(f"{named(who)} within {distance_m:g} m of {what or f'({place.x_m:.0f}, {place.y_m:.0f})'}")
-        self.place, self.distance_m, self.who = place, distance_m, who
+    def __init__(self, place: Pose, distance_m: float, *, actor: str = EGO, what: str = "") -> None:
+        super().__init__(f"{named(actor)} within {distance_m:g} m of {what or f'({place.x_m:.0f}, {place.y_m:.0f})'}")
+        self.place, self.distance_m, self.actor = place, distance_m, actor
 
     def has_come(self) -> str | None:
         """How near, once it is."""
-        away_m = _apart_m(self.stage.body(self.who), self.place)
-        return f"{named(self.who)} at {away_m:.1f} m" if away_m <= self.distance_m else None
+        away_m = _apart_m(self.stage.body(self.actor), self.place)
+        return f"{named(self.actor)} at {away_m:.1f} m" if away_m <= self.distance_m else None
 
 
 class Circle(NamedTuple):
@@ -97,24 +97,24 @@ Region = Circle | Polygon | Stretch
 
 
 class InRegion(Trigger):
-    """Somebody's middle is in a region."""
+    """An actor's middle is in a region."""
 
-    def __init__(self, region: Region, *, who: str = EGO, what: str = "the region") -> None:
-        super().__init__(f"{named(who)} in {what}")
-        self.region, self.who = region, who
+    def __init__(self, region: Region, *, actor: str = EGO, what: str = "the region") -> None:
+        super().__init__(f"{named(actor)} in {what}")
+        self.region, self.actor = region, actor
 
     def has_come(self) -> str | None:
         """Where, once it is."""
-        body = self.stage.body(self.who)
+        body = self.stage.body(self.actor)
         return f"at ({body.x_m:.1f}, {body.y_m:.1f})" if self.region.holds(body.x_m, body.y_m) else None
 
 
 class CrossesLine(Trigger):
-    """Somebody's front gets over a line through ``place``, square to its heading, in the direction of that heading."""
+    """An actor's front crosses a line through ``place``, square to its heading, in the direction of that heading."""
 
-    def __init__(self, place: Pose, half_width_m: float = 3.0, *, who: str = EGO, what: str = "the line") -> None:
-        super().__init__(f"{named(who)} crosses {what}")
-        self.place, self.half_width_m, self.who = place, half_width_m, who
+    def __init__(self, place: Pose, half_width_m: float = 3.0, *, actor: str = EGO, what: str = "the line") -> None:
+        super().__init__(f"{named(actor)} crosses {what}")
+        self.place, self.half_width_m, self.actor = place, half_width_m, actor
 
     def begin(self) -> None:
         """Nothing is known of the frame before."""
@@ -122,7 +122,7 @@ class CrossesLine(Trigger):
 
     def has_come(self) -> str | None:
         """How fast, once it has."""
-        body, place = self.stage.body(self.who), self.place
+        body, place = self.stage.body(self.actor), self.place
         dx_m = body.x_m + body.half_length_m * math.cos(body.yaw_rad) - place.x_m
         dy_m = body.y_m + body.half_length_m * math.sin(body.yaw_rad) - place.y_m
         beyond_m = dx_m * math.cos(place.yaw_rad) + dy_m * math.sin(place.yaw_rad)

@@ -10,12 +10,12 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import part
+from linden.compiled import kept_part, part
 from linden.physics.axes import body_axes
 from linden.physics.contact.boxes import COS, HALF_X, HALF_Y, HIGH, LOW, SIN, X, Y, overlap
 from linden.physics.contact.pairs import box_centre, is_fixed
 from linden.physics.contact.statics import Statics
-from linden.physics.state import VEHICLE, Body, Rows
+from linden.physics.state import SOURCES, VEHICLE, Body, Rows
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -32,7 +32,7 @@ JX, JY, JZ, PX, PY, PZ, TOUCHED = range(7)
 """Columns of the account kept per pair: impulse on the first body (N·s), last contact point (m), whether they met."""
 
 
-@part
+@kept_part(SOURCES)
 def part_bodies(rows: Rows, pairs: I32, statics: Statics, account: F64) -> None:
     """Find which pairs overlap, change velocities and positions of the movable, and enter it in ``account`` (P, 7)."""
     hits = np.empty((len(pairs), 6))  # number of the pair, depth, normal, point

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import kernel, part
+from linden.compiled import kept_part, part
 from linden.physics.contact.statics import Statics
-from linden.physics.state import Body, Rows
+from linden.physics.state import SOURCES, Body, Rows
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -44,7 +44,7 @@ def box_centre(v: Body) -> tuple[float, float]:
     return x, v.position[1] + sine * v.box_centre[0] + cosine * v.box_centre[1]
 
 
-@kernel
+@kept_part(SOURCES)
 def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
     """Return (P, 2) of first body and second body, or -1 - n for the n-th static; ordered, each pair once.
 
@@ -86,7 +86,7 @@ def find_pairs(rows: Rows, count: int, statics: Statics, dt_s: float) -> I32:
 
 @part
 def _collect(rows: Rows, circles: F64, head: I32, nodes: I32, wide: I32, statics: Statics) -> I32:
-    """Return the pairs whose circles meet, body by body: its statics, then the bodies after it."""
+    """Return the pairs with circles that meet, body by body: its statics, then the bodies after it."""
     pairs: I32 = np.empty((64, 2), np.int32)
     found = 0
     near: I32 = np.empty(64, np.int32)
@@ -108,7 +108,7 @@ def _collect(rows: Rows, circles: F64, head: I32, nodes: I32, wide: I32, statics
 
 @part
 def _near_bodies(rows: Rows, i: int, circles: F64, head: I32, nodes: I32, wide: I32, near: I32) -> tuple[I32, int]:
-    """Return the bodies after ``i`` whose circle meets its own, ascending, in ``near`` (grown where needed)."""
+    """Return the bodies after ``i`` with a circle that meets its own, ascending, in ``near`` (grown where needed)."""
     found = 0
     x0, x1, y0, y1 = _cells(circles[i])
     if x1 - x0 >= _MOST_CELLS_ACROSS or y1 - y0 >= _MOST_CELLS_ACROSS:
@@ -141,7 +141,7 @@ def _may_meet(rows: Rows, i: int, j: int, circles: F64) -> bool:
 
 @part
 def _near_statics(circle: F64, statics: Statics, near: I32) -> tuple[I32, int]:
-    """Return the statics whose circle meets the given one, ascending, in ``near`` (grown where needed)."""
+    """Return the statics with a circle that meets the given one, ascending, in ``near`` (grown where needed)."""
     frame = statics.bin_frame
     found = 0
     if len(statics.bin_items) == 0:
@@ -167,7 +167,8 @@ def _insert(near: I32, count: int, item: int) -> tuple[I32, int]:
     """Insert into an ascending list that holds each number once."""
     if count == len(near):
         grown = np.empty(2 * count, np.int32)
-        grown[:count] = near
+        for k in range(count):
+            grown[k] = near[k]
         near = grown
     place = count
     while place > 0 and near[place - 1] > item:
@@ -190,7 +191,7 @@ def _cells(circle: F64) -> tuple[int, int, int, int]:
 
 @part
 def _hash(cell_x: int, cell_y: int, size: int) -> int:
-    """Return the place of a cell in a table whose size is a power of two. Primes: Teschner et al. 2003."""
+    """Return the place of a cell in a table with a power of two as its size. Primes: Teschner et al. 2003."""
     return ((cell_x * 73856093) ^ (cell_y * 19349663)) & (size - 1)
 
 
@@ -198,5 +199,6 @@ def _hash(cell_x: int, cell_y: int, size: int) -> int:
 def _twice(rows: I32) -> I32:
     """Return the (N, 2) array with room for twice as many rows."""
     larger = np.empty((2 * len(rows), 2), np.int32)
-    larger[: len(rows)] = rows
+    for k in range(len(rows)):
+        larger[k, 0], larger[k, 1] = rows[k, 0], rows[k, 1]
     return larger

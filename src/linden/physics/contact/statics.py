@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.scene.bins import Bins, bins_of, items_near
+from linden.plane_bins import Bins, bins_of, items_near
+from linden.protocol.values.enums import SemanticTag
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -56,3 +57,15 @@ class Statics(NamedTuple):
     def none() -> "Statics":
         """Return an empty scenery."""
         return Statics.of(np.empty(0, STATIC_BOX))
+
+
+NAMELESS = (SemanticTag.NONE, SemanticTag.OTHER, SemanticTag.ANY)
+
+
+def scenery_type(tag: int) -> str:
+    """Return CARLA's type id of scenery: "static." and the tag's name without its plural (ActorRegistry.cpp)."""
+    label = SemanticTag(tag)
+    if label in NAMELESS:
+        return "static.unknown"
+    word = label.name.lower().replace("_", "")
+    return f"static.{word.removesuffix('s')}"

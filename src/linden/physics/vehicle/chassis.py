@@ -2,7 +2,7 @@
 
 Two speeds of the centre of mass, forward and to the right, and the yaw rate: Rajamani, Vehicle Dynamics and Control,
 2nd ed., section 8.1, four wheels. The forces are those of the moment before, as in PhysX: friction bounds them, so
-they cannot blow up. Where nobody wants to go and friction can hold the vehicle, it stands: no creeping, no chatter.
+they cannot blow up. Without throttle, where friction can hold the vehicle, it stands: no creeping, no chatter.
 """
 
 import math

@@ -1,9 +1,9 @@
-"""The driver's feet and hands: how fast pedals and wheel follow what is asked of them.
+"""The driver model: the rates at which pedals and steering wheel follow the control.
 
 Unreal 4's WheeledVehicleMovementComponent lets its inputs follow the control once a frame, each at a rate of its own,
 rising (away from zero) or falling; PhysX's PxVehicleDrive4WSmoothAnalogRawInputsAndSetAnalogInputs follows that once
 more, at the same rates, every step, steering after it has been scaled by the steering curve. Recordings of CARLA are
-met best with both (docs/fidelity.md).
+met best with both (docs/explanation/fidelity.md).
 """
 
 from linden.compiled import kernel, part
@@ -29,7 +29,7 @@ def follow(now: float, target: float, rise: float, fall: float, dt_s: float) -> 
 
 @part
 def let_go(v: Body) -> None:
-    """Take feet and hands off a vehicle whose controls do not stick, where none has come for this frame.
+    """Release pedals and wheel of a vehicle without sticky controls where no control came for this frame.
 
     As CARLA's AWheeledVehicleAIController does. There Ackermann control never acts on such a vehicle; here it does in
     the frame that it was sent for.

@@ -2,10 +2,10 @@
 
 import math
 
-from linden.compiled import part
-from linden.ground import Ground
+from linden.compiled import kept_part, part
+from linden.maps.ground import Ground
 from linden.physics.axes import plane_axes, within_turn
-from linden.physics.state import Body, Spec, Work
+from linden.physics.state import SOURCES, Body, Spec, Work
 from linden.physics.vehicle.chassis import move_body, push_tyres, stands, stop
 from linden.physics.vehicle.driver import BRAKE, HAND_BRAKE, THROTTLE, follow_inputs
 from linden.physics.vehicle.powertrain import change_gear, pedal, turn_wheels_and_engine
@@ -21,7 +21,7 @@ _STILL = 1e-4  # m/s, rad/s: springs slower than this, and for longer than they 
 _STILL_FOR_S = 0.2
 
 
-@part
+@kept_part(SOURCES)
 def advance_vehicle(v: Body, spec: Spec, w: Work, ground: Ground, gravity_mps2: float, dt_s: float, left: int) -> None:
     """Advance the vehicle ``v``; ``w`` is scratch, ``left`` how many of the frame's substeps come after this one.
 

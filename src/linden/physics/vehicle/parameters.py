@@ -11,8 +11,8 @@ from linden.errors import Refusal
 from linden.geometry import rotation_matrix
 from linden.physics.state import CURVE_POINTS, GEARS, VEHICLE_SPEC, WHEELS, Rows
 from linden.physics.vehicle.wheels import WHEEL_MASS_KG
-from linden.values.space import BoundingBox, Transform, Vector2D, Vector3D
-from linden.values.vehicles import UNKNOWN_UNDERCARRIAGE, Gear, Undercarriage, VehiclePhysicsControl, Wheel
+from linden.protocol.values.control import UNKNOWN_UNDERCARRIAGE, Gear, Undercarriage, VehiclePhysicsControl, Wheel
+from linden.protocol.values.space import BoundingBox, Transform, Vector2D, Vector3D
 
 F64 = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ CHASSIS_AREA_M2 = 1.8 * 1.4
 FRONT_SHARE = 0.45  # of the torque, on four wheels: PhysX's differential by default
 HULL_INERTIA = 0.75
 """Yaw inertia of a vehicle's hull over that of its box: PhysX takes the inertia of the hull, which is shorter at the
-corners and has no mirrors. From recorded yaw rates, which are met best between 0.7 and 0.8 (docs/fidelity.md)."""
+corners and has no mirrors. Values from 0.7 to 0.8 fit the recorded yaw rates best (docs/explanation/fidelity.md)."""
 _RPM = 2.0 * math.pi / 60.0
 _LEAST_COM_HEIGHT_M = 0.1
 

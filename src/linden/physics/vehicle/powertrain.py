@@ -18,7 +18,7 @@ F64 = NDArray[np.float64]
 
 RPM_PER_RADPS = 30.0 / math.pi
 NEUTRAL_UP = 0.15  # of the engine's greatest speed: from there on the automatic leaves neutral; PhysX's default
-AUTOBOX_LATENCY_S = 0.5  # between two changes; recorded (docs/fidelity.md), PhysX's own default is 2.0
+AUTOBOX_LATENCY_S = 0.5  # between two changes; recorded (docs/explanation/fidelity.md), PhysX's own default is 2.0
 _LEAST_SLIDE_MPS = 1e-4
 DIFFERENTIAL_BIAS = 1.3  # of two spins; from there on torque is taken from the faster wheel: PhysX's default
 

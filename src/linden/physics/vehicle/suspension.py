@@ -7,10 +7,12 @@ body that bounces at ``BOUNCE_RADPS``; a force only ever pushes up, so a vehicle
 import math
 
 from linden.compiled import part
-from linden.ground import Ground, surface_under, triangle_under
+from linden.maps.ground import Ground, surface_under, triangle_under
 from linden.physics.state import Body, Spec, Work
 
-BOUNCE_RADPS = 10.0  # both as recorded: a car that is dropped settles so to half a millimetre (docs/fidelity.md)
+BOUNCE_RADPS = (
+    10.0  # both as recorded: a car that is dropped settles so to half a millimetre (docs/explanation/fidelity.md)
+)
 DAMPING = 1.05  # of critical
 DEEPEST_M = 0.15  # the bump stops: the body goes no deeper below its place
 _HANGING_M = 1.0  # a wheel over an edge hangs this much below the highest, no lower

@@ -26,7 +26,7 @@ _MOST_GRIP_LOAD = 3.0
 def steer_wheels(v: Body, spec: Spec) -> None:
     """Set the steering angles: what the driver's hands give times the axle's greatest angle.
 
-    The inner wheel takes that angle, the outer the one whose circle has the same centre (Ackermann):
+    The inner wheel takes that angle. The outer wheel turns around the same centre (Ackermann):
     cot(outer) = cot(inner) + track / wheelbase. Rajamani, Vehicle Dynamics and Control, 2nd ed., section 2.2.
     Rear wheels that steer turn the other way (PhysX).
     """

@@ -1,1 +1,1 @@
-"""Cameras: what their attributes mean, which rays their pixels are, and the pictures made of what the rays meet."""
+"""Cameras: attributes, pixel rays, and images of what the rays hit."""

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.protocol.values.actors import ActorDescription
 from linden.sensors.camera.events import Events, Retina
 from linden.sensors.camera.spec import Picture, camera_spec, event_spec, film
-from linden.sensors.looking import Look
-from linden.values.actors import ActorDescription
+from linden.sensors.view import Look
 
 if TYPE_CHECKING:
-    from linden.sensors.camera.darkroom import Darkroom
+    from linden.sensors.camera.renderer import Darkroom
 
 Pixels: TypeAlias = NDArray[np.uint8] | NDArray[np.float32]
 
@@ -26,7 +26,7 @@ class Image(NamedTuple):
 
 def darkroom(look: Look) -> "Darkroom":
     """Return where pictures are made; who never looks does not load what makes them."""
-    from linden.sensors.camera.darkroom import darkroom_of  # noqa: PLC0415 - see above
+    from linden.sensors.camera.renderer import darkroom_of  # noqa: PLC0415 - see above
 
     return darkroom_of(look.seen.caster)
 

@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.crew import in_stretches
-from linden.casting.rays import NOTHING, Hits
 from linden.compiled import unlocked
 from linden.geometry import rotation_matrix
-from linden.sensors.camera.rays import TILE_PX, pixel_of_ray
+from linden.protocol.values.enums import SemanticTag
+from linden.protocol.values.space import Transform
+from linden.sensors.camera.pixel_rays import TILE_PX, pixel_of_ray
 from linden.sensors.camera.spec import CameraSpec
-from linden.sensors.seen import Seen, first_of_places, id_of_places
-from linden.values.enums import SemanticTag
-from linden.values.space import Transform
+from linden.sensors.casting.caster import NOTHING, Hits
+from linden.sensors.casting.thread_pool import in_stretches
+from linden.sensors.view import Seen, first_of_places, id_of_places
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]

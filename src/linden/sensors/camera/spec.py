@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from linden.errors import Refusal
-from linden.values.actors import ActorDescription
+from linden.protocol.values.actors import ActorDescription
 
 LARGEST_SIDE_PX = 8192
 LARGEST_AREA_PX = 4096 * 4096

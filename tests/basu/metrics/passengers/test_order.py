@@ -7,7 +7,7 @@ import numpy as np
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
-from basu.metrics.passengers.boxes import other_boxes, own_boxes, touching
+from basu.metrics.boxes import other_boxes, own_boxes, touching
 from basu.metrics.passengers.verdict import Judged, judge
 from basu.records.history import Collision, History
 from basu.routing import Control, Stop

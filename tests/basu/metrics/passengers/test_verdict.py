@@ -6,13 +6,12 @@ import jsonschema
 import pytest
 
 from basu.errors import UserError
-from basu.metrics.passengers.balance import balance
 from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_score
-from basu.metrics.passengers.felt import felt
+from basu.metrics.passengers.felt import balance, felt
 from basu.metrics.passengers.metric import passengers_to_json
 from basu.metrics.passengers.verdict import Judged, judge
 from basu.metrics.score import Scoring, score
-from basu.output.report.schema import RESULT_SCHEMA, read_schema
+from basu.output.report.documents import RESULT_SCHEMA, read_schema
 from basu.records.history import History
 from fakes.rides import braked, eastward, moving, ride
 

@@ -7,7 +7,7 @@ import pytest
 from basu.agents.manual.devices import HELD_BY, STRUCK_BY
 from basu.output.hud.panel import KEYS
 
-PAGE = Path(__file__).parents[4] / "docs" / "hud.md"
+PAGE = Path(__file__).parents[4] / "docs" / "how-to" / "hud.md"
 
 
 @pytest.mark.parametrize(("key", "meaning"), KEYS)

@@ -12,8 +12,8 @@ from basu.agents.manual.session import Played, Session, Setting, Tape, read_sess
 from basu.cli import main
 from basu.errors import SimulatorError, UserError
 from basu.options import RunOptions
-from basu.output.hud.camera import ChaseCamera
 from basu.output.hud.person_input import KeysManager, person_for
+from basu.output.hud.sensor_view import ChaseCamera
 
 SESSION = "data/human_session.json"
 

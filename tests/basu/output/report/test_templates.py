@@ -1,12 +1,67 @@
-"""Claims about the environment of page templates: text is escaped, and a missing name is an error."""
+"""Tests of ``basu.output.report.templates``."""
+
+from html.parser import HTMLParser
 
 import jinja2
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from markupsafe import Markup
 
 from basu.output.report.html.page import page
-from basu.output.report.markup import e
-from basu.output.report.templates import environment
+from basu.output.report.templates import e, environment, figure, html, number
+
+
+class Reader(HTMLParser):
+    """Collects what a browser would see."""
+
+    def __init__(self) -> None:
+        super().__init__(convert_charrefs=True)
+        self.tags: list[tuple[str, list[tuple[str, str | None]]]] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, attrs))
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def read(page: str) -> Reader:
+    reader = Reader()
+    reader.feed(page)
+    reader.close()
+    return reader
+
+
+@given(st.text(st.characters(exclude_categories=["Cs", "Cc"])))
+def test_any_text_comes_back_as_that_text_and_brings_no_tag(text: str) -> None:
+    reader = read(html(e("p", text, title=text)))
+    assert reader.tags == [("p", [("title", text)])]
+    assert reader.text == text
+
+
+@pytest.mark.parametrize("text", ["\x00", "\x1b[31m", "\ud800", "\r"])
+def test_what_no_page_may_hold_becomes_a_replacement_character(text: str) -> None:
+    page = html(e("p", text, title=text))
+    page.encode()
+    assert text[0] not in page
+    assert "\ufffd" in page
+
+
+def test_attributes_of_none_and_children_of_none_are_left_out() -> None:
+    assert html(e("a", "x", None, e("b", "y"), "z", href=None, class_="k", stroke_width=1.50)) == (
+        '<a class="k" stroke-width="1.5">x<b>y</b>z</a>'
+    )
+
+
+def test_numbers_are_as_short_as_they_can_be() -> None:
+    assert [number(value, 2) for value in (1.0, 0.5, 100.0, 1.239, -0.001)] == ["1", "0.5", "100", "1.24", "-0"]
+
+
+def test_a_figure_that_is_none_is_a_dash() -> None:
+    assert figure(None) == figure(float("nan")) == "\u2013"
+    assert figure(0.5) == "0.500"
 
 
 def filled(source: str, **values: object) -> str:

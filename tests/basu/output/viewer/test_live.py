@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from basu.cli import main
-from basu.output.viewer.on_server import Progress, Where, play
+from basu.output.viewer.server_replay import Progress, Where, play
 from basu.records.carla_log import read_log
 from basu.records.carla_log.metrics_log import MetricsLog
 from basu.records.carla_log.sources import MAP_FILE, read_map

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 from basu.records.carla_log import Log, read_log
-from basu.records.carla_log.layouts import Kind
-from basu.records.carla_log.parts import Physics
+from basu.records.carla_log.layouts import Kind, Physics
 from fakes import recordings as made
-from linden.recording.packets import Frame
-from linden.recording.read import Recording
+from linden.replay.file.packets import Frame
+from linden.replay.file.read import Recording
 
 FOLDER = os.environ.get("LINDEN_RECORDINGS", "")
 PUBLIC = ("DistanceBetweenVehicles.log", "DistanceToLaneCenter.log")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from basu.records.carla_log import read_log
-from basu.records.carla_log.layouts import NOBODY
+from basu.records.carla_log.layouts import NO_ACTOR
 from basu.records.carla_log.metrics_log import MetricsLog
 from fakes import recordings as made
 
@@ -54,7 +54,7 @@ def light(state: int) -> bytes:
 
 
 def touches() -> list[bytes]:
-    return [made.several(5, "IIIBB", [(1, HERO, OTHER, 1, 0), (2, HERO, NOBODY, 1, 0), (3, OTHER, HERO, 0, 1)])]
+    return [made.several(5, "IIIBB", [(1, HERO, OTHER, 1, 0), (2, HERO, NO_ACTOR, 1, 0), (3, OTHER, HERO, 0, 1)])]
 
 
 def of_the_first_frame() -> list[bytes]:
@@ -84,7 +84,7 @@ def test_actors_are_found_by_role_and_by_type(log: MetricsLog) -> None:
     assert log.get_ego_vehicle_id() == HERO
     assert log.get_actor_ids_with_role_name("scenario") == [OTHER]
     assert log.get_actor_ids_with_type_id("vehicle.*") == [HERO, OTHER]
-    with pytest.raises(IndexError, match="nobody in the recording has the role 'ghost'; roles are hero, scenario"):
+    with pytest.raises(IndexError, match="no actor of the recording has the role 'ghost'; it has hero, scenario"):
         log.get_actor_velocity("ghost", 1)
 
 
@@ -161,11 +161,11 @@ def test_lights_are_answered(log: MetricsLog) -> None:
 
 
 def test_contacts_are_told_from_both_sides_once_a_frame(log: MetricsLog) -> None:
-    assert log.get_actor_collisions("hero") == {2: [OTHER, NOBODY]}
+    assert log.get_actor_collisions("hero") == {2: [OTHER, NO_ACTOR]}
     assert log.get_actor_collisions(OTHER) == {2: [HERO]}
     assert log.get_actor_collisions(WALKER) == {}
     assert [(c.frame, c.t_s, c.actor_id, c.other_id) for c in log.get_collisions()] == [
-        (2, 0.5, HERO, OTHER), (2, 0.5, HERO, NOBODY), (2, 0.5, OTHER, HERO),
+        (2, 0.5, HERO, OTHER), (2, 0.5, HERO, NO_ACTOR), (2, 0.5, OTHER, HERO),
     ]  # fmt: skip
 
 

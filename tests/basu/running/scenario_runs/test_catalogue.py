@@ -5,6 +5,7 @@ is in `docs/decisions/0055-control-drivers.md`.
 """
 
 import json
+import os
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -57,7 +58,8 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, str], d
     found = {}
     for driver, cases in drives().items():
         output = tmp_path_factory.mktemp(driver)
-        main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), "--workers", "2"])
+        workers = "1" if "PYTEST_XDIST_WORKER" in os.environ else "2"  # the other worker has tests of its own
+        main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), "--workers", workers])
         for path in (output / "latest").glob(f"{driver}/*/result.json"):
             result = json.loads(path.read_text(encoding="utf-8"))
             found[result["id"], driver] = result

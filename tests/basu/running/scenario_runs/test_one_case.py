@@ -7,9 +7,10 @@ import carla
 import pytest
 
 from basu.episode.spec import description_of
-from basu.scenarios.cases import Playable, cases_of
-from basu.scenarios.config.model import Case, GivenActor
+from basu.scenarios.cases import cases_of
+from basu.scenarios.playable import Playable
 from basu.scenarios.stage import Pose
+from basu.scenarios.xml_elements import Case, GivenActor
 from fakes.crossing_map import crossing
 
 ROOT = Path(__file__).parents[4]

@@ -7,8 +7,7 @@ import pytest
 
 from basu.running.scenario_runs import worker_pool
 from basu.running.scenario_runs.options import ScenarioOptions
-from basu.running.scenario_runs.worker import Job
-from basu.running.scenario_runs.worker_pool import WorkerPool
+from basu.running.scenario_runs.worker_pool import Job, WorkerPool
 
 
 def test_workers_that_end_before_they_are_ready_end_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from basu.scenarios.actions import Bump, Either, JitterControls, PullSteering, Wait
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.stage import Controls
-from basu.testing import PaperStage
+from basu.testing import OfflineStage
 from fakes.paper import play, stage_with
 
 MEANT = Controls(0.5, 0.1, 0.2)
 
 
-def disturbed(action: Action, seed: int = 0) -> tuple[np.ndarray, PaperStage]:
+def disturbed(action: Action, seed: int = 0) -> tuple[np.ndarray, OfflineStage]:
     """What becomes of the controls, a row a frame; the stage afterwards."""
     stage, rows = stage_with(seed=seed), []
     play(action, stage, watch=lambda stage: rows.append(stage.controls(MEANT)))

@@ -23,11 +23,11 @@ from basu.scenarios.actions import (
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, Door, Pose
 from basu.scenarios.triggers import EgoPasses
-from basu.testing import PaperStage
+from basu.testing import OfflineStage
 from fakes.paper import play, somebody, stage_with
 
 
-def noted(stage: PaperStage) -> list[tuple[object, ...]]:
+def noted(stage: OfflineStage) -> list[tuple[object, ...]]:
     return [(command.what, *command.details) for command in stage.commands]
 
 
@@ -72,7 +72,7 @@ def test_who_is_removed_is_gone_and_who_is_let_go_rolls_out() -> None:
 
 
 def test_an_action_on_nobody_is_refused_with_those_who_are_there() -> None:
-    with pytest.raises(ScenarioError, match="nobody on the stage is called 'lorry'; there are other, hero"):
+    with pytest.raises(ScenarioError, match="no actor on the stage is called 'lorry'; there are other, hero"):
         play(OpenDoor("lorry"), stage_with(somebody(50.0, 5.0)))
 
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from py_trees.common import Status
 
-from basu.managers.stage.puppets import Puppets
+from basu.managers.stage.scenario_actors import Puppets
 from basu.scenarios.actions import Brake, DriveAlong, LetGo, WalkAlong
-from basu.scenarios.actions.composition import Action
+from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.paths import Path, along_lane
 from basu.scenarios.stage import Body, Pose
 from servers import RunningServer

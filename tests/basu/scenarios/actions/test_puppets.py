@@ -23,7 +23,7 @@ from basu.scenarios.actions import (
 )
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, ActorSpec, Pose
-from basu.testing import PaperStage, careful, steady, waiting_at
+from basu.testing import OfflineStage, careful, steady, waiting_at
 from fakes.paper import play, somebody, stage_with
 
 ROAD = Path.through([(0.0, 20.0), (150.0, 20.0)])  # beside the ego's, 20 m to its right
@@ -44,7 +44,7 @@ def test_a_bend_is_followed_to_a_hands_breadth_with_the_nose_ahead(turn_share: f
     stage = stage_with(parked(), turn_share=turn_share)
     off_m, off_rad = [], []
 
-    def watch(stage: PaperStage) -> None:
+    def watch(stage: OfflineStage) -> None:
         body = stage.body("other")
         near = BEND.nearest(body.x_m, body.y_m)
         off_m.append(near.distance_m)
@@ -84,7 +84,7 @@ def test_a_profile_of_speeds_is_kept_along_the_path() -> None:
     stage = stage_with(parked(speed_mps=10.0))
     at: dict[int, float] = {}
 
-    def watch(stage: PaperStage) -> None:
+    def watch(stage: OfflineStage) -> None:
         body = stage.body("other")
         at[round(body.x_m)] = body.speed_mps
 
@@ -98,7 +98,7 @@ def test_bends_are_slowed_down_for_before_they_begin() -> None:
     # a radius of 12 m at 3 m/s² sideways: 6 m/s
     stage, sideways = stage_with(parked(speed_mps=12.0)), []
 
-    def watch(stage: PaperStage) -> None:
+    def watch(stage: OfflineStage) -> None:
         body = stage.body("other")
         near = BEND.nearest(body.x_m, body.y_m)
         if 32.0 < near.s_m < 46.0:
@@ -146,7 +146,7 @@ def test_who_is_broken_off_holds_if_that_was_its_end() -> None:
 def test_the_considerate_stop_behind_an_ego_that_stands_and_others_ram_it() -> None:
     lane = Path.through([(-40.0, 0.0), (150.0, 0.0)])
 
-    def behind() -> PaperStage:
+    def behind() -> OfflineStage:
         return stage_with(somebody(-40.0, speed_mps=8.0), driver=waiting_at(30.0, 20.0, 6.0))
 
     considerate, ruthless = behind(), behind()
@@ -276,7 +276,7 @@ def test_a_drift_goes_sideways_as_slowly_as_told() -> None:
 def test_a_tailgater_keeps_its_gap_and_a_slow_one_runs_into_a_sudden_stop() -> None:
     lane = Path.through([(-60.0, 0.0), (150.0, 0.0)])
 
-    def sudden(stage: PaperStage) -> float:
+    def sudden(stage: OfflineStage) -> float:
         return 7.0 if stage.time_s < 10.0 else 0.0
 
     attentive = stage_with(somebody(-14.0, speed_mps=7.0), driver=sudden)

@@ -7,14 +7,14 @@ import pytest
 from basu.scenarios.actions import Either, Wait, WalkAlong
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO
-from basu.testing import PaperStage, steady
+from basu.testing import OfflineStage, steady
 from fakes.paper import play, somebody, stage_with
 
 ACROSS = Path.through([(60.0, 6.0), (60.0, -6.0)])
 CORNER = Path.through([(60.0, 6.0), (60.0, 0.0), (66.0, 0.0)])
 
 
-def stage_with_walker() -> PaperStage:
+def stage_with_walker() -> OfflineStage:
     return stage_with(somebody(60.0, 6.0, kind="walker.pedestrian.0001"), driver=steady(0.0))
 
 
@@ -36,7 +36,7 @@ def test_who_is_fast_runs() -> None:
 def test_a_corner_is_walked_round() -> None:
     stage, off_m = stage_with_walker(), []
 
-    def watch(stage: PaperStage) -> None:
+    def watch(stage: OfflineStage) -> None:
         body = stage.body("other")
         off_m.append(CORNER.nearest(body.x_m, body.y_m).distance_m)
 
@@ -47,7 +47,7 @@ def test_a_corner_is_walked_round() -> None:
 def test_who_pauses_stands_there_for_so_long() -> None:
     stage, stood = stage_with_walker(), []
 
-    def watch(stage: PaperStage) -> None:
+    def watch(stage: OfflineStage) -> None:
         body = stage.body("other")
         if body.speed_mps == 0.0 and stage.time_s > 1.0:
             stood.append(body.y_m)

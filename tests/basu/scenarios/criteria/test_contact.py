@@ -11,7 +11,7 @@ from fakes.rides import eastward, moving, ride
 def test_touching_nobody_passes() -> None:
     said = NoCollision().judge(played(driven(at(5.0, 4.0))))
     assert said.passed is True
-    assert said.sentence == "it touched nobody and nothing"
+    assert said.sentence == "it touched no actor and no thing"
 
 
 def test_a_contact_is_told_by_role_with_both_speeds_and_the_place() -> None:

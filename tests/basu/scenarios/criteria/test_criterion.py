@@ -1,11 +1,23 @@
-"""Claims about the base: phases as frames, and a criterion of one's own."""
+"""Tests of ``basu.scenarios.criteria.criterion``."""
 
 import numpy as np
 import pytest
 
-from basu.scenarios.criteria import Criterion, Judgement, Played
-from fakes.drives import at, driven
-from fakes.played import played
+from basu.scenarios import criteria
+from basu.scenarios.criteria import (
+    Criterion,
+    Judgement,
+    LeastDistance,
+    LeastTtc,
+    NoCollision,
+    Played,
+    Thing,
+    margins_of,
+    reported_always,
+)
+from fakes.drives import at, driven, hit
+from fakes.played import judgement, played
+from fakes.rides import eastward, moving, ride
 
 
 class NeverBacks(Criterion):
@@ -35,3 +47,85 @@ def test_a_criterion_of_ones_own_says_when_where_and_how_fast() -> None:
 )
 def test_a_phase_begins_in_its_frame(phases_s: dict[str, float], phase: str | None, tick: int | None) -> None:
     assert played(driven(at(5.0, 4.0)), phases_s=phases_s).first_tick(phase) == tick
+
+
+def test_the_three_margins_are_told_of_every_case_and_decide_none() -> None:
+    told = reported_always([NoCollision()])
+    assert [one.name for one in told] == ["least distance", "least time to collision", "post-encroachment time"]
+    assert not any(one.deciding for one in told)
+
+
+def test_what_the_scenario_asks_of_everybody_is_not_told_twice() -> None:
+    told = reported_always([LeastDistance(0.5), LeastTtc(1.0, to="child")])
+    assert [one.name for one in told] == ["least time to collision", "post-encroachment time"]
+
+
+def test_the_margins_of_a_drive_are_figures_or_nothing() -> None:
+    case = played(ride(5.0, eastward(lambda _: 10.0, 6.0), others=[(9, moving(30.0, 3.0, 0.0, 0.0))]))
+    margins = margins_of([one.judge(case) for one in reported_always()])
+    assert margins["ttc_s"] is margins["pet_s"] is None
+    assert round(margins["distance_m"] or 0.0, 6) == 1.1
+    alone = played(driven(at(5.0, 2.0)))
+    assert margins_of([one.judge(alone) for one in reported_always()]) == {
+        "distance_m": None,
+        "ttc_s": None,
+        "pet_s": None,
+    }
+
+
+def test_the_least_of_several_is_taken_and_other_figures_are_not() -> None:
+    said = [
+        judgement("least distance", measured=0.8),
+        judgement("least distance to child", measured=0.6),
+        judgement("no collision", measured=0.1),
+        judgement("least time to collision to child", measured=2.0),
+    ]
+    assert margins_of(said) == {"distance_m": 0.6, "ttc_s": 2.0, "pet_s": None}
+
+
+EVERY: list[Criterion] = [
+    criteria.Arrives(),
+    criteria.Gentle(),
+    criteria.HeedsRedLights(),
+    criteria.HeedsStopSigns(),
+    criteria.InTime(),
+    criteria.KeepsHeadway(1.0),
+    criteria.KeepsLane(),
+    criteria.KeepsLane(passing=True),
+    criteria.KeepsSpeed(),
+    criteria.LeastDistance(0.5),
+    criteria.LeastTtc(1.0),
+    criteria.MinimumSpeed(1.0),
+    criteria.NoCollision(),
+    criteria.Pet(1.0),
+    criteria.Reaches(5.0),
+    criteria.ReachesPoint(5.0, 0.0, 1.0),
+    criteria.Regains(after="trigger"),
+    criteria.StoppedFor("child"),
+    criteria.StoppedFor("the line", s_m=9.0),
+]
+
+
+def test_every_criterion_of_the_package_is_here() -> None:
+    classes = {value for value in vars(criteria).values() if isinstance(value, type) and issubclass(value, Criterion)}
+    assert classes - {Criterion} == {type(one) for one in EVERY}
+
+
+@pytest.mark.parametrize("criterion", EVERY, ids=lambda one: one.name)
+@pytest.mark.parametrize("frames", [1, 2, 3, 5, 40])
+@pytest.mark.parametrize("alone", [True, False])
+def test_records_of_any_length_are_judged_in_words(criterion: Criterion, frames: int, alone: bool) -> None:  # noqa: FBT001
+    """Plain values, a sentence without figures that are none, and a limit for whatever decides."""
+    others = [] if alone else [(9, moving(12.0, 1.0, -1.0, 0.0))]
+    history = ride(frames * 0.05 + 1e-3, eastward(lambda _: 10.0, 3.0), others=others)
+    assert len(history.frames) == frames
+    contact = () if alone else (hit(frames - 1, "vehicle.audi.tt", 9),)
+    things = () if alone else (Thing("cone", 9.0, 3.0, 0.0, 0.2, 0.2),)
+    said = criterion.judge(played(history, things=things, collisions=contact))
+    assert said.sentence
+    assert "nan" not in said.sentence
+    assert "inf" not in said.sentence
+    assert type(said.passed) in (bool, type(None))
+    assert type(said.measured) in (float, type(None))
+    assert {type(value) for value in (said.t_s, said.x_m, said.y_m, said.speed_mps)} <= {float, type(None)}
+    assert said.passed is None or said.limit

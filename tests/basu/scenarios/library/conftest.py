@@ -11,10 +11,11 @@ import pytest
 import linden
 from basu.episode.spec import description_of
 from basu.routing import Route, lane_graph, plan
-from basu.scenarios.cases import Playable, open_library
+from basu.scenarios.cases import open_library
 from basu.scenarios.parameters import narrowed, read_values
 from basu.scenarios.paths import Path
 from basu.scenarios.place import Place
+from basu.scenarios.playable import Playable
 from basu.scenarios.scenario import Scenario
 
 Laid = Callable[..., Scenario]

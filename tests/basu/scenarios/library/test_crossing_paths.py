@@ -13,7 +13,7 @@ from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import next_junction
 from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import EGO
-from basu.testing import Driver, PaperStage, rehearse, waiting_at
+from basu.testing import Driver, OfflineStage, rehearse, waiting_at
 
 CASES = {
     "red_light_runner_1": "other",
@@ -30,7 +30,7 @@ BEHIND_A_STOP_SIGN = ("straight_crossing_paths_2", "turn_into_traffic_1", "unsig
 def unmoved(top_mps: float) -> Driver:
     """Sets off like the shuttle, and keeps its speed whoever comes."""
 
-    def drive(stage: PaperStage) -> float:
+    def drive(stage: OfflineStage) -> float:
         return min(top_mps, stage.ego.forward_mps + 1.1 * stage.step_s)
 
     return drive

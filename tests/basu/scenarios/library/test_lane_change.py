@@ -8,7 +8,7 @@ import pytest
 from basu.errors import ScenarioError
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.stage import EGO
-from basu.testing import Driver, PaperStage, careful, rehearse
+from basu.testing import Driver, OfflineStage, careful, rehearse
 
 CASES = {
     **{f"parked_car_pulls_out_{n}": "parked car" for n in (1, 2)},
@@ -21,7 +21,7 @@ CASES = {
 def unmoved(top_mps: float) -> Driver:
     """Sets off like the shuttle, and keeps its speed whoever comes."""
 
-    def drive(stage: PaperStage) -> float:
+    def drive(stage: OfflineStage) -> float:
         return min(top_mps, stage.ego.forward_mps + 1.1 * stage.step_s)
 
     return drive

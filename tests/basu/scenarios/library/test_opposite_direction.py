@@ -7,7 +7,7 @@ from basu.scenarios.library.opposite_direction.out_of_lane import OutOfLane
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.paths import lanes_apart_m
 from basu.scenarios.scenario import Scenario
-from basu.testing import Driver, PaperStage, Rehearsal, rehearse, waiting_at
+from basu.testing import Driver, OfflineStage, Rehearsal, rehearse, waiting_at
 
 CASES = [
     *(f"narrowed_street_{n}" for n in (1, 2, 3, 4)),
@@ -19,7 +19,7 @@ CASES = [
 def unmoved(top_mps: float) -> Driver:
     """Sets off like the shuttle, and keeps its speed whoever comes."""
 
-    def drive(stage: PaperStage) -> float:
+    def drive(stage: OfflineStage) -> float:
         return min(top_mps, stage.ego.forward_mps + 1.1 * stage.step_s)
 
     return drive

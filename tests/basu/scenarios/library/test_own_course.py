@@ -11,10 +11,9 @@ from py_trees.common import Status
 from basu.errors import ScenarioError
 from basu.scenarios.cases import open_library
 from basu.scenarios.paths import Path
-from basu.scenarios.scenario import Scenario
+from basu.scenarios.scenario import Scenario, compose, set_on
 from basu.scenarios.stage import Controls, Pose
-from basu.scenarios.tree import compose, set_on
-from basu.testing import Command, PaperStage, Rehearsal, paper_place, rehearse, steady
+from basu.testing import Command, OfflineStage, Rehearsal, offline_place, rehearse, steady
 
 Laid = Callable[..., Scenario]
 LIBRARY = open_library()
@@ -28,7 +27,7 @@ def names(*kinds: str) -> list[str]:
 
 def steered(scenario: Scenario, seed: int = 0, speed_mps: float = 6.0) -> list[tuple[float, float]]:
     """How far along the route the ego was in each frame, and what its wheel was told while it meant straight ahead."""
-    stage = PaperStage(scenario.place, scenario.actors(), steady(speed_mps), seed=seed)
+    stage = OfflineStage(scenario.place, scenario.actors(), steady(speed_mps), seed=seed)
     tree = compose(scenario)
     set_on(tree, stage)
     told = []
@@ -129,7 +128,7 @@ def test_the_pull_before_a_stop_line_ends_at_the_line(laid: Laid) -> None:
 
 
 def test_a_route_without_a_stop_sign_or_a_bend_is_refused() -> None:
-    place = paper_place([(0, 0), (100, 0)])
+    place = offline_place([(0, 0), (100, 0)])
     for kind, lacks in (("SlipperyStop", "no stop sign"), ("BendDeparture", "no bend")):
         scenario = next(s for s in LIBRARY.scenarios if s.__name__ == kind)
         values = {parameter.name: parameter.default for parameter in scenario.parameters}

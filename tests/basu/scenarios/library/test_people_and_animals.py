@@ -19,10 +19,9 @@ from basu.scenarios.library.shuttle.running_for_the_shuttle import RunningForThe
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice
 from basu.scenarios.paths import crossing
-from basu.scenarios.scenario import Scenario
+from basu.scenarios.scenario import Scenario, compose, set_on
 from basu.scenarios.stage import Controls
-from basu.scenarios.tree import compose, set_on
-from basu.testing import PaperStage, Rehearsal, careful, rehearse, steady, waiting_at
+from basu.testing import OfflineStage, Rehearsal, careful, rehearse, steady, waiting_at
 
 if TYPE_CHECKING:
     from basu.scenarios.paths.crossings import Side
@@ -52,7 +51,7 @@ def names(types: object) -> list[str]:
     return [case.name for case in CASES if case.type in types]  # type: ignore[operator]
 
 
-def pulling_away(stage: PaperStage) -> float:
+def pulling_away(stage: OfflineStage) -> float:
     """At full throttle, about as the shuttle does."""
     return min(SHUTTLE_MPS, stage.ego.forward_mps + 1.4 * stage.step_s)
 
@@ -201,7 +200,7 @@ def test_a_slight_deviation_changes_the_wheels_for_a_moment_and_no_more(laid: La
 def test_a_deviation_goes_to_the_side_it_is_said_to(laid: Laid) -> None:
     for side, sign in (("right", 1.0), ("left", -1.0)):
         scenario = laid("steering_deviation_1", side=side)
-        stage = PaperStage(scenario.place, (), steady(SHUTTLE_MPS))
+        stage = OfflineStage(scenario.place, (), steady(SHUTTLE_MPS))
         tree = compose(scenario)
         set_on(tree, stage)
         meant = Controls(0.3, 0.0, 0.0)
@@ -244,6 +243,6 @@ def test_the_ends_of_every_range_can_be_set_on_a_stage(laid: Laid, kind: str) ->
         for end in ends:
             scenario = laid(name, **{parameter.name: end})
             tree = compose(scenario)
-            set_on(tree, PaperStage(scenario.place, scenario.actors(), steady(SHUTTLE_MPS)))
+            set_on(tree, OfflineStage(scenario.place, scenario.actors(), steady(SHUTTLE_MPS)))
             tree.root.tick()
             assert tree.root.root.status is Status.RUNNING, f"{parameter.name}={end}"

@@ -4,15 +4,14 @@ import numpy as np
 import pytest
 
 from fakes.street import CAR_ID, WALL_ID, WALL_M, street
-from linden.meshes.mesh import LampOf
-from linden.scene.weather import CLEAR_NOON
+from linden.blueprints.library import BlueprintLibrary
+from linden.protocol.values.actors import ActorDescription, AttributeValue
+from linden.protocol.values.enums import AttributeType, SemanticTag
+from linden.protocol.values.episode import CLEAR_NOON
+from linden.protocol.values.space import Rotation, Transform, Vector3D
+from linden.scenery.mesh import LampOf
 from linden.sensors.camera.cameras import CAMERAS, Image
-from linden.sensors.looking import Look
-from linden.sensors.seen import Seen
-from linden.values.actors import ActorDescription, AttributeValue
-from linden.values.enums import AttributeType, SemanticTag
-from linden.values.space import Rotation, Transform, Vector3D
-from linden.world.blueprints import BlueprintLibrary
+from linden.sensors.view import Look, Seen
 
 EYE = Transform(Vector3D(0.0, 0.0, 2.0), Rotation())
 WIDTH, HEIGHT = 160, 122  # no multiple of a tile's 4

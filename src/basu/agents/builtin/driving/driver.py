@@ -1,4 +1,4 @@
-"""A driver's head: gathers what path, rules and other people ask for, and hands it to planner, feet and hands.
+"""Drivers: combine path, rules and other actors into a control; the behavioral one also overtakes and pulls over.
 
 Nothing in here knows of carla: a step is a function of what is seen, so that it can be driven in a test's own world.
 """
@@ -7,23 +7,27 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.agents.builtin.driving.lateral import steer_angle_rad
-from basu.agents.builtin.driving.longitudinal import PedalControl
-from basu.agents.builtin.driving.manner import BASIC
+from basu.agents.builtin.driving.controllers import PedalControl, steer_angle_rad
+from basu.agents.builtin.driving.manner import BASIC, NORMAL, Limits
 from basu.agents.builtin.driving.planner import Planner
+from basu.agents.builtin.passing.overtaking import Overtaking, Phase
+from basu.agents.builtin.passing.pulling_over import PullingOver, Tailgating
 from basu.agents.builtin.rules.obstacles import Obstacles
 from basu.agents.builtin.scene import Restriction, Urgency
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
 
-    from basu.agents.builtin.driving.longitudinal import DriveModel, Pedals
+    from basu.agents.builtin.driving.controllers import DriveModel, Pedals
     from basu.agents.builtin.driving.manner import Manner
     from basu.agents.builtin.driving.path import Path, Place
     from basu.agents.builtin.driving.speed_profile import SpeedProfile
     from basu.agents.builtin.driving.task import Task
-    from basu.agents.builtin.rules.traffic_lights import Light
+    from basu.agents.builtin.passing.detour import Detour
+    from basu.agents.builtin.passing.road import Road
+    from basu.agents.builtin.rules.stopping_lines import Light
     from basu.agents.builtin.scene import Body, Ego, Other
+
 
 HORIZON_M = 160.0  # how far ahead slowdowns are looked at: from 15 m/s down to walking pace in comfort
 RULES_M = 60.0  # how far ahead lines and stops are
@@ -81,15 +85,15 @@ class Driver:
         others: Sequence[Other],
         shows: Callable[[str], Light],
         limit_mps: float,
-        asked: Iterable[Restriction] = (),
+        demands: Iterable[Restriction] = (),
     ) -> Command:
-        """Meet everything that is asked for: path, rules, other people, and what the caller adds."""
+        """Meet all restrictions: of path, rules, other actors, and the caller's own."""
         restrictions = [
             Restriction(distance_m, speed_mps, Urgency.GENTLE, "bend or lower limit")
             for distance_m, speed_mps in self.profile.slowdowns(place.s_m, HORIZON_M)
         ]
         restrictions.append(Restriction(self.path.end_s_m - place.s_m, 0.0, Urgency.GENTLE, "end of the route"))
-        restrictions.extend(asked)
+        restrictions.extend(demands)
         restrictions.extend(self._ruled(ego, place, others, shows))
         restrictions.extend(self._obstacles.step(ego, place, others))
         accel_mps2 = self.planner.step(ego.speed_mps, limit_mps, restrictions, self._obstacles.follow_mps2)
@@ -106,9 +110,9 @@ class Driver:
     def _ruled(
         self, ego: Ego, place: Place, others: Sequence[Other], shows: Callable[[str], Light]
     ) -> list[Restriction]:
-        """What signs, lights and stops ask for; those not yet in sight and those long passed are not asked."""
+        """The restrictions of signs, lights and stops in sight."""
         s_m, front_s_m = place.s_m, place.s_m + self._body.front_m
-        asked = [
+        demands = [
             *(sign.step(ego, front_s_m, others) for sign in self.task.stop_signs if _in_sight(sign.line_s_m, s_m)),
             *(sign.step(ego, front_s_m, others) for sign in self.task.yield_signs if _in_sight(sign.line_s_m, s_m)),
             *(
@@ -118,9 +122,78 @@ class Driver:
             ),
             *(stop.step(ego, s_m) for stop in self.task.stops if _in_sight(stop.s_m, s_m)),
         ]
-        return [restriction for restriction in asked if restriction is not None]
+        return [restriction for restriction in demands if restriction is not None]
 
 
 def _in_sight(mark_s_m: float, s_m: float) -> bool:
     """Whether a mark lies ahead within ``RULES_M``, or just behind the vehicle's origin."""
     return -2.0 < mark_s_m - s_m < RULES_M
+
+
+NEAR_M = 150.0  # rules look at those within this, 25 mph for 13 s; only passing has to look farther
+SIGHT_M = 350.0  # from standstill the cautious one needs some 21 s, in which one at 25 mph gets 240 m
+SOFTER = 0.7  # share of the usual braking and jerk while an actor is close behind
+HURRY_MPS = 1.0  # added to a speed below the limit then, up to the limit of basic
+
+
+class BehavioralDriver(Driver):
+    """A driver with a manner of its own."""
+
+    def __init__(self, task: Task, road: Road, body: Body, model: DriveModel, dt_s: float, manner: Manner) -> None:
+        super().__init__(task, body, model, dt_s, manner)
+        assert manner.passing is not None, "a behavioral manner knows how to pass"
+        self.manner = manner
+        self.overtaking = Overtaking(task.path, road, body, manner, manner.passing, SIGHT_M)
+        self.tailgating = Tailgating(body, manner.tailgated_s)
+        self.pulling_over = PullingOver(task.path, road, body, manner)
+        self.detour: Detour | None = None  # what is driven instead of the lane
+        self._road = road
+        self._softer = Limits(SOFTER * manner.comfort.accel_mps2, SOFTER * manner.comfort.jerk_mps3)
+
+    @property
+    def posted_mps(self) -> float:
+        """The limit where the vehicle is."""
+        return self._road.limit_mps[0 if self.place is None else self.place.near]
+
+    def step(self, ego: Ego, others: Sequence[Other], shows: Callable[[str], Light]) -> Command:
+        """Decide one step."""
+        near = [o for o in others if abs(o.x_m - ego.x_m) < NEAR_M and abs(o.y_m - ego.y_m) < NEAR_M]
+        place = self._locate(ego)
+        tailgated = self.tailgating.step(ego, self.path, place, near)
+        demands = self._choose_path(ego, place, others, tailgated=tailgated)
+        place = self._locate(ego)
+        limit_mps = self._limit_mps(place)
+        if tailgated and self.detour is None:
+            self.planner.comfort = self._softer
+            limit_mps = self._hurried_mps(place, limit_mps)
+        else:
+            self.planner.comfort = self.manner.comfort
+        return self._drive(ego, place, near, shows, limit_mps, demands)
+
+    def _choose_path(self, ego: Ego, place: Place, others: Sequence[Other], *, tailgated: bool) -> list[Restriction]:
+        """Keep to the lane, pass an obstruction, or make room for a tailgater."""
+        lane = self.task.path
+        own = place if self.path is lane else lane.follow(ego.x_m, ego.y_m, place.near)
+        demands: list[Restriction] = []
+        if self.pulling_over.detour is None:
+            demands = self.overtaking.step(ego, own, others)
+        if self.overtaking.phase is Phase.KEEPING:
+            demands.extend(self.pulling_over.step(ego, own, others, tailgated=tailgated))
+        self.detour = self.overtaking.detour or self.pulling_over.detour
+        self.path = self._obstacles.path = lane if self.detour is None else self.detour.path
+        return demands
+
+    def _limit_mps(self, place: Place) -> float:
+        """The speed here, on a way round the speed of that."""
+        limit_mps, detour = self.profile.limit_mps[place.near], self.detour
+        if detour is not None and detour.extent.from_s_m <= place.s_m <= detour.extent.to_s_m:
+            return min(limit_mps, detour.speed_mps)
+        return limit_mps
+
+    def _hurried_mps(self, place: Place, limit_mps: float) -> float:
+        """A little more than usual where only the manner keeps below the posted limit."""
+        posted_mps = self._road.limit_mps[place.near]
+        manner_mps = posted_mps + self.manner.above_limit_mps
+        if limit_mps < manner_mps - 1e-6 or manner_mps > posted_mps + NORMAL.above_limit_mps:
+            return limit_mps  # a bend or the vehicle's own top speed is what keeps it, or it is at the limit already
+        return max(limit_mps, min(limit_mps + HURRY_MPS, posted_mps + NORMAL.above_limit_mps))

@@ -10,8 +10,7 @@ import math
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from basu.agents.builtin.driving.comfort import Limits, approach_accel_mps2, slowing_distance_m
-from basu.agents.builtin.driving.manner import BASIC
+from basu.agents.builtin.driving.manner import BASIC, Limits, approach_accel_mps2, slowing_distance_m
 from basu.agents.builtin.scene import Restriction, Urgency
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ HARD = Limits(3.5, 8.0)
 FULL_MPS2 = 7.5  # emergency braking, about what tyres give on dry asphalt (0.8 g)
 FULL_JERK_MPS3 = 60.0  # brakes build up within a tenth of a second or two
 HARD_BUT_SMOOTH = Limits(HARD.accel_mps2, FIRM.jerk_mps3)  # ISO 15622:2018, 6.3: 3.5 m/s² and 2.5 m/s³
-RESERVE = Limits(5.0, FULL_JERK_MPS3)  # counted on where comfort is looked after by somebody else
+RESERVE = Limits(5.0, FULL_JERK_MPS3)  # counted on where another part looks after comfort
 ESCALATE_M = 0.3  # missing a mark by less than this in comfort is better than firm braking
 ARRIVED_M = 0.8  # standing this near before a mark, one stays rather than creep up to it
 STANDING_MPS = 0.005
@@ -168,7 +167,7 @@ class Planner:
         return max(self.accel_mps2 - FULL_JERK_MPS3 * self.dt_s, -min(demand_mps2, FULL_MPS2))
 
     def _softened(self, wanted_mps2: float, restrictions: tuple[Restriction, ...]) -> float:
-        """The last moment before standing: let speed and deceleration vanish together, so that nobody nods."""
+        """The last moment before standing: let speed and deceleration vanish together, so that no passenger nods."""
         accel, speed_mps = self.accel_mps2, self.speed_mps
         if not -HARD.accel_mps2 < accel < 0.0 or speed_mps > 1.1 * accel * accel / (2.0 * self.comfort.jerk_mps3):
             return wanted_mps2

@@ -1,4 +1,4 @@
-"""Lays out a task: the path, the speeds along it, and every sign, light and stop that will be met."""
+"""The driving task: the path, the speeds along it, and every sign, light and stop that will be met."""
 
 from __future__ import annotations
 
@@ -10,12 +10,9 @@ import numpy as np
 from basu.agents.builtin.driving.manner import BASIC, LEFT_FROM_MAJOR_S, ROUNDABOUT_S
 from basu.agents.builtin.driving.path import SPACING_M, Path, make_path
 from basu.agents.builtin.driving.speed_profile import SpeedProfile, make_profile
-from basu.agents.builtin.rules.conflicts import make_zone
-from basu.agents.builtin.rules.gaps import GapRule, Movement, make_rule, movement
-from basu.agents.builtin.rules.service_stops import ServiceStop
-from basu.agents.builtin.rules.stop_signs import StopSign
-from basu.agents.builtin.rules.traffic_lights import TrafficLight
-from basu.agents.builtin.rules.yielding import YieldSign
+from basu.agents.builtin.rules.gap_acceptance import GapRule, Movement, make_rule, make_zone, movement
+from basu.agents.builtin.rules.right_of_way import StopSign, YieldSign
+from basu.agents.builtin.rules.stopping_lines import ServiceStop, TrafficLight
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -32,7 +29,7 @@ MERGE_M = 10.0  # after a yield line: the stretch on which one joins the circula
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Task:
-    """What is to be driven, laid out once."""
+    """The path with its speeds, signs, lights and stops, planned once."""
 
     path: Path
     profile: SpeedProfile
@@ -43,7 +40,7 @@ class Task:
 
 
 def make_task(route: Route, body: Body, cap_mps: float, manner: Manner = BASIC) -> Task:
-    """Lay out a route for a vehicle that drives ``cap_mps`` at most."""
+    """Plan the task of a route for a vehicle that drives ``cap_mps`` at most."""
     path = make_path(route.points_m, route.s_m, route.lane_width_m, body)
     nearest = np.searchsorted(route.s_m, path.s_m).clip(0, len(route.s_m) - 1)
     profile = make_profile(path, route.speed_limit_mps[nearest], cap_mps, SPACING_M, manner)

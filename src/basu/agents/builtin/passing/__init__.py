@@ -1,1 +1,1 @@
-"""Leaving the lane and coming back: round what stands in it, or out of the way of who is close behind."""
+"""Leaving the lane and returning: to pass an obstruction, or to make room for a tailgater."""

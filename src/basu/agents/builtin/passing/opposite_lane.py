@@ -1,7 +1,7 @@
-"""Whether the lane of those who come the other way is free for as long as one needs it.
+"""Whether the oncoming lane is free for the time that a manoeuvre takes.
 
-Everybody on the street ahead is taken into account, as far as the agent is told of others. Who comes is taken to speed
-up to the posted limit; who is not seen yet, to come at the limit from just beyond what is seen. That is the sight
+All actors that the agent knows on the street ahead count. An oncoming vehicle is taken to accelerate to the posted
+limit; one out of sight is taken to drive at the limit, just beyond the visible stretch. That is the sight
 distance for passing in its plainest form: own time in the other lane times the other's speed (AASHTO, A Policy on
 Geometric Design of Highways and Streets, 6th ed., section 3.2.4, distances d2 to d4).
 """
@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.builtin.passing.standing import STANDING_MPS
+from basu.agents.builtin.passing.obstruction import STANDING_MPS
 from basu.agents.builtin.rules.corridor import Strip
-from basu.agents.builtin.rules.gaps import START_S, time_to_cover_s
+from basu.agents.builtin.rules.gap_acceptance import START_S, time_to_cover_s
 from basu.agents.builtin.rules.obstacles import SIDE_MARGIN_M
 from basu.agents.builtin.scene import Kind
 
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from basu.agents.builtin.scene import Body, Ego, Other
 
 ONCOMING_RAD, SAME_WAY_RAD = math.radians(120.0), math.radians(60.0)
-OTHERS_ACCEL_MPS2 = 1.5  # with which one who comes speeds up
+OTHERS_ACCEL_MPS2 = 1.5  # acceleration of an oncoming vehicle
 BESIDE_STREET_M = 1.5  # farther than this to the left of the other lane one is on another street
-BEHIND_M = 40.0  # who comes from behind in the other lane is overtaking, and looked for this far back
-MAY_TURN_IN_M = 30.0  # whoever moves this near to the next junction may turn into our street
+BEHIND_M = 40.0  # an actor behind in the other lane overtakes; the search goes this far back
+MAY_TURN_IN_M = 30.0  # an actor moving this near to the next junction may turn into our street
 STEP_M = 1.0
 
 
@@ -39,7 +39,7 @@ class Need(NamedTuple):
     """What the other lane has to be free for."""
 
     detour: Detour
-    members: frozenset[int]  # those who are gone round
+    members: frozenset[int]  # actors that are passed
     accel_mps2: float
     margin_s: float
     sight_m: float  # how far from the vehicle others are seen

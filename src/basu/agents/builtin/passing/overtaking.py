@@ -1,14 +1,14 @@
-"""Goes round what stands in the lane, through the lane of those who come the other way, when nobody comes.
+"""Passes an obstruction through the oncoming lane while that lane is free.
 
 ::
 
-    KEEPING ── it stood long enough, there is room, nobody comes ──► PASSING ── back in the lane ──► KEEPING
+    KEEPING ── it stood long enough, there is room, lane free ──► PASSING ── back in the lane ──► KEEPING
        ▲                                                                │
-       └──────── somebody comes, and one can still stop ────────────────┘
+       └──────── a vehicle comes, and there is room to stop ───────────┘
 
 Ohio Revised Code 4511.25 (A)(2) allows the left half of the road where an obstruction makes it necessary, giving way
-to all who come. Not gone round are: people on foot, whoever moves, queues before a line or a junction, jams, and
-anything so near to a junction, a line or a service stop that the lane would not be reached again before it.
+to oncoming traffic. Not passed are people on foot, moving actors, queues before a line or a junction, jams, and
+anything so near to a junction, a line or a service stop that the vehicle could not return to its lane before it.
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING
 
-from basu.agents.builtin.driving.comfort import slowing_distance_m
+from basu.agents.builtin.driving.manner import slowing_distance_m
 from basu.agents.builtin.driving.planner import ARRIVED_M, FIRM
 from basu.agents.builtin.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
+from basu.agents.builtin.passing.obstruction import LONGEST_BLOCK_M, STANDING_MPS, Standing
 from basu.agents.builtin.passing.opposite_lane import Need, is_free
-from basu.agents.builtin.passing.standing import LONGEST_BLOCK_M, STANDING_MPS, Standing
-from basu.agents.builtin.rules.gaps import USED_SHARE
+from basu.agents.builtin.rules.gap_acceptance import USED_SHARE
 from basu.agents.builtin.scene import Restriction, Urgency
 
 if TYPE_CHECKING:
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
     from basu.agents.builtin.driving.manner import Manner, Passing
     from basu.agents.builtin.driving.path import Path, Place
     from basu.agents.builtin.passing.detour import Detour
+    from basu.agents.builtin.passing.obstruction import Block
     from basu.agents.builtin.passing.road import Road
-    from basu.agents.builtin.passing.standing import Block
     from basu.agents.builtin.scene import Body, Ego, Other
 
-STRAIGHT_S = 1.5  # one is all the way aside so long before the bumpers are level, that nobody sees a near miss in it …
+STRAIGHT_S = 1.5  # the full offset is reached so long before the bumpers are level, against a near miss …
 ALONG_M = 0.5  # … or, where that is not to be had, so much before; and until so much after
 EDGE_M = 0.2  # kept to the left edge of the road
 LEAST_BESIDE_M = 0.45  # what is enough beside a block where the road is narrow
@@ -133,7 +133,7 @@ class Overtaking:
         return Need(detour, block.members, accel_mps2, self._passing.margin_s, self._sight_m)
 
     def _is_free(self, ego: Ego, place: Place, others: Sequence[Other], need: Need) -> bool:
-        """Whether nobody is in the way; who stays within the own lane asks nobody."""
+        """Whether the way is free of actors; a detour within the own lane always is."""
         half_lane_m = self._road.half_lane_m[self._path.index_at(need.detour.extent.aside_s_m)]
         if need.detour.offset_m - self._body.half_width_m > LINE_M - half_lane_m:
             return True
@@ -178,7 +178,7 @@ class Overtaking:
         return place.s_m + stop_m + tightest_swing_m(left_m) <= self._latest_s_m
 
     def _drives_beside(self, place: Place, others: Sequence[Other], need: Need) -> bool:
-        """Whether somebody who was to be passed has begun to drive, and is beside us: it is let go first."""
+        """Whether an actor that was to be passed has begun to drive beside us; it goes first."""
         for other in others:
             if other.id in need.members and other.speed_mps > STANDING_MPS:
                 s_m = self._path.follow(other.x_m, other.y_m, place.near).s_m
@@ -194,7 +194,7 @@ class Overtaking:
 
 
 def _differs(planned: Detour, extent: Extent, offset_m: float) -> bool:
-    """Whether a way round is another than the one that was laid out before."""
+    """Whether a detour differs from the one planned before."""
     return any(
         abs(a - b) > SAME_M for a, b in zip((*planned.extent, planned.offset_m), (*extent, offset_m), strict=True)
     )

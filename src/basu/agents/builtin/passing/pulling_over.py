@@ -1,15 +1,16 @@
-"""Makes room for a tailgater: over to a lane of the same direction on the right, along it for a while, and back.
+"""Detects a tailgater and makes room for it: over to a lane of the same direction on the right, and back.
 
-Only where such a lane is free and goes on, past no junction, line or service stop; and back only when nobody is beside
-or close behind in the lane that one came from.
+It needs a free lane that continues past no junction, line or service stop. The vehicle returns only when no actor is
+beside it or close behind in its former lane.
 """
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from basu.agents.builtin.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
-from basu.agents.builtin.scene import Restriction, Urgency
+from basu.agents.builtin.scene import Kind, Restriction, Urgency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,12 +21,59 @@ if TYPE_CHECKING:
     from basu.agents.builtin.passing.road import Road
     from basu.agents.builtin.scene import Body, Ego, Other
 
+
+LEAST_MPS = 2.0  # a vehicle that hardly moves has no tailgater
+TAILGATER_WITHIN_M = 40.0
+SAME_WAY_RAD = math.radians(45.0)
+NOTICED_S = 1.0  # it has to go on for so long …
+FORGOTTEN_S = 3.0  # … and is over after so long
+
+
+class Tailgating:
+    """Whether an actor follows at less than ``near_s`` seconds; 0 switches the check off."""
+
+    def __init__(self, body: Body, near_s: float) -> None:
+        self.is_on = False
+        self._body = body
+        self._near_s = near_s
+        self._changed_s: float | None = None
+
+    def step(self, ego: Ego, path: Path, place: Place, others: Sequence[Other]) -> bool:
+        """Look behind; the answer changes only after a while."""
+        seen = (
+            self._near_s > 0.0 and ego.speed_mps > LEAST_MPS and any(self._is_one(ego, path, place, o) for o in others)
+        )
+        if seen == self.is_on:
+            self._changed_s = None
+            return self.is_on
+        self._changed_s = ego.time_s if self._changed_s is None else self._changed_s
+        if ego.time_s - self._changed_s >= (NOTICED_S if seen else FORGOTTEN_S):
+            self.is_on, self._changed_s = seen, None
+        return self.is_on
+
+    def _is_one(self, ego: Ego, path: Path, place: Place, other: Other) -> bool:
+        """Whether one other follows too closely in our lane."""
+        if other.kind is not Kind.VEHICLE or other.speed_mps < LEAST_MPS:
+            return False
+        dx_m, dy_m = other.x_m - ego.x_m, other.y_m - ego.y_m
+        if dx_m * dx_m + dy_m * dy_m > TAILGATER_WITHIN_M * TAILGATER_WITHIN_M:
+            return False
+        behind = dx_m * math.cos(ego.yaw_rad) + dy_m * math.sin(ego.yaw_rad) < 0.0
+        if not behind or abs(math.remainder(other.yaw_rad - ego.yaw_rad, math.tau)) > SAME_WAY_RAD:
+            return False
+        there = path.follow(other.x_m, other.y_m, place.near)
+        if abs(there.lateral_m) > self._body.half_width_m + other.half_width_m:
+            return False
+        gap_m = place.s_m - self._body.rear_m - there.s_m - other.half_length_m
+        return gap_m < self._near_s * ego.speed_mps
+
+
 ALONG_M = 40.0  # driven in the other lane at least
-LONGER_M = 20.0  # by which that is drawn out while somebody is in the way back
-BEHIND_M, AHEAD_M = 20.0, 10.0  # nobody so near before and behind in the lane that one changes to
+LONGER_M = 20.0  # added while an actor blocks the way back
+BEHIND_M, AHEAD_M = 20.0, 10.0  # no actor this near before and behind in the target lane
 DECIDES_M = 10.0  # before the way back begins it is seen whether it is clear
 LIKE_M = 0.3  # a lane that lies so much elsewhere is another lane
-SLOWEST_MPS = 3.0  # changes of lane are laid out for this speed at least
+SLOWEST_MPS = 3.0  # changes of lane are planned for this speed at least
 
 
 class PullingOver:
@@ -53,7 +101,7 @@ class PullingOver:
                 to_s_m=extent.to_s_m + LONGER_M,
             )
             if not self._goes_on(drawn_out, self.detour.offset_m):
-                return [Restriction(extent.until_s_m - place.s_m, 0.0, Urgency.FIRM, "nobody lets us in")]
+                return [Restriction(extent.until_s_m - place.s_m, 0.0, Urgency.FIRM, "no gap to return")]
             offset_m = self.detour.offset_m
             self.detour = make_detour(self._path, drawn_out, offset_m, self._manner, self.detour.speed_mps, offset_m)
         return []
@@ -81,7 +129,7 @@ class PullingOver:
         return beside and not marks and not ends and not road.meets_junction(extent.from_s_m, extent.to_s_m)
 
     def _is_clear(self, place: Place, others: Sequence[Other], lane_m: float, half_m: float) -> bool:
-        """Whether nobody is near in the lane whose middle lies ``lane_m`` to the right of ours."""
+        """Whether no actor is near in the lane with its middle ``lane_m`` to the right of ours."""
         for other in others:
             there = self._path.follow(other.x_m, other.y_m, place.near)
             ahead_m = there.s_m - place.s_m

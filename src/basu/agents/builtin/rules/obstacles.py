@@ -1,4 +1,10 @@
-"""Keeps off whatever is in the way: follows leaders at a distance, waits for who steps in, stops for what stands.
+"""Keeps clear of obstacles: follows leaders at a distance, waits for walkers, stops for standing actors.
+
+The model is Treiber, Hennecke and Helbing 2000, "Congested traffic states in empirical observations and microscopic
+simulations", equations 2 and 3, without its term for the free road, which is the planner's own affair; so a leader is
+followed at exactly ``standoff + headway * speed``. The model does not promise to avoid collisions where a leader brakes
+harder than expected; the floor does (Gipps 1981; "responsibility-sensitive safety", Shalev-Shwartz et al. 2017,
+definition 1): the leader may at any moment brake as hard as tyres allow, and there is still room to stop behind it.
 
 A leader is taken to brake no harder than ``LEADER_BRAKING_MPS2`` in comfort; where it does, firmer braking follows. The
 distance this keeps is that of "responsibility-sensitive safety" (Shalev-Shwartz et al. 2017, definition 1) with our own
@@ -11,7 +17,6 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.builtin.rules.corridor import AHEAD_M, Strip
-from basu.agents.builtin.rules.following import MOVING_MPS, floor, follow_mps2
 from basu.agents.builtin.scene import Kind, Restriction, Urgency
 
 if TYPE_CHECKING:
@@ -22,14 +27,35 @@ if TYPE_CHECKING:
     from basu.agents.builtin.rules.corridor import Footprint
     from basu.agents.builtin.scene import Body, Ego, Other
 
+
+MOVING_MPS = 0.5  # slower than this a body is stopped for, not followed
+LEADER_LIMIT_MPS2 = 8.0  # the most that a leader brakes: a car on dry asphalt, 0.8 g
+CLOSEST_M = 1.0  # what is left between the bumpers when it does
+LEAST_GAP_M = 0.1  # nearer than this the model's quotient means nothing any more
+
+
+def follow_mps2(gap_m: float, speed_mps: float, leader_mps: float, following: Following) -> float:
+    """The most acceleration behind a leader; ``gap_m`` is from bumper to bumper."""
+    closing_mps = speed_mps - leader_mps
+    root = 2.0 * math.sqrt(following.accel_mps2 * following.brake_mps2)
+    wanted_m = following.standoff_m + max(0.0, following.headway_s * speed_mps + speed_mps * closing_mps / root)
+    return following.accel_mps2 * (1.0 - (wanted_m / max(gap_m, LEAST_GAP_M)) ** 2)
+
+
+def floor(gap_m: float, leader_mps: float) -> Restriction:
+    """Stop behind where the leader would come to rest if it braked from now on as hard as it can."""
+    rests_m = leader_mps * leader_mps / (2.0 * LEADER_LIMIT_MPS2)
+    return Restriction(gap_m - CLOSEST_M + rests_m, 0.0, Urgency.RESERVE, "leader braking hard", CLOSEST_M / 2)
+
+
 SIDE_MARGIN_M = 0.3  # beside the vehicle
 STANDOFF_M = 2.0  # kept to what stands ahead
 CONTACT_M = 0.4  # the last of it, kept even in an emergency
 LEADER_BRAKING_MPS2 = 1.5
 WORST_BRAKING_MPS2 = 6.0
-REACTION_S, ONCOMING_BRAKING_MPS2 = 1.0, 4.0  # of one who comes towards us in our own way
-STEP_IN_M = 1.5  # kept to the place where somebody is about to step in
-SLOWEST_MPS = 0.2  # who moves slower than this is not about to step in
+REACTION_S, ONCOMING_BRAKING_MPS2 = 1.0, 4.0  # of an oncoming actor in our own way
+STEP_IN_M = 1.5  # kept to the place where a person is about to step in
+SLOWEST_MPS = 0.2  # a slower person is not about to step in
 PULL_AWAY_MPS2 = 0.9  # the soonest one can be somewhere
 AFTERWARDS_S = 1.0  # between one leaving a place and the other reaching it
 # how far ahead in time movement is followed: a walker may keep on, a car coming out of a side street will stop there
@@ -49,10 +75,10 @@ class Sight(NamedTuple):
 
 
 class Obstacles:
-    """All other bodies; remembers only for whom it waits, so as not to waver.
+    """All other bodies; remembers only which of them it waits for, so as not to waver.
 
     Attributes:
-        path: what is driven along; whoever goes round something changes it.
+        path: the driven line; a detour replaces it.
         follow_mps2: after a step, the most acceleration that keeps the distance to a moving leader; inf without one.
     """
 
@@ -118,7 +144,7 @@ class Obstacles:
         return dx_m * dx_m + dy_m * dy_m < reach_m * reach_m
 
     def _about_to_step_in(self, sight: Sight, other: Other) -> Restriction | None:
-        """The restriction for somebody who is not in the way yet and will be when we come by."""
+        """The restriction for an actor that is not in the way yet and will be on our arrival."""
         if other.speed_mps < SLOWEST_MPS:
             return None
         if other.kind is Kind.VEHICLE and sight.strip.leads_against(other.yaw_rad, ONCOMING_RAD):
@@ -132,7 +158,7 @@ class Obstacles:
         left_m = min(f.from_s_m for _, f in inside) - sight.front_s_m
         beyond_m = max(f.to_s_m for _, f in inside) - sight.front_s_m + sight.body_length_m
         if left_m < -CONTACT_M:
-            return None  # it walks or drives into our side, where braking helps nobody
+            return None  # it walks or drives into our side, where braking does not help
         slack_s = 2.0 * AFTERWARDS_S if other.id in self._waited_for else AFTERWARDS_S
         soonest_s = _soonest_s(left_m, sight.ego.speed_mps)
         gone_s = beyond_m / max(sight.ego.speed_mps, 0.5)
@@ -144,9 +170,9 @@ class Obstacles:
 
 
 def _stays(sight: Sight, other: Other, gap_m: float, ahead_mps: float) -> bool:
-    """Whether one who comes towards us will still reach into the strip when we meet, or in a moment if that is later.
+    """Whether an oncoming actor will still reach into the strip when we meet, or in a moment if that is later.
 
-    Who turns into the other lane cuts its corner, and is out of our way by then.
+    An actor that turns into the other lane cuts its corner, and is out of our way by then.
     """
     meets_s = gap_m / (max(sight.ego.speed_mps, 0.0) - ahead_mps)
     later = sight.strip.footprint(other, max(0.0, min(meets_s, VEHICLE_TIMES_S[-1])))

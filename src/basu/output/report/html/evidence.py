@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.output.report.markup import DASH, TIMES, e, figure, number
-from basu.output.report.plots import marks
+from basu.output.report import events
 from basu.output.report.plots.chart import Line, Mark, chart
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
-from basu.output.report.templates import render
+from basu.output.report.templates import DASH, TIMES, e, figure, number, render
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,10 +23,10 @@ if TYPE_CHECKING:
     from basu.output.report.plots.signals import Signals
     from basu.records.history import History
 
-PICTURED = 60  # events that have pictures; a drive with more of them is told in words from there on
+PICTURED = 60  # events with pictures; further events have words only
 CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
 AROUND_S = 8.0  # of speed, before and after
-UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others whose size is not recorded
+UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others without a recorded size
 
 
 def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
@@ -38,14 +37,14 @@ def evidence(history: History, felt: Signals, found: Sequence[Event]) -> Markup:
     for order, event in enumerate(found):
         so_far *= 1.0 if event.factor is None else event.factor
         pictures = [close_up(history, event), _speed(felt, event)] if order < PICTURED else []
-        symbol = marks.symbol(event.kind, event.label, scored=event.factor is not None)
+        symbol = events.symbol(event.kind, event.label, scored=event.factor is not None)
         (rest if event.factor is None else scored).append((event, symbol, pictures, _facts(event, so_far)))
     sections = [("Infractions", "infractions", scored), ("Seen, not scored", "events", rest)]
-    return render("html/templates/evidence.j2", sections=sections)
+    return render("templates/evidence.j2", sections=sections)
 
 
 def close_up(history: History, event: Event) -> Element:
-    """The place from above: the vehicle under test, dark, and who was near it in that tick."""
+    """The place from above: the vehicle under test, dark, and the actors near it in that tick."""
     x_m, y_m = event.x_m, event.y_m
     bounds = Bounds(x_m - CLOSE_M[0], y_m - CLOSE_M[1], x_m + CLOSE_M[0], y_m + CLOSE_M[1])
     frame, vehicle = history.frames[event.tick], history.facts.vehicle

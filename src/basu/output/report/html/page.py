@@ -13,27 +13,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from markupsafe import Markup
 
+from basu.files import write_bytes
 from basu.output.report.events import events
-from basu.output.report.html import figures
 from basu.output.report.html.evidence import evidence
-from basu.output.report.html.plots import charts
-from basu.output.report.html.score_card import score_card
-from basu.output.report.markup import e, extended
-from basu.output.report.plots.signals import signals
+from basu.output.report.html.score_card import rows, score_card, table
+from basu.output.report.plots.signals import charts, signals
 from basu.output.report.plots.timeline import timeline
 from basu.output.report.plots.town_map import town_map
-from basu.output.report.scenarios.page.on_route import on_the_way
-from basu.output.report.scenarios.page.style import card_style
+from basu.output.report.scenarios.page.route_section import card_style, on_the_way
 from basu.output.report.streets import bounds_of
-from basu.output.report.templates import render
-from basu.utils.atomic import write_bytes
+from basu.output.report.templates import e, extended, render
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
+    from basu.output.report.documents import RunRecord
     from basu.output.report.plots.signals import Signals
-    from basu.output.report.reading import RunRecord
     from basu.records.history import History
 
 REPORT_FILE = "report.html"
@@ -66,11 +62,11 @@ def report(run: RunRecord) -> bytes:
         "samples": "",
         "script": "",
         "command": shlex.join(str(word) for word in run.config.get("command", [])),
-        "config": figures.table(figures.rows({key: each for key, each in run.config.items() if key != "command"})),
+        "config": table(rows({key: each for key, each in run.config.items() if key != "command"})),
     }
     title = f"{run.agent}: {document['status']}"
     if history is None:
-        return page(title, render("html/templates/report.j2", **values))
+        return page(title, render("templates/report.j2", **values))
     felt, found = signals(history), events(result)
     script = (HERE / "report.js").read_text(encoding="utf-8")
     values |= {
@@ -82,25 +78,23 @@ def report(run: RunRecord) -> bytes:
         "scenarios": on_the_way(document, run.config.get("command", []), history, run.streets),
         "charts": charts(history, felt, found),
         "evidence": evidence(history, felt, found),
-        "reported": figures.table(figures.rows(document["reported"])) if document["reported"] else None,
+        "reported": table(rows(document["reported"])) if document["reported"] else None,
         "samples": _samples(history, felt),
         "script": script,
     }
     style = card_style() if document.get("scenarios") else ""
-    return page(title, render("html/templates/report.j2", **values), script, style)
+    return page(title, render("templates/report.j2", **values), script, style)
 
 
-def page(title: str, body: Element | Markup, script: str = "", style: str = "") -> bytes:
-    """A page that asks nobody for anything: the browser itself holds it to that, and runs no script but ours.
+def page(title: str, body: Markup, script: str = "", style: str = "") -> bytes:
+    """A page without network requests: its policy makes the browser enforce this, and run no script but ours.
 
-    ``style`` comes after that of every report. A body made by a template has the ``script`` in it already.
+    ``style`` comes after that of every report. The body holds the ``script`` already; the policy allows it.
     """
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
     allowed = f"style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
-    if script and not isinstance(body, Markup):
-        body.append(e("script", script))
     text = render(
-        "html/templates/page.j2",
+        "templates/page.j2",
         title=title,
         policy=Markup(f"default-src 'none'; {allowed}; base-uri 'none'; form-action 'none'"),  # noqa: S704
         style=f"{(HERE / 'report.css').read_text(encoding='utf-8')}{style}",

@@ -1,4 +1,4 @@
-"""What a report plots against time: speed and its limit, acceleration, jerk, distance from the lane's middle."""
+"""Signals over time and their charts: speed and limit, acceleration, jerk, distance to the lane's middle."""
 
 from __future__ import annotations
 
@@ -7,12 +7,20 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.metrics.passengers import felt
-from basu.metrics.speeding import limits_mps
+from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
+from basu.metrics.speeding import TOLERANCE_MPS, limits_mps
+from basu.output.report.plots.chart import Line, Mark, Shade, chart
+from basu.output.report.templates import e
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+    from xml.etree.ElementTree import Element
+
     from numpy.typing import NDArray
 
+    from basu.output.report.events import Event
     from basu.records.history import History
+
 
 STANDING_MPS = 0.1  # slower than this the vehicle stands, as for stop signs
 
@@ -52,3 +60,75 @@ def stretches(holds: NDArray[np.bool_], t_s: NDArray[np.float64]) -> list[tuple[
     """From when to when ``holds`` (T,) holds: (first, last) in s of each stretch."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], holds, [False]]).astype(np.int8))).reshape(-1, 2)
     return [(float(t_s[first]), float(t_s[end - 1])) for first, end in edges.tolist()]
+
+
+# what standing volunteers could recover from (docs/reference/passengers.md has the sources), both ways
+RECOVERABLE = (
+    (STEP_MPS2, f"{STEP_MPS2:g}: with a step"),
+    (-STEP_MPS2, ""),
+    (GRIP_MPS2, f"{GRIP_MPS2:g}: holding on"),
+    (-GRIP_MPS2, ""),
+)
+FELT_KINDS = {"harsh_stop", "phantom_stop", "near_miss"}
+
+
+def charts(history: History, felt: Signals, found: Sequence[Event]) -> Element:
+    """All charts of a run."""
+    by_hand = [Shade(begin_s, end_s, "manual") for begin_s, end_s in stretches(felt.manual, felt.t_s)]
+    return e(
+        "section",
+        e("h2", "Plots"),
+        _speed(felt, by_hand, _flags(f for f in found if f.factor is not None)),
+        chart(
+            felt.t_s,
+            [
+                Line("along, + forward", felt.along_mps2, "first"),
+                Line("across, + to the right", felt.across_mps2, "second"),
+            ],
+            title="Acceleration",
+            marks=_flags(f for f in found if f.kind in FELT_KINDS),
+            unit="m/s²",
+            id_="acceleration",
+            levels=RECOVERABLE,
+            shades=by_hand,
+            least_range=(-1.2, 1.2),
+        ),
+        chart(
+            felt.t_s,
+            [Line("along", felt.jerk_mps3, "first")],
+            title="Jerk",
+            unit="m/s³",
+            id_="jerk",
+            shades=by_hand,
+            least_range=(-1.2, 1.2),
+        ),
+        _offset(history, felt, by_hand),
+        e(
+            "p",
+            "Acceleration and jerk: at a standing passenger's place, filtered. Hatched: by hand; crossed: too fast.",
+            class_="note",
+        ),
+    )
+
+
+def _speed(felt: Signals, by_hand: Sequence[Shade], flags: Sequence[Mark]) -> Element:
+    """Speed against the posted limit, with the infractions where they happened."""
+    over = felt.speed_mps > np.where(np.isnan(felt.limit_mps), np.inf, felt.limit_mps + TOLERANCE_MPS)
+    shades = [*by_hand, *(Shade(begin_s, end_s, "over") for begin_s, end_s in stretches(over, felt.t_s))]
+    curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
+    return chart(felt.t_s, curves, title="Speed", unit="m/s", id_="speed", shades=shades, marks=flags)
+
+
+def _offset(history: History, felt: Signals, by_hand: Sequence[Shade]) -> Element:
+    """Distance to the lane's middle, figure 5.1 of the thesis; to the planned line where the record has no lanes."""
+    if np.isfinite(felt.offset_m).any():
+        title, values = "Distance to the lane's middle", felt.offset_m
+    else:
+        title, values = "Distance to the planned line", history.frames["lateral_m"].astype(np.float64)
+    curves = [Line("+ to the right", values, "first")]
+    return chart(felt.t_s, curves, title=title, unit="m", id_="offset", shades=by_hand, least_range=(-0.5, 0.5))
+
+
+def _flags(found: Iterable[Event]) -> list[Mark]:
+    """Flags that open the evidence."""
+    return [Mark(f.t_s, f.label, f.title, f"#{f.anchor}", scored=f.factor is not None) for f in found]

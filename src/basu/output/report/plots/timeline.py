@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.metrics.arrival import near_stop
-from basu.output.report.markup import e, percent
-from basu.output.report.plots import marks
+from basu.metrics.path_following import near_stop
+from basu.output.report import events
 from basu.output.report.plots.chart import share, times
 from basu.output.report.plots.signals import STANDING_MPS, stretches
+from basu.output.report.templates import e, percent
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,7 +63,7 @@ def _marks(found: Sequence[Event], begin_s: float, end_s: float) -> list[Element
         at = (event.t_s - begin_s) / (end_s - begin_s)
         height = (height + 1) % 3 if at - last_share < CROWDED else 0  # those at one time, one below the other
         last_share = at
-        placed.append(marks.link(event, f"left:{percent(at)};--down:{height * LOWER_PX}px"))
+        placed.append(events.link(event, f"left:{percent(at)};--down:{height * LOWER_PX}px"))
     return placed
 
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.output.report.markup import e, number, percent
-from basu.output.report.plots import marks
-from basu.output.report.plots.axis import ticks
+from basu.output.report import events
+from basu.output.report.plots.chart import ticks
 from basu.output.report.plots.decimate import path
 from basu.output.report.streets import bounds_of, on_the_map
+from basu.output.report.templates import e, number, percent
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -152,7 +152,7 @@ def _marks(found: Sequence[Event], bounds: Bounds) -> list[Element]:
     """A mark for each event, those at one place stacked, each a link to its evidence."""
     heights = _stacked([(event.x_m, event.y_m) for event in found], bounds)
     return [
-        marks.link(event, f"{place(event.x_m, event.y_m, bounds)};--up:{STACKED_PX * height}px")
+        events.link(event, f"{place(event.x_m, event.y_m, bounds)};--up:{STACKED_PX * height}px")
         for event, height in zip(found, heights, strict=True)
     ]
 

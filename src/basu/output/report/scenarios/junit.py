@@ -12,7 +12,7 @@ import re
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from basu.output.report.scenarios.verdicts import LOOKS
+from basu.output.report.scenarios.tally import LOOKS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -42,7 +42,7 @@ def _suite(matrix: dict[str, Any], agent: str, number: int) -> Element:
         name=_token(agent),
         package="basu.scenarios",
         timestamp=_timestamp(matrix["started"]),
-        hostname="localhost",  # so the schema asks where it is nobody's business
+        hostname="localhost",  # required by the schema, and not to be disclosed
         tests=str(len(found)),
         failures=str(verdicts.count("FAILURE")),
         errors=str(verdicts.count("AGENT_FAULT")),

@@ -1,11 +1,16 @@
-"""The shares of crash cost that passed situations stand for, with intervals and what is assumed; as text."""
+"""The crash cost that passed cases stand for, with intervals and assumptions: as text and as bars."""
 
 from __future__ import annotations
 
 import textwrap
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from basu.output.report.templates import render
 from basu.scenarios.shares import CONTROL_DRIVERS
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
 
 WIDTH, NAME_WIDTH, AGENT_WIDTH = 110, 34, 15
 LEAST_GROUPS = 2
@@ -91,3 +96,77 @@ def _table(shares: dict[str, dict[str, Any]]) -> str:
 def _line(name: str, cells: list[str]) -> str:
     """A row of the table."""
     return f"{name:<{NAME_WIDTH}}" + "".join(f"{cell:>{AGENT_WIDTH}}" for cell in cells)
+
+
+MUSD_IN_BUSD = 1000.0
+
+
+def shares_view(matrix: dict[str, Any]) -> Markup | None:
+    """The section of a page; None where fewer than two groups were measured."""
+    if not is_weighed(matrix):
+        return None
+    shares = {agent: matrix["shares"][agent] for agent in controls_last(matrix["agents"])}
+    return render(
+        "templates/shares.j2",
+        scores=[_score(agent, share) for agent, share in shares.items()],
+        control_notes=" ".join(control_notes(list(shares))),
+        rows=_group_rows(shares),
+        assumptions=assumptions(matrix),
+    )
+
+
+def _score(agent: str, share: dict[str, Any]) -> dict[str, str]:
+    """One agent's shares in words."""
+    cost = share["share_of_cost"]
+    others = ", ".join(f"{interval(share[key])} of {name}" for key, name in list(SHARES.items())[1:])
+    part = percent_of(share["measured_of_cost"])
+    rest = "" if cost is None else f"{others}; the groups exercised make {part} of all cost. "
+    return {
+        "agent": agent,
+        "percent": percent_of(None if cost is None else cost["share"]),
+        "words": _words(cost),
+        "note": f"{interval(share['shown_of_cost'])} shown of all crash cost. {rest}"
+        f"{share['not_exercised']} cases not exercised; {share['collisions']} collisions, "
+        f"{share['at_fault']} at fault.",
+    }
+
+
+def _words(cost: dict[str, float] | None) -> str:
+    """What the figure beside an agent's name is, with its interval."""
+    if cost is None:
+        return "exercised no situation of the typology"
+    return f"passed, of the crash cost of exercised situations ({100.0 * cost['low']:.0f}-{100.0 * cost['high']:.0f} %)"
+
+
+def _group_rows(shares: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
+    """A row for each group, with a cell for each agent."""
+    burdens: dict[str, dict[str, Any] | None] = {}
+    found: dict[tuple[str, str], dict[str, Any]] = {}
+    for agent, share in shares.items():
+        for group in share["groups"]:
+            burdens[group["group"]] = group["burden"]
+            found[group["group"], agent] = group
+    greatest = max((burden["cost_musd"] for burden in burdens.values() if burden is not None), default=1)
+    return [
+        {
+            "group": group,
+            "cost": "weighs nothing" if burden is None else f"{burden['cost_musd'] / MUSD_IN_BUSD:.1f} bn $",
+            "cells": [
+                _bar(found.get((group, agent)), None if burden is None else burden["cost_musd"] / greatest)
+                for agent in shares
+            ],
+        }
+        for group, burden in burdens.items()
+    ]
+
+
+def _bar(group: dict[str, Any] | None, weight: float | None) -> dict[str, Any]:
+    """One group with one agent: the bar's outline is the weight, the filled part what was passed."""
+    if group is None:
+        return {"is_weighed": False, "text": "not played"}
+    passed, absent = group["passed"], group["not_exercised"]
+    if passed is None:
+        return {"is_weighed": False, "text": f"{absent} not exercised"}
+    counts = [f"{group[key]} {key[: None if group[key] != 1 else -1]}" for key in ("cases", "scenarios")]
+    text = f"{interval(passed)} of {' of '.join(counts)}" + (f", {absent} not exercised" if absent else "")
+    return {"is_weighed": True, "weight": weight, "filled": passed["share"], "text": text}

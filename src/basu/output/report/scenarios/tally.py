@@ -1,13 +1,33 @@
-"""A matrix counted: for each group, scenario and agent how many cases were passed, and how narrowly."""
+"""A matrix counted: passed cases and margins by group, scenario and agent; the sign and word of each verdict."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.output.report.scenarios.verdicts import LOOKS
-
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+
+class Look(NamedTuple):
+    """How a verdict is shown."""
+
+    sign: str  # one character, its own for each verdict that counts
+    word: str
+    style: str  # class in scenarios.css
+    is_judged: bool  # whether it says something about the agent; the rest stays out of shares and counts
+
+
+LOOKS = {
+    "SUCCESS": Look("✓", "passed", "passed", is_judged=True),
+    "FAILURE": Look("✗", "failed", "failed", is_judged=True),
+    "AGENT_FAULT": Look("!", "agent fault", "broken", is_judged=True),
+    "NOT_EXERCISED": Look("○", "not exercised", "absent", is_judged=False),
+    "SIMULATOR_FAULT": Look("?", "simulator fault", "unjudged", is_judged=False),
+    "SETUP_FAULT": Look("?", "set-up fault", "unjudged", is_judged=False),
+    "BENCHMARK_FAULT": Look("?", "benchmark fault", "unjudged", is_judged=False),
+    "INTERRUPTED": Look("?", "interrupted", "unjudged", is_judged=False),
+}
+
 
 CONTACT_M = 0.005  # less than that between two boxes is written as a contact
 
@@ -21,13 +41,13 @@ class Tally(NamedTuple):
     absent: int  # not exercised: the conflict never came about
     unjudged: int  # for faults of others: simulator, set-up, benchmark, or an interruption
     at_fault: int  # collisions for which the agent is at fault
-    distance_m: float | None  # None where nothing was passed or nobody was near, so the others
+    distance_m: float | None  # None where nothing was passed or no actor was near, so the others
     ttc_s: float | None
     pet_s: float | None
 
     @property
     def narrowest(self) -> str:
-        """The least distance in words; nothing where nobody was near."""
+        """The least distance in words; nothing where no actor was near."""
         if self.distance_m is None:
             return ""
         return "contact" if self.distance_m < CONTACT_M else f"{self.distance_m:.2f} m"

@@ -46,7 +46,7 @@ class DeerAtDusk(Scenario):
         Number("freezes", 3.0, 0.5, 5.0, "s", "that it stands in the lane"),
         Choice("side", ("left", "right"), "from which they come"),
     )
-    weather = {  # noqa: RUF012 - declared as a mapping that nobody changes
+    weather = {  # noqa: RUF012 - declared as a constant mapping
         "sun_altitude_angle": -6.0,  # the end of civil twilight
         "sun_azimuth_angle": 250.0,
         "cloudiness": 40.0,

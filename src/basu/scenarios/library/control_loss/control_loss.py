@@ -38,7 +38,7 @@ class ControlLoss(Scenario):
 
     Its steering is pulled aside and jitters with its throttle on each patch of little friction, or is jolted by each
     bump; it has to come back into its lane and reach its target. NHTSA pre-crash scenario: control loss without prior
-    vehicle action. Whoever does not steer against it leaves the lane and the road.
+    vehicle action. An ego that does not steer against it leaves the lane and the road.
     """
 
     group = Group.CONTROL_LOSS

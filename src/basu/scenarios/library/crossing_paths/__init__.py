@@ -1,1 +1,1 @@
-"""Others whose way crosses the ego's at a junction, or joins it there."""
+"""Scenarios with vehicles that cross or join the ego's way at a junction."""

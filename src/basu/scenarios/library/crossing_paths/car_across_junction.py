@@ -1,4 +1,4 @@
-"""Somebody stands across the ego's way in a junction: NHTSA's "straight crossing paths", with the other at rest."""
+"""A vehicle stands across the ego's way in a junction: NHTSA's "straight crossing paths", with the other at rest."""
 
 from __future__ import annotations
 
@@ -29,15 +29,15 @@ STOPS_M = 6.0  # it brakes over the last of its way
 
 
 class CarAcrossJunction(AcrossTheWay):
-    """Somebody from the side gets stuck in the junction, across the ego's way, and drives on after a while.
+    """A vehicle from the side gets stuck in the junction, across the ego's way, and drives on after a while.
 
-    NHTSA pre-crash scenario 30, straight crossing paths. It stands there some seconds before the ego arrives, whose
-    light is green or whose street has the right of way; the right of way is no reason to drive into anybody.
+    NHTSA pre-crash scenario 30, straight crossing paths. It stands there some seconds before the ego arrives. The
+    ego's light is green, or its street has the right of way; neither is a reason to drive into another vehicle.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("side", ("left", "right"), "from which the other comes"),
-        Choice("kind", ("van", "car", "truck", "suv"), "who it is"),
+        Choice("kind", ("van", "car", "truck", "suv"), "the other vehicle"),
         Number("speed", 6.0, 4.0, 9.0, "m/s", "of the other before it stops"),
         Number("notice", 7.5, 6.0, 10.0, "s", "before the ego's arrival, when the other sets off"),
         Number("lead", 3.5, 2.5, 5.0, "s", "before the ego, when the other gets into its way"),

@@ -1,4 +1,4 @@
-"""The ego turns left through oncoming traffic: NHTSA's "left turn across path", the ego being the one who turns."""
+"""The ego turns left through oncoming traffic: NHTSA's "left turn across path", with the ego turning."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ if TYPE_CHECKING:
 
 TURNS_MPS = 5.0
 NEARER_S = 0.8  # by so much of its way the first stands nearer than it has time for: the next needs room behind it
-NEXT_S = 0.4  # the second meets who turns without waiting, so long after the ego would arrive
+NEXT_S = 0.4  # the second meets an ego that turns without waiting, so long after its arrival
 BEHIND_M = 8.5  # from the first's middle to the second's at the least
 LOOK_M = 30.0
 
 
 class EgoTurnsLeft(Stream):
-    """The ego turns left while others come towards it: the first turns left as well, the rest go straight on.
+    """The ego turns left through oncoming vehicles: the first turns left as well, the rest go straight on.
 
-    NHTSA pre-crash scenarios 27 and 29, left turn across path from opposite directions, with the ego as the one who
-    turns. It has to let all of them go first, or to take a gap that is long enough; who drives straight on instead
+    NHTSA pre-crash scenarios 27 and 29, left turn across path from opposite directions, with the ego
+    turning. It has to let all of them go first, or to take a gap that is long enough; an ego that drives straight on
     meets the first in its turn.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
         Number("cars", 3.0, 2.0, 5.0, "", "how many come, rounded, the one that turns among them"),
-        Number("speed", 8.0, 5.0, 11.0, "m/s", "of those who go straight on"),
+        Number("speed", 8.0, 5.0, 11.0, "m/s", "of the oncoming vehicles"),
         Number("headway", 2.5, 1.8, 4.0, "s", "from one to the next"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 0.0, "sun_altitude_angle": 12.0}
@@ -72,7 +72,7 @@ class EgoTurnsLeft(Stream):
         return lane.way.path.at(second_m - (index - 1) * self.number("headway") * speed_mps)
 
     def _drives(self, lane: Lane, names: Sequence[str], index: int) -> Behaviour:
-        """The first turns left in front of whoever goes straight on; the second meets who turns without waiting."""
+        """The first turns left in front of an ego that goes straight on; the second meets one that turns at once."""
         if index > 1:
             return super()._drives(lane, names, index)
         if index == 1:

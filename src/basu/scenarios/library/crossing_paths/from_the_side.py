@@ -34,7 +34,7 @@ ONE_JUNCTION_M = 45.0  # lights this near to one another belong together
 
 
 def green_for_ego(place: Place) -> Together:
-    """The ego's next light is green and stays so; everybody else's at that junction is red.
+    """The ego's next light is green and stays so; all others at that junction are red.
 
     Raises:
         ScenarioError: no light lies ahead on the route.
@@ -132,5 +132,5 @@ class AcrossTheWay(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, and the ego gets on afterwards."""
+        """No contact, and the ego goes on afterwards."""
         return [NoCollision(), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""Somebody turns left in front of the ego: NHTSA's "left turn across path from opposite directions"."""
+"""A vehicle turns left in front of the ego: NHTSA's "left turn across path from opposite directions"."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
 
 
 class LeftTurnAcrossPath(AcrossTheWay):
-    """A car that comes towards the ego turns left in front of it.
+    """An oncoming car turns left in front of the ego.
 
     NHTSA pre-crash scenarios 27 and 29, left turn across path from opposite directions. The ego goes straight on and
     has the right of way; nothing in the other's way of driving tells that it will turn until it does. It turns as
-    slowly as one who does not look ahead: an ego that brakes at once keeps a second to a collision. With a short
+    slowly as an inattentive driver: an ego that brakes at once keeps a second to a collision. With a short
     ``notice`` it has waited in the junction and sets off late.
     """
 
     turn = "left"
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "van", "suv", "motorcycle"), "who turns"),
+        Choice("kind", ("car", "van", "suv", "motorcycle"), "the turning vehicle"),
         Number("speed", 3.0, 2.5, 7.0, "m/s", "of the other in its turn"),
         Number("lateness", -1.8, -3.0, 0.5, "s", "after the ego at the place where they meet; negative: before it"),
         Number("notice", 5.5, 3.0, 7.0, "s", "before the ego's arrival, when the other sets off"),

@@ -1,4 +1,4 @@
-"""Somebody turns right into the ego's lane: NHTSA's "right turn into path"."""
+"""A vehicle turns right into the ego's lane: NHTSA's "right turn into path"."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ STREET_MPS = 9.0  # 20 mph
 
 
 class RightTurnIntoPath(AcrossTheWay):
-    """Somebody turns right out of a side street, just in front of the ego, and takes its time.
+    """A vehicle turns right out of a side street, just in front of the ego, and takes its time.
 
     NHTSA pre-crash scenario 31, turning at a non-signalised junction. The other comes out of its stop street shortly
-    before the ego is there and needs a while to get going: who does not slow down is in its boot.
+    before the ego is there and needs a while to get going: an ego that does not slow down hits its boot.
     """
 
     turn = "right"
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "van", "truck", "motorcycle"), "who turns"),
+        Choice("kind", ("car", "van", "truck", "motorcycle"), "the turning vehicle"),
         Number("speed", 4.0, 2.5, 6.0, "m/s", "of the other in its turn"),
         Number("pace", 3.0, 1.5, 5.0, "m/s", "of the other for the first metres in the ego's lane"),
         Number("lead", 1.6, 0.8, 4.0, "s", "by which the other is in the lane before the ego"),

@@ -105,6 +105,6 @@ class Roundabout(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Touch nobody, keep to the ring's lane, leave by the exit; a metre to who circulates is near already."""
+        """Touch no actor, keep to the ring's lane, leave by the exit; a metre to a circulating car is near already."""
         others = [LeastDistance(0.8, to=name, while_moving=True) for name in self.names]
         return [NoCollision(), *others, KeepsLane(0.3), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""Somebody does not stop at a stop sign: NHTSA's "running stop sign"."""
+"""A vehicle does not stop at a stop sign: NHTSA's "running stop sign"."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 
 class StopSignRunner(AcrossTheWay):
-    """The ego has the right of way, and somebody from the side drives past a stop sign.
+    """The ego has the right of way, and a vehicle from the side drives past a stop sign.
 
     NHTSA pre-crash scenario 5, running stop sign. The ego's street has no sign, the side street has; the other drives
     on as if it had none, straight on or, where the side street ends, to the left.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "van", "suv", "motorcycle"), "who it is"),
+        Choice("kind", ("car", "van", "suv", "motorcycle"), "the other vehicle"),
         Number("speed", 6.5, 4.0, 11.0, "m/s", "of the other"),
         Number("lateness", -0.5, -1.5, 1.0, "s", "after the ego at the place where they meet; negative: before it"),
         Number("notice", 5.5, 4.0, 7.0, "s", "before the ego's arrival, when the other sets off"),

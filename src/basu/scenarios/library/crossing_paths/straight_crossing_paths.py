@@ -20,8 +20,8 @@ SECOND_ROW_S = 0.8  # after the first row
 class StraightCrossingPaths(Stream):
     """The ego comes from a stop sign and goes straight across traffic that does not stop.
 
-    NHTSA pre-crash scenario 30, straight crossing paths at a junction without lights. Whoever drives past the sign
-    meets the first car; whoever takes too short a gap meets the next.
+    NHTSA pre-crash scenario 30, straight crossing paths at a junction without lights. An ego that drives past
+    the sign meets the first car; an ego that takes too short a gap meets the next.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (

@@ -156,7 +156,7 @@ class Stream(Scenario):
         return TimeToRest(self.rest_s_m, BEFORE_REST_S, "its line")
 
     def conflict(self) -> Behaviour:
-        """They drive through, the first of each row so as to meet who does not wait."""
+        """They drive through, the first of each row timed for an ego that does not wait."""
         return Together(
             *(
                 self._drives(lane, self._names(row), index)
@@ -167,7 +167,7 @@ class Stream(Scenario):
         )
 
     def exercised(self, played: Played) -> Finding:
-        """Those met, and at a stop sign those for whom the ego rested."""
+        """The vehicles met, and at a stop sign the vehicles that passed the resting ego."""
         if self.rest_s_m is not None:
             meetings = {
                 name: lane.way.path.at(lane.way.meet_s_m)
@@ -180,7 +180,7 @@ class Stream(Scenario):
         return super().exercised(played)
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, the sign is heeded where there is one, and the ego gets on when they are through."""
+        """No contact, a stop sign is obeyed, and the ego goes on after the stream."""
         return [NoCollision(), HeedsStopSigns(), Arrives(), InTime()]
 
     @property
@@ -209,7 +209,7 @@ class Stream(Scenario):
             at_end="vanish",
         )
 
-    def _timed(self, who: str, lane: Lane, speed_mps: float, *, after_s: float = 0.0, name: str = "") -> Behaviour:
+    def _timed(self, actor: str, lane: Lane, speed_mps: float, *, after_s: float = 0.0, name: str = "") -> Behaviour:
         """One that is at the meeting place ``after_s`` later than the first of its row should be."""
         low, high = NARROWLY
         ego_s_m, first_s = lane.way.ego_s_m, lane.first_s
@@ -217,7 +217,7 @@ class Stream(Scenario):
             ego_s_m, first_s = self.rest_s_m, lane.first_s + self.first_s
         return InTurn(
             ReachAtEgosArrival(
-                who,
+                actor,
                 lane.way.path,
                 lane.way.meet_s_m,
                 ego_s_m,
@@ -228,6 +228,6 @@ class Stream(Scenario):
                 settled_s=SETTLED_S,
                 accelerate_mps2=SETS_OFF_MPS2,
             ),
-            DriveAlong(who, lane.way.path, speed_mps, at_end="vanish"),
-            name=name or f"{who} drives through",
+            DriveAlong(actor, lane.way.path, speed_mps, at_end="vanish"),
+            name=name or f"{actor} drives through",
         )

@@ -109,7 +109,7 @@ class UnsignalizedIntersection(Scenario):
         return found or super().exercised(played)
 
     def criteria(self) -> Sequence[Criterion]:
-        """Stop at the sign, touch nobody, and pass; one metre to who has the right of way is near already."""
+        """Stop at the sign, touch no actor, and pass; a metre to the vehicle with the right of way is near already."""
         return [HeedsStopSigns(), NoCollision(), LeastDistance(1.0, to=OTHER, while_moving=True), Arrives(), InTime()]
 
     def _makes_for_it(self, top_mps: float) -> Behaviour:

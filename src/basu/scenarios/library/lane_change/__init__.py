@@ -1,1 +1,1 @@
-"""Others who change into the ego's lane, or drift into it."""
+"""Scenarios with vehicles that change or drift into the ego's lane."""

@@ -1,4 +1,4 @@
-"""Somebody overtakes and cuts in before a stop sign: NHTSA's "changing lanes, same direction"."""
+"""A vehicle overtakes and cuts in before a stop sign: NHTSA's "changing lanes, same direction"."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ RESTS_S = 4.0  # it looks to both sides: longer than an ego right behind it need
 
 
 class CutInBeforeStop(OvertakesEgo):
-    """Somebody overtakes the ego, cuts in closely and brakes for the stop sign ahead.
+    """A vehicle overtakes the ego, cuts in closely and brakes for the stop sign ahead.
 
     NHTSA pre-crash scenario 18, vehicles changing lanes, same direction. For a shuttle that keeps to 15 mph this is the
-    day's business. Who keeps the distance that it loses stops behind; who does not is in the other's boot.
+    day's business. An ego that restores its distance stops behind; one that does not hits the other's boot.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "suv", "van", "motorcycle"), "who overtakes"),
+        Choice("kind", ("car", "suv", "van", "motorcycle"), "the overtaking vehicle"),
         Number("gap", 1.5, 0.5, 6.0, "m", "between the bumpers when it begins to cut in"),
         Number("passing", 6.0, 4.0, 8.0, "s", "that it takes to get past"),
         Number("brake", 3.0, 2.0, 5.0, "m/s²", "with which it stops at the line"),
@@ -69,7 +69,7 @@ class CutInBeforeStop(OvertakesEgo):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, the ego stops at the line itself, and gets on."""
+        """No contact; the ego stops at the line itself, and goes on."""
         return [NoCollision(), HeedsStopSigns(), Arrives(), InTime()]
 
     def _onwards(self) -> Path:

@@ -1,4 +1,4 @@
-"""Somebody in the lane beside drifts over: NHTSA's "drifting, same direction"."""
+"""A vehicle in the next lane drifts over: NHTSA's "drifting, same direction"."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class DriftingNeighbour(Scenario):
 
     group = Group.LANE_CHANGE
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "suv", "van"), "who drifts"),
+        Choice("kind", ("car", "suv", "van"), "the drifting vehicle"),
         Number("speed", 4.5, 3.0, 6.0, "m/s", "of the other"),
         Number("gap", 3.0, 0.5, 8.0, "m", "from the ego's nose to the other's tail when it begins to drift"),
         Number("rate", 0.8, 0.4, 1.6, "m/s", "sideways"),
@@ -98,5 +98,5 @@ class DriftingNeighbour(Scenario):
         return InTurn(*parts)
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, and the ego gets on."""
+        """No contact, and the ego goes on."""
         return [NoCollision(), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""Somebody overtakes the ego on a street with one lane each way, and is in front of it soon after."""
+"""A vehicle overtakes the ego on a street with one lane each way, and is in front of it soon after."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SETTLED_S = 0.7
 
 
 class OvertakesEgo(Scenario):
-    """The base: somebody follows the ego, overtakes it within ``passing`` seconds, and cuts in ``gap`` before its nose.
+    """The base: a vehicle follows the ego, overtakes within ``passing`` seconds, and cuts in ``gap`` before its nose.
 
     Each has ``kind``, ``passing`` and ``gap``.
     """
@@ -80,5 +80,5 @@ class OvertakesEgo(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, and the ego gets on."""
+        """No contact, and the ego goes on."""
         return [NoCollision(), Arrives(), InTime()]

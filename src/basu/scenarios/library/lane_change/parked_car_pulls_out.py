@@ -36,13 +36,13 @@ class ParkedCarPullsOut(Scenario):
     """A parked car pulls out from the kerb right in front of the ego.
 
     NHTSA pre-crash scenario 17, vehicles parking, same direction. Its driver has not looked back. It needs a moment to
-    be in the lane and a few metres to get up to speed: a careful driver brakes moderately, one who does not drives into
+    be in the lane and a few metres to get up to speed: a careful driver brakes moderately, a careless one drives into
     its side or its boot.
     """
 
     group = Group.LANE_CHANGE
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "van", "suv"), "who pulls out"),
+        Choice("kind", ("car", "van", "suv"), "the parked car"),
         Number("warning", 2.8, 2.0, 5.0, "s", "from when it sets off until the ego would be level with its tail"),
         Number("pace", 3.0, 1.5, 5.0, "m/s", "at which it pulls out and drives for the first metres"),
         Number("accelerate", 1.5, 0.8, 3.0, "m/s²", "with which it sets off"),
@@ -83,5 +83,5 @@ class ParkedCarPullsOut(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, and the ego gets on."""
+        """No contact, and the ego goes on."""
         return [NoCollision(), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""Somebody overtakes and turns right across the ego's nose: NHTSA's "turning, same direction"."""
+"""A vehicle overtakes and turns right across the ego's nose: NHTSA's "turning, same direction"."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ EASES_M = 8.0  # behind the junction's beginning, before it speeds up again
 
 
 class RightHook(OvertakesEgo):
-    """Somebody overtakes the ego just before a side street, cuts in, brakes and turns right into it.
+    """A vehicle overtakes the ego just before a side street, cuts in, brakes and turns right into it.
 
     NHTSA pre-crash scenario 16, vehicles turning, same direction. The ego goes straight on. The other slows down to the
     speed of its turn right before the ego's nose.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "suv", "van"), "who overtakes"),
+        Choice("kind", ("car", "suv", "van"), "the overtaking vehicle"),
         Number("gap", 2.0, 0.5, 6.0, "m", "between the bumpers when it begins to cut in"),
         Number("passing", 6.0, 4.0, 8.0, "s", "that it takes to get past"),
         Number("turns_at", 3.0, 1.5, 5.0, "m/s", "its speed in the turn"),

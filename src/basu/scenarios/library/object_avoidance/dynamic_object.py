@@ -41,7 +41,7 @@ class DynamicObject(Scenario):
 
     It sets off to be in the ego's lane when the ego gets there, and does not look. NHTSA pre-crash scenario:
     pedalcyclist without prior vehicle maneuver. Fair: it can be seen past the van for as long as a stop at 3 m/s² from
-    15 mph takes, and who slows down at the sight of the van has more.
+    15 mph takes; an ego that slows down at the sight of the van has more.
     """
 
     group = Group.PEDALCYCLIST
@@ -57,7 +57,7 @@ class DynamicObject(Scenario):
     needs_m = 75.0
 
     def actors(self) -> Sequence[ActorSpec]:
-        """Who crosses, and the van that hides it."""
+        """The crossing actor, and the van that hides it."""
         ahead_m = self.number("ahead")
         beside_m = self.place.width_m(ahead_m) / 2.0 + VAN_WIDE_M
         van = self.place.at(ahead_m - VAN_HALF_M - 2.0, beside_m)
@@ -96,5 +96,5 @@ class DynamicObject(Scenario):
         return Meanwhile(EgoArrives(), DriveAlong(OBJECT, self.way(), self.number("speed"), at_end="vanish"))
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched; half a metre beside a moving bicycle is near already."""
+        """No contact; half a metre beside a moving bicycle is near already."""
         return [NoCollision(), LeastDistance(0.5, to=OBJECT, while_moving=True), Arrives(), InTime()]

@@ -1,1 +1,1 @@
-"""Others who come towards the ego in its own lane."""
+"""Scenarios with oncoming vehicles in the ego's own lane."""

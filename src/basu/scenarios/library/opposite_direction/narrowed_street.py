@@ -1,4 +1,4 @@
-"""Parked cars narrow the street, and somebody comes through: NHTSA's "opposite direction, making a maneuver"."""
+"""Parked cars narrow the street for an oncoming vehicle: NHTSA's "opposite direction, making a maneuver"."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ if TYPE_CHECKING:
 
     from basu.scenarios.parameters import Parameter
 
-PARKED = ("van", "car")  # in the way of who comes, the nearer to the ego first
+PARKED = ("van", "car")  # in the way of the oncoming vehicle, the nearer to the ego first
 BETWEEN_M = 2.0  # bumpers of the parked
 CHANGE_M = 12.0  # along the way, to get round them and back
 CLEARS_M = 1.0  # it keeps to the parked ones' side before it goes back, from middle to bumper
 
 
 class NarrowedStreet(OutOfLane):
-    """Cars stand half in the opposite lane; who comes there drives round them, in the middle of the street.
+    """Cars stand half in the opposite lane; an oncoming vehicle drives round them, in the middle of the street.
 
     NHTSA pre-crash scenario 20, vehicles from opposite directions, one making a maneuver. The other is between the
     parked cars before the ego is there. Only one can pass at a time: the ego has to wait in front of the narrow place,
@@ -30,12 +30,12 @@ class NarrowedStreet(OutOfLane):
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "suv", "van"), "who comes"),
-        Number("speed", 6.0, 3.5, 9.0, "m/s", "of who comes"),
+        Choice("kind", ("car", "suv", "van"), "the oncoming vehicle"),
+        Number("speed", 6.0, 3.5, 9.0, "m/s", "of the oncoming vehicle"),
         Number(
             "into_lane", 1.3, 1.0, 1.8, "m", "by which the middle of the parked cars lies in from the lane's right edge"
         ),
-        Number("room", 0.5, 0.3, 1.0, "m", "between the parked cars and who comes"),
+        Number("room", 0.5, 0.3, 1.0, "m", "between the parked cars and the oncoming vehicle"),
         Number("meets", 55.0, 45.0, 70.0, "m", "ahead of the trigger point: where the narrow place begins"),
     )
     weather: ClassVar[Mapping[str, float]] = {"cloudiness": 80.0, "precipitation": 20.0, "sun_altitude_angle": 40.0}
@@ -47,7 +47,7 @@ class NarrowedStreet(OutOfLane):
 
     @property
     def parked_right_m(self) -> float:
-        """Of the opposite lane's middle, to the right of who drives there."""
+        """Of the opposite lane's middle, to the right in its direction."""
         return self.place.width_m(self.back_m) / 2.0 - self.number("into_lane")
 
     @property
@@ -67,7 +67,7 @@ class NarrowedStreet(OutOfLane):
         return CHANGE_M, CHANGE_M
 
     def actors(self) -> Sequence[ActorSpec]:
-        """Who comes, and the parked cars, which look its way."""
+        """The oncoming vehicle, and the parked cars, which look its way."""
         half_m = HALF_LENGTH_M[self.choice("kind")]
         near_m, parked = self.back_m + half_m + CLEARS_M, []
         for index, kind in enumerate(PARKED):

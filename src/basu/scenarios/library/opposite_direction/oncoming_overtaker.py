@@ -1,4 +1,4 @@
-"""Somebody overtakes towards the ego: NHTSA's "opposite direction, making a maneuver"."""
+"""An oncoming vehicle overtakes towards the ego: NHTSA's "opposite direction, making a maneuver"."""
 
 from __future__ import annotations
 
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
     from basu.scenarios.parameters import Parameter
 
 SLOW = "slow"
-CLEAR_M = 3.0  # between the bumpers when it goes back in front of whom it overtook
+CLEAR_M = 3.0  # between the bumpers when it goes back in front of the slow vehicle
 OUT_S, BACK_S = 1.6, 1.4
 CAR_HALF_M = HALF_LENGTH_M["car"]
 
 
 class OncomingOvertaker(OutOfLane):
-    """A driver who comes towards the ego overtakes somebody slow and gets back into its lane late.
+    """An oncoming vehicle overtakes a slow one and gets back into its lane late.
 
     NHTSA pre-crash scenario 20, vehicles from opposite directions, one making a maneuver. The overtaker is fully in
-    the ego's lane until it is past the slow one, and not before: who keeps up its speed meets it there.
+    the ego's lane until it is past the slow one, and not before: an ego that keeps up its speed meets it there.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("slow", ("bicycle", "van", "truck"), "who is overtaken"),
+        Choice("slow", ("bicycle", "van", "truck"), "the slow vehicle"),
         Number("speed", 9.0, 8.0, 14.0, "m/s", "of the overtaker"),
         Number("slow_speed", 4.0, 2.0, 4.0, "m/s", "of the overtaken"),
         Number("warning", 5.0, 4.0, 7.0, "s", "from when it begins to get out until they would meet"),

@@ -1,4 +1,4 @@
-"""The way of somebody who comes towards the ego, leaves its lane for a stretch, and goes back into it."""
+"""The path of an oncoming vehicle that leaves its lane for a stretch and returns."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Excursion(NamedTuple):
 
 
 class OutOfLane(Scenario):
-    """The base: somebody comes out of its lane from ``out_m`` to ``back_m``, where the ego would meet it.
+    """The base: an oncoming vehicle leaves its lane from ``out_m`` to ``back_m``, where the ego would meet it.
 
     Each has ``kind``, ``speed`` and ``meets``. Once it goes back it brakes for an ego that stands in its way.
     """
@@ -88,7 +88,7 @@ class OutOfLane(Scenario):
         return Excursion(path.swerved(from_m - self.back_m, back_m, 0.0, self.aside_m), from_m)
 
     def actors(self) -> Sequence[ActorSpec]:
-        """The one who comes."""
+        """The oncoming vehicle."""
         way = self.excursion()
         return [ActorSpec(OTHER, BLUEPRINTS[self.choice("kind")], way.path.at(way.s_m(self.begins_m)))]
 
@@ -125,5 +125,5 @@ class OutOfLane(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, and the ego gets on when the other has passed."""
+        """No contact, and the ego goes on when the other has passed."""
         return [NoCollision(), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""Somebody strays over the middle line: NHTSA's "opposite direction, no maneuver"."""
+"""An oncoming vehicle strays over the middle line: NHTSA's "opposite direction, no maneuver"."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
 
     from basu.scenarios.parameters import Parameter
 
-BACK_S = 1.6  # who wakes up steers back in about this time
+BACK_S = 1.6  # a driver that wakes up steers back in about this time
 
 
 class StrayingOncoming(OutOfLane):
-    """A driver who comes towards the ego strays over the middle of the street, and wakes up late.
+    """An oncoming driver strays over the middle of the street, and wakes up late.
 
     NHTSA pre-crash scenario 21, vehicles from opposite directions, no maneuver. It drifts into the ego's lane over
-    some seconds and jerks back at a place of its own: who has braked by then has not come to that place yet.
+    some seconds and jerks back at a place of its own: an ego that has braked by then has not reached that place yet.
     """
 
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("kind", ("car", "suv", "van", "motorcycle"), "who strays"),
+        Choice("kind", ("car", "suv", "van", "motorcycle"), "the straying vehicle"),
         Number("speed", 8.0, 5.0, 13.0, "m/s", "of the other"),
         Number("over", 2.2, 1.4, 3.2, "m", "to its left"),
         Number("drift", 2.0, 1.0, 4.0, "s", "for which it drifts until it is there"),

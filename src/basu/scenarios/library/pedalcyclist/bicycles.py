@@ -1,7 +1,7 @@
 """Bicycles, the room that they are owed, and a parked car's door as something one can drive into.
 
-An open door takes no space in the simulator (`docs/physics.md`). A sheet of its size stands in for it: one of the
-library's street signs, which lies in the car's side, above its roof, as long as the door is shut.
+An open door takes no space in the simulator (`docs/reference/physics.md`). A sheet of its size stands in for it: one of
+the library's street signs, which lies in the car's side, above its roof, as long as the door is shut.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from basu.scenarios.stage import ActorSpec, Pose
 
 BICYCLE = "vehicle.diamondback.century"
 HALF_WIDTH_M = 0.3
-PASSING_M = 0.9  # three feet, to be kept by who overtakes a bicycle: Ohio Revised Code 4511.27 (A)(1)
-SWAY_M = 0.5  # what is left to a cyclist who crosses: nearer is luck
+PASSING_M = 0.9  # three feet, to be kept from an overtaken bicycle: Ohio Revised Code 4511.27 (A)(1)
+SWAY_M = 0.5  # left to a crossing cyclist: nearer is luck
 EASY_MPS2 = 1.5  # how one gets going on a bicycle
 
 
-CAR = "vehicle.lincoln.mkz_2020"  # one of those whose doors open
+CAR = "vehicle.lincoln.mkz_2020"  # a model with doors that open
 CAR_HALF_WIDTH_M = 0.92
 SHEET = "static.prop.streetsign04"  # 1.17 m by 0.12 m, and stands fast
 HALF_DOOR_M = 0.585
@@ -52,7 +52,7 @@ def door_at(car: Pose, open_deg: float, up_m: float = 0.0) -> Pose:
 
 
 def shut(car: Pose) -> Pose:
-    """Where the sheet is as long as nobody gets out."""
+    """Where the sheet is as long as the door is shut."""
     return in_car(car, HINGE_M - HALF_DOOR_M, 0.1 - CAR_HALF_WIDTH_M, up_m=ABOVE_M)
 
 

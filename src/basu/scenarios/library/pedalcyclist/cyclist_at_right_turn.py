@@ -35,8 +35,8 @@ class CyclistAtRightTurn(Scenario):
 
     They ride beside the ego's lane and reach the ego's turning way when it does: the right hook. Ohio Revised Code
     4511.36 leaves the right of way to them. NHTSA 2007, scenario 13: pedalcyclist, prior vehicle maneuver. The hard one
-    of its group. Who never steers stays beside them and fails by leaving its way; who follows the route and looks at
-    nobody rides them down.
+    of its group. An ego that never steers stays beside them and fails by leaving its way; an ego that follows the route
+    blindly rides them down.
     """
 
     group = Group.PEDALCYCLIST

@@ -98,5 +98,5 @@ class CyclistSwerves(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, the cyclist not nearly so, and the ego goes on."""
+        """No contact, no near miss of the cyclist, and the ego goes on."""
         return [NoCollision(), LeastDistance(SWAY_M, to="cyclist", while_moving=True), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""A door opens before a cyclist, who ends up at rest in the ego's lane."""
+"""A door opens before a cyclist; the cyclist ends up at rest in the ego's lane."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ BACK_M = 14.0  # the way back to the edge
 
 
 class Dooring(Scenario):
-    """A door opens right before a cyclist, who dodges it and comes to rest in the ego's lane.
+    """A door opens right before a cyclist; the cyclist dodges it and comes to rest in the ego's lane.
 
     The ego comes up from behind, faster than the cyclist. It must stop, and wait until the cyclist rides on and the
     door is shut. NHTSA 2007, scenario 14: pedalcyclist, no prior vehicle maneuver. In ``cyclist_swerves`` the cyclist
@@ -115,6 +115,6 @@ class Dooring(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, the cyclist not nearly so; the ego stays on the street, and goes on."""
+        """No contact, no near miss of the cyclist; the ego stays on the street, and goes on."""
         apart = LeastDistance(SWAY_M, to="cyclist", while_moving=True)
         return [NoCollision(), apart, KeepsLane(passing=True), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""Somebody walks across the street, seen from afar."""
+"""A pedestrian walks across the street, seen from afar."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from basu.scenarios.criteria import Criterion
 
 WALKERS = {"adult": "walker.pedestrian.0002", "child": "walker.pedestrian.0012"}
-SWAY_M = 0.5  # what somebody on foot may sway or stumble by: who drives past nearer has left it to luck
+SWAY_M = 0.5  # by which a pedestrian may sway or stumble: passing nearer is luck
 
 
 class PedestrianCrossing(Scenario):
@@ -38,7 +38,7 @@ class PedestrianCrossing(Scenario):
         Number("speed", 1.4, 0.8, 2.2, "m/s", "of the walk"),
         Number("early", 0.0, -0.5, 1.5, "s", "by which they are in the lane's middle before the ego"),
         Choice("side", ("right", "left"), "from which they come"),
-        Choice("walker", ("adult", "child"), "who walks"),
+        Choice("walker", ("adult", "child"), "the pedestrian"),
     )
     needs_m = 100.0
 
@@ -64,5 +64,5 @@ class PedestrianCrossing(Scenario):
         return WalkAlong("walker", across(self.place, ahead_m, self.from_m, to_m), self.number("speed"))
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched or nearly so, and the ego goes on."""
+        """No contact and no near miss, and the ego goes on."""
         return [NoCollision(), LeastDistance(SWAY_M, to="walker", while_moving=True), Arrives(), InTime()]

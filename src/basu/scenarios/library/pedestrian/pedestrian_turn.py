@@ -1,4 +1,4 @@
-"""Somebody walks across the street that the ego turns into."""
+"""A pedestrian walks across the street that the ego turns into."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class PedestrianTurn(Scenario):
     """A pedestrian crosses the street that the ego turns into, just behind the corner.
 
     They set out when the ego begins to turn, so as to be in its lane when it comes out of the turn. NHTSA 2007,
-    scenario 11: pedestrian, prior vehicle maneuver. Who never steers does not even come to them: it fails by leaving
-    its way; who follows the route and looks at nobody runs them over.
+    scenario 11: pedestrian, prior vehicle maneuver. An ego that never steers does not even reach them: it fails by
+    leaving its way. An ego that follows the route blindly runs them over.
     """
 
     group = Group.PEDESTRIAN
@@ -39,7 +39,7 @@ class PedestrianTurn(Scenario):
         Number("speed", 1.3, 0.8, 2.2, "m/s", "of the walk"),
         Number("early", 0.5, -0.5, 2.0, "s", "by which they are in the lane's middle before the ego"),
         Choice("side", ("right", "left"), "from which they come, seen from behind the turn"),
-        Choice("walker", ("adult", "child"), "who walks"),
+        Choice("walker", ("adult", "child"), "the pedestrian"),
     )
     needs_m = 60.0
     aliases = ("VehicleTurningRoutePedestrian",)
@@ -71,5 +71,5 @@ class PedestrianTurn(Scenario):
         return WalkAlong("walker", across(self.place, self._ahead_m, self._from_m, to_m), self.number("speed"))
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched or nearly so, and the ego goes on."""
+        """No contact and no near miss, and the ego goes on."""
         return [NoCollision(), LeastDistance(SWAY_M, to="walker", while_moving=True), Arrives(), InTime()]

@@ -1,4 +1,4 @@
-"""Somebody has crossed the ego's lane and turns back."""
+"""A pedestrian crosses the ego's lane and turns back."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ EARLY_S = 4.5  # they are across so long before an ego of steady speed is there
 
 
 class PedestrianTurnsBack(Scenario):
-    """A pedestrian who has crossed the ego's lane turns back into it.
+    """A pedestrian crosses the ego's lane and turns back into it.
 
-    They walk over in good time, stand in the other lane, as who has dropped something, and turn back when the ego is
-    ``notice`` seconds away. NHTSA 2007, scenario 12: pedestrian, no prior vehicle maneuver. Hard for who takes those on
-    foot to go on as they went.
+    They walk over in good time, stand in the other lane, as if something was dropped, and turn back when the ego is
+    ``notice`` seconds away. NHTSA 2007, scenario 12: pedestrian, no prior vehicle maneuver. Hard for a driver that
+    expects pedestrians to go on as they went.
     """
 
     group = Group.PEDESTRIAN
@@ -69,5 +69,5 @@ class PedestrianTurnsBack(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched or nearly so, and the ego goes on."""
+        """No contact and no near miss, and the ego goes on."""
         return [NoCollision(), LeastDistance(SWAY_M, to="walker", while_moving=True), Arrives(), InTime()]

@@ -1,1 +1,1 @@
-"""Who is ahead is slower, brakes or stands: scenario II of the thesis, and more."""
+"""Scenarios with a vehicle ahead that is slower, brakes or stands: scenario II of the thesis, and more."""

@@ -38,13 +38,13 @@ class FollowLeadingVehicle(Scenario):
     """A slower vehicle ahead drives to the next junction and stops there.
 
     The ego follows a car, motorcycle or bicycle that keeps a constant speed and stops before the junction; it is over
-    when the ego stands close behind. NHTSA pre-crash scenario: lead vehicle moving at lower constant speed. Whoever
-    does not look at whom it follows drives into it.
+    when the ego stands close behind. NHTSA pre-crash scenario: lead vehicle moving at lower constant speed. An ego
+    that does not watch the leader drives into it.
     """
 
     group = Group.REAR_END
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("leader", tuple(MODELS), "who is followed"),
+        Choice("leader", tuple(MODELS), "the leader"),
         Number("ahead", 14.0, 9.0, 40.0, "m", "from the trigger point to the leader's middle at first"),
         Number("speed", 4.5, 2.0, 6.0, "m/s", "of the leader"),
         Number("brake", 2.0, 1.0, 6.0, "m/s²", "of the leader before the junction"),
@@ -83,7 +83,7 @@ class FollowLeadingVehicle(Scenario):
         return InTurn(EgoNear(LEADER, CLOSE_M), StandsStill(1.0), name="closes up and stands")
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched, and the ego keeps up.
+        """No contact, and the ego keeps up.
 
         Half a metre is what people leave between bumpers in a queue at the least; nearer than that is luck.
         """

@@ -1,4 +1,4 @@
-"""Scenario II of the thesis, with an obstacle: somebody crosses before the vehicle that is followed."""
+"""Scenario II of the thesis, with an obstacle: an actor crosses before the vehicle ahead."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ MODELS: dict[str, str] = {
 KERB_M = 4.5  # from the middle of the lane to where it waits, on the pavement or between parked cars
 ACROSS_M = 9.0  # that it walks, to beyond the other lane
 LEAST_M = 2.0  # that the leader drives before it brakes
-LOOK_M = 7.0  # from the leader's middle to the one who steps out, when it brakes
+LOOK_M = 7.0  # from the leader's middle to the crossing actor, when it brakes
 
 
 class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
-    """The vehicle ahead brakes hard for somebody who crosses, then drives on to the next junction.
+    """The vehicle ahead brakes hard for a crossing actor, then drives on to the next junction.
 
     As FollowLeadingVehicle, and a child, an adult or a dog crosses before the leader, which stands until the way is
     free. NHTSA pre-crash scenario: lead vehicle decelerating. Fair: the leader brakes no harder than a careful
@@ -39,14 +39,14 @@ class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
 
     parameters: ClassVar[Sequence[Parameter]] = (
         *(p for p in FollowLeadingVehicle.parameters if p.name != "brake"),
-        Choice("crosser", tuple(MODELS), "who crosses before the leader"),
+        Choice("crosser", tuple(MODELS), "the actor that crosses before the leader"),
         Number("after", 25.0, 10.0, 60.0, "m", "that the leader drives until it brakes"),
-        Number("brake", 5.0, 2.0, 8.0, "m/s²", "of the leader for who crosses"),
-        Number("pace", 1.4, 0.8, 3.0, "m/s", "of who crosses"),
+        Number("brake", 5.0, 2.0, 8.0, "m/s²", "of the leader for the crossing actor"),
+        Number("pace", 1.4, 0.8, 3.0, "m/s", "of the crossing actor"),
     )
 
     def actors(self) -> Sequence[ActorSpec]:
-        """The leader, and on the right who will cross."""
+        """The leader, and on the right the crossing actor."""
         stands = self.place.at(self.cross_m, KERB_M, -90.0)
         return [*super().actors(), ActorSpec(CROSSER, MODELS[self.choice("crosser")], stands)]
 
@@ -67,7 +67,7 @@ class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
         return self.brakes_m + self.braking_m + LOOK_M
 
     def conflict(self) -> Behaviour:
-        """Drive, brake for who crosses, wait until it has, drive on."""
+        """Drive, brake for the crossing actor, wait until it has crossed, drive on."""
         way = self.way()
         start = self.place.at(self.cross_m, KERB_M, -90.0)
         return InTurn(
@@ -75,7 +75,7 @@ class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
             Together(
                 Brake(LEADER, at_mps2=self.number("brake"), path=way),
                 WalkAlong(CROSSER, Path.straight(start, ACROSS_M), self.number("pace")),
-                name="the leader lets somebody cross",
+                name="the leader lets an actor cross",
             ),
             DriveAlong(LEADER, way, self.number("speed"), brake_mps2=2.0),
         )

@@ -28,14 +28,14 @@ BEYOND_M = 60.0  # that the leader drives on behind the end of the ego's route
 class LeadVehicleBrakes(Scenario):
     """The vehicle ahead brakes hard to a stand, waits and drives on.
 
-    NHTSA pre-crash scenario: lead vehicle decelerating. Fair: at the distance that two seconds make, somebody who
-    brakes at 4 m/s² one second after the leader comes to stand behind it.
+    NHTSA pre-crash scenario: lead vehicle decelerating. Fair: at the distance that two seconds make, an ego
+    that brakes at 4 m/s² one second after the leader comes to stand behind it.
     """
 
     group = Group.REAR_END
     aliases: ClassVar[Sequence[str]] = ("HardBreakRoute",)
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("leader", tuple(MODELS), "who is followed"),
+        Choice("leader", tuple(MODELS), "the leader"),
         Number("ahead", 13.0, 9.0, 30.0, "m", "from the trigger point to the leader's middle at first"),
         Number("speed", 5.5, 3.0, 6.5, "m/s", "of the leader"),
         Number("after", 40.0, 15.0, 80.0, "m", "that the leader drives until it brakes"),
@@ -76,5 +76,5 @@ class LeadVehicleBrakes(Scenario):
         return Meanwhile(EgoArrives(), away)
 
     def criteria(self) -> Sequence[Criterion]:
-        """Nobody is touched; half a metre is what people leave between bumpers in a queue at the least."""
+        """No contact; half a metre is the least that people leave between bumpers in a queue."""
         return [NoCollision(), LeastDistance(0.5, to=LEADER, while_moving=True), Arrives(), InTime()]

@@ -23,20 +23,20 @@ if TYPE_CHECKING:
     from basu.scenarios.parameters import Parameter
 
 STANDING = "standing"
-VAN = "vehicle.volkswagen.t2"  # high enough that nobody sees over it
+VAN = "vehicle.volkswagen.t2"  # too high to see over it
 CAR = "vehicle.nissan.micra"
-CLOSE_M = 30.0  # middle to middle, in which the ego stands; who wants to swing out stays back
+CLOSE_M = 30.0  # middle to middle, in which the ego stands; a driver that wants to swing out stays back
 LENGTHS_M = 4.1  # of half a van and half a car: from middle to middle where they would touch
 LEAST_M = 2.0  # that it drives before it swerves, were it placed ever so near
-AWAY_M = 25.0  # that the leader drives on beside or behind the one who stands
+AWAY_M = 25.0  # that the leader drives on beside or behind the standing car
 
 
 class LeadVehicleSwerves(Scenario):
     """The van ahead swerves at the last moment round a car that stands in the lane.
 
-    Whoever looks no farther than the van sees the standing car when the van has left the lane, some metres before it.
-    NHTSA pre-crash scenario: lead vehicle stopped, with vision obscured. Fair: from the distance of two seconds behind
-    the van, a stop at 3 m/s² ends before the car.
+    A driver that looks no farther than the van sees the standing car when the van has left the lane, some metres before
+    it. NHTSA pre-crash scenario: lead vehicle stopped, with vision obscured. Fair: from the distance of two seconds
+    behind the van, a stop at 3 m/s² ends before the car.
     """
 
     group = Group.REAR_END

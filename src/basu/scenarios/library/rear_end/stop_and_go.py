@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 class StopAndGo(LeadVehicleBrakes):
     """The vehicle ahead drives off, stops, drives off and stops again, as in a queue.
 
-    Each time it comes to stand a little later and for a little shorter, so that nobody can keep the beat. NHTSA
+    Each time it comes to stand a little later and for a little shorter, so that no driver can keep the beat. NHTSA
     pre-crash scenario: lead vehicle stopped, at the end of a queue. Fair as LeadVehicleBrakes.
     """
 
     aliases = ()
     parameters: ClassVar[Sequence[Parameter]] = (
-        Choice("leader", tuple(MODELS), "who is followed"),
+        Choice("leader", tuple(MODELS), "the leader"),
         Number("ahead", 10.0, 8.0, 20.0, "m", "from the trigger point to the leader's middle at first"),
         Number("speed", 4.5, 2.0, 6.0, "m/s", "of the leader where it has time to reach it"),
         Number("stride", 14.0, 8.0, 25.0, "m", "that it drives the first time; a tenth more each time"),

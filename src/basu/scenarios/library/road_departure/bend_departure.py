@@ -43,8 +43,8 @@ RAIN: dict[str, float] = {
 class BendDeparture(Scenario):
     """A bend is wet, and the steering is pulled towards its outside while the ego is in it.
 
-    The tyres have little friction from before the bend until behind it: who comes in too fast slides out, and a pull
-    towards the outside has to be held against. NHTSA pre-crash scenario: road edge departure without prior vehicle
+    The tyres have little friction from before the bend until behind it: an ego that comes in too fast slides out, and a
+    pull towards the outside has to be held against. NHTSA pre-crash scenario: road edge departure without prior vehicle
     maneuver, on a curve. Fair: the friction is enough for the bend at the sideways acceleration that passengers bear.
     """
 

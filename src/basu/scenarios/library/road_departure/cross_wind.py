@@ -27,8 +27,8 @@ class CrossWind(Scenario):
     """Gusts push the ego towards the edge of a straight road.
 
     Wind is not part of CARLA's physics: a gust is a steady pull of the steering to one side, which is what a driver has
-    to hold against. NHTSA pre-crash scenario: road edge departure without prior vehicle maneuver. Whoever does not
-    steer against it drives over the kerb or into the oncoming lane.
+    to hold against. NHTSA pre-crash scenario: road edge departure without prior vehicle maneuver. An ego that
+    does not steer against it drives over the kerb or into the oncoming lane.
     """
 
     group = Group.ROAD_DEPARTURE

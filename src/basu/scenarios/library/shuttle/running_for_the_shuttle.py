@@ -1,4 +1,4 @@
-"""Somebody runs for the shuttle as it leaves its stop."""
+"""A passenger runs for the shuttle as it leaves its stop."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class RunningForTheShuttle(Scenario):
         )
 
     def criteria(self) -> Sequence[Criterion]:
-        """They are not touched or nearly so, nobody aboard is thrown over (2.5 m/s²), and the ego goes on."""
+        """No contact and no near miss, no passenger aboard is thrown over (2.5 m/s²), and the ego goes on."""
         return [
             NoCollision(),
             LeastDistance(NEAR_M, to="passenger", while_moving=True),

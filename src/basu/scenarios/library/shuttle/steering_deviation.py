@@ -1,4 +1,4 @@
-"""The wheels stray a little from where they were told to be."""
+"""The wheels deviate a little from their commanded angle."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from basu.scenarios.criteria import Criterion
 
 MOVING_MPS = 2.0
-TOLERATED_M = 0.3  # beyond the lane's edge for the vehicle's middle: nobody needs more for so little
+TOLERATED_M = 0.3  # beyond the lane's edge for the vehicle's middle: no driver needs more for so little
 
 
 class SteeringDeviation(Scenario):
     """The steering strays a little for a moment, as on 20 February 2020, and nothing is ahead.
 
     On that day a shuttle in Linden stopped hard over such a deviation at 7.1 mph, and a passenger slid to the floor. A
-    driver steers against it and goes on; who stops hard for no reason fails, and so does who lets it carry it out of
+    driver steers against it and goes on. An ego that stops hard for no reason fails, and so does one that drifts out of
     its lane. How large the deviation was is not known: see `docs/passengers.md`.
     """
 

@@ -15,21 +15,21 @@ from typing import Any
 import numpy as np
 from numba import cuda as numba_cuda
 
-from linden.casting.rays import Hits, Rays
 from linden.compiled import fingerprint
 from linden.sensors.camera.labels import depth_loop, instance_loop, normals_loop, semantic_loop
-from linden.sensors.camera.motion import Eye, flow_loop
-from linden.sensors.camera.picture.develop import develop_loop, excess_loop
+from linden.sensors.camera.optical_flow import Eye, flow_loop
 from linden.sensors.camera.picture.edges import SAMPLES, mark_loop, mean_loop, split_loop
+from linden.sensors.camera.picture.film import develop_loop, excess_loop
 from linden.sensors.camera.picture.lamps import LampGrid
-from linden.sensors.camera.picture.noise import narrow
-from linden.sensors.camera.picture.relief import Relief
 from linden.sensors.camera.picture.rgb import BRIGHTEST
 from linden.sensors.camera.picture.shade import shade_loop
-from linden.sensors.camera.picture.shadows import facing_loop, gather_loop
-from linden.sensors.camera.picture.spots import Places
-from linden.sensors.camera.rays import aim_loop
-from linden.sensors.seen import Faces
+from linden.sensors.camera.picture.smooth_normals import Relief
+from linden.sensors.camera.picture.sun_shadows import facing_loop, gather_loop
+from linden.sensors.camera.picture.surface_points import Places
+from linden.sensors.camera.picture.texture_noise import narrow
+from linden.sensors.camera.pixel_rays import aim_loop
+from linden.sensors.casting.caster import Hits, Rays
+from linden.sensors.view import Faces
 
 Array = Any
 """An array of numba's on a GPU."""
@@ -78,8 +78,8 @@ def _build(built_of: int) -> SimpleNamespace:  # noqa: C901, PLR0915 - many smal
     ) -> None:
         i = cuda.grid(1)
         if i < count and built_of >= 0:
-            whose = first, actor_id, faces.tag, faces.object, object_id
-            instance_loop(hits.instance, hits.triangle, *whose, pixel, image, i, i + 1)
+            owner = first, actor_id, faces.tag, faces.object, object_id
+            instance_loop(hits.instance, hits.triangle, *owner, pixel, image, i, i + 1)
 
     @kernel
     def normals(hits: Hits, view: Array, pixel: Array, image: Array, count: int) -> None:

@@ -2,17 +2,15 @@
 
 import numpy as np
 
-from linden.sensors.camera.gpu.desks import Desk, Shelf
+from linden.sensors.camera.gpu.buffers import Array, Desk, Lit, Sheet, Shelf
 from linden.sensors.camera.gpu.kernels import KERNELS
-from linden.sensors.camera.gpu.letters import Array, Lit
-from linden.sensors.camera.gpu.sheets import Sheet
-from linden.sensors.camera.picture import develop
+from linden.sensors.camera.picture import film as develop
 from linden.sensors.camera.picture.edges import SAMPLES, offsets
-from linden.sensors.camera.picture.relief import Relief
-from linden.sensors.camera.picture.spots import SHINE
-from linden.sensors.camera.rays import tile_counts
+from linden.sensors.camera.picture.smooth_normals import Relief
+from linden.sensors.camera.picture.surface_points import SHINE
+from linden.sensors.camera.pixel_rays import tile_counts
 from linden.sensors.camera.spec import CameraSpec, Film
-from linden.sensors.seen import Faces
+from linden.sensors.view import Faces
 
 
 class Shading:

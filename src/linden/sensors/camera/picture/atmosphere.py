@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.values.episode import WeatherParameters
+from linden.protocol.values.episode import WeatherParameters
 
 F64 = NDArray[np.float64]
 

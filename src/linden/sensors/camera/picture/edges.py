@@ -5,14 +5,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.crew import in_stretches
-from linden.casting.rays import NOTHING, Hits, Rays
 from linden.compiled import shading, shading_part, unlocked
 from linden.geometry import rotation_matrix
-from linden.sensors.camera.picture.noise import narrow
-from linden.sensors.camera.rays import TILE, TILE_PX, directions, tile_counts
+from linden.protocol.values.space import Transform
+from linden.sensors.camera.picture.texture_noise import narrow
+from linden.sensors.camera.pixel_rays import TILE, TILE_PX, directions, tile_counts
 from linden.sensors.camera.spec import CameraSpec
-from linden.values.space import Transform
+from linden.sensors.casting.caster import NOTHING, Hits, Rays
+from linden.sensors.casting.thread_pool import in_stretches
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
@@ -28,7 +28,7 @@ _STEP = np.float32(0.06)
 
 
 def edge_rays(spec: CameraSpec, hits: Hits, light: F32) -> NDArray[np.intp]:
-    """Return the rays whose pixels differ from one of their four neighbours, in order."""
+    """Return the rays of pixels that differ from one of their four neighbours, in order."""
     across, down = tile_counts(spec)
     edge = np.empty(len(light), np.bool_)
 

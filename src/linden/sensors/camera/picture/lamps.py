@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.compiled import kernel
-from linden.meshes.mesh import LampOf, Mesh
-from linden.sensors.seen import LINEAR, Seen
+from linden.scenery.mesh import LampOf, Mesh
+from linden.sensors.view import LINEAR, Seen
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]

@@ -7,8 +7,8 @@ import math
 from typing import NamedTuple
 
 from linden.compiled import shading_part
-from linden.meshes.mesh import Material
-from linden.sensors.camera.picture.noise import fraction, hashed, narrow, smooth_noise, whole
+from linden.scenery.mesh import Material
+from linden.sensors.camera.picture.texture_noise import fraction, hashed, narrow, smooth_noise, whole
 
 ASPHALT, CONCRETE, PAINT, GRASS = (
     int(Material.ASPHALT),
@@ -53,7 +53,7 @@ def gloss_of(material: int) -> float:
 
 @shading_part
 def _seen(part_m: float, pixel_m: float) -> float:
-    """Return how much of a pattern is seen whose parts have a size: 1, fading to 0 where a pixel is as large."""
+    """Return how much of a pattern with parts of a size is visible: 1, fading to 0 where a pixel is as large."""
     return min(max(1.5 - 2.0 * pixel_m / part_m, 0.0), 1.0)
 
 

@@ -6,20 +6,20 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.rays import Hits, Rays
-from linden.meshes.mesh import Mesh
+from linden.protocol.values.space import Transform
+from linden.scenery.mesh import Mesh
 from linden.sensors.camera.labels import FAR_M
 from linden.sensors.camera.picture.atmosphere import Air, air
-from linden.sensors.camera.picture.develop import developed
 from linden.sensors.camera.picture.edges import edge_rays, finer, smooth
+from linden.sensors.camera.picture.film import developed
 from linden.sensors.camera.picture.lamps import LampGrid, LampGroup, StandingLamps, groups, lamps_near, standing_lamps
-from linden.sensors.camera.picture.relief import Relief, relief
 from linden.sensors.camera.picture.shade import shaded
-from linden.sensors.camera.picture.shadows import Sunshine, sunny, within
-from linden.sensors.camera.picture.spots import Places
+from linden.sensors.camera.picture.smooth_normals import Relief, relief
+from linden.sensors.camera.picture.sun_shadows import Sunshine, sunny, within
+from linden.sensors.camera.picture.surface_points import Places
 from linden.sensors.camera.spec import CameraSpec, Film
-from linden.sensors.seen import LINEAR, Seen, first_of_places
-from linden.values.space import Transform
+from linden.sensors.casting.caster import Hits, Rays
+from linden.sensors.view import LINEAR, Seen, first_of_places
 
 F32 = NDArray[np.float32]
 

@@ -11,18 +11,17 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from linden.casting.crew import in_stretches
-from linden.casting.rays import NOTHING, Hits, Rays
 from linden.compiled import fingerprint, shading
-from linden.meshes.mesh import Material
+from linden.scenery.mesh import Material
 from linden.sensors.camera.picture.atmosphere import Air
 from linden.sensors.camera.picture.fields import BLOCK, FLOATS, WHOLE_NUMBERS
+from linden.sensors.camera.picture.illumination import Near, clear, dull, glossed, lamplight, mirrored, through_air
 from linden.sensors.camera.picture.lamps import LampGrid
-from linden.sensors.camera.picture.lit import Near, clear, dull, glossed, lamplight, mirrored, through_air
 from linden.sensors.camera.picture.patterns import WETTED, look_of
-from linden.sensors.camera.picture.relief import Relief
 from linden.sensors.camera.picture.sky import sky, starlight
-from linden.sensors.camera.picture.spots import (
+from linden.sensors.camera.picture.smooth_normals import Relief
+from linden.sensors.camera.picture.stages import SKY_M, shade_blocks
+from linden.sensors.camera.picture.surface_points import (
     SHINE,
     Columns,
     Floats,
@@ -35,8 +34,9 @@ from linden.sensors.camera.picture.spots import (
     place_in_body,
     wetted,
 )
-from linden.sensors.camera.picture.stages import SKY_M, shade_blocks
-from linden.sensors.seen import Faces
+from linden.sensors.casting.caster import NOTHING, Hits, Rays
+from linden.sensors.casting.thread_pool import in_stretches
+from linden.sensors.view import Faces
 
 _HERE = Path(__file__).parent
 _LEAVES = int(Material.LEAVES)
@@ -46,7 +46,7 @@ Shade = Callable[[Rays, Hits, Floats, float, Faces, Relief, Places, Floats, Air,
 
 
 def single(values: Narrow) -> Narrow:
-    """Return a tuple whose floats are of 32 bits, as kernels want them."""
+    """Return a tuple with floats of 32 bits, as kernels want them."""
     fields: Iterable[Any] = values
     return values._replace(**dict(zip(values._fields, map(_single, fields), strict=True)))
 
@@ -111,7 +111,10 @@ def _build(built_of: int) -> Shade:
     return shade
 
 
-_PARTS = ("atmosphere", "lamps", "lit", "noise", "patterns", "relief", "shade", "sky", "spots")
+_PARTS = (
+    "atmosphere", "illumination", "lamps", "patterns", "shade", "sky", "smooth_normals", "surface_points",
+    "texture_noise",
+)  # fmt: skip
 shade_loop = _build(fingerprint(*(_HERE / f"{name}.py" for name in _PARTS)))
 
 

@@ -4,7 +4,7 @@ import math
 
 from linden.compiled import shading_part
 from linden.sensors.camera.picture.atmosphere import Air
-from linden.sensors.camera.picture.noise import fading, fraction, hashed, narrow, ramp, smooth_noise, whole
+from linden.sensors.camera.picture.texture_noise import fading, fraction, hashed, narrow, ramp, smooth_noise, whole
 
 _STAR_CELLS = narrow(220.0)  # to a radian
 

@@ -10,11 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.casting.rays import NOTHING
 from linden.compiled import fingerprint, shading, shading_stage
-from linden.meshes.mesh import Material
+from linden.scenery.mesh import Material
 from linden.sensors.camera.picture.atmosphere import Air
-from linden.sensors.camera.picture.dressing import dress
 from linden.sensors.camera.picture.fields import (
     BLOCK,
     BLUE,
@@ -49,11 +47,11 @@ from linden.sensors.camera.picture.fields import (
     Y,
     Z,
 )
-from linden.sensors.camera.picture.lit import Near, clear, dull, glossed, lamplight, mirrored, through_air
-from linden.sensors.camera.picture.noise import narrow
+from linden.sensors.camera.picture.illumination import Near, clear, dull, glossed, lamplight, mirrored, through_air
+from linden.sensors.camera.picture.materials import dress
 from linden.sensors.camera.picture.patterns import LEAVES, WETTED, gloss_of
 from linden.sensors.camera.picture.sky import sky, starlight
-from linden.sensors.camera.picture.spots import (
+from linden.sensors.camera.picture.surface_points import (
     Columns,
     Floats,
     Places,
@@ -64,6 +62,8 @@ from linden.sensors.camera.picture.spots import (
     place_in_body,
     wetted,
 )
+from linden.sensors.camera.picture.texture_noise import narrow
+from linden.sensors.casting.caster import NOTHING
 
 I32 = NDArray[np.int32]
 
@@ -239,5 +239,8 @@ def _build(built_of: int) -> Callable[..., None]:
 
 
 _HERE = Path(__file__).parent
-_PARTS = ("atmosphere", "dressing", "fields", "lamps", "lit", "noise", "patterns", "relief", "sky", "spots", "stages")
+_PARTS = (
+    "atmosphere", "fields", "illumination", "lamps", "materials", "patterns", "sky", "smooth_normals", "stages",
+    "surface_points", "texture_noise",
+)  # fmt: skip
 shade_blocks = _build(fingerprint(*(_HERE / f"{name}.py" for name in _PARTS)))

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from basu.cli import main
-from basu.output.report.html.figures import rows
 from basu.output.report.html.page import report
-from basu.output.report.markup import e, html
+from basu.output.report.html.score_card import rows
+from basu.output.report.templates import e, html
 from fakes.drives import at, driven, ramp, straight_route
 from fakes.run_records import crashing, record, written
 

@@ -5,9 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from basu.output.report.markup import html
-from basu.output.report.plots.axis import clock, ticks, time_ticks
-from basu.output.report.plots.chart import Line, Mark, Shade, chart
+from basu.output.report.plots.chart import Line, Mark, Shade, chart, clock, ticks, time_ticks
+from basu.output.report.templates import html
 
 T_S = np.linspace(0.0, 100.0, 201)
 

@@ -7,11 +7,11 @@ import pytest
 
 from basu.errors import UserError
 from basu.output.report.events import events
-from basu.output.report.markup import html
 from basu.output.report.plots.signals import signals
 from basu.output.report.plots.timeline import timeline
 from basu.output.report.plots.town_map import town_map
 from basu.output.report.streets import around, bounds_of, read_streets, union, write_streets
+from basu.output.report.templates import html
 from basu.records.history import LaneInvasion
 from fakes.drives import at, driven
 from fakes.run_records import STREETS, crashing, record

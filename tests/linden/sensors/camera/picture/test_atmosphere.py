@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from linden.scene.weather import CLEAR_NOON
+from linden.protocol.values.episode import CLEAR_NOON, WeatherParameters
 from linden.sensors.camera.picture.atmosphere import air, brightness, sunlight
-from linden.values.episode import WeatherParameters
 
 
 def test_the_sun_reddens_and_fades_as_it_sets_and_is_gone_by_night() -> None:

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from linden.casting.rays import NOTHING, STATIC, Hits
 from linden.sensors.camera.picture.edges import SAMPLES, beside, edge_rays, smooth
-from linden.sensors.camera.picture.shadows import UNKNOWN, Sunshine, within
-from linden.sensors.camera.rays import pixel_of_ray, tile_counts
+from linden.sensors.camera.picture.sun_shadows import UNKNOWN, Sunshine, within
+from linden.sensors.camera.pixel_rays import pixel_of_ray, tile_counts
 from linden.sensors.camera.spec import CameraSpec
+from linden.sensors.casting.caster import NOTHING, STATIC, Hits
 
 SPEC = CameraSpec(12, 8)
 ACROSS, DOWN = tile_counts(SPEC)

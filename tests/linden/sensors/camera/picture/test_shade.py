@@ -5,17 +5,16 @@ import numpy as np
 import pytest
 
 from fleet import slow_uncompiled
-from linden.casting.rays import NOTHING, STATIC, Hits, Rays
-from linden.meshes.mesh import LampOf, Material
-from linden.scene.weather import CLEAR_NOON
+from linden.protocol.values.episode import CLEAR_NOON, WeatherParameters
+from linden.scenery.mesh import LampOf, Material
 from linden.sensors.camera.picture.atmosphere import air
 from linden.sensors.camera.picture.lamps import CELLS, LAMPLIGHT, LampGrid
-from linden.sensors.camera.picture.noise import fading, hashed, smooth_noise, whole
-from linden.sensors.camera.picture.relief import FLAT, Relief
 from linden.sensors.camera.picture.shade import shade_loop, shaded, single
-from linden.sensors.camera.picture.spots import SHINE, Places
-from linden.sensors.seen import Faces
-from linden.values.episode import WeatherParameters
+from linden.sensors.camera.picture.smooth_normals import FLAT, Relief
+from linden.sensors.camera.picture.surface_points import SHINE, Places
+from linden.sensors.camera.picture.texture_noise import fading, hashed, smooth_noise, whole
+from linden.sensors.casting.caster import NOTHING, STATIC, Hits, Rays
+from linden.sensors.view import Faces
 
 RAYS, FACES, BODIES, ROUND = 3000, 400, 5, 60
 PIXEL_RAD = np.float32(0.002)

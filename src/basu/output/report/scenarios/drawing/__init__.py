@@ -1,1 +1,1 @@
-"""The parts of a case's picture: who met whom where, what is shown of it, trails, boxes, labels, the legend."""
+"""The parts of a case's picture: the encounter, the canvas, trails, boxes, labels, the legend."""

@@ -6,21 +6,20 @@ from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
-from basu.output.report.markup import number
+from basu.output.report.templates import number
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
-    from basu.output.report.scenarios.drawing.encounter import Point
-    from basu.output.report.scenarios.drawing.scene import Story
+    from basu.output.report.scenarios.drawing.encounter import Point, Story
 
 Metres = TypeVar("Metres", float, "NDArray[np.float64]")
 WIDTH_PX = 560.0
 LEAST_HEIGHT_PX, GREATEST_HEIGHT_PX = 290.0, 430.0
 LEAST_M, MARGIN_M = 26.0, 5.0  # what a picture shows at the least from west to east, and around what matters
-NEAR_M, FAR_M = 58.0, 120.0  # around the encounter, and of a drive that met nobody
+NEAR_M, FAR_M = 58.0, 120.0  # around the encounter, and of a drive without an encounter
 BEFORE_S, AFTER_S = 2.0, 3.0  # of driving that is shown in any case
 
 

@@ -1,4 +1,4 @@
-"""The moment of a case at which the ego came nearest to somebody, and the two points that the distance lies between."""
+"""The moment of a case with the least distance between ego and another actor, and the two points it lies between."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import other_boxes, own_boxes
+from basu.metrics.boxes import other_boxes, own_boxes
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +31,7 @@ class Span(NamedTuple):
 
 
 class Encounter(NamedTuple):
-    """Who was nearest, when, and where."""
+    """The nearest actor, with time and place."""
 
     tick: int
     other: str  # a role, a thing's name or a blueprint id
@@ -58,14 +58,14 @@ def span_of(result: dict[str, Any], history: History) -> Span:
 
 
 def roles_of(result: dict[str, Any]) -> dict[int, str]:
-    """Actor ids of whom the scenario brought, and what they are called in it."""
+    """Ids and roles of the scenario's actors."""
     return {int(actor["id"]): str(actor["role"]) for actor in result["actors"]}
 
 
 def encounter_of(result: dict[str, Any], history: History, span: Span) -> Encounter | None:
-    """The moment that the criteria judged; where none did, the nearest of the record. None where nobody was there.
+    """The moment that the criteria judged; where none did, the nearest of the record. None without any actor.
 
-    A criterion that decides comes before those that only tell: it is about whom the scenario is about.
+    A deciding criterion comes before a reported one: it concerns the scenario's own actors.
     """
     judged = [
         j
@@ -98,7 +98,7 @@ def contacts_of(result: dict[str, Any], history: History, span: Span) -> list[Co
 
 
 def boxes_at(history: History, tick: int) -> list[tuple[int, Box]]:
-    """Actor ids and boxes of all who were near in a tick."""
+    """Ids and boxes of all actors near in a tick."""
     rows = history.others[history.others["tick"] == history.frames["tick"][tick]]
     return list(zip(rows["id"].tolist(), other_boxes(history.facts, rows), strict=True))
 
@@ -114,14 +114,14 @@ def thing_boxes(result: dict[str, Any], t_s: float | None = None) -> list[tuple[
 
 
 def _beside(result: dict[str, Any], history: History, tick: int) -> list[tuple[str, Box]]:
-    """Everybody and everything near in a tick, by what it is called."""
+    """All actors and things near in a tick, by name."""
     roles, types = roles_of(result), history.facts.actor_types
-    actors = [(roles.get(key, types.get(key, "somebody")), box) for key, box in boxes_at(history, tick)]
+    actors = [(roles.get(key, types.get(key, "an unknown type")), box) for key, box in boxes_at(history, tick)]
     return [*actors, *thing_boxes(result, float(history.frames["t_s"][tick]))]
 
 
 def _searched(result: dict[str, Any], history: History, span: Span) -> Encounter | None:
-    """The least distance of the record to those whom the scenario brought, or to anybody where it brought nobody.
+    """The least distance of the record to the scenario's actors, or to any actor where it has none.
 
     Pairs are looked at in the order of a lower bound, centres less both radii, until no other can be nearer.
     """
@@ -134,7 +134,7 @@ def _searched(result: dict[str, Any], history: History, span: Span) -> Encounter
         rows = rows[np.isin(rows["id"], list(roles))]
     ticks = rows["tick"].astype(np.int64) - int(history.frames["tick"][0])
     theirs = other_boxes(facts, rows)
-    names = [roles.get(key, facts.actor_types.get(key, "somebody")) for key in rows["id"].tolist()]
+    names = [roles.get(key, facts.actor_types.get(key, "an unknown type")) for key in rows["id"].tolist()]
     all_ticks = np.arange(span.first, span.last + 1)
     for name, box in thing_boxes(result):
         ticks = np.concatenate([ticks, all_ticks])
@@ -194,3 +194,40 @@ def _touch(history: History, collision: Collision) -> Point:
     east, south, _ = collision.impulse_ns  # pushes the ego away from what it hit
     reach_m = math.hypot(own[3], own[4]) / max(math.hypot(east, south), 1e-9)
     return _corner_to((own[0] - east * reach_m, own[1] - south * reach_m), own)[1]
+
+
+class Story(NamedTuple):
+    """What of a record a picture tells."""
+
+    result: dict[str, Any]
+    history: History
+    span: Span
+    roles: dict[int, str]
+    met: Encounter | None
+    touched: list[Contact]
+
+    @property
+    def conflict_tick(self) -> int | None:
+        """When the conflict began; None where it never did."""
+        t_s = self.result["phases_s"].get("conflict")
+        if t_s is None:
+            return None
+        return min(int(np.searchsorted(self.history.frames["t_s"], t_s - 1e-6)), len(self.history.frames) - 1)
+
+    def own_box(self, tick: int) -> Box:
+        """The ego's box in a tick."""
+        box: Box = own_boxes(self.history.facts, self.history.frames[tick : tick + 1])[0]
+        return box
+
+
+def story_of(result: dict[str, Any], history: History) -> Story:
+    """Find in a record what its picture is about."""
+    span = span_of(result, history)
+    return Story(
+        result,
+        history,
+        span,
+        roles_of(result),
+        encounter_of(result, history, span),
+        contacts_of(result, history, span),
+    )

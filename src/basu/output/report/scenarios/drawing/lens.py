@@ -6,26 +6,25 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.output.report.markup import e, extended, number
-from basu.output.report.scenarios.drawing.bodies import block, body, outline
+from basu.output.report.scenarios.drawing.actors import block, body, outline
 from basu.output.report.scenarios.drawing.canvas import WIDTH_PX, Canvas
 from basu.output.report.scenarios.drawing.encounter import boxes_at, thing_boxes
-from basu.output.report.scenarios.drawing.legend import cross
+from basu.output.report.scenarios.drawing.labels import cross
 from basu.output.report.streets import on_the_map
+from basu.output.report.templates import e, extended, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.scenarios.drawing.encounter import Box, Encounter, Point
-    from basu.output.report.scenarios.drawing.scene import Story
+    from basu.output.report.scenarios.drawing.encounter import Box, Encounter, Point, Story
     from basu.output.report.streets import Line
 
 LENS_PX, CAPTION_PX = (176.0, 136.0), 16.0
 EDGE_PX, HEAD_PX = 8.0, 26.0  # from the picture's edges; below its upper one is where north is written
 SHOWN_M = 15.0  # across the lens
 LARGE_ENOUGH = 9.0  # pixels a metre: a picture of this scale needs no lens
-NEAR_M = 6.0  # who was farther away would not be in it
+NEAR_M = 6.0  # an actor farther away would not be in it
 LANE_M = 3.4
 
 
@@ -37,7 +36,7 @@ class Lens(NamedTuple):
 
 
 def lens(story: Story, canvas: Canvas, streets: Sequence[Line]) -> Lens | None:
-    """The lens in the corner where it hides least; None where the picture is large enough, or nobody was near."""
+    """The lens in the corner where it hides least; None where the picture is large enough, or no actor was near."""
     met = story.met
     if met is None or met.distance_m > NEAR_M or canvas.pixels_per_m >= LARGE_ENOUGH:
         return None
@@ -51,8 +50,8 @@ def lens(story: Story, canvas: Canvas, streets: Sequence[Line]) -> Lens | None:
     extended(drawn, [_lanes(close, streets), *_bodies(story, close, met)])
     drawn.append(e("rect", y=seen_px, width=LENS_PX[0], height=CAPTION_PX, class_="below"))
     drawn.append(e("rect", x=0.75, y=0.75, width=LENS_PX[0] - 1.5, height=LENS_PX[1] - 1.5, class_="lens"))
-    told = f"{scale / canvas.pixels_per_m:.1f} times as large"
-    drawn.append(e("text", told, x=6, y=LENS_PX[1] - 4.5, class_="small"))
+    scale_text = f"{scale / canvas.pixels_per_m:.1f} times as large"
+    drawn.append(e("text", scale_text, x=6, y=LENS_PX[1] - 4.5, class_="small"))
     return Lens(corner, drawn)
 
 
@@ -63,7 +62,7 @@ def _lanes(close: Canvas, streets: Sequence[Line]) -> Element:
 
 
 def _bodies(story: Story, close: Canvas, met: Encounter) -> list[Element]:
-    """Everybody in it, and the distance between the two."""
+    """All actors in it, and the distance between the two."""
     t_s = float(story.history.frames["t_s"][met.tick])
     things = [block(box, close, "thing") for _, box in thing_boxes(story.result, t_s) if _is_in(box, close)]
     others = [

@@ -2,81 +2,37 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics.passengers.boxes import own_boxes
-from basu.output.report.markup import e
 from basu.output.report.plots.decimate import path
-from basu.output.report.scenarios.drawing import trails
-from basu.output.report.scenarios.drawing.bodies import NOSE, block, body, outline
+from basu.output.report.scenarios.drawing import actors
+from basu.output.report.scenarios.drawing.actors import NOSE, block, body, outline
 from basu.output.report.scenarios.drawing.canvas import WIDTH_PX
 from basu.output.report.scenarios.drawing.encounter import (
     boxes_at,
-    contacts_of,
-    encounter_of,
-    roles_of,
-    span_of,
     thing_boxes,
 )
-from basu.output.report.scenarios.drawing.labels import Labels
-from basu.output.report.scenarios.drawing.legend import cross
+from basu.output.report.scenarios.drawing.labels import Labels, cross
 from basu.output.report.scenarios.drawing.lens import LENS_PX, lens
 from basu.output.report.streets import on_the_map
+from basu.output.report.templates import e
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
     from basu.output.report.scenarios.drawing.canvas import Canvas
-    from basu.output.report.scenarios.drawing.encounter import Box, Contact, Encounter, Span
+    from basu.output.report.scenarios.drawing.encounter import Encounter, Story
     from basu.output.report.streets import Line
-    from basu.records.history import History
 
 LANE_M = 3.4  # how wide a lane is drawn
 PLAN_M = 1.6  # and the plan
 TOLERANCE_M = 0.1  # which the plan may be off
 APART_PX = 40.0  # times on a trail are written no nearer to each other
-CONTACT_M = 0.005  # a distance below this is told as a contact
+CONTACT_M = 0.005  # a distance below this is a contact
 SMALL_PX, STRONG_PX, ALARM_PX = 11.5, 13.0, 14.0
-
-
-class Story(NamedTuple):
-    """What of a record a picture tells."""
-
-    result: dict[str, Any]
-    history: History
-    span: Span
-    roles: dict[int, str]
-    met: Encounter | None
-    touched: list[Contact]
-
-    @property
-    def conflict_tick(self) -> int | None:
-        """When the conflict began; None where it never did."""
-        t_s = self.result["phases_s"].get("conflict")
-        if t_s is None:
-            return None
-        return min(int(np.searchsorted(self.history.frames["t_s"], t_s - 1e-6)), len(self.history.frames) - 1)
-
-    def own_box(self, tick: int) -> Box:
-        """The ego's box in a tick."""
-        box: Box = own_boxes(self.history.facts, self.history.frames[tick : tick + 1])[0]
-        return box
-
-
-def story_of(result: dict[str, Any], history: History) -> Story:
-    """Find in a record what its picture is about."""
-    span = span_of(result, history)
-    return Story(
-        result,
-        history,
-        span,
-        roles_of(result),
-        encounter_of(result, history, span),
-        contacts_of(result, history, span),
-    )
 
 
 class Scene:
@@ -85,7 +41,7 @@ class Scene:
     def __init__(self, story: Story, canvas: Canvas) -> None:
         self._story, self._canvas = story, canvas
         self._labels = Labels(canvas)
-        self._timed: list[tuple[trails.Dot, str]] = []
+        self._timed: list[tuple[actors.Dot, str]] = []
         self.shown: set[str] = set()
 
     def draw(self, streets: Sequence[Line]) -> list[Element]:
@@ -116,7 +72,7 @@ class Scene:
         ]
 
     def _ways(self) -> list[Element]:
-        """The trails of the ego and of those whom the scenario brought."""
+        """The trails of the ego and of the scenario's actors."""
         story, canvas = self._story, self._canvas
         history, span = story.history, story.span
         drawn: list[Element] = []
@@ -124,20 +80,20 @@ class Scene:
         for key in story.roles:
             theirs = rows[rows["id"] == key]
             if len(theirs) > 1:
-                drawn.append(trails.other_trail(theirs["x_m"], theirs["y_m"], canvas))
+                drawn.append(actors.other_trail(theirs["x_m"], theirs["y_m"], canvas))
                 t_s = history.frames["t_s"][theirs["tick"] - history.frames["tick"][0]]
-                found = trails.dots(t_s, theirs["x_m"], theirs["y_m"], canvas)
-                drawn += trails.drawn(found, "spot", 2.2)
+                found = actors.dots(t_s, theirs["x_m"], theirs["y_m"], canvas)
+                drawn += actors.drawn(found, "spot", 2.2)
                 self._timed += [(dot, "small halo") for dot in found]
         frames = history.frames[span.first : span.last + 1]
         for piece in canvas.pieces(on_the_map(np.column_stack([frames["x_m"], frames["y_m"]]))):
             self._labels.keep_line_free(np.array([canvas.at(x_m, y_m) for x_m, y_m in piece]))
-        found = trails.dots(frames["t_s"], frames["x_m"], frames["y_m"], canvas)
+        found = actors.dots(frames["t_s"], frames["x_m"], frames["y_m"], canvas)
         self._timed = [(dot, "small halo") for dot in found] + self._timed
-        return [*drawn, *trails.own_trail(history, span, canvas), *trails.drawn(found, "dot", 2.6)]
+        return [*drawn, *actors.own_trail(history, span, canvas), *actors.drawn(found, "dot", 2.6)]
 
     def _moment(self) -> list[Element]:
-        """Everybody when the ego was nearest to somebody, and the distance as a line."""
+        """All actors at the moment of the least distance, and the distance as a line."""
         story, canvas, labels = self._story, self._canvas, self._labels
         begun = [] if story.conflict_tick is None else [self._ghost(story.conflict_tick)]
         met = story.met
@@ -165,7 +121,7 @@ class Scene:
         return body(box, self._canvas, "ghost")
 
     def _gap(self, met: Encounter) -> list[Element]:
-        """The least distance, drawn and told."""
+        """The least distance, as a line and in words."""
         canvas = self._canvas
         ends = [canvas.at(*met.own_m), canvas.at(*met.theirs_m)]
         t_s = float(self._story.history.frames["t_s"][met.tick])

@@ -1,4 +1,4 @@
-"""``matrix.html`` as a whole: one file that opens by double click, with or without its script."""
+"""``matrix.html``: one file with the matrix as a table, shares, success maps, and a card for each case."""
 
 from __future__ import annotations
 
@@ -7,32 +7,36 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import UserError
+from basu.files import write_bytes
 from basu.output.report.html.page import page
-from basu.output.report.markup import e, extended, html
-from basu.output.report.scenarios.page import matrix_table, tree_view
-from basu.output.report.scenarios.page.card import anchor_of, card, parameters, verdict_mark
-from basu.output.report.scenarios.page.records import read_case
-from basu.output.report.scenarios.page.shares_view import shares_view
-from basu.output.report.scenarios.page.style import card_style
+from basu.output.report.scenarios.matrix_documents import read_case
+from basu.output.report.scenarios.page.case_card import KINDS, SIGNS, anchor_of, bare_card, card
+from basu.output.report.scenarios.page.route_section import card_style
+from basu.output.report.scenarios.shares import shares_view
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import drawing
-from basu.output.report.scenarios.tally import blocks, counted
-from basu.output.report.scenarios.verdicts import LOOKS
-from basu.utils.atomic import write_bytes
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, tally
+from basu.output.report.templates import DASH, render
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-    from xml.etree.ElementTree import Element
+    from collections.abc import Callable, Collection, Iterator, Sequence
 
-    from basu.output.report.scenarios.page.records import CaseRecord
+    from markupsafe import Markup
+
+    from basu.output.report.scenarios.matrix_documents import CaseRecord
+    from basu.output.report.scenarios.tally import Block
 
 PAGE_FILE = "matrix.html"
 HERE = Path(__file__).parent
-MOST_CARDS = 400  # in one page: those that were not passed first, then the narrowest
+MOST_SIGNS = 16  # cases of a scenario that have a sign each; more of them are counted
+MOST_CARDS = 400  # in one page: cases that were not passed first, then the narrowest
 MOST_BYTES = 8_000_000  # of cards; from there on they have no pictures
-PARAMETERS_SHOWN = 4  # beside a case's name
-MOST_OF_TITLE = 90  # characters of what was asked for
+MOST_OF_TITLE = 90  # characters of the requested cases
+OF_STYLE = {  # what a sign means, where that is more than its word
+    "absent": "not exercised: the conflict never came about",
+    "unjudged": "not judged: a fault of simulator, set-up or benchmark, or interrupted",
+}
 
 
 class Cell(NamedTuple):
@@ -64,16 +68,32 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
     cells = chosen(matrix)
     carded = {anchor_of(cell.case["id"], cell.agent) for cell in cells}
     cards = _cards(cells, record)
-    body = e("body", _head(matrix))
-    extended(body, [shares_view(matrix), *_sweeps(matrix)])
-    table = e("section", e("h2", "Matrix"), matrix_table.key(), matrix_table.matrix_table(matrix, carded))
-    extended(body, [table, _cases(matrix, cards)])
     script = (HERE / "matrix.js").read_text(encoding="utf-8")
+    body = render(
+        "templates/matrix.j2",
+        what=textwrap.shorten(matrix["what"], MOST_OF_TITLE, placeholder=" …"),
+        summary=_summary(matrix),
+        shares=shares_view(matrix),
+        sweeps=list(_sweeps(matrix)),
+        verdict_key=[(style, look.sign, OF_STYLE.get(style, look.word)) for style, look in _looks().items()],
+        agents=matrix["agents"],
+        blocks=[_block(block, matrix["agents"], carded, cards) for block in blocks(matrix)],
+        totals=[_total(matrix["cases"], agent) for agent in matrix["agents"]],
+        filters=_filters(matrix),
+        kinds=KINDS,
+        signs=SIGNS,
+        script=script,
+    )
     return page(f"Scenarios: {matrix['what']}", body, script=script, style=card_style())
 
 
+def _looks() -> dict[str, Any]:
+    """One look of each style."""
+    return {look.style: look for look in LOOKS.values()}
+
+
 def chosen(matrix: dict[str, Any]) -> list[Cell]:
-    """Whose cards are in the page: all, or those that tell most."""
+    """The cases with cards in the page: all, or the most telling ones."""
     cells = [Cell(case, agent) for case in matrix["cases"] for agent in matrix["agents"] if agent in case["results"]]
     if len(cells) <= MOST_CARDS:
         return cells
@@ -87,112 +107,111 @@ def chosen(matrix: dict[str, Any]) -> list[Cell]:
     return [cell for cell in cells if id(cell) in kept]
 
 
-def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dict[str, list[Element]]:
-    """Cards by the case's id; those that were not passed have their pictures before the rest."""
-    made: dict[int, Element] = {}
+def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dict[str, list[Markup]]:
+    """Cards by the case's id; cases that were not passed have their pictures before the rest."""
+    made: dict[int, Markup] = {}
     size = 0
     order = sorted(range(len(cells)), key=lambda n: cells[n].case["results"][cells[n].agent]["verdict"] == "SUCCESS")
     for number in order:
         cell = cells[number]
         found = record(cell)
         if isinstance(found, str):
-            made[number] = _bare(cell, found)
+            made[number] = bare_card(cell.case["id"], cell.agent, cell.case["results"][cell.agent], found)
         else:
             made[number] = card(found.result, found.history, found.streets, picture=size < MOST_BYTES)
-        size += len(html(made[number]))
-    cards: dict[str, list[Element]] = {}
+        size += len(made[number])
+    cards: dict[str, list[Markup]] = {}
     for number, cell in enumerate(cells):
         cards.setdefault(cell.case["id"], []).append(made[number])
     return cards
 
 
-def _bare(cell: Cell, why: str) -> Element:
-    """A card of a case of which no more is known than its line in the matrix."""
-    result = cell.case["results"][cell.agent]
-    return e(
-        "article",
-        e("h4", e("span", cell.agent, class_="agent"), " ", verdict_mark(result["verdict"])),
-        e("p", result["message"], class_="message"),
-        e("p", why, class_="note"),
-        class_=f"case-card {LOOKS[result['verdict']].style}",
-        id=anchor_of(cell.case["id"], cell.agent),
-        data_agent=cell.agent,
-        data_verdict=result["verdict"],
-    )
-
-
-def _head(matrix: dict[str, Any]) -> Element:
+def _summary(matrix: dict[str, Any]) -> str:
     """What was driven, when and with what."""
     drives = sum(len(case["results"]) for case in matrix["cases"])
     versions = ", ".join(f"{name} {text}" for name, text in matrix["versions"].items())
     minutes, seconds = divmod(round(matrix["wall_s"]), 60)
     what = f"{counted(len(matrix['cases']), 'case')} with {', '.join(matrix['agents'])}: {counted(drives, 'drive')}"
-    told = f"{what} in {minutes} min {seconds} s, started {matrix['started']}; {versions}"
-    what = textwrap.shorten(matrix["what"], MOST_OF_TITLE, placeholder=" …")
-    return e("header", e("h1", f"Scenarios: {what}"), e("p", told))
+    return f"{what} in {minutes} min {seconds} s, started {matrix['started']}; {versions}"
 
 
-def _sweeps(matrix: dict[str, Any]) -> Iterator[Element]:
-    """A section for each scenario that was sampled, a map for each agent."""
+def _sweeps(matrix: dict[str, Any]) -> Iterator[tuple[str, list[dict[str, Any]]]]:
+    """Each sampled scenario with a map for each agent."""
     found = studies(matrix)
     for scenario in dict.fromkeys(study.scenario for study in found):
-        section = e("section", e("h2", f"Where failing begins: {scenario}"))
-        maps = e("div", class_="maps")
-        for study in found:
-            if study.scenario == scenario:
-                known = boundary_of(study)
-                told = e("ul", *(e("li", text[0].upper() + text[1:]) for text in sentences(known)))
-                maps.append(e("figure", e("figcaption", e("b", study.agent), told), drawing(known), class_="sweep"))
-        section.append(maps)
-        yield section
+        known = {study.agent: boundary_of(study) for study in found if study.scenario == scenario}
+        yield (
+            scenario,
+            [
+                {
+                    "agent": agent,
+                    "sentences": [text[0].upper() + text[1:] for text in sentences(boundary)],
+                    "picture": drawing(boundary),
+                }
+                for agent, boundary in known.items()
+            ],
+        )
 
 
-def _cases(matrix: dict[str, Any], cards: dict[str, list[Element]]) -> Element:
-    """All cases by group and scenario, each to be opened."""
-    section = e("section", e("h2", "Cases"), _filters(matrix), tree_view.key(), id="cases")
-    for block in blocks(matrix):
-        group = e("section", e("h3", block.group), class_="of-group", data_group=block.group)
-        for row in block.rows:
-            shown = [case for case in row.cases if case["id"] in cards]
-            if shown:
-                group.append(e("p", e("b", row.scenario), f" {row.title}", class_="scenario-title"))
-            group.extend(_case(case, cards[case["id"]]) for case in shown)
-            if len(shown) < len(row.cases):
-                left = len(row.cases) - len(shown)
-                group.append(
-                    e("p", f"{left} more cases of it were passed with more room; matrix.json has them.", class_="note")
-                )
-        section.append(group)
-    return section
+def _block(
+    block: Block, agents: Sequence[str], carded: Collection[str], cards: dict[str, list[Markup]]
+) -> dict[str, Any]:
+    """A group with its scenarios: the cells of the table, and the cases that have cards."""
+    rows = []
+    for row in block.rows:
+        shown = [case for case in row.cases if case["id"] in cards]
+        rows.append(
+            {
+                "scenario": row.scenario,
+                "title": row.title,
+                "cells": [_cell(row.cases, agent, carded) for agent in agents],
+                "cases": [_case(case, cards[case["id"]]) for case in shown],
+                "left": len(row.cases) - len(shown),
+            }
+        )
+    return {"group": block.group, "rows": rows}
 
 
-def _case(case: dict[str, Any], cards: list[Element]) -> Element:
-    """A case with the cards of all agents, closed."""
-    signs = [
-        e("span", f"{LOOKS[result['verdict']].sign} {agent}", class_=f"chip {LOOKS[result['verdict']].style}")
-        for agent, result in case["results"].items()
-    ]
-    summary = e("summary", e("b", case["id"]), e("span", *signs, class_="chips"), e("small", case["place"]))
-    return e("details", summary, parameters(case["parameters"]), e("div", *cards, class_="side"), class_="case")
+def _cell(cases: Sequence[dict[str, Any]], agent: str, carded: Collection[str]) -> dict[str, Any]:
+    """One agent's results in a scenario."""
+    is_signed = len(cases) <= MOST_SIGNS
+    signs = [_sign(case, agent, carded) for case in cases if agent in case["results"]] if is_signed else None
+    return {**_total(cases, agent), "signs": signs}
 
 
-def _filters(matrix: dict[str, Any]) -> Element:
-    """What the script shows and hides by; without it there is nothing here."""
+def _total(cases: Sequence[dict[str, Any]], agent: str) -> dict[str, Any]:
+    """How many were passed, and how narrowly."""
+    found = tally(cases, agent)
+    narrowly = [found.narrowest, "" if found.ttc_s is None else f"{found.ttc_s:.1f} s"]
+    absent = f"{found.absent} not exercised" if found.absent else ""
+    return {
+        "signs": None,
+        "style": "unjudged" if not found.judged else "passed" if found.passed == found.judged else "failed",
+        "share": f"{found.passed}/{found.judged}" if found.judged else DASH,
+        "narrowly": ", ".join(text for text in (*narrowly, absent) if text),
+    }
+
+
+def _sign(case: dict[str, Any], agent: str, carded: Collection[str]) -> dict[str, Any]:
+    """One case, with the anchor of its card where there is one."""
+    result = case["results"][agent]
+    look, anchor = LOOKS[result["verdict"]], anchor_of(case["id"], agent)
+    sentence = f"{case['id']}, {agent}: {look.word}. {result['message']}"
+    return {"look": look, "sentence": sentence, "anchor": anchor if anchor in carded else ""}
+
+
+def _case(case: dict[str, Any], cards: list[Markup]) -> dict[str, Any]:
+    """A case with the cards of all agents."""
+    verdicts = [(LOOKS[result["verdict"]], agent) for agent, result in case["results"].items()]
+    return {**{key: case[key] for key in ("id", "place", "parameters")}, "verdicts": verdicts, "cards": cards}
+
+
+def _filters(matrix: dict[str, Any]) -> dict[str, dict[str, str]]:
+    """The values that the script filters by."""
     verdicts = dict.fromkeys(result["verdict"] for case in matrix["cases"] for result in case["results"].values())
     groups = dict.fromkeys(case["group"] for case in matrix["cases"])
-    return e(
-        "form",
-        _choice("group", "Group", {group: group for group in groups}),
-        _choice("verdict", "Verdict", {verdict: LOOKS[verdict].word for verdict in verdicts}),
-        _choice("agent", "Agent", {agent: agent for agent in matrix["agents"]}),
-        e("button", "Open all shown", type="button", id="open"),
-        e("output", id="shown"),
-        class_="filters",
-        hidden="hidden",
-    )
-
-
-def _choice(name: str, label: str, options: dict[str, str]) -> Element:
-    """One of them."""
-    shown = [e("option", "all", value=""), *(e("option", text, value=value) for value, text in options.items())]
-    return e("label", f"{label} ", e("select", *shown, id=f"by-{name}"))
+    return {
+        "groups": {group: group for group in groups},
+        "verdicts": {verdict: LOOKS[verdict].word for verdict in verdicts},
+        "agents": {agent: agent for agent in matrix["agents"]},
+    }

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.output.report.markup import e, number
-from basu.output.report.plots.axis import ticks
+from basu.output.report.plots.chart import ticks
+from basu.output.report.templates import e, number
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

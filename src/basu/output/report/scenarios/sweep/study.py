@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from basu.output.report.scenarios.tally import blocks
-from basu.output.report.scenarios.verdicts import LOOKS
+from basu.output.report.scenarios.tally import LOOKS, blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -48,7 +47,7 @@ class Study(NamedTuple):
     axes: list[Axis]
     failed: NDArray[np.bool_]  # (N,), an agent's own faults with them
     broken: NDArray[np.bool_]  # (N,), which of those were faults
-    distance_m: NDArray[np.float64]  # (N,) the least, nan where nobody was near
+    distance_m: NDArray[np.float64]  # (N,) the least, nan where no actor was near
     unjudged: int  # cases that are left out, those not exercised included
     absent: int  # of those, not exercised: they neither pass nor fail
 

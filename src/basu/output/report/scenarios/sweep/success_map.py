@@ -1,8 +1,9 @@
-"""The success map: every case in the plane of the two parameters that matter most, and where failing begins."""
+"""The success map: cases in the plane of the two most decisive parameters, and each parameter by itself."""
 
 from __future__ import annotations
 
 import functools
+import math
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,20 +11,110 @@ from xml.etree.ElementTree import tostring
 
 import numpy as np
 
-from basu.output.report.markup import e, extended, number
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
-from basu.output.report.scenarios.sweep.neighbours import shares
-from basu.output.report.scenarios.sweep.plane import HEIGHT_PX, LEFT_PX, TOP_PX, WIDTH_PX, axes, grid, region, scales
-from basu.output.report.scenarios.sweep.strips import height_px, strips
+from basu.output.report.scenarios.sweep.failure_rates import shares
+from basu.output.report.scenarios.sweep.plane import (
+    HEIGHT_PX,
+    LEFT_PX,
+    TOP_PX,
+    WIDTH_PX,
+    Scale,
+    axes,
+    grid,
+    region,
+    scales,
+    title,
+)
 from basu.output.report.scenarios.sweep.study import Axis, studies
+from basu.output.report.templates import e, extended, number
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.scenarios.sweep.boundary import Boundary
-    from basu.output.report.scenarios.sweep.plane import Scale
+    from numpy.typing import NDArray
+
+    from basu.output.report.scenarios.sweep.boundary import Boundary, Rule
     from basu.output.report.scenarios.sweep.study import Study
+
+
+STRIP_COLUMNS, STRIP_WIDTH_PX, STRIP_HEIGHT_PX = 2, 272.0, 52.0
+ROW_PX = 104.0  # from one row of strips to the next
+BINS = 16
+
+
+def strips(found: Boundary, top_px: float) -> list[Element]:
+    """A small histogram for every parameter that varied, two in a row."""
+    rules = {rule.axis.name: rule for rule in found.each if rule.is_sure}
+    drawn = []
+    for number_, axis in enumerate(found.study.axes):
+        left = 24.0 + (number_ % STRIP_COLUMNS) * (STRIP_WIDTH_PX + 52.0)
+        top = top_px + 20.0 + (number_ // STRIP_COLUMNS) * ROW_PX
+        drawn.append(_strip(axis, found.study.failed, rules.get(axis.name), left, top))
+    return drawn
+
+
+def height_px(axes: int) -> float:
+    """How high all strips are together."""
+    return ROW_PX * -(-axes // STRIP_COLUMNS) + 4.0
+
+
+def _strip(axis: Axis, failed: NDArray[np.bool_], rule: Rule | None, left: float, top: float) -> Element:
+    """One of them: failures below, filled; passes on top of them, hollow."""
+    edges = _edges(axis)
+    beyond = (edges[-1] - edges[0]) / max(axis.high - axis.low, 1e-12) - 1.0  # of the outer bins, over the axis's ends
+    scale = Scale(axis, left, left + STRIP_WIDTH_PX, beyond / 2.0 / (1.0 + beyond))
+    bottom = top + STRIP_HEIGHT_PX
+    fails, all_ = (np.histogram(axis.values[chosen], edges)[0] for chosen in (failed, np.ones_like(failed)))
+    highest = max(int(all_.max()), 1)
+    at = scale.at(edges)
+    group = e("g", e("text", title(axis), x=left, y=top - 7.0, class_="strong"))
+    group.append(e("text", _words_of(rule), x=left + STRIP_WIDTH_PX, y=top - 7.0, text_anchor="end", class_="small"))
+    for index in range(len(all_)):
+        x, width = at[index] + 1.0, at[index + 1] - at[index] - 2.0
+        whole, part = (STRIP_HEIGHT_PX * count / highest for count in (all_[index], fails[index]))
+        if all_[index]:
+            sentence = f"{fails[index]} of {all_[index]} fail"
+            bar = {"x": number(x, 1), "width": number(width, 1)}
+            group.append(
+                e(
+                    "rect",
+                    e("title", sentence),
+                    y=number(bottom - whole, 1),
+                    height=number(whole, 1),
+                    class_="passes",
+                    **bar,
+                )
+            )
+            group.append(e("rect", y=number(bottom - part, 1), height=number(part, 1), class_="fails", **bar))
+    group.append(e("path", d=f"M{left} {bottom}h{STRIP_WIDTH_PX}", class_="axis"))
+    for place, text in scale.ticks():
+        group.append(e("text", text, x=number(place, 1), y=bottom + 14.0, text_anchor="middle", class_="small"))
+    if rule is not None and not axis.options:
+        for value in (rule.low, rule.high):
+            if math.isfinite(value):
+                x = float(scale.at(np.array([value]))[0])
+                group.append(e("path", d=f"M{number(x, 1)} {top - 3.0}V{bottom + 3.0}", class_="threshold"))
+    return group
+
+
+def _words_of(rule: Rule | None) -> str:
+    """The rule in words, beside the parameter's name."""
+    if rule is None:
+        return "tells nothing by itself"
+    return f"{rule.condition()}: {rule.failed_inside} of {int(rule.inside.sum())} fail"
+
+
+def _edges(axis: Axis) -> NDArray[np.float64]:
+    """Of the bins: of a grid or of choices one a value, else of equal width."""
+    distinct = np.unique(axis.values)
+    if len(distinct) <= BINS:
+        half = float(np.diff(distinct).min()) / 2.0
+        edges = np.concatenate([[distinct[0] - half], (distinct[1:] + distinct[:-1]) / 2.0, [distinct[-1] + half]])
+    else:
+        edges = np.linspace(axis.low, axis.high, BINS + 1)
+    return edges.astype(np.float64)
+
 
 STYLE_FILE = Path(__file__).parent / "success_map.css"
 PICTURE_WIDTH_PX = 640.0
@@ -44,17 +135,17 @@ def sweep_map(matrix: dict[str, Any], agent: str | None = None, scenario: str | 
 
     An empty text where no parameter varied.
     """
-    asked = [s for s in studies(matrix) if agent in {None, s.agent} and scenario in {None, s.scenario}]
-    if not asked:
+    chosen = [s for s in studies(matrix) if agent in {None, s.agent} and scenario in {None, s.scenario}]
+    if not chosen:
         return ""
-    found = boundary_of(asked[0])
-    told = [line for text in sentences(found) for line in textwrap.wrap(text[0].upper() + text[1:], LINE_CHARACTERS)]
-    head_px = 30.0 + LINE_PX * len(told)
+    found = boundary_of(chosen[0])
+    lines = [line for text in sentences(found) for line in textwrap.wrap(text[0].upper() + text[1:], LINE_CHARACTERS)]
+    head_px = 30.0 + LINE_PX * len(lines)
     picture = drawing(found, head_px)
     picture.set("xmlns", "http://www.w3.org/2000/svg")
     picture.insert(0, e("style", map_style()))
-    picture.append(e("text", f"{asked[0].scenario} with {asked[0].agent}", x=8, y=20.0 - head_px, class_="strong"))
-    for row, line in enumerate(told):
+    picture.append(e("text", f"{chosen[0].scenario} with {chosen[0].agent}", x=8, y=20.0 - head_px, class_="strong"))
+    for row, line in enumerate(lines):
         picture.append(e("text", line, x=8, y=40.0 - head_px + LINE_PX * row, class_="small"))
     return tostring(picture, encoding="unicode") + "\n"
 
@@ -78,7 +169,7 @@ def drawing(found: Boundary, head_px: float = 0.0) -> Element:
 
 
 def _title(found: Boundary) -> str:
-    """The map in a sentence, for who does not see it."""
+    """The map in a sentence, for screen readers."""
     study = found.study
     return f"{study.scenario} with {study.agent}: " + " ".join(sentences(found))
 
@@ -120,9 +211,9 @@ def _cases(study: Study, x: Scale, y: Scale) -> list[Element]:
     return sorted(drawn, key=lambda element: element.get("class") != "pass")  # failures on top
 
 
-def mark(style: str, x: float, y: float, told: str | None = None) -> Element:
+def mark(style: str, x: float, y: float, sentence: str | None = None) -> Element:
     """One case: a hollow circle passes, a cross fails, a triangle broke down."""
-    title = None if told is None else e("title", told)
+    title = None if sentence is None else e("title", sentence)
     if style == "pass":
         return e("circle", title, cx=number(x, 1), cy=number(y, 1), r=MARK_PX - 0.8, class_=style)
     left, right, top, bottom = (number(v, 1) for v in (x - MARK_PX, x + MARK_PX, y - MARK_PX, y + MARK_PX))
@@ -166,7 +257,5 @@ def _legend(study: Study, y: float, *, tells: bool) -> Sequence[Element]:
             drawn.append(e("text", text, x=x + 24.0, y=y + 4.0, class_="small"))
             x += 40.0 + 6.0 * len(text)
     elif study.is_mixed:
-        drawn.append(
-            e("text", "no boundary can be told from these two", x=min(x, LEFT_PX + WIDTH_PX), y=y + 4.0, class_="small")
-        )
+        drawn.append(e("text", "these two show no boundary", x=min(x, LEFT_PX + WIDTH_PX), y=y + 4.0, class_="small"))
     return drawn

@@ -1,1 +1,0 @@
-"""A folder of its own: those who load the agent's file put its folder first in ``sys.path``."""

@@ -1,7 +1,0 @@
-"""What such agents import from ``leaderboard``, ``srunner`` and ``agents``, where those are not installed.
-
-Our own code with their names and meanings, as small as agents need it: base classes, look-ups, the clock, the options
-of a plan. :mod:`basu.agents.leaderboard.modules` says under which names. Whatever drives
-(``agents.navigation.basic_agent``), plans or builds scenarios is not here:
-it comes from CARLA's and ScenarioRunner's own folders.
-"""

@@ -1,0 +1,206 @@
+"""Infractions and scores while a drive lasts, computed from new frames only.
+
+Signs and lights are judged from the last frame in which none had its line at the vehicle: what was found before that
+frame is settled. Contacts and speeding may last as long as a drive, so of those the latest message of each party and
+the largest excess are kept. When the drive is over, the whole record is judged once more, and that is the result.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from basu.metrics.collisions import Party, contacts
+from basu.metrics.infraction import Evidence, counts
+from basu.metrics.path_following import compared
+from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
+from basu.metrics.score import Scores, Scoring, driving_score, in_order, infraction_score
+from basu.metrics.speeding import LEAST_S, episode, limits_mps
+from basu.metrics.stop_signs import ZONE_BEFORE_M, stop_signs
+from basu.metrics.stretches import SPACING_M, chords, path_m, total_m
+from basu.records.history.model import NO_LIGHT
+from basu.routing import ControlKind
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    from basu.records.history import History
+
+
+LATE_S = 1.0  # a message that comes later than this after its frame is judged at the end only
+
+
+class CollisionsSoFar:
+    """The contacts until now; ``pending`` holds those of the last second, which a late message may precede."""
+
+    def __init__(self) -> None:
+        self.settled: list[Evidence] = []
+        self.pending: list[Evidence] = []
+        self._latest: dict[Party, int] = {}
+        self._first = 0  # messages before this tick are settled
+
+    def look(self, window: Callable[[int], History]) -> None:
+        """Take in what is new."""
+        since = max(0, self._first - 1)  # the frame before a contact tells its speed
+        history = window(since)
+        settled = max(self._first, since + len(history.frames) - round(LATE_S / history.facts.step_s))
+        fresh = [event for event in history.collisions if event.tick + since >= self._first]
+        old = replace(history, collisions=tuple(event for event in fresh if event.tick + since < settled))
+        new = replace(history, collisions=tuple(event for event in fresh if event.tick + since >= settled))
+        self.settled += [replace(event, tick=event.tick + since) for event in contacts(old, self._latest)]
+        self.pending = [replace(event, tick=event.tick + since) for event in contacts(new, dict(self._latest))]
+        self._first = settled
+
+
+@dataclass(slots=True)
+class _Open:
+    """An episode that goes on."""
+
+    first: int
+    top_mps: float
+    posted_mps: float
+
+    def see(self, speed_mps: float, limit_mps: float) -> None:
+        """Keep the largest excess, the earliest of equal ones."""
+        if speed_mps - limit_mps > self.top_mps - self.posted_mps:
+            self.top_mps, self.posted_mps = speed_mps, limit_mps
+
+
+class SpeedingSoFar:
+    """The episodes until now; ``pending`` holds the one that goes on."""
+
+    def __init__(self, tolerance_mps: float) -> None:
+        self.settled: list[Evidence] = []
+        self.pending: list[Evidence] = []
+        self._tolerance_mps = tolerance_mps
+        self._seen = 0  # frames looked at
+        self._open: _Open | None = None
+
+    def look(self, window: Callable[[int], History]) -> None:
+        """Take in the frames that are new."""
+        history = window(self._seen)
+        speeds, limits = history.speed_mps().tolist(), limits_mps(history).tolist()
+        for tick, (speed_mps, limit_mps) in enumerate(zip(speeds, limits, strict=True), self._seen):
+            if speed_mps <= limit_mps:
+                self.settled += self._told(window, tick)
+                self._open = None
+            elif self._open is not None:
+                self._open.see(speed_mps, limit_mps)
+            elif speed_mps > limit_mps + self._tolerance_mps:
+                self._open = _Open(tick, speed_mps, limit_mps)
+        self._seen += len(speeds)
+        self.pending = self._told(window, self._seen)
+
+    def _told(self, window: Callable[[int], History], end: int) -> list[Evidence]:
+        """The open episode as it is at ``end``, nothing where there is none or it is too short to count."""
+        if self._open is None:
+            return []
+        begun = window(self._open.first)
+        seconds = (end - self._open.first) * begun.facts.step_s
+        if seconds < LEAST_S:
+            return []
+        found = episode(begun, 0, top_mps=self._open.top_mps, posted_mps=self._open.posted_mps, seconds=seconds)
+        return [replace(found, tick=self._open.first)]
+
+
+@dataclass(slots=True)
+class _Watched:
+    """One metric: from where it still looks, and what it found before."""
+
+    metric: Callable[[History], tuple[Evidence, ...]]
+    quiet: Callable[[History], NDArray[np.bool_]]  # (T,) frames before which all is settled
+    first: int = 0
+    passed_m: float = 0.0  # along the route: controls before this are settled
+    settled: list[Evidence] = field(default_factory=list)
+    pending: list[Evidence] = field(default_factory=list)
+
+    def look(self, window: Callable[[int], History]) -> None:
+        """Judge what is not settled, and settle what can be."""
+        history = _with_controls_beyond(window(self.first), self.passed_m)
+        found = [replace(event, tick=event.tick + self.first) for event in self.metric(history)]
+        quiet = np.flatnonzero(self.quiet(history))
+        if len(quiet):
+            last = int(quiet[-1])
+            self.settled += [event for event in found if event.tick < self.first + last]
+            vehicle = history.facts.vehicle
+            middle_m = history.frames["route_s_m"][: last + 1] + (vehicle.front_m - vehicle.rear_m) / 2.0
+            self.passed_m = max(self.passed_m, float(middle_m.max()))
+            self.first += last
+        self.pending = [event for event in found if event.tick >= self.first]
+
+
+class SoFar:
+    """What there is of a drive. ``advance`` before reading."""
+
+    def __init__(self, scoring: Scoring) -> None:
+        self._scoring = scoring
+        self._watched = (
+            CollisionsSoFar(),
+            _Watched(red_lights, _no_light),
+            _Watched(stop_signs, _no_sign),
+            SpeedingSoFar(scoring.speeding_tolerance_mps),
+        )
+        self._path_first, self._path_m = 0, 0.0
+        self._farthest_m = 0.0
+        self._path_score = 0.0
+
+    def advance(self, window: Callable[[int], History]) -> None:
+        """Take in what is new; ``window`` gives the record from a tick on, its ticks counted from there."""
+        for watched in self._watched:
+            watched.look(window)
+        self._follow(window(self._path_first))
+
+    @property
+    def infractions(self) -> tuple[Evidence, ...]:
+        """Every infraction until now, in the order in which they happened."""
+        return in_order(event for watched in self._watched for event in (*watched.settled, *watched.pending))
+
+    @property
+    def scores(self) -> Scores:
+        """The scores until now: the way that lies ahead is not driven yet."""
+        infraction = infraction_score(counts(self.infractions), self._scoring)
+        return Scores(driving_score(infraction, self._path_score, self._scoring), infraction, self._path_score)
+
+    def _follow(self, history: History) -> None:
+        """Add the new piece of the driven path."""
+        pieces = chords(path_m(history.frames))
+        whole = pieces.length_m >= SPACING_M
+        driven_m = self._path_m + total_m(pieces.length_m)
+        self._farthest_m = max(self._farthest_m, float(history.frames["route_s_m"].max(initial=0.0)))
+        self._path_score = compared(driven_m, self._farthest_m, history.facts.route.length_m).score
+        if whole.any():
+            self._path_m += total_m(pieces.length_m[whole])
+            self._path_first += int(pieces.end[whole][-1])
+
+
+def _with_controls_beyond(history: History, passed_m: float) -> History:
+    """The record with those of the route's controls that are not settled."""
+    route = history.facts.route
+    beyond = tuple(control for control in route.controls if control.s_m >= passed_m)
+    return replace(history, facts=replace(history.facts, route=replace(route, controls=beyond)))
+
+
+def _no_sign(history: History) -> NDArray[np.bool_]:
+    """No stop sign's approach zone has the vehicle in it."""
+    return _away_from(history, ControlKind.STOP_SIGN, ZONE_BEFORE_M, 0.0)
+
+
+def _no_light(history: History) -> NDArray[np.bool_]:
+    """No light's line lies under the vehicle, and no zone of a light has it in it."""
+    in_no_zone: NDArray[np.bool_] = history.frames["traffic_light_state"] == NO_LIGHT
+    return _away_from(history, ControlKind.TRAFFIC_LIGHT, 0.0, TAIL_BEHIND_M) & in_no_zone
+
+
+def _away_from(history: History, kind: ControlKind, before_m: float, behind_m: float) -> NDArray[np.bool_]:
+    """(T,) no line of ``kind`` between ``before_m`` ahead of the front and ``behind_m`` behind the rear."""
+    vehicle, s_m = history.facts.vehicle, history.frames["route_s_m"]
+    away = np.ones(len(s_m), dtype=np.bool_)
+    for control in history.facts.route.controls:
+        if control.kind is kind:
+            near = (control.s_m <= s_m + vehicle.front_m + before_m) & (control.s_m >= s_m - vehicle.rear_m - behind_m)
+            away &= ~near
+    return away

@@ -1,0 +1,104 @@
+"""``compare.html``: reads runs from their folders and writes page and picture of their comparison."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+from urllib.parse import quote
+
+from basu.errors import UserError
+from basu.files import write_bytes
+from basu.output.report import events
+from basu.output.report.comparison import draw, heads, remarks, rows, shared_bounds, text
+from basu.output.report.documents import read_run
+from basu.output.report.html.page import REPORT_FILE, legend, page
+from basu.output.report.plots.chart import Line, chart
+from basu.output.report.plots.signals import signals
+from basu.output.report.plots.town_map import plain_map
+from basu.output.report.streets import bounds_of
+from basu.output.report.templates import render
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+    from xml.etree.ElementTree import Element
+
+    from basu.output.report.documents import RunRecord
+    from basu.output.report.streets import Bounds
+
+
+def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path, more: Sequence[Element] = ()) -> bytes:
+    """The page, to lie in the folder ``beside``; ``more`` stands below the table."""
+    compared, shared = rows(runs), shared_bounds(runs)
+    named, reports = heads(compared), [folder / REPORT_FILE for folder in folders]
+    body = render(
+        "templates/comparison.j2",
+        agents=[row.agent for row in compared],
+        remarks=remarks(runs),
+        heads=named,
+        rows=[
+            (_address(path, beside) if path.exists() else None, [row.cell(head) for head in named])
+            for row, path in zip(compared, reports, strict=True)
+        ],
+        more=more,
+        legend=legend(),
+        figures=[
+            (row.agent, row.cell("driving score"), row.ended, _pictures(run, shared))
+            for run, row in zip(runs, compared, strict=True)
+        ],
+    )
+    return page("Comparison of runs", body)
+
+
+def _address(report: Path, beside: Path) -> str:
+    """The way from the comparison to a report, as a browser writes it."""
+    return quote(os.path.relpath(report.resolve(), beside.resolve()))
+
+
+def _pictures(run: RunRecord, shared: Bounds | None) -> list[Element]:
+    """One run: its path and its speed; none where nothing was driven."""
+    if run.history is None:
+        return []
+    felt = signals(run.history)
+    curves = [Line("driven", felt.speed_mps, "first"), Line("limit", felt.limit_mps, "limit", steps=True)]
+    bounds = shared or bounds_of(run.history)
+    places = [
+        (events.symbol(found.kind.value, str(number)), found.x_m, found.y_m)
+        for number, found in enumerate(run.result.infractions, start=1)
+    ]
+    return [
+        plain_map(run.history, run.streets, bounds, places),
+        chart(felt.t_s, curves, title="Speed", unit="m/s"),
+    ]
+
+
+PAGE_FILE, PICTURE_FILE = "compare.html", "compare.png"
+
+
+def compare(folders: Sequence[Path], output: Path, more: Sequence[Element] = ()) -> str:
+    """Write both files into ``output``; ``more`` stands below the table of the page.
+
+    Raises:
+        UserError: a folder is no run's, or ``output`` cannot be written.
+    """
+    runs = [read_run(folder) for folder in folders]
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{output} could not be made: {error.strerror}; name another place with --output") from error
+    write_bytes(output / PAGE_FILE, comparison(runs, folders, output, more))
+    draw(output / PICTURE_FILE, runs)
+    return "\n".join([_table(runs), str(output / PAGE_FILE), str(output / PICTURE_FILE)])
+
+
+def compared(folders: Sequence[Path]) -> str:
+    """The table of a comparison with its remarks; nothing is written.
+
+    Raises:
+        UserError: a folder is no run's.
+    """
+    return _table([read_run(folder) for folder in folders])
+
+
+def _table(runs: Sequence[RunRecord]) -> str:
+    return "\n".join([text(rows(runs)), *remarks(runs)])

@@ -1,0 +1,112 @@
+"""``path.png``: the path driven against the path planned, on the streets of the town."""
+
+from __future__ import annotations
+
+import io
+import math
+from typing import TYPE_CHECKING
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+from basu.files import write_bytes
+from basu.metrics.score import infractions
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from basu.metrics.score import Scoring
+    from basu.records.history import History
+
+
+CROWDED_M = 60.0  # stops nearer to each other than this have their names one below the other
+MARGIN_M = 40.0  # of street map around the route
+WIDTH_INCHES, DPI = 10.0, 130
+STREET, PLANNED, DRIVEN, MARK = "#d9d9d9", "#3182bd", "#e6550d", "#a50f15"
+
+
+def draw(
+    path: Path,
+    history: History,
+    streets: Sequence[NDArray[np.float64]],
+    title: str,
+    scoring: Scoring | None = None,
+) -> None:
+    """Write the picture, with the infractions that ``scoring`` makes of the drive.
+
+    ``streets`` are the lanes' centre lines, each (K, 2) in m, CARLA frame.
+    """
+    route, frames = history.facts.route, history.frames
+    low = np.minimum(route.points_m[:, :2].min(axis=0), [frames["x_m"].min(), frames["y_m"].min()]) - MARGIN_M
+    high = np.maximum(route.points_m[:, :2].max(axis=0), [frames["x_m"].max(), frames["y_m"].max()]) + MARGIN_M
+    spread = high - low
+    height_inches = float(np.clip(WIDTH_INCHES * spread[1] / spread[0], 4.0, 14.0)) + 0.6
+    figure = Figure(figsize=(WIDTH_INCHES, height_inches), layout="constrained")
+    axes = figure.add_subplot()
+    axes.add_collection(LineCollection(list(streets), colors=STREET, linewidths=2.0, zorder=1))
+    _paths(axes, history)
+    _marks(axes, history, scoring)
+    axes.set_xlim(low[0], high[0])
+    axes.set_ylim(high[1], low[1])  # CARLA's y points south: north is up
+    axes.set_aspect("equal")
+    axes.set_xlabel("x (east) in m")
+    axes.set_ylabel("y (south) in m")
+    axes.set_title(title)
+    figure.legend(loc="outside lower center", ncols=5, frameon=False)
+    buffer = io.BytesIO()
+    with mpl.rc_context({"savefig.bbox": "tight"}):
+        figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
+    write_bytes(path, buffer.getvalue())
+
+
+def _paths(axes: Axes, history: History) -> None:
+    """The plan below, wide and pale; the drive on it, thin."""
+    route, frames = history.facts.route, history.frames
+    plan = route.points_m
+    axes.plot(plan[:, 0], plan[:, 1], color=PLANNED, linewidth=5.0, alpha=0.45, label="planned", zorder=2)
+    axes.plot(frames["x_m"], frames["y_m"], color=DRIVEN, linewidth=1.4, label="driven", zorder=3)
+    axes.plot(*plan[0, :2], marker="o", color="black", markersize=7, linestyle="none", label="start", zorder=5)
+    axes.plot(frames["x_m"][-1], frames["y_m"][-1], "s", color=DRIVEN, markersize=7, label="end of the drive", zorder=5)
+
+
+def _marks(axes: Axes, history: History, scoring: Scoring | None) -> None:
+    """Service stops by name, infractions by kind."""
+    stops = history.facts.route.stops
+    west_m, east_m = history.facts.route.points_m[:, 0].min(), history.facts.route.points_m[:, 0].max()
+    for number, stop in enumerate(stops):
+        near = sum(math.hypot(stop.x_m - s.x_m, stop.y_m - s.y_m) < CROWDED_M for s in stops[:number])
+        axes.plot(stop.x_m, stop.y_m, marker="D", color=PLANNED, markersize=6, zorder=4)
+        is_east = stop.x_m > west_m + 0.7 * (east_m - west_m)  # a name there would leave the picture
+        axes.annotate(
+            stop.name,
+            (stop.x_m, stop.y_m),
+            xytext=(-6 if is_east else 6, 6 - 16 * near),
+            ha="right" if is_east else "left",
+            textcoords="offset points",
+            fontsize=7,
+        )
+    for number, found in enumerate(infractions(history, scoring)):
+        axes.plot(
+            found.x_m,
+            found.y_m,
+            marker="X",
+            color=MARK,
+            markersize=9,
+            linestyle="none",
+            label="infraction" if number == 0 else None,
+            zorder=6,
+        )
+        axes.annotate(
+            found.kind.value,
+            (found.x_m, found.y_m),
+            xytext=(6, -10),
+            textcoords="offset points",
+            fontsize=7,
+            color=MARK,
+        )

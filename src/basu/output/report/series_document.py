@@ -1,0 +1,115 @@
+"""``series.json``: many runs of one command as rows and totals, complete after each of them."""
+
+from __future__ import annotations
+
+import statistics
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+
+SERIES_SCHEMA_VERSION = 1
+SCORES = ("driving", "infraction", "path_following")
+COMPARED = ("driving", "route_completion", "infraction_penalty")  # of each version of the leaderboard
+NAMES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
+
+
+def row(document: Mapping[str, Any], *, number: int, repetition: int, folder: str) -> dict[str, Any]:
+    """What a series keeps of a run's result."""
+    reported, meta = document["reported"] or {}, document["meta"]
+    return {
+        "number": number,
+        "route": meta["route"],
+        "repetition": repetition,
+        "seed": meta["seed"],
+        "folder": folder,
+        "status": document["status"],
+        "fault": document["fault"],
+        "scores": document["scores"],
+        "leaderboard": {
+            version: {name: scores[name] for name in COMPARED}
+            for version, scores in (document["leaderboard"] or {}).items()
+        },
+        "infractions": dict(sorted(Counter(found["kind"] for found in document["infractions"]).items())),
+        "driven_m": reported.get("driven_m", 0.0),
+        "planned_m": reported.get("planned_m"),
+        "simulated_s": meta["simulated_s"],
+        "wall_s": meta["wall_s"],
+    }
+
+
+def totals(rows: Sequence[Mapping[str, Any]], planned: int) -> dict[str, Any]:
+    """Means, deviations and counts over the runs that are done, as in the leaderboard's global record.
+
+    A run without a score (nothing was driven) counts as 0 in the means. The leaderboard divides by the runs that were
+    planned; here the means are those of the runs that are done, and ``done`` says how many that is.
+    """
+    kinds: Counter[str] = Counter()
+    for each in rows:
+        kinds.update(each["infractions"])
+    driven_km = sum(each["driven_m"] for each in rows) / 1000.0
+    versions = sorted({version for each in rows for version in each["leaderboard"]})
+    return {
+        "done": len(rows),
+        "planned": planned,
+        "scores": {name: _spread([(each["scores"] or {}).get(name, 0.0) for each in rows]) for name in SCORES},
+        "leaderboard": {
+            version: {
+                name: _spread([each["leaderboard"].get(version, {}).get(name, 0.0) for each in rows])
+                for name in COMPARED
+            }
+            for version in versions
+        },
+        "statuses": dict(sorted(Counter(each["status"] for each in rows).items())),
+        "infractions": {
+            kind: {"number": kinds[kind], "per_km": kinds[kind] / driven_km if driven_km > 0.0 else None}
+            for kind in sorted(kinds)
+        },
+        "driven_km": driven_km,
+        "simulated_s": sum(each["simulated_s"] for each in rows),
+        "wall_s": round(sum(each["wall_s"] for each in rows), 3),
+    }
+
+
+def series_table(name: str, document: Mapping[str, Any]) -> str:
+    """A series as lines of text."""
+    total = document["totals"]
+    lines = [f"series {name}: {total['done']} of {total['planned']} runs done"]
+    if not total["done"]:
+        return lines[0]
+    lines.append(f"{'':<26}  mean   +/-    lowest highest")
+    lines += [_line(NAMES[key], total["scores"][key]) for key in SCORES]
+    lines += [
+        _line(f"leaderboard {version}", scores["driving"]) for version, scores in sorted(total["leaderboard"].items())
+    ]
+    lines.append(f"{'ended':<18}{', '.join(f'{count} {status}' for status, count in total['statuses'].items())}")
+    lines += [f"{kind:<26}{_often(found)}" for kind, found in total["infractions"].items()] or ["no infraction"]
+    pace = f", {total['simulated_s'] / total['wall_s']:.2f}x real time" if total["wall_s"] > 0.0 else ""
+    lines.append(
+        f"driven            {total['driven_km']:.3f} km, {total['simulated_s']:.1f} s simulated in "
+        f"{total['wall_s']:.1f} s of wall time{pace}"
+    )
+    return "\n".join(lines)
+
+
+def _spread(values: Sequence[float]) -> dict[str, float]:
+    """Mean, standard deviation of the sample, extremes; zeros where there is nothing."""
+    return {
+        "mean": statistics.fmean(values) if values else 0.0,
+        "deviation": statistics.stdev(values) if len(values) > 1 else 0.0,
+        "lowest": min(values, default=0.0),
+        "highest": max(values, default=0.0),
+    }
+
+
+def _line(name: str, spread: Mapping[str, float]) -> str:
+    figures = "".join(f"{spread[key]:8.3f}" for key in ("mean", "deviation", "lowest", "highest"))
+    return f"{name:<22}{figures}"
+
+
+def _often(found: Mapping[str, Any]) -> str:
+    """How often a kind of infraction happened."""
+    rate = "" if found["per_km"] is None else f", {found['per_km']:.2f} a km"
+    return f"{found['number']}{rate}"

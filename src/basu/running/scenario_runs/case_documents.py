@@ -1,0 +1,194 @@
+"""The documents of scenario runs: a case's result and config, and ``matrix.json`` of all cases and agents."""
+
+from __future__ import annotations
+
+import platform
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import basu
+from basu.options import STEP_S
+from basu.outcome import Outcome, Status
+from basu.running.scenario_runs.options import CASES, ScenarioOptions
+from basu.scenarios.characteristics import measured
+from basu.scenarios.sampling import Grid, Sweep
+from basu.scenarios.shares import crash_shares, results_from, shares_to_json
+from basu.scenarios.tree_text import tree_of
+from basu.scenarios.verdict import judge
+from basu.settings.command_line import words_of
+from basu.settings.document import SCENARIO_RUN, config_document
+from basu.settings.option import fields_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from datetime import datetime
+
+    from basu.agents.process.remote_agent import FoundAgent
+    from basu.managers.scenario_manager import Playing
+    from basu.records.history import History
+    from basu.scenarios.playable import Playable
+    from basu.scenarios.verdict import Judged
+
+
+SCHEMA_VERSION = 2
+
+
+def document_of(
+    playable: Playable,
+    loaded: FoundAgent,
+    playing: Playing | None,
+    judged: Judged,
+    options: ScenarioOptions,
+    *,
+    history: History | None,
+    wall_s: float,
+) -> dict[str, Any]:
+    """The document; ``playing`` and ``history`` are None where nothing was driven."""
+    case, scenario = playable.case, playable.scenario
+    return {
+        "schema_version": SCHEMA_VERSION,
+        **about(playable),
+        "agent": loaded.name,
+        "vehicle": options.vehicle or case.ego.model,
+        "seed": options.drive_seed,
+        "town": case.town,
+        "verdict": judged.verdict.value,
+        "fault": judged.fault.name.lower(),
+        "status": judged.outcome.status.value,
+        "message": judged.message,
+        "assessment": None if judged.assessment is None else judged.assessment.document(),
+        "collisions": [collision._asdict() for collision in judged.collisions],
+        "ended": judged.outcome.message,  # how the run ended, for judging it again
+        "measured": None if history is None or playing is None else _measured(playing, history),
+        "phases_s": {} if playing is None else {k: round(t * STEP_S, 3) for k, t in playing.phase_ticks.items()},
+        "judgements": [judgement._asdict() for judgement in judged.judgements],
+        "margins": judged.margins,
+        "tree": None if playing is None else tree_of(playing.composed, judged.judgements),
+        "actors": [] if playing is None else playing.actors(),
+        "things": [] if playing is None else [thing._asdict() for thing in playing.things],
+        "scenarios_file": case.source,
+        "command": command(playable, options, typed_name(options, loaded)),
+        "simulated_s": 0.0 if history is None else round(len(history.frames) * STEP_S, 3),
+        "wall_s": round(wall_s, 3),
+        "timeout_s": scenario.timeout_s,
+    }
+
+
+def _measured(playing: Playing, history: History) -> dict[str, Any] | None:
+    """Figures of the route and the drive where the conflict began; None where it never did."""
+    tick = playing.phase_ticks.get("conflict")
+    return None if tick is None or tick >= len(history.frames) else measured(history, tick)
+
+
+def lost(playable: Playable, loaded: FoundAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
+    """The document of a case after the death of its process: nothing is known of it."""
+    judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
+    return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)
+
+
+def about(playable: Playable) -> dict[str, Any]:
+    """Which case of which scenario, where, and its parameters."""
+    return {**playable.about(), "place": playable.case.place, "on_route": playable.case.on_route}
+
+
+def command(playable: Playable, options: ScenarioOptions, agent: str) -> list[str]:
+    """Return the command line that plays this case alone again."""
+    return command_of(options_again(playable, options, agent))
+
+
+def command_of(options: ScenarioOptions) -> list[str]:
+    """Return the command line of ``options``: each that differs from its default, but none of the session."""
+    session = [field.name for field in fields_of(ScenarioOptions) if not field.option.repeats]
+    return ["basu", "scenario", "run", *words_of(options, but=session)]
+
+
+def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> ScenarioOptions:
+    """Return the options that play one case of a run alone; its id holds sample and parameters."""
+    chosen = {field.name: field.default for field in fields_of(ScenarioOptions) if field.option.group == CASES}
+    found = {"what": (playable.case.name,), "files": options.all_files, "agents": (agent,), "seed": options.drive_seed}
+    return replace(options, **{**chosen, **found})
+
+
+def case_config(playable: Playable, options: ScenarioOptions, loaded: FoundAgent) -> dict[str, Any]:
+    """Return ``config.json`` of a case, which plays it alone again."""
+    return run_config(options_again(playable, options, typed_name(options, loaded)), [loaded])
+
+
+def run_config(options: ScenarioOptions, agents: Sequence[FoundAgent]) -> dict[str, Any]:
+    """Return ``config.json`` of a run of scenarios."""
+    pairs = [(file, file.with_suffix(".xml" if file.suffix == ".py" else ".py")) for file in options.all_files]
+    files = [*(agent.file for agent in agents if agent.file is not None), *(file for pair in pairs for file in pair)]
+    there = [file for file in files if file.is_file()]
+    return config_document(SCENARIO_RUN, options, None, command_of(options), there)
+
+
+def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
+    """Return an agent's name as it was typed, with the class where its file has several."""
+    file = loaded.file
+    if file is None or loaded.name in options.agents:
+        return loaded.name
+    return next((each for each in options.agents if Path(f"{each.partition('.py')[0]}.py") == file), str(file))
+
+
+MATRIX_SCHEMA_VERSION = 2
+SUMMARY = (  # entries of a result
+    "verdict",
+    "fault",
+    "status",
+    "message",
+    "assessment",
+    "collisions",
+    "margins",
+    "simulated_s",
+    "wall_s",
+)
+
+
+def matrix_of(
+    options: ScenarioOptions,
+    agents: Sequence[str],
+    playables: Sequence[Playable],
+    documents: Mapping[int, tuple[dict[str, Any], str]],
+    began: datetime,
+    wall_s: float,
+) -> dict[str, Any]:
+    """The document; ``documents`` are results and folders by number of the job, cases before agents."""
+    rows: list[dict[str, Any]] = []
+    by_agent: dict[str, list[dict[str, Any]]] = {agent: [] for agent in agents}
+    for nth, playable in enumerate(playables):
+        results = {}
+        for column, agent in enumerate(agents):
+            done = documents.get(nth * len(agents) + column)
+            if done is not None:
+                document, folder = done
+                by_agent[agent].append(document)
+                results[agent] = {**{key: document[key] for key in SUMMARY}, "folder": folder}
+        rows.append({**about(playable), "results": results})
+    return {
+        "schema_version": MATRIX_SCHEMA_VERSION,
+        "started": began.astimezone().isoformat(timespec="seconds"),
+        "what": " ".join(options.what),
+        "agents": list(agents),
+        "vehicle": options.vehicle,
+        "seed": options.drive_seed,
+        "sweep": _design(options),
+        "wall_s": round(wall_s, 1),
+        "workers": options.workers,
+        "cases": rows,
+        "shares": {agent: shares_to_json(crash_shares(results_from(by_agent[agent]))) for agent in agents},
+        "versions": {"basu": basu.__version__, "carla": version("carla"), "python": platform.python_version()},
+    }
+
+
+def _design(options: ScenarioOptions) -> dict[str, Any] | None:
+    """How parameters were sampled."""
+    design = options.design
+    if design is None:
+        return None
+    vary = {"vary": list(options.vary)}
+    if isinstance(design, Sweep):
+        return {"n": design.samples, "seed": design.seed, **vary}
+    assert isinstance(design, Grid), "there are two designs"
+    return {"grid": design.steps, **vary}

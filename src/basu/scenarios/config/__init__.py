@@ -1,1 +1,0 @@
-"""Cases as files: ScenarioRunner's XML and what of it a case is made of."""

@@ -1,1 +1,0 @@
-"""Shared by two folders or more: packaged files."""

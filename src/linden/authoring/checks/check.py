@@ -1,0 +1,37 @@
+"""What a careful reader finds wrong with a map, in a fixed order: its words, its shapes, its links, its signs."""
+
+from linden.authoring.checks.finding import Finding, Severity
+from linden.authoring.checks.joints import lane_joints, road_joints
+from linden.authoring.checks.lane_links import junctions, lane_ends, lane_links_returned, road_links
+from linden.authoring.checks.missing_facts import georeference, lane_changes, speed_limits
+from linden.authoring.checks.overlaps import overlaps, raised_ground
+from linden.authoring.checks.shape import lane_widths, profiles, reference_lines
+from linden.authoring.checks.signals import controllers, objects, signals
+from linden.maps.opendrive.model import OpenDrive
+
+__all__ = ["Finding", "Severity", "check"]
+
+_CHECKS = (
+    georeference,
+    speed_limits,
+    lane_changes,
+    reference_lines,
+    profiles,
+    lane_widths,
+    road_links,
+    road_joints,
+    lane_links_returned,
+    lane_joints,
+    lane_ends,
+    junctions,
+    signals,
+    controllers,
+    objects,
+    overlaps,
+    raised_ground,
+)
+
+
+def check(opendrive: OpenDrive) -> list[Finding]:
+    """Return everything found; an empty list, or notes alone, mean that nothing is wrong."""
+    return [finding for family in _CHECKS for finding in family(opendrive)]

@@ -1,0 +1,1 @@
+"""Drawing a map as SVG: north up, one unit a metre."""

@@ -1,0 +1,47 @@
+"""Draws a map as SVG: north up, one unit a metre, x and y as in CARLA, so a place can be read off with a pointer."""
+
+from linden.authoring.drawing.labels import frame, street_names
+from linden.authoring.drawing.style import GRASS
+from linden.authoring.drawing.surfaces import marks, surfaces
+from linden.authoring.drawing.symbols import objects, signals, spawn_marks
+from linden.maps.opendrive.evaluate.tables import tables_of
+from linden.maps.opendrive.mesh import road_mesh
+from linden.maps.opendrive.model import OpenDrive
+from linden.maps.opendrive.signals import place
+from linden.maps.opendrive.spawn_points import spawn_points
+
+_MARGIN = 0.04  # of the longer side
+_LONGER_SIDE_PX = 1800
+_LINES = 50.0  # as many lines of text would fill the longer side
+_NAME_SIZE_M = 4.5  # street names stay within their street
+
+
+def svg(opendrive: OpenDrive) -> str:
+    """Return the text of an SVG file."""
+    tables = tables_of(opendrive)
+    vertices = road_mesh(opendrive).vertices
+    low, high = (
+        (vertices[:, :2].min(axis=0), vertices[:, :2].max(axis=0)) if len(vertices) else ((0.0, 0.0), (1.0, 1.0))
+    )
+    side_m = max(float(high[0] - low[0]), float(high[1] - low[1]), 50.0)
+    margin_m = _MARGIN * side_m
+    left, top = float(low[0]) - margin_m, float(low[1]) - margin_m
+    width, height = float(high[0]) + margin_m - left, float(high[1]) + margin_m - top
+    scale = _LONGER_SIDE_PX / max(width, height)
+    unit_m = side_m / _LINES
+    view_box = f"{left:.1f} {top:.1f} {width:.1f} {height:.1f}"
+    size = f'width="{width * scale:.0f}" height="{height * scale:.0f}" viewBox="{view_box}"'
+    ground = f'<rect x="{left:.1f}" y="{top:.1f}" width="{width:.1f}" height="{height:.1f}" fill="{GRASS}"/>'
+    layers = [
+        f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">',
+        ground,
+        *surfaces(tables),
+        *marks(tables),
+        *objects(tables),
+        *spawn_marks(spawn_points(opendrive)),
+        *signals(place(opendrive)),
+        *street_names(tables, _NAME_SIZE_M),
+        *frame(opendrive, (left, top, width, height), unit_m),
+        "</svg>\n",
+    ]
+    return "\n".join(layers)

@@ -1,0 +1,1 @@
+"""Point cloud maps: streets driven with a lidar, scans merged and thinned out, PCD files."""

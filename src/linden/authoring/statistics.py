@@ -1,0 +1,76 @@
+"""How much of everything a map has."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from linden.maps.opendrive.evaluate.tables import Tables, tables_of
+from linden.maps.opendrive.links import is_forward, lane_links
+from linden.maps.opendrive.model import OpenDrive
+from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE
+from linden.maps.opendrive.spawn_points import spawn_points
+from linden.protocol.values.enums import LaneType
+
+
+class Counts(NamedTuple):
+    """What there is. Lengths are measured along the roads' reference lines, in km."""
+
+    roads: int
+    connecting_roads: int  # of those, inside junctions
+    junctions: int
+    signals: int
+    traffic_lights: int
+    stop_signs: int
+    yield_signs: int
+    speed_signs: int
+    controllers: int
+    crosswalks: int
+    objects: int
+    street_names: int
+    lanes: int
+    spawn_points: int
+    topology: int  # pairs that the client's get_topology() returns
+    road_km: float
+    driving_lane_km: float
+    sidewalk_km: float
+
+
+def _is_paired_with_its_end(tables: Tables, row: int) -> bool:
+    """Return whether LibCarla pairs a lane that leads nowhere with its own end (Map.cpp, GenerateTopology).
+
+    It looks for that end in single precision, and finds nothing where rounding puts it beyond the road.
+    """
+    lane = tables.lanes[row]
+    road = tables.roads[lane["road"]]
+    return not is_forward(road, int(lane["lane_id"])) or float(np.float32(lane["end_m"])) < road.length_m
+
+
+def count(opendrive: OpenDrive) -> Counts:
+    """Return the counts of a map."""
+    tables, links = tables_of(opendrive), lane_links(opendrive)
+    signals = [signal for _, signal in opendrive.signals()]
+    types = [signal.type for signal in signals]
+    kinds = tables.lanes["type_bits"]
+    length_m = tables.lanes["end_m"] - tables.lanes["start_m"]
+    objects = [thing for road in opendrive.roads for thing in road.objects]
+    driving = np.flatnonzero(kinds == int(LaneType.DRIVING))
+    return Counts(
+        roads=len(opendrive.roads),
+        connecting_roads=sum(road.is_in_junction for road in opendrive.roads),
+        junctions=len(opendrive.junctions),
+        signals=len(signals),
+        traffic_lights=sum(signal.is_light for signal in signals),
+        stop_signs=types.count(STOP_SIGN_TYPE),
+        yield_signs=types.count(YIELD_SIGN_TYPE),
+        speed_signs=types.count(SPEED_LIMIT_TYPE),
+        controllers=len(opendrive.controllers),
+        crosswalks=sum(thing.is_crosswalk for thing in objects),
+        objects=len(objects),
+        street_names=len({road.name for road in opendrive.roads if road.name and not road.is_in_junction}),
+        lanes=len(tables.lanes),
+        spawn_points=len(spawn_points(opendrive)),
+        topology=sum(len(links.successors[row]) or _is_paired_with_its_end(tables, row) for row in driving),
+        road_km=float(sum(road.length_m for road in opendrive.roads if not road.is_in_junction)) / 1000.0,
+        driving_lane_km=float(length_m[driving].sum()) / 1000.0,
+        sidewalk_km=float(length_m[kinds == int(LaneType.SIDEWALK)].sum()) / 1000.0,
+    )

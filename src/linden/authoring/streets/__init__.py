@@ -1,0 +1,1 @@
+"""Street facts in GeoJSON to OpenDRIVE."""

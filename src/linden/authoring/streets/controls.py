@@ -1,0 +1,157 @@
+"""What tells drivers at a junction what to do: signs, lights, stop lines, crosswalks; and where they stand."""
+
+from linden.authoring.streets import roundabouts
+from linden.authoring.streets.cross_section import KERB_M, View
+from linden.authoring.streets.document import Object, Signal
+from linden.authoring.streets.network import Leg
+from linden.authoring.streets.street_facts import Control, Intersection
+
+STOP, YIELD, LIGHT = "206", "205", "1000001"  # LibCarla's SignalType
+LINE_TO_END_M = 0.8  # from the junction to the middle of a stop line without crosswalk
+CROSSWALK_TO_END_M = 0.8
+CROSSWALK_M = 3.0  # 10 ft, a usual width; MUTCD 3B.18 asks for 6 ft at least
+LINE_TO_CROSSWALK_M = 1.4  # to the line's middle; MUTCD 3B.16 asks for 4 ft of free road between them
+LINE_WIDTH_M = 0.4  # MUTCD 3B.16: 12 to 24 in
+POST_TO_KERB_M = 0.6  # MUTCD 2A.19: 2 ft from the kerb's face
+ROOM_FOR_CROSSWALK_M = 14.0  # a road that is shorter gets none
+
+
+def control_of(intersections: list[Intersection], intersection: Intersection | None) -> Control:
+    """Return what governs a leg: a light or roundabout anywhere in the junction, else its own intersection's rule."""
+    for control in (Control.SIGNAL, Control.ROUNDABOUT):
+        if any(one.control is control for one in intersections):
+            return control
+    return intersection.control if intersection else Control.NONE
+
+
+def sign_of(control: Control, leg: Leg, stops: frozenset[str]) -> str | None:
+    """Return the type of the sign or light for those who come in on a leg, None where they need none."""
+    if not leg.view.driving(right=True):
+        return None
+    if control is Control.TWO_WAY_STOP:
+        return STOP if leg.street.name in stops else None
+    return {Control.SIGNAL: LIGHT, Control.ALL_WAY_STOP: STOP, Control.ROUNDABOUT: YIELD}.get(control)
+
+
+def signal(number: int, kind: str, leg: Leg, road_m: float, confidence: str, *, crosswalk: bool) -> Signal:
+    """Return the sign or light of a leg: at the stop line, right of the kerb, valid for the incoming lanes."""
+    lanes = leg.view.driving(right=True)
+    before_m = line_before_end_m(crosswalk=crosswalk)
+    beside_m = leg.view.kerb_m(right=True) - KERB_M - POST_TO_KERB_M
+    name = {STOP: "Stop", YIELD: "Yield", LIGHT: "Signal"}[kind]
+    return Signal(
+        id=number,
+        name=f"{name}, {leg.street.name}",
+        s_m=road_m - before_m if leg.end.at_end else before_m,
+        t_m=beside_m if leg.end.at_end else -beside_m,
+        kind=kind,
+        lanes=(min(lanes), max(lanes)),
+        confidence=confidence,
+        dynamic=kind == LIGHT,
+    )
+
+
+def line(number: int, kind: str, leg: Leg, road_m: float, confidence: str, *, crosswalk: bool) -> Object:
+    """Return the stop or yield line across a leg's incoming lanes."""
+    lanes = leg.view.driving(right=True)
+    inner_m = leg.view.axis_m
+    width_m = sum(leg.view.lane(lane).width_m for lane in lanes)
+    middle_m = inner_m - width_m / 2
+    return _across(
+        number,
+        "YieldLine" if kind == YIELD else "StopLine",
+        "roadMark",
+        leg,
+        (road_m, line_before_end_m(crosswalk=crosswalk), middle_m),
+        (LINE_WIDTH_M, width_m),
+        confidence,
+    )
+
+
+def crosswalk(number: int, leg: Leg, road_m: float, confidence: str) -> Object:
+    """Return the crosswalk over a leg, from kerb to kerb."""
+    right_m, left_m = leg.view.kerb_m(right=True), leg.view.kerb_m(right=False)
+    return _across(
+        number,
+        "Crosswalk",
+        "crosswalk",
+        leg,
+        (road_m, CROSSWALK_TO_END_M + CROSSWALK_M / 2, (right_m + left_m) / 2),
+        (CROSSWALK_M, left_m - right_m),
+        confidence,
+    )
+
+
+def crosswalk_at(number: int, view_along: View, s_m: float, confidence: str) -> Object:
+    """Return a crosswalk between junctions, ``s_m`` along a road seen in its own direction."""
+    right_m, left_m = view_along.kerb_m(right=True), view_along.kerb_m(right=False)
+    outline = _rectangle(CROSSWALK_M, left_m - right_m)
+    return Object(number, "Crosswalk", "crosswalk", s_m, (right_m + left_m) / 2, 0.0, outline, confidence)
+
+
+def island(number: int, leg: Leg, road_m: float, outline: tuple[tuple[float, float], ...], confidence: str) -> Object:
+    """Return the central island of a roundabout as an object of one leg's road; the outline as that leg sees it."""
+    return Object(
+        number,
+        "RoundaboutIsland",
+        "trafficIsland",
+        road_m if leg.end.at_end else 0.0,
+        0.0,
+        0.0 if leg.end.at_end else 3.141592653589793,
+        outline,
+        confidence,
+    )
+
+
+def line_before_end_m(*, crosswalk: bool) -> float:
+    """Return how far before the end of its road a stop line's middle lies."""
+    return CROSSWALK_TO_END_M + CROSSWALK_M + LINE_TO_CROSSWALK_M if crosswalk else LINE_TO_END_M
+
+
+def junction_notes(found: list[Intersection], rules: list[Control]) -> tuple[tuple[str, str], ...]:
+    """Return what a reader of the file may want to know: where it comes from, how sure it is, what governs it."""
+    order = list(Control)
+    control = min(rules, key=order.index)
+    notes = [("control", control.value)]
+    for one in found:
+        notes += [
+            ("intersection", one.id),
+            ("confidence", one.confidence),
+            ("control_confidence", one.control_confidence),
+        ]
+    if control is Control.ROUNDABOUT:
+        notes += [
+            ("roundabout", "mini"),
+            ("island_radius_m", str(roundabouts.ISLAND_RADIUS_M)),
+            ("lane_width_m", str(roundabouts.LANE_M)),
+        ]
+    return tuple(notes)
+
+
+def _across(
+    number: int,
+    name: str,
+    kind: str,
+    leg: Leg,
+    place: tuple[float, float, float],
+    size_m: tuple[float, float],
+    confidence: str,
+) -> Object:
+    """Return a painted rectangle over a leg. ``place``: the road's length, m before its end, m left of its line."""
+    road_m, before_m, left_m = place
+    return Object(
+        number,
+        name,
+        kind,
+        s_m=road_m - before_m if leg.end.at_end else before_m,
+        t_m=left_m if leg.end.at_end else -left_m,
+        heading_rad=0.0,
+        outline=_rectangle(*size_m),
+        confidence=confidence,
+    )
+
+
+def _rectangle(along_m: float, across_m: float) -> tuple[tuple[float, float], ...]:
+    """Return a closed outline about its middle: LibCarla's readers expect the first corner again at the end."""
+    u, v = along_m / 2, across_m / 2
+    return ((-u, -v), (u, -v), (u, v), (-u, v), (-u, -v))

@@ -1,0 +1,230 @@
+"""Roads between junctions as OpenDRIVE records: lanes and their marks, height, and the bends where two roads meet."""
+
+import math
+from collections.abc import Sequence
+from itertools import zip_longest
+from typing import NamedTuple
+
+from linden.authoring.streets.cross_section import KERB_HEIGHT_M, PAVED, RAISED, Lane, Section
+from linden.authoring.streets.curves import Path, Pose, joined, length, pose_at, turned_back
+from linden.authoring.streets.document import Cubic, LaneRecord, Link, Mark, RoadRecord, eased
+from linden.authoring.streets.network import End, Leg
+from linden.authoring.streets.street_facts import Ground, Street
+
+RAMP_M = 30.0  # a junction is level; over this length a road finds back to the plane of the ground
+STEEPEST = 0.012  # mean rise of a road between level junctions; its middle is half as steep again
+LEVELLING_ROUNDS = 100
+KNOT_M = 60.0  # between points where the height is given
+KINDS = ("driving", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
+
+Numbered = tuple[tuple[int, Lane], ...]
+
+
+class Touch(NamedTuple):
+    """What one end of a road touches: the link, and for each lane the one it goes on in (none at a junction)."""
+
+    link: Link
+    lanes: dict[int, int]
+
+
+class Strip(NamedTuple):
+    """A lane of a road that joins two others: its width at both ends (0 where it is missing) and its neighbours."""
+
+    kind: str
+    widths_m: tuple[float, float]
+    before: int | None
+    after: int | None
+
+
+def height(ground: Ground, pose: Pose) -> float:
+    """Return the ground's height in m under a pose."""
+    return ground.base_m + ground.north * pose.y_m + ground.east * pose.x_m
+
+
+def slope(ground: Ground, pose: Pose) -> float:
+    """Return the ground's rise per metre along a pose's heading."""
+    return ground.north * math.sin(pose.heading_rad) + ground.east * math.cos(pose.heading_rad)
+
+
+def elevation(ground: Ground, path: Path, ends_m: tuple[float | None, float | None]) -> tuple[Cubic, ...]:
+    """Return the height along a path: on the plane, but level and at the given height where it meets a junction.
+
+    ``None`` stands for an end where the plane goes on.
+    """
+    total_m = length(path)
+    ramp_m = min(RAMP_M, total_m / 2)
+    middle_m = total_m - 2 * ramp_m
+    count = round(middle_m / KNOT_M) + 1 if middle_m > 1.0 else 0
+    knots = [0.0, *(ramp_m + middle_m * i / max(count, 1) for i in range(count + 1)), total_m]
+    if not count:
+        knots = [0.0, total_m]
+    poses = [pose_at(path, s) for s in knots]
+    points = [(height(ground, pose), slope(ground, pose)) for pose in poses]
+    for index, end_m in ((0, ends_m[0]), (-1, ends_m[1])):
+        if end_m is not None:
+            points[index] = (end_m, 0.0)
+    return tuple(
+        eased(s, after - s, (z, z_after), (g, g_after))
+        for s, after, (z, g), (z_after, g_after) in zip(knots, knots[1:], points, points[1:], strict=False)
+    )
+
+
+def levels(ground: Ground, junctions: Sequence[tuple[Leg, ...]], roads_m: Sequence[float | None]) -> tuple[float, ...]:
+    """Return each junction's height: the ground's under its legs, but no road between two of them too steep.
+
+    Where a road would rise by more than ``STEEPEST`` on the whole, both its junctions give way by half the rest; a
+    few rounds of that settle. ``roads_m``: length of each edge's road, None inside junctions.
+    """
+    found = [math.fsum(height(ground, leg.pose) for leg in legs) / len(legs) for legs in junctions]
+    at = {leg.end: number for number, legs in enumerate(junctions) for leg in legs}
+    links = [
+        (at[begin], at[end], road_m)
+        for begin, end, road_m in ((End(i, at_end=False), End(i, at_end=True), m) for i, m in enumerate(roads_m))
+        if road_m is not None and begin in at and end in at
+    ]
+    for _ in range(LEVELLING_ROUNDS):
+        for a, b, road_m in links:
+            rise_m = found[b] - found[a]
+            rest_m = math.copysign(max(abs(rise_m) - STEEPEST * road_m, 0.0), rise_m) / 2
+            found[a] += rest_m
+            found[b] -= rest_m
+    return tuple(round(height_m, 3) for height_m in found)
+
+
+def street_road(number: int, street: Street, section: Section, path: Path, heights: tuple[Cubic, ...]) -> RoadRecord:
+    """Return the record of a street's road, not linked yet."""
+    busy = street.street_class in {"arterial", "collector"}
+    centre = Mark("solid solid" if busy else "broken", "yellow") if section.left[0].kind == "driving" else _CURB
+    return RoadRecord(
+        id=number,
+        name=street.name,
+        junction=-1,
+        path=path,
+        predecessor=None,
+        successor=None,
+        speed_mph=street.speed_limit_mph,
+        elevation=heights,
+        axis=(Cubic(0.0, section.axis_m),),
+        left=_lanes(section.left, 1),
+        right=_lanes(section.right, -1),
+        centre=centre,
+        notes=(("street", street.id), ("class", street.street_class), *street.confidences),
+    )
+
+
+def linked(road: RoadRecord, before: Touch | None, after: Touch | None) -> RoadRecord:
+    """Return the road with what its ends touch."""
+    lanes_before = before.lanes if before else {}
+    lanes_after = after.lanes if after else {}
+
+    def told(lanes: tuple[LaneRecord, ...]) -> tuple[LaneRecord, ...]:
+        return tuple(
+            lane._replace(predecessor=lanes_before.get(lane.id), successor=lanes_after.get(lane.id)) for lane in lanes
+        )
+
+    return road._replace(
+        predecessor=before.link if before else None,
+        successor=after.link if after else None,
+        left=told(road.left),
+        right=told(road.right),
+    )
+
+
+def bend(number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: Ground) -> RoadRecord:
+    """Return the road that goes on from one road into another where just two meet."""
+    come, go = legs
+    path = joined(come.pose, turned_back(go.pose))
+    total_m = length(path)
+    right = blended(come.view.right, go.view.left)
+    left = blended(come.view.left, go.view.right)
+    return RoadRecord(
+        id=number,
+        name=come.street.name,
+        junction=-1,
+        path=path,
+        predecessor=Link("road", road_ids[0], contact(come.end)),
+        successor=Link("road", road_ids[1], contact(go.end)),
+        speed_mph=min(come.street.speed_limit_mph, go.street.speed_limit_mph),
+        elevation=elevation(ground, path, (None, None)),
+        axis=(eased(0.0, total_m, (come.view.axis_m, -go.view.axis_m)),),
+        left=strips(left, 1, total_m),
+        right=strips(right, -1, total_m),
+        centre=Mark("broken", "yellow"),
+        notes=(("street", come.street.id), *come.street.confidences),
+    )
+
+
+def touches_of_bend(record: RoadRecord) -> tuple[Touch, Touch]:
+    """Return what the roads before and after a bend touch: its start and its end, lane by lane."""
+    lanes = record.right + record.left
+    return (
+        Touch(
+            Link("road", record.id, "start"),
+            {lane.predecessor: lane.id for lane in lanes if lane.predecessor is not None},
+        ),
+        Touch(
+            Link("road", record.id, "end"), {lane.successor: lane.id for lane in lanes if lane.successor is not None}
+        ),
+    )
+
+
+def contact(end: End) -> str:
+    """Return OpenDRIVE's word for that end of a road."""
+    return "end" if end.at_end else "start"
+
+
+def blended(before: Numbered, after: Numbered) -> tuple[Strip, ...]:
+    """Pair the lanes of two roads' sides kind by kind, from the axis out; what has no partner narrows to nothing."""
+    found = []
+    for kind in KINDS:
+        ours = [(number, lane.width_m) for number, lane in before if lane.kind == kind]
+        theirs = [(number, lane.width_m) for number, lane in after if lane.kind == kind]
+        for one, other in zip_longest(ours, theirs):
+            widths = (one[1] if one else 0.0, other[1] if other else 0.0)
+            found.append(Strip(kind, widths, one[0] if one else None, other[0] if other else None))
+    return tuple(found)
+
+
+def strips(found: tuple[Strip, ...], sign: int, over_m: float) -> tuple[LaneRecord, ...]:
+    """Return the lane records of one side, from the axis outward; ``sign`` is -1 on the right."""
+    kinds = [strip.kind for strip in found]
+    return tuple(
+        LaneRecord(
+            id=sign * (i + 1),
+            kind=strip.kind,
+            widths=(eased(0.0, over_m, strip.widths_m),),
+            mark=_outer_mark(strip.kind, kinds[i + 1 : i + 2]),
+            predecessor=strip.before,
+            successor=strip.after,
+            height_m=KERB_HEIGHT_M if strip.kind in RAISED else 0.0,
+        )
+        for i, strip in enumerate(found)
+    )
+
+
+_CURB = Mark("curb", "standard")
+
+
+def _lanes(side: tuple[Lane, ...], sign: int) -> tuple[LaneRecord, ...]:
+    kinds = [lane.kind for lane in side]
+    return tuple(
+        LaneRecord(
+            id=sign * (i + 1),
+            kind=lane.kind,
+            widths=(Cubic(0.0, lane.width_m),),
+            mark=_outer_mark(lane.kind, kinds[i + 1 : i + 2]),
+            height_m=KERB_HEIGHT_M if lane.kind in RAISED else 0.0,
+        )
+        for i, lane in enumerate(side)
+    )
+
+
+def _outer_mark(kind: str, following: list[str]) -> Mark:
+    """Return the mark between a lane and the next one outward."""
+    if kind in PAVED and following == ["border"]:
+        return _CURB
+    if kind == "driving" and following == ["driving"]:
+        return Mark("broken", "white", "both")
+    if kind == "driving" and following:
+        return Mark("solid", "white")
+    return Mark()

@@ -1,0 +1,1 @@
+"""The blueprint library: every kind of actor, its attributes, sizes and skeleton."""

@@ -1,0 +1,260 @@
+"""Kernels that are compiled in processes of their own: at a first start, and by ``linden compile``.
+
+numba compiles on one processor. So a first start cuts the work into groups: two processes compile the parts of the
+physics while the server makes the rest of what its first tick needs; a third, of low priority, compiles the kernels of
+sensors after the server is ready. Each leaves what it compiled in numba's cache, where the server finds it.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from itertools import count
+from typing import TYPE_CHECKING
+
+from linden.errors import UserError
+
+if TYPE_CHECKING:
+    from linden.maps.cache import MapCache
+
+NICE = 10
+"""Priority of a process that compiles while the server serves."""
+
+
+def driving() -> None:
+    """Compile what moves vehicles on their wheels."""
+    from linden.physics.warming import compile_driving  # noqa: PLC0415 - each process imports what its group needs
+
+    compile_driving()
+
+
+def contacts() -> None:
+    """Compile what finds and parts bodies that overlap."""
+    from linden.physics.warming import compile_contacts  # noqa: PLC0415 - as in driving
+
+    compile_contacts()
+
+
+def rays() -> None:
+    """Compile rays: those that clients cast, and those of lidars and radars."""
+    from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
+    from linden.sensors.warming import warm_rays  # noqa: PLC0415 - as in driving
+
+    warm_up()
+    warm_rays()
+
+
+def cameras() -> None:
+    """Compile what cameras need."""
+    from linden.sensors.warming import warm_cameras  # noqa: PLC0415 - as in driving
+
+    warm_cameras()
+
+
+def scenery() -> None:
+    """Make the meshes that sensors see on the default map."""
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
+    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
+    from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
+    from linden.scenery.actors.actor_meshes_cache import keep_bodies  # noqa: PLC0415 - as in driving
+    from linden.scenery.map_mesh_cache import keep_standing  # noqa: PLC0415 - as in driving
+    from linden.world import World  # noqa: PLC0415 - as in driving
+
+    cache = MapCache.of_user()
+    simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    keep_bodies(simulation.library, cache)
+    keep_standing(simulation.episode.map, simulation.episode.surroundings.scene, cache)
+
+
+def world() -> None:
+    """Compile what a world needs beside the physics, and derive what is kept of the default map."""
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
+    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
+    from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - as in driving
+    from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
+    from linden.protocol.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - as in driving
+    from linden.server.rpc import registry  # noqa: PLC0415 - as in driving
+    from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - as in driving
+    from linden.world import World  # noqa: PLC0415 - as in driving
+
+    registry.load_handlers()
+    cache = MapCache.of_user()
+    simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    simulation.episode.warm_up()
+    warm_batches()
+    mesh_file(simulation.episode, MeshLibrary(cache))
+
+
+def frame() -> None:
+    """Compile the frame of physics, whose parts are compiled already, and note that it is."""
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
+    from linden.physics.warming import warm_up  # noqa: PLC0415 - as in driving
+    from linden.sensors.compiling import OF_PHYSICS, note_compiled  # noqa: PLC0415 - as in driving
+
+    warm_up()
+    note_compiled(OF_PHYSICS, MapCache.of_user())
+
+
+def sensors() -> None:
+    """Note that the kernels of sensors are compiled: those of rays and of cameras are already."""
+    from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
+    from linden.sensors.compiling import compile_once  # noqa: PLC0415 - as in driving
+
+    compile_once(MapCache.of_user())
+
+
+GROUPS: dict[str, Callable[[], None]] = {
+    group.__name__: group for group in (cameras, driving, contacts, world, rays, scenery, frame, sensors)
+}
+"""By name, longest first; those of ``_LAST`` come after all others."""
+_LAST = ("scenery", "frame", "sensors")
+
+
+class Compiling:
+    """A process that compiles groups of kernels one after the other."""
+
+    def __init__(self, *groups: str, background: bool = False) -> None:
+        """Start it; in the background it leaves the processors to others."""
+        program = "import os, sys; from linden.cli.compiling import compile_groups; "
+        program += f"os.nice({NICE if background else 0}); compile_groups(sys.argv[1:])"
+        self._process = subprocess.Popen(  # noqa: S603 - this very Python
+            [sys.executable, "-c", program, *groups], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE
+        )
+        self._compiled = {group: threading.Event() for group in groups}
+        threading.Thread(target=self._follow, name="compiling", daemon=True).start()
+
+    def wait(self) -> int:
+        """Return the exit code, once it has ended."""
+        return self._process.wait()
+
+    def has(self, group: str) -> bool:
+        """Return whether a group is compiled, or will not be."""
+        return self._compiled[group].is_set()
+
+    def wait_for(self, group: str) -> None:
+        """Wait until a group is compiled, or will not be."""
+        self._compiled[group].wait()
+
+    def end(self) -> None:
+        """End it; what it has compiled stays."""
+        self._process.terminate()
+        self._process.wait()
+
+    def _follow(self) -> None:
+        """Note the groups that the process names when they are compiled; at its end, all."""
+        assert self._process.stdout is not None
+        with self._process.stdout as named:
+            for line in named:
+                self._compiled[line.decode().strip()].set()
+        for group in self._compiled.values():
+            group.set()
+
+
+class FirstStart:
+    """What a server compiles before it is ready, and after; where all is compiled, it only loads the physics."""
+
+    STEPS = 5
+    """Of what is printed before the server is ready."""
+
+    def __init__(self, say: Callable[[str], None]) -> None:
+        """Start nothing yet; ``say`` prints a line."""
+        self._say = say
+        self._numbers = count(1)
+        self._parts: dict[str, Compiling] = {}
+        self._background: Compiling | None = None
+
+    def begin(self, cache: "MapCache") -> None:
+        """Begin to compile the parts of the physics, where they are not compiled."""
+        from linden.sensors.compiling import OF_PHYSICS, is_compiled  # noqa: PLC0415 - as in driving
+
+        self._cache = cache
+        if not is_compiled(OF_PHYSICS, cache):
+            self._say("linden: compiling kernels, once on this machine: about half a minute on two processors")
+            self._parts = {"vehicles": Compiling("driving"), "contacts": Compiling("contacts")}
+
+    def step(self, name: str) -> None:
+        """Print that a step is done, where any is to be done."""
+        if self._parts:
+            self._say(f"linden: compiling kernels, {next(self._numbers)} of {self.STEPS}: {name}")
+
+    def finish_physics(self) -> None:
+        """Compile the frame of physics once its parts are compiled, or load it."""
+        from linden.physics.warming import warm_up  # noqa: PLC0415 - as in driving
+        from linden.sensors.compiling import OF_PHYSICS, note_compiled  # noqa: PLC0415 - as in driving
+
+        for name, part in self._parts.items():
+            part.wait()  # what it could not compile is compiled here
+            self.step(name)
+        warm_up()
+        if self._parts:
+            note_compiled(OF_PHYSICS, self._cache)
+            self.step("a frame")
+
+    def compile_sensors(self) -> bool:
+        """Begin to compile what sensors need, in the background; return whether there is anything to compile."""
+        from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
+        from linden.sensors.compiling import OF_SENSORS, is_compiled  # noqa: PLC0415 - as in driving
+
+        if is_compiled(OF_SENSORS, self._cache):
+            warm_up()
+            return False
+        self._background = Compiling("rays", "scenery", "cameras", "sensors", background=True)
+        return True
+
+    def await_sensors(self, pictures: bool) -> None:  # noqa: FBT001 - as Seeing calls it
+        """Wait until the kernels of rays are compiled, or those of pictures; any thread may call it."""
+        if self._background is not None:
+            self._background.wait_for("cameras" if pictures else "rays")
+
+    def is_compiling(self) -> bool:
+        """Return whether kernels of pictures are still being compiled."""
+        return self._background is not None and not self._background.has("cameras")
+
+    def end(self) -> None:
+        """End what is still compiling; a later start goes on with it."""
+        for process in (*self._parts.values(), self._background):
+            if process is not None:
+                process.end()
+
+
+def compile_groups(names: Sequence[str]) -> None:
+    """Compile groups one after the other, and print the name of each when it is."""
+    for name in names:
+        GROUPS[name]()
+        print(name, flush=True)  # noqa: T201 - read by Compiling
+
+
+def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """Add the command ``compile``."""
+    whole = commands.add_parser(
+        "compile",
+        help="compile all kernels now, such as when an image is built",
+        description="Compile all kernels, so that the first start need not; on all processors.",
+    )
+    whole.set_defaults(command=run)
+
+
+def run(_arguments: argparse.Namespace) -> int:
+    """Compile all groups, as many at a time as there are processors.
+
+    Raises:
+        UserError: a group could not be compiled.
+    """
+    together = [name for name in GROUPS if name not in _LAST]
+    numbers = count(1)
+
+    def compiled(name: str) -> tuple[str, int]:
+        ended = name, Compiling(name).wait()
+        print(f"linden: compiling kernels, group {next(numbers)} of {len(GROUPS)} done: {name}", flush=True)  # noqa: T201 - as in serve
+        return ended
+
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as processors:
+        ended = list(processors.map(compiled, together))
+        ended += processors.map(compiled, _LAST)
+    failed = [name for name, code in ended if code]
+    if failed:
+        raise UserError(f"could not compile {', '.join(failed)}; the messages stand above")
+    return 0

@@ -1,1 +1,0 @@
-"""What a client can call, one file a family."""

@@ -1,1 +1,0 @@
-"""Making maps: street facts in GeoJSON to OpenDRIVE."""

@@ -1,0 +1,1 @@
+"""Maps: OpenDRIVE, ground heights, the walking mesh, derived facts and their cache."""

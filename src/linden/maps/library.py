@@ -1,0 +1,161 @@
+"""The maps a server offers: found by name, made ready once, and kept for the next load."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.errors import Refusal, UserError
+from linden.maps.facts import MapFacts, derive
+
+if TYPE_CHECKING:
+    from linden.maps.opendrive.model import OpenDrive
+
+HOME_MAP = "Linden"
+GENERATED_MAP = "OpenDriveMap"
+"""The name under which CARLA loads what ``generate_opendrive_world`` sent."""
+
+_PACKAGED = Path(__file__).parent.parent / "data"
+MOST_KEPT = 2
+"""Maps of files that stay in memory, a town takes 30 MB: the one that is loaded and the one before."""
+
+_FOLDERS = ("/Game/Carla/Maps/", "Carla/Maps/")
+"""How CARLA writes a map's name: the first when it lists them, the second in the map's info."""
+
+
+class Walls(NamedTuple):
+    """Walls of one height over the feet (N, 2, 3) of their pieces, from and to, m."""
+
+    feet_m: NDArray[np.float64] = np.empty((0, 2, 3))
+    height_m: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class LoadedMap(MapFacts):
+    """A map made ready to be driven on.
+
+    Attributes:
+        name: without a folder.
+        text: the OpenDRIVE text, word for word as it was read.
+        walls: beside its roads.
+    """
+
+    name: str
+    text: str
+    walls: Walls = field(default_factory=Walls)
+
+    @property
+    def full_name(self) -> str:
+        """The name as the client knows it."""
+        return _FOLDERS[1] + self.name
+
+
+class MapLibrary:
+    """The packaged maps, those of the folders a user named, and what clients sent."""
+
+    def __init__(self, folders: Iterable[Path] = (), facts_of: Callable[[str], MapFacts] = derive) -> None:
+        """Look for maps; the files are read when they are loaded.
+
+        Args:
+            folders: where to look, beside the packaged maps.
+            facts_of: gives the facts of an OpenDRIVE text, anew or out of a cache.
+
+        Raises:
+            UserError: a folder does not exist or holds no map.
+        """
+        self._files = {file.stem: file for file in _PACKAGED.glob("*.xodr")}
+        for folder in folders:
+            found = sorted(folder.glob("*.xodr"))
+            if not found:
+                problem = "holds no .xodr file" if folder.is_dir() else "is not a folder"
+                raise UserError(f"--maps {folder} {problem}; name a folder of OpenDRIVE maps")
+            self._files.update({file.stem: file for file in found})
+        self._facts_of = facts_of
+        self._loaded: dict[str, LoadedMap] = {}
+
+    def names(self) -> list[str]:
+        """Return the names of all maps as ``get_available_maps`` lists them."""
+        return [_FOLDERS[0] + name for name in sorted(self._files)]
+
+    def load(self, name: str) -> LoadedMap:
+        """Return a map by any of its names, ready, and keep it.
+
+        Raises:
+            Refusal: there is none of that name, or its file cannot be used.
+        """
+        found = self.ready(name) or self.make(name)
+        self.keep(found)
+        return found
+
+    def ready(self, name: str) -> LoadedMap | None:
+        """Return a map by any of its names, None where it is not ready yet.
+
+        Raises:
+            Refusal: there is none of that name.
+        """
+        bare = _bare(name)
+        if bare not in self._loaded and bare not in self._files:
+            raise Refusal(f"Map '{name}' not found; this server has: {', '.join(sorted(self._files))}")
+        return self._loaded.get(bare)
+
+    def make(self, name: str) -> LoadedMap:
+        """Return a map of a file, made ready; changes nothing, so that any thread may call it.
+
+        Raises:
+            Refusal: its file cannot be used.
+        """
+        bare = _bare(name)
+        try:
+            return self._make_ready(bare, self._files[bare].read_text("utf-8"))
+        except (OSError, UnicodeDecodeError, UserError) as error:
+            raise Refusal(f"Map '{name}' cannot be read: {error}") from error
+
+    def keep(self, made: LoadedMap) -> None:
+        """Keep a map for the next load of its name; of the maps of files, those loaded last are kept."""
+        self._loaded.pop(made.name, None)
+        self._loaded[made.name] = made
+        of_files = [name for name in self._loaded if name != GENERATED_MAP]
+        for name in of_files[:-MOST_KEPT]:
+            del self._loaded[name]
+
+    def from_opendrive(self, text: str, *, wall_height_m: float = 0.0, beyond_m: float = 0.0) -> LoadedMap:
+        """Return a map of a text that a client sent; changes nothing, so that any thread may call it.
+
+        Args:
+            text: the OpenDRIVE text.
+            wall_height_m: of walls beside the roads; none are built where it is not positive.
+            beyond_m: how far outside of driving lanes they stand.
+
+        Raises:
+            Refusal: the text is no OpenDRIVE that can be used.
+        """
+        try:
+            if wall_height_m <= 0.0:
+                return self._make_ready(GENERATED_MAP, text)
+            opendrive = _parsed(text)  # held here, so that the facts are derived of the same
+            ready = self._make_ready(GENERATED_MAP, text)
+            return replace(ready, walls=Walls(_walls(opendrive, ready, beyond_m), wall_height_m))
+        except UserError as error:
+            raise Refusal(f"the OpenDRIVE text cannot be used: {error}") from error
+
+    def _make_ready(self, name: str, text: str) -> LoadedMap:
+        return LoadedMap(name=name, text=text, **vars(self._facts_of(text)))
+
+
+def _bare(name: str) -> str:
+    return name.removeprefix(_FOLDERS[0]).removeprefix(_FOLDERS[1]).removesuffix(".xodr")
+
+
+def _parsed(text: str) -> "OpenDrive":
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - only who sends a map pays for it
+
+    return parse(text)
+
+
+def _walls(opendrive: "OpenDrive", facts: MapFacts, beyond_m: float) -> NDArray[np.float64]:
+    from linden.maps.road_walls import walls_along  # noqa: PLC0415 - only who sends a map pays for it
+
+    return walls_along(opendrive, facts.ground, beyond_m)

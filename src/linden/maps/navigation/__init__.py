@@ -1,0 +1,1 @@
+"""The walking mesh: pavements and crosswalks in the form that CARLA's client reads."""

@@ -1,0 +1,76 @@
+"""The walking meshes of maps as the files that clients fetch: made once, kept in memory and beside the map's facts."""
+
+import hashlib
+import logging
+import time
+from pathlib import Path
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
+
+from linden.compiled import fingerprint, machine
+from linden.maps.cache import MapCache
+from linden.maps.library import LoadedMap
+from linden.maps.navigation.detour import Obstacles
+
+log = logging.getLogger("linden")
+
+_FOLDER = "Carla/Maps/Nav"
+_PACKAGE = Path(__file__).parents[2]
+_DERIVING = ("maps/opendrive/**/*.py", "maps/navigation/*.py", "maps/ground.py", "geometry.py", "compiled.py")
+
+
+class MeshFile(NamedTuple):
+    """A file and the name under which clients keep it for ever; so the name tells the content."""
+
+    name: str
+    content: bytes
+
+
+class MeshLibrary:
+    """The meshes of the maps that were asked for."""
+
+    def __init__(self, cache: MapCache | None = None) -> None:
+        """Keep meshes in ``cache`` too, where there is one."""
+        self._cache = cache
+        self._known: WeakKeyDictionary[LoadedMap, MeshFile | None] = WeakKeyDictionary()
+
+    def knows(self, world_map: LoadedMap) -> bool:
+        """Return whether the mesh of a map is made, so that :meth:`file_of` takes no time."""
+        return world_map in self._known
+
+    def file_of(self, world_map: LoadedMap, obstacles: Obstacles) -> MeshFile | None:
+        """Return the mesh of a map, None where it has no pavements. ``obstacles`` are always those of the map.
+
+        Any thread may call it.
+        """
+        if world_map not in self._known:
+            content = self._kept(world_map, obstacles) if self._cache else _made(world_map, obstacles)
+            digest = hashlib.sha256(content).hexdigest()[:16]
+            self._known[world_map] = MeshFile(f"{_FOLDER}/{world_map.name}_{digest}.bin", content) if content else None
+        return self._known[world_map]
+
+    def _kept(self, world_map: LoadedMap, obstacles: Obstacles) -> bytes:
+        assert self._cache is not None
+        sources = fingerprint(*(file for pattern in _DERIVING for file in _PACKAGE.glob(pattern)))
+        key = hashlib.sha256(f"{sources} {machine()}\n".encode())
+        key.update(world_map.text.encode())
+        for column in obstacles:
+            key.update(column.tobytes())
+        return self._cache.kept(f"{key.hexdigest()[:32]}.nav", lambda: _made(world_map, obstacles), bytes)
+
+
+def _made(world_map: LoadedMap, obstacles: Obstacles) -> bytes:
+    """Return the file of a map's mesh; empty where nobody could walk."""
+    # here, not above: with a mesh out of the cache a start does not pay for them
+    from linden.maps.navigation import detour  # noqa: PLC0415 - see above
+    from linden.maps.navigation.areas import surfaces_of  # noqa: PLC0415 - see above
+    from linden.maps.navigation.build import build  # noqa: PLC0415 - see above
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
+
+    begin_s = time.perf_counter()
+    surfaces = surfaces_of(
+        parse(world_map.text), world_map.ground, world_map.lane_of_triangle, world_map.lanes["type_bits"]
+    )
+    mesh = build(surfaces, obstacles)
+    log.info("walking mesh of %s: %d tiles, %.1f s", world_map.name, len(mesh.tiles), time.perf_counter() - begin_s)
+    return detour.write(mesh) if mesh.tiles else b""

@@ -1,0 +1,1 @@
+"""OpenDRIVE 1.4: parse, evaluate, mesh, place signals."""

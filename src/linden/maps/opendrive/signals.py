@@ -1,0 +1,162 @@
+"""Signals as the actors of a simulation need them: where they stand, whom they concern, where they take effect."""
+
+from collections import defaultdict
+
+from linden.maps.opendrive.evaluate.tables import Tables, tables_of
+from linden.maps.opendrive.landmarks import landmark_transforms
+from linden.maps.opendrive.links import LaneLinks, lane_links
+from linden.maps.opendrive.model import NO_JUNCTION, OpenDrive, Road
+from linden.maps.opendrive.roadside import Signal, SignalReference, Validity
+from linden.maps.opendrive.signal_zones import LanePlace, trigger_boxes
+from linden.maps.records import AffectedLane, PlacedSignal
+from linden.protocol.values.enums import LaneType
+from linden.protocol.values.space import Rotation, Transform
+
+_MODEL_YAW_DEG = 90.0  # CARLA's light and sign models are turned by this against their signal
+
+
+def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
+    """Return every signal of the map, in the order of the file."""
+    tables, links = tables_of(opendrive), lane_links(opendrive)
+    controllers = _controllers(opendrive)
+    references = _references(opendrive)
+    signals = list(opendrive.signals())
+    places = [
+        [lane for reference in references[signal.id] for lane in _driving_lanes(tables, reference)]
+        for _, signal in signals
+    ]
+    landmarks = landmark_transforms(opendrive)
+    transforms = [
+        Transform(landmark.location, Rotation(0.0, landmark.rotation.yaw + _MODEL_YAW_DEG, 0.0))
+        for landmark in landmarks
+    ]
+    boxes = trigger_boxes(tables, links, transforms, places)
+    placed = []
+    for nth, (road, signal) in enumerate(signals):
+        placed.append(
+            PlacedSignal(
+                signal_id=signal.id,
+                type=signal.type,
+                subtype=signal.subtype,
+                value=signal.value,
+                unit=signal.unit,
+                name=signal.name,
+                is_dynamic=signal.is_dynamic,
+                is_light=signal.is_light,
+                road_id=road.id,
+                s_m=signal.s_m,
+                landmark=landmarks[nth],
+                transform=transforms[nth],
+                controllers=tuple(controllers[signal.id]),
+                junction_id=_junction(opendrive, links, road, controllers[signal.id], places[nth]),
+                lanes=tuple(_affected(tables, lane) for lane in places[nth]),
+                trigger_volumes=boxes[nth],
+            )
+        )
+    return tuple(placed)
+
+
+def _controllers(opendrive: OpenDrive) -> dict[str, list[str]]:
+    """Map a signal's id to the controllers that switch it."""
+    controllers: dict[str, list[str]] = defaultdict(list)
+    for controller in opendrive.controllers:
+        for signal_id in dict.fromkeys(controller.signals):
+            controllers[signal_id].append(controller.id)
+    return controllers
+
+
+_Reference = tuple[int, float, tuple[Validity, ...]]
+
+
+def _references(opendrive: OpenDrive) -> dict[str, list[_Reference]]:
+    """Map a signal's id to the places it speaks at: (index of the road, s, lanes).
+
+    A signal that stands before a junction and speaks to the lanes there has its line there. References to it on the
+    connecting roads behind that line tell other programs which ways it governs, and make no second line.
+    """
+    references: dict[str, list[_Reference]] = defaultdict(list)
+    stands_on: dict[str, Road] = {}
+    for index, road in enumerate(opendrive.roads):
+        for signal in road.signals:
+            references[signal.id].append((index, signal.s_m, validities_of(road, signal)))
+            if _speaks(road, signal):
+                stands_on[signal.id] = road
+    for index, road in enumerate(opendrive.roads):
+        for reference in road.signal_references:
+            before = stands_on.get(reference.signal_id)
+            if before is None or before.is_in_junction or not _comes_from(road, before):
+                references[reference.signal_id].append((index, reference.s_m, validities_of(road, reference)))
+    return references
+
+
+def _speaks(road: Road, signal: Signal) -> bool:
+    """Return whether a signal speaks to a driving lane of the road that it stands on."""
+    return any(
+        lane.type is LaneType.DRIVING and lane.id != 0 and min(validity) <= lane.id <= max(validity)
+        for lane in road.section_at(signal.s_m).lanes
+        for validity in validities_of(road, signal)
+    )
+
+
+def _comes_from(road: Road, before: Road) -> bool:
+    """Return whether a connecting road begins or ends at another road."""
+    return road.is_in_junction and any(
+        link is not None and (link.is_junction, link.id) == (False, before.id)
+        for link in (road.predecessor, road.successor)
+    )
+
+
+def validities_of(road: Road, signal: Signal | SignalReference) -> tuple[Validity, ...]:
+    """Return the lanes a signal speaks to; unless it says, LibCarla takes "+" for the left lanes, "-" for the right.
+
+    Source: MapBuilder.cpp, GenerateDefaultValiditiesForSignalReferences; the usual reading of "+" is the opposite.
+    """
+    if signal.validities:
+        return signal.validities
+    lanes = [lane.id for lane in road.section_at(signal.s_m).lanes]
+    left, right = Validity(1, max(lanes)), Validity(min(lanes), -1)
+    sides = {"+": (left,), "-": (right,)}.get(signal.orientation, (left, right))
+    return tuple(side for side in sides if side.from_lane <= side.to_lane)
+
+
+def _driving_lanes(tables: Tables, reference: _Reference) -> list[LanePlace]:
+    """Return the driving lanes that a reference names, from the left to the right."""
+    road_index, s_m, validities = reference
+    road = tables.roads[road_index]
+    at_m = min(max(s_m, 0.0), road.length_m)
+    section = road.section_at(at_m)
+    section_index = road.sections.index(section)
+    return [
+        LanePlace(tables.lane_row[road_index, section_index, lane.id], at_m)
+        for lane in section.lanes
+        if lane.type is LaneType.DRIVING
+        and lane.id != 0
+        and any(min(validity) <= lane.id <= max(validity) for validity in validities)
+    ]
+
+
+def _affected(tables: Tables, place: LanePlace) -> AffectedLane:
+    row = tables.lanes[place.lane]
+    return AffectedLane(tables.roads[row["road"]].id, int(row["lane_id"]), place.s_m)
+
+
+def _junction(
+    opendrive: OpenDrive, links: LaneLinks, road: Road, controllers: list[str], places: list[LanePlace]
+) -> int:
+    """Return the junction of the signal's controller or road, else the one its lanes lead into, -1 for none."""
+    for junction in opendrive.junctions if controllers else ():
+        if controllers[0] in junction.controllers:
+            return junction.id
+    if road.is_in_junction:
+        return road.junction_id
+    tables = tables_of(opendrive)
+    for place in places:
+        here = int(tables.lanes["road"][place.lane])
+        rows = links.successors[place.lane]
+        for _ in road.sections:  # through the later sections of the same road
+            if rows and int(tables.lanes["road"][rows[0]]) == here:
+                rows = links.successors[rows[0]]
+        ahead = tables.roads[tables.lanes["road"][rows[0]]] if rows else road
+        if ahead.is_in_junction:
+            return ahead.junction_id
+    return NO_JUNCTION

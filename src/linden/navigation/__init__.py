@@ -1,1 +1,0 @@
-"""Where walkers can go: a mesh of pavements and crosswalks, in the form that the client reads."""

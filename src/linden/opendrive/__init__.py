@@ -1,1 +1,0 @@
-"""OpenDRIVE 1.4: parse, place, mesh, check and draw; a map library usable on its own."""

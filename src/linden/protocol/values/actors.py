@@ -1,0 +1,56 @@
+"""What an actor and its blueprint look like on the wire. Source: ``carla/rpc/Actor*.h``."""
+
+from typing import NamedTuple
+
+from linden.protocol.values.space import BoundingBox
+
+
+class ActorAttribute(NamedTuple):
+    """One attribute of a blueprint; values are always text, ``type`` is an AttributeType."""
+
+    id: str
+    type: int
+    value: str
+    recommended_values: tuple[str, ...] = ()
+    is_modifiable: bool = True
+    restrict_to_recommended: bool = False
+
+
+class ActorDefinition(NamedTuple):
+    """A blueprint; ``tags`` are the words of the id, comma separated."""
+
+    uid: int
+    id: str
+    tags: str
+    attributes: tuple[ActorAttribute, ...]
+
+
+class AttributeValue(NamedTuple):
+    """One attribute as chosen by whoever spawns."""
+
+    id: str
+    type: int
+    value: str
+
+
+class ActorDescription(NamedTuple):
+    """What to spawn: the blueprint and all its attributes, in any order."""
+
+    uid: int
+    id: str
+    attributes: tuple[AttributeValue, ...] = ()
+
+    def attribute(self, name: str, default: str = "") -> str:
+        """Return the text of an attribute, ``default`` where the description lacks it."""
+        return next((a.value for a in self.attributes if a.id == name), default)
+
+
+class Actor(NamedTuple):
+    """A living actor as the client learns of it; the box is local, the token empty or of 24 bytes."""
+
+    id: int
+    parent_id: int
+    description: ActorDescription
+    bounding_box: BoundingBox
+    semantic_tags: bytes = b""
+    stream_token: bytes = b""

@@ -1,0 +1,52 @@
+"""Every function the official 0.9.16 client can call, with how its result is wrapped; nothing about what they do.
+
+So that a function which this server lacks can be refused by a sentence the client is able to show: one that expects a
+value does not understand the error of one without. Asynchronous functions stand under VOID; their answer is not read.
+Source: LibCarla 0.9.16, ``carla/client/detail/Client.cpp``.
+"""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from linden.protocol.wire.rpc import Reply
+
+_VALUE = """
+version get_available_maps get_map_info get_map_data get_navigation_mesh get_required_files request_file
+get_episode_info get_episode_settings set_episode_settings tick_cue get_actor_definitions get_spectator
+get_all_level_BBs get_environment_objects get_names_of_all_objects get_weather_parameters get_imui_gravity
+console_command get_actors_by_id spawn_actor spawn_actor_with_parent destroy_actor get_actor_bounding_box
+get_actor_component_world_transform get_actor_component_relative_transform get_actor_bone_world_transforms
+get_actor_bone_relative_transforms get_actor_socket_world_transforms get_actor_socket_relative_transforms
+get_vehicle_bone_world_transforms get_actor_component_names get_actor_bone_names get_actor_socket_names
+get_group_traffic_lights get_ackermann_controller_settings get_physics_control get_vehicle_light_state
+get_vehicle_light_states get_wheel_steer_angle get_wheel_pitch_angle get_telemetry_data get_bones_transform
+get_light_boxes query_lights_state get_sensor_token is_sensor_enabled_for_ros get_gbuffer_token are_gbuffers_enabled
+project_point cast_ray start_recorder show_recorder_file_info show_recorder_collisions show_recorder_actors_blocked
+replay_file is_traffic_manager_running get_traffic_manager_running add_traffic_manager_running
+destroy_traffic_manager
+"""
+_VOID = """
+load_new_episode load_map_layer unload_map_layer copy_opendrive_to_file enable_environment_objects
+set_annotations_traverse_translucency apply_color_texture_to_objects apply_float_color_texture_to_objects
+set_weather_parameters set_imui_gravity set_actor_location set_actor_transform set_actor_target_velocity
+set_actor_target_angular_velocity enable_actor_constant_velocity disable_actor_constant_velocity add_actor_impulse
+add_actor_force add_actor_angular_impulse add_actor_torque add_actor_impulse_at_location add_actor_force_at_location
+set_actor_simulate_physics set_actor_collisions set_actor_dead set_actor_enable_gravity set_actor_autopilot
+apply_control_to_vehicle apply_ackermann_control_to_vehicle apply_ackermann_controller_settings apply_physics_control
+set_vehicle_light_state open_vehicle_door close_vehicle_door set_wheel_steer_direction set_wheel_pitch_angle
+show_vehicle_debug_telemetry enable_carsim use_carsim_road enable_chrono_physics restore_physx_physics
+apply_control_to_walker set_bones_transform blend_pose get_pose_from_animation set_traffic_light_state
+set_traffic_light_green_time set_traffic_light_yellow_time set_traffic_light_red_time freeze_traffic_light
+freeze_all_traffic_lights reset_traffic_light_group reset_all_traffic_lights update_lights_state
+update_day_night_cycle enable_sensor_for_ros disable_sensor_for_ros send set_ignored_vehicles enable_gbuffers
+draw_debug_shape clear_debug_shape clear_debug_string stop_recorder stop_replayer set_replayer_time_factor
+set_replayer_ignore_hero set_replayer_ignore_spectator
+"""
+
+CARLA_FUNCTIONS: Mapping[str, Reply] = MappingProxyType(
+    {
+        **dict.fromkeys(_VALUE.split(), Reply.VALUE),
+        **dict.fromkeys(_VOID.split(), Reply.VOID),
+        "apply_batch": Reply.BARE,
+    }
+)

@@ -1,0 +1,258 @@
+"""msgpack-RPC of CARLA 0.9.16: bytes in, calls out; results in, bytes out. No socket, no thread.
+
+msgpack-RPC as CARLA 0.9.16 speaks it: bytes in, calls out; answers in, bytes out. No socket, no thread.
+
+A request is ``[0, id, method, [[is_async], *arguments]]``, an answer ``[1, id, error, result]``; neither has a length
+before it. The result of a function with a value is ``[[1, value]]`` or ``[[0, [message]]]``, that of one without
+``[[false]]`` or ``[[true, [message]]]`` (LibCarla, ``carla/rpc/Response.h``).
+
+From typed values to what msgpack packs. Nearly everything packs as it lies; only an optional is wrapped.
+
+An encoder is built once from the annotation of a result. None means that values of that type need no encoding.
+"""
+
+import types
+from collections.abc import Callable
+from enum import Enum
+from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin, get_type_hints
+
+import msgpack
+
+from linden.errors import ProtocolError
+from linden.protocol.wire import packed
+from linden.protocol.wire.decode import got
+
+MAX_MESSAGE_BYTES = 64 * 1024 * 1024
+"""Largest request; an OpenDRIVE text of a big town is 10 MB, a 4k texture as floats 40 MB."""
+MAX_ARRAYS = 512 * 1024
+"""Most arrays in one message, one within another or side by side: an empty one is a byte of the message and 70 bytes of
+memory, and nobody is served while they are given back, which takes 0.15 s for that many. What looks like an array's
+first byte is counted, so a text has none and numbers have a few too many. A batch of 10,000 commands has 60,000."""
+MAX_ARRAY_ITEMS = 4 * 1024 * 1024
+"""Most items of one array: its list is laid out before the items come, so that 5 bytes must not ask for gigabytes."""
+REQUEST, RESPONSE = 0, 1
+
+OF_PIXELS = ("apply_color_texture_to_objects", "apply_float_color_texture_to_objects")
+"""What has an array for each pixel, 2 Mi in 1920 x 1080; nothing reads them, so no objects are made of them."""
+
+_ARRAYS = bytes((*range(0x80, 0xA0), 0xDC, 0xDD, 0xDE, 0xDF))
+"""The first bytes of arrays and maps in msgpack."""
+_HEAD_BYTES = 64 * 1024  # method and names of objects
+_FIRST_BUFFER_BYTES = 4096  # what a buffer starts with; it grows
+_UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
+_pack = msgpack.Packer(unicode_errors="surrogateescape", buf_size=_FIRST_BUFFER_BYTES).pack
+
+
+class Call(NamedTuple):
+    """One remote call. Where ``is_async``, the client does not read the answer, yet keeps an entry until one comes."""
+
+    id: int
+    method: str
+    args: list[Any]
+    """As msgpack has them; the commands of a batch of plain controls are ``Controls`` (see ``packed``)."""
+    is_async: bool
+
+
+class Reply(Enum):
+    """How a function wraps its result."""
+
+    VALUE = "value"
+    VOID = "void"
+    BARE = "bare"  # apply_batch: no wrapping, each member carries its own
+
+
+class RpcConnection:
+    """The server's half of one connection: turns what arrives into calls."""
+
+    def __init__(self) -> None:
+        self._unpacker = msgpack.Unpacker(
+            raw=False,
+            unicode_errors="surrogateescape",  # a text that is not UTF-8 comes back as it came
+            max_buffer_size=MAX_MESSAGE_BYTES,
+            read_size=_FIRST_BUFFER_BYTES,
+            max_array_len=MAX_ARRAY_ITEMS,
+            max_map_len=0,  # CARLA sends none
+        )
+        self._fed_bytes = self._whole_bytes = 0  # what the unpacker has got, and up to where that is whole calls
+        self.bytes = self.arrays = 0
+        """How much has come in all."""
+        self.unfinished_arrays = 0
+        """How many arrays a call has at most that is not yet whole."""
+        self._passed_over: Call | None = None  # that of which the rest is not decoded
+        self._failure: ProtocolError | None = None
+
+    def receive(self, data: bytes) -> list[Call]:
+        """Return the calls that ``data`` completes; a half-received one waits for its rest.
+
+        Calls that are whole before the broken place are returned first; the next call of this method then raises.
+
+        Raises:
+            ProtocolError: the bytes are not msgpack, not a call, or more than :data:`MAX_MESSAGE_BYTES` for one call.
+        """
+        calls: list[Call] = []
+        try:
+            self._take(data, calls)
+        except ProtocolError as error:
+            self._failure = error
+        if self._failure is not None and not calls:
+            raise self._failure
+        return calls
+
+    @property
+    def unfinished_bytes(self) -> int:
+        """How much of a call has come that is not yet whole."""
+        return self._fed_bytes - self._whole_bytes
+
+    @property
+    def is_broken(self) -> bool:
+        """Whether nothing more can be understood of this peer."""
+        return self._failure is not None
+
+    def _take(self, data: bytes, calls: list[Call]) -> None:
+        if self._failure is not None:
+            return
+        self.bytes += len(data)
+        if self._fed_bytes == self._whole_bytes and (batch := packed.read(data)) is not None:
+            calls.append(Call(batch.call_id, packed.BATCH, [batch.controls, batch.do_tick], batch.is_async))
+            data = data[batch.end :]
+        begin = self._fed_bytes
+        self._fed_bytes += len(data)
+        if self._passed_over is None:
+            self._passed_over = _of_pixels(data) if begin == self._whole_bytes else None
+        if self._passed_over is None:
+            arrays = len(data) - len(data.translate(None, _ARRAYS))
+            self.arrays += arrays
+            self.unfinished_arrays += arrays
+        if self.unfinished_arrays > MAX_ARRAYS:
+            raise ProtocolError(f"a message has more than {MAX_ARRAYS} arrays")
+        try:
+            self._unpacker.feed(data)
+            while True:
+                calls.append(self._next())
+                self._whole_bytes = self._unpacker.tell()
+                self.unfinished_arrays = 0
+        except msgpack.OutOfData:
+            pass
+        except _UNPACKING_FAILED as error:
+            raise ProtocolError(f"what arrived is not msgpack of a call: {error or type(error).__name__}") from error
+        if self.unfinished_bytes > MAX_MESSAGE_BYTES:
+            raise ProtocolError(f"a message is longer than {MAX_MESSAGE_BYTES} bytes")
+
+    def _next(self) -> Call:
+        """Return the next call that is whole.
+
+        Raises:
+            msgpack.OutOfData: there is none.
+        """
+        if self._passed_over is None:
+            return _call(self._unpacker.unpack())
+        self._unpacker.skip()
+        call, self._passed_over = self._passed_over, None
+        return call
+
+
+def _of_pixels(data: bytes) -> Call | None:
+    """Return the call that ``data`` begins with, where it is one of :data:`OF_PIXELS`; its pixels are None."""
+    if not any(name.encode() in data[:64] for name in OF_PIXELS):
+        return None
+    head = msgpack.Unpacker(unicode_errors="surrogateescape", max_array_len=MAX_ARRAY_ITEMS, max_map_len=0)
+    head.feed(data[:_HEAD_BYTES])
+    try:
+        message = [None] * head.read_array_header()
+        message[:3] = [head.unpack() for _ in range(3)]
+        count = head.read_array_header()
+        message[3:] = [[head.unpack(), head.unpack(), *(None for _ in range(count - 2))]]
+        call = _call(message)
+    except (*_UNPACKING_FAILED, ProtocolError):
+        return None  # the decoder of whole messages says what is wrong
+    return call if call.method in OF_PIXELS else None
+
+
+def _call(message: object) -> Call:
+    if not isinstance(message, list) or len(message) != 4 or type(message[0]) is not int or message[0] != REQUEST:
+        raise ProtocolError(f"expected a request [0, id, method, parameters], got {got(message)}")
+    _, call_id, method, params = message
+    if type(call_id) is not int or type(method) is not str or type(params) is not list:
+        raise ProtocolError(f"expected a request [0, id, method, parameters], got id {got(call_id)}, {got(method)}")
+    if not params or type(params[0]) is not list or len(params[0]) != 1 or type(params[0][0]) is not bool:
+        raise ProtocolError(f"{got(method)}: expected [is_async] before the arguments, got {got(params[0:1])}")
+    return Call(call_id, method, params[1:], params[0][0])
+
+
+def value(call: Call, result: object) -> bytes:
+    """Encode the result of a function that has one."""
+    answer: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
+    return answer
+
+
+def void(call: Call) -> bytes:
+    """Encode that a function without a result has done its work."""
+    answer: bytes = _pack((RESPONSE, call.id, None, ((False,),)))
+    return answer
+
+
+def bare(call: Call, result: object) -> bytes:
+    """Encode a result that carries its own wrapping: the answers to a batch."""
+    answer: bytes = _pack((RESPONSE, call.id, None, result))
+    return answer
+
+
+def refusal(call: Call, message: str, reply: Reply) -> bytes:
+    """Encode an error; the client raises RuntimeError with ``message`` word for word.
+
+    A batch has no place for an error of its own, so the rpc library's is used, which names the function only.
+    """
+    if reply is Reply.BARE:
+        return unknown(call, message)
+    failed: bool | int = True if reply is Reply.VOID else 0
+    answer: bytes = _pack((RESPONSE, call.id, None, ((failed, (message,)),)))
+    return answer
+
+
+def unknown(call: Call, message: str) -> bytes:
+    """Encode that there is no such function; the client raises ``rpc::rpc_error during call in function <name>``."""
+    answer: bytes = _pack((RESPONSE, call.id, message, None))
+    return answer
+
+
+Encoder = Callable[[Any], Any]
+
+
+def encoder(annotation: Any) -> Encoder | None:  # noqa: ANN401 - an annotation may be any object
+    """Return how values of a type are made ready for msgpack, None where they are as they lie."""
+    origin, args = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return encoder(args[0])
+    if origin in (Union, types.UnionType) and type(None) in args:
+        inner = [each for each in args if each is not type(None)]
+        if len(inner) != 1:
+            raise TypeError(f"no way to write {annotation!r} to the wire is known")
+        return _optional(encoder(inner[0]))
+    if origin in (list, tuple):
+        return _array(args)
+    if isinstance(annotation, type) and hasattr(annotation, "_fields"):
+        hints = get_type_hints(annotation, include_extras=True)
+        return _fields([encoder(hints[name]) for name in annotation._fields])
+    return None
+
+
+def _optional(encode: Encoder | None) -> Encoder:
+    def wrap(value: Any) -> tuple[Any, ...]:  # noqa: ANN401 - any value travels
+        if value is None:
+            return (False,)
+        return (True, encode(value) if encode else value)
+
+    return wrap
+
+
+def _array(items: tuple[Any, ...]) -> Encoder | None:
+    if len(items) > 1 and Ellipsis not in items:
+        return _fields([encoder(item) for item in items])
+    encode = encoder(items[0])
+    return None if encode is None else lambda values: [encode(value) for value in values]
+
+
+def _fields(encoders: list[Encoder | None]) -> Encoder | None:
+    if not any(encoders):
+        return None
+    return lambda values: [encode(value) if encode else value for encode, value in zip(encoders, values, strict=True)]

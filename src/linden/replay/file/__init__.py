@@ -1,0 +1,1 @@
+"""CARLA's recorder files: bytes to packets and back, and reports about them."""

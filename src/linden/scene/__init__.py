@@ -1,1 +1,0 @@
-"""What stands in the world besides actors, and what a ray meets."""

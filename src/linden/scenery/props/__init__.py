@@ -1,0 +1,1 @@
+"""Meshes of props: solids, stretched to the boxes of their blueprints."""

@@ -1,0 +1,1 @@
+"""Meshes of what stands beside the streets: houses, yards, trees, posts, wires, parked cars."""

@@ -1,0 +1,114 @@
+"""A street of South Linden: houses, trees and lamps on the lots along it.
+
+No survey of the single houses was found, so they are drawn, with the same seed every time, from what is known of the
+neighbourhood: frame houses of one and a half to two storeys and bungalows, 6 to 8 m behind the pavement, 1.5 to 3 m
+apart, about one lot in five vacant (Linden Community Plan 2018: 22 % of dwellings; median house 94 m²).
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.maps.ground import Ground
+from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M
+from linden.protocol.values.enums import SemanticTag
+from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
+
+F64 = NDArray[np.float64]
+
+SEED = 614  # any number does; the houses stand where they do because of it
+VACANT = 0.2
+BUNGALOWS = 0.35
+SETBACK_M = (6.0, 8.0)
+HOUSE_WIDTH_M = (7.0, 8.8)
+HOUSE_DEPTH_M = (8.0, 11.5)
+HOUSE_HEIGHT_M = (5.8, 7.4)
+BUNGALOW_HEIGHT_M = (4.0, 4.8)
+
+WITH_TREE = 0.6
+TREE_DEPTH_M = (2.0, 4.5)
+TRUNK_HALF_M = (0.12, 0.25)
+TRUNK_HEIGHT_M = 4.0
+
+LOTS_A_LAMP = 4
+"""A lamp every 44 m on either side, which is what American streets of this width have."""
+LAMP_DEPTH_M = 0.5
+LAMP_HALF_WIDTH_M = 0.08
+LAMP_HEIGHT_M = 7.5
+LAMP_ARM_HALF_M = (0.9, 0.12, 0.08)
+"""The arm with its lantern, from the top of the pole towards the street."""
+
+assert SETBACK_M[1] + HOUSE_DEPTH_M[1] <= LOT_DEPTH_M
+assert HOUSE_WIDTH_M[1] < LOT_WIDTH_M
+
+
+def furnish(lots: NDArray[np.void], ground: Ground) -> Scene:
+    """Return what stands on the lots: houses, then trees, then lamps, each in the order of the lots."""
+    draw = _draw(lots)
+    return join([_houses(lots, ground, draw), _trees(lots, ground, draw), _lamps(lots, ground)])
+
+
+def _draw(lots: NDArray[np.void]) -> F64:
+    """Return what is drawn for each lot (N, 9): no lot depends on what stands on another."""
+    return np.random.default_rng(SEED).random((len(lots), 9))
+
+
+def with_house(lots: NDArray[np.void]) -> NDArray[np.intp]:
+    """Return the lots that houses stand on, in the order of the houses."""
+    return np.flatnonzero(_draw(lots)[:, 0] >= VACANT)
+
+
+def tree_side(lots: NDArray[np.void]) -> F64:
+    """Return for each lot on which hand its tree stands (1 right, -1 left), 0 where it has none."""
+    draw = _draw(lots)
+    return np.where(draw[:, 6] < WITH_TREE, np.sign(draw[:, 7] - 0.5), 0.0)
+
+
+def _houses(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
+    built = draw[:, 0] >= VACANT
+    lots, draw = lots[built], draw[built]
+    width, depth = between(HOUSE_WIDTH_M, draw[:, 1]), between(HOUSE_DEPTH_M, draw[:, 2])
+    height = np.where(
+        draw[:, 3] < BUNGALOWS, between(BUNGALOW_HEIGHT_M, draw[:, 4]), between(HOUSE_HEIGHT_M, draw[:, 4])
+    )
+    inwards = between(SETBACK_M, draw[:, 5]) + 0.5 * depth
+    things = things_with(Kind.HOUSE, on_lots(lots, ground, inwards, np.zeros(len(lots))), lots["yaw_rad"])
+    half = 0.5 * np.column_stack([depth, width, height])
+    return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.BUILDINGS))
+
+
+def _trees(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
+    planted = draw[:, 6] < WITH_TREE
+    lots, draw = lots[planted], draw[planted]
+    aside = (draw[:, 7] - 0.5) * (LOT_WIDTH_M - 3.0)
+    things = things_with(Kind.TREE, on_lots(lots, ground, between(TREE_DEPTH_M, draw[:, 8]), aside), lots["yaw_rad"])
+    half = np.full((len(lots), 3), 0.5 * TRUNK_HEIGHT_M)
+    half[:, :2] = between(TRUNK_HALF_M, draw[:, 1])[:, None]
+    return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))
+
+
+def _lamps(lots: NDArray[np.void], ground: Ground) -> Scene:
+    lots = lots[::LOTS_A_LAMP]
+    aside = np.full(len(lots), 0.5 * LOT_WIDTH_M - 0.5)
+    base = on_lots(lots, ground, np.full(len(lots), LAMP_DEPTH_M), aside)
+    things = things_with(Kind.STREET_LAMP, base, lots["yaw_rad"])
+    half = np.array([LAMP_HALF_WIDTH_M, LAMP_HALF_WIDTH_M, 0.5 * LAMP_HEIGHT_M])
+    arm = np.array([-LAMP_ARM_HALF_M[0], 0.0, LAMP_HEIGHT_M])
+    return assembled(
+        things,
+        boxes_on(things, np.array([0.0, 0.0, half[2]]), half, SemanticTag.POLES),
+        boxes_on(things, arm, np.array(LAMP_ARM_HALF_M), SemanticTag.POLES),
+    )
+
+
+def on_lots(lots: NDArray[np.void], ground: Ground, inwards_m: F64, aside_m: F64) -> F64:
+    """Return places (N, 3) on the ground, so far into the lots and to the right of their middle."""
+    cosine, sine = np.cos(lots["yaw_rad"]), np.sin(lots["yaw_rad"])
+    x = lots["front_m"][:, 0] + cosine * inwards_m - sine * aside_m
+    y = lots["front_m"][:, 1] + sine * inwards_m + cosine * aside_m
+    height, _ = ground.surfaces_under(np.column_stack([x, y, np.full(len(lots), np.inf)]))
+    return np.column_stack([x, y, height])
+
+
+def between(bounds: tuple[float, float], share: F64) -> F64:
+    """Return numbers so far along between two bounds."""
+    return bounds[0] + (bounds[1] - bounds[0]) * share

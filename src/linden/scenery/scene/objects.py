@@ -1,0 +1,188 @@
+"""What stands in a scene: things, each made of one or more upright boxes, as tables and as CARLA's clients see them.
+
+A thing is what Unreal calls an actor, a box one of its meshes; clients know every box as an environment object.
+"""
+
+import hashlib
+import math
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.protocol.values.enums import MapLayer, SemanticTag
+from linden.protocol.values.episode import EnvironmentObject
+from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
+
+
+class Kind(IntEnum):
+    """What a thing is."""
+
+    TRAFFIC_LIGHT = 0
+    TRAFFIC_SIGN = 1
+    HOUSE = 2
+    TREE = 3
+    STREET_LAMP = 4
+    WALL = 5
+    PORCH = 6
+    HEDGE = 7
+    FENCE = 8
+    PARKED_CAR = 9
+    UTILITY_POLE = 10
+    SHELTER = 11
+
+
+_NAMES = {
+    Kind.TRAFFIC_LIGHT: "TrafficLight",
+    Kind.TRAFFIC_SIGN: "TrafficSign",
+    Kind.HOUSE: "House",
+    Kind.TREE: "Tree",
+    Kind.STREET_LAMP: "StreetLamp",
+    Kind.WALL: "Wall",
+    Kind.PORCH: "Porch",
+    Kind.HEDGE: "Hedge",
+    Kind.FENCE: "Fence",
+    Kind.PARKED_CAR: "ParkedCar",
+    Kind.UTILITY_POLE: "UtilityPole",
+    Kind.SHELTER: "BusStop",
+}
+_TAG_NAMES: dict[int, str] = {SemanticTag.POLES: "Poles", SemanticTag.TRAFFIC_LIGHT: "TrafficLight"}
+"""How CARLA writes the tags of a traffic light's parts into their names (Tagger.cpp, GetTagAsString)."""
+
+LAYER = {
+    Kind.TRAFFIC_LIGHT: MapLayer.NONE,
+    Kind.TRAFFIC_SIGN: MapLayer.NONE,
+    Kind.HOUSE: MapLayer.BUILDINGS,
+    Kind.TREE: MapLayer.FOLIAGE,
+    Kind.STREET_LAMP: MapLayer.STREET_LIGHTS,
+    Kind.WALL: MapLayer.WALLS,
+    Kind.PORCH: MapLayer.BUILDINGS,
+    Kind.HEDGE: MapLayer.FOLIAGE,
+    Kind.FENCE: MapLayer.WALLS,
+    Kind.PARKED_CAR: MapLayer.PARKED_VEHICLES,
+    Kind.UTILITY_POLE: MapLayer.PROPS,
+    Kind.SHELTER: MapLayer.PROPS,
+}
+"""The layer that a thing is loaded and unloaded with."""
+
+THING = np.dtype(
+    [
+        ("kind", "u1"),  # of Kind
+        ("base", "f8", 3),  # where it stands, m, world
+        ("yaw_rad", "f8"),
+    ]
+)
+BOX = np.dtype(
+    [
+        ("centre", "f8", 3),  # m, world
+        ("half", "f8", 3),  # m
+        ("yaw_rad", "f8"),
+        ("tag", "u1"),  # values.enums.SemanticTag
+        ("thing", "i4"),  # row of THING
+    ]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Things and their boxes, those of one thing next to each other, in the order of the things. Nobody changes it."""
+
+    things: NDArray[np.void]  # of THING
+    boxes: NDArray[np.void]  # of BOX
+
+    @cached_property
+    def layers(self) -> NDArray[np.int64]:
+        """The layer of each box."""
+        of_kind = np.array([int(LAYER[kind]) for kind in Kind])
+        layers: NDArray[np.int64] = of_kind[self.things["kind"][self.boxes["thing"]]]
+        return layers
+
+    @cached_property
+    def thing_names(self) -> tuple[str, ...]:
+        """The name of each thing, as ``get_names_of_all_objects`` lists them; numbered within its kind."""
+        count = dict.fromkeys(Kind, 0)
+        names = []
+        for kind in map(Kind, self.things["kind"].tolist()):
+            names.append(f"{_NAMES[kind]}_{count[kind]}")
+            count[kind] += 1
+        return tuple(names)
+
+    @cached_property
+    def world_boxes(self) -> tuple[BoundingBox, ...]:
+        """Every box as clients see it, in their order."""
+        columns = (self.boxes[name].tolist() for name in ("centre", "half", "yaw_rad"))
+        return tuple(
+            BoundingBox(Vector3D(*centre), Vector3D(*half), _turned(yaw))
+            for centre, half, yaw in zip(*columns, strict=True)
+        )
+
+    @cached_property
+    def objects(self) -> tuple[EnvironmentObject, ...]:
+        """Every box with its name, its id and the place of its thing, in their order."""
+        bases, yaws = self.things["base"].tolist(), self.things["yaw_rad"].tolist()
+        poses = [Transform(Vector3D(*base), _turned(yaw)) for base, yaw in zip(bases, yaws, strict=True)]
+        is_light = (self.things["kind"] == Kind.TRAFFIC_LIGHT).tolist()
+        objects, last, nth = [], -1, 0
+        for box, thing, tag in zip(
+            self.world_boxes, self.boxes["thing"].tolist(), self.boxes["tag"].tolist(), strict=True
+        ):
+            nth = nth + 1 if thing == last else 0
+            last = thing
+            name = f"{self.thing_names[thing]}_{_TAG_NAMES[tag] if is_light[thing] else 'SM'}_{nth}"
+            objects.append(EnvironmentObject(poses[thing], box, object_id(name), name, tag))
+        return tuple(objects)
+
+    @cached_property
+    def box_of_id(self) -> dict[int, int]:
+        """The row of each box by the id that clients know it by."""
+        return {item.id: number for number, item in enumerate(self.objects)}
+
+    def boxes_of(self, thing: int) -> NDArray[np.intp]:
+        """Return the rows of a thing's boxes."""
+        rows = np.searchsorted(self.boxes["thing"], [thing, thing + 1])
+        return np.arange(rows[0], rows[1])
+
+
+def object_id(name: str) -> int:
+    """Return the id of an object: 63 bits that its name decides, so that it is the same in every run (CARLA: 64)."""
+    return int.from_bytes(hashlib.blake2b(name.encode(), digest_size=8).digest(), "little") >> 1
+
+
+def join(scenes: "list[Scene]") -> Scene:
+    """Return one scene of several, in their order."""
+    before = np.cumsum([0, *(len(scene.things) for scene in scenes)])
+    boxes = np.concatenate([scene.boxes for scene in scenes])
+    boxes["thing"] += np.repeat(before[:-1], [len(scene.boxes) for scene in scenes]).astype(np.int32)
+    return Scene(np.concatenate([scene.things for scene in scenes]), boxes)
+
+
+def things_with(kind: Kind, base_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> NDArray[np.void]:
+    """Return things (N,) of a kind that stand at ``base_m`` (N, 3)."""
+    things = np.zeros(len(base_m), THING)
+    things["kind"], things["base"], things["yaw_rad"] = kind, base_m, yaw_rad
+    return things
+
+
+def boxes_on(
+    things: NDArray[np.void], offset_m: NDArray[np.float64], half_m: NDArray[np.float64], tag: SemanticTag
+) -> NDArray[np.void]:
+    """Return one box for each thing; ``offset_m`` of its middle (in the thing's frame) and ``half_m`` are (N, 3)."""
+    cosine, sine = np.cos(things["yaw_rad"]), np.sin(things["yaw_rad"])
+    x, y, z = np.broadcast_to(offset_m, (len(things), 3)).T
+    boxes = np.zeros(len(things), BOX)
+    boxes["centre"] = things["base"] + np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])
+    boxes["half"], boxes["yaw_rad"], boxes["tag"] = half_m, things["yaw_rad"], tag
+    boxes["thing"] = np.arange(len(things))
+    return boxes
+
+
+def assembled(things: NDArray[np.void], *parts: NDArray[np.void]) -> Scene:
+    """Return the scene of things whose boxes come part by part, as :func:`boxes_on` makes them."""
+    boxes = np.concatenate(parts)
+    return Scene(things, boxes[np.argsort(boxes["thing"], kind="stable")])
+
+
+def _turned(yaw_rad: float) -> Rotation:
+    return Rotation(0.0, math.degrees(math.remainder(yaw_rad, math.tau)), 0.0)

@@ -1,0 +1,1 @@
+"""Meshes of the ground: lanes, kerbs, junction floors, paint, railroad, terrain."""

@@ -1,0 +1,1 @@
+"""Sensor models: each turns the state of one moment into a measurement."""

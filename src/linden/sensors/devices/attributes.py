@@ -1,0 +1,88 @@
+"""Attributes of a sensor as numbers, and the times at which it measures.
+
+A sensor's attributes, which are text, as the numbers its measurements need.
+
+When a sensor measures: its ``sensor_tick`` as Unreal's tick interval has it.
+
+The first frame is due, and from there on the first frame in every interval. So where frames do not fall on due times,
+the overrun is credited to the next (as TickTaskManager.cpp does) and the mean rate is right. There is at most one
+measurement a frame, and what was missed in a long one is not made up for.
+"""
+
+import math
+from typing import NamedTuple
+
+from linden.protocol.values.actors import ActorDescription
+from linden.protocol.values.space import GeoLocation, Vector3D
+
+
+class GnssSpec(NamedTuple):
+    """Errors of a GNSS receiver: degrees, degrees, m."""
+
+    bias: GeoLocation = GeoLocation()
+    deviation: GeoLocation = GeoLocation()
+    seed: int = 0
+
+
+class ImuSpec(NamedTuple):
+    """Errors of an inertial unit in its own frame: m/s² and rad/s."""
+
+    accelerometer_deviation: Vector3D = Vector3D()
+    gyroscope_deviation: Vector3D = Vector3D()
+    gyroscope_bias: Vector3D = Vector3D()
+    seed: int = 0
+
+
+def gnss_spec(description: ActorDescription) -> GnssSpec:
+    """Read ``noise_lat_bias``, ``noise_lat_stddev`` and the like of a complete description."""
+
+    def read(kind: str) -> GeoLocation:
+        return GeoLocation(*(_number(description, f"noise_{axis}_{kind}") for axis in ("lat", "lon", "alt")))
+
+    return GnssSpec(read("bias"), read("stddev"), _seed(description))
+
+
+def imu_spec(description: ActorDescription) -> ImuSpec:
+    """Read ``noise_accel_stddev_x`` and the like of a complete description."""
+
+    def read(kind: str) -> Vector3D:
+        return Vector3D(*(_number(description, f"noise_{kind}_{axis}") for axis in "xyz"))
+
+    return ImuSpec(read("accel_stddev"), read("gyro_stddev"), read("gyro_bias"), _seed(description))
+
+
+def interval_s(description: ActorDescription) -> float:
+    """Read ``sensor_tick``: seconds between two measurements, 0 for one every frame; 0 too where a sensor has none."""
+    return _number(description, "sensor_tick")
+
+
+def _number(description: ActorDescription, name: str) -> float:
+    return float(description.attribute(name, "0"))
+
+
+def _seed(description: ActorDescription) -> int:
+    return int(description.attribute("noise_seed", "0"))
+
+
+ROUNDING_S = 1e-6
+"""A frame that should fall on a due time counts as on it, whatever the last bits of the sum of steps are."""
+
+
+class Schedule(NamedTuple):
+    """Seconds of simulated time; ``due_s`` is when the next measurement is wanted, ``made`` how many were made."""
+
+    interval_s: float = 0.0
+    due_s: float = 0.0
+    made: int = 0
+
+
+def advance(schedule: Schedule, now_s: float) -> tuple[bool, Schedule]:
+    """Return whether the frame at ``now_s`` is one of the sensor's, and its schedule after it."""
+    interval_s, due_s, made = schedule
+    if not made:
+        due_s = now_s
+    late_s = now_s - due_s + ROUNDING_S
+    if late_s < 0.0:
+        return False, schedule
+    missed = math.floor(late_s / interval_s) if interval_s > 0.0 else 0
+    return True, Schedule(interval_s, due_s + (missed + 1) * interval_s, made + 1)

@@ -1,0 +1,90 @@
+"""The two lidars of CARLA.
+
+Source of meaning: CARLA 0.9.16, RayCastSemanticLidar.cpp and RayCastLidar.cpp. One of their faults is left out: with a
+``sensor_tick`` they fire the points of a frame where those of the whole time since the last measurement are due.
+"""
+
+import math
+
+import numpy as np
+
+from linden.protocol.values.actors import ActorDescription
+from linden.sensors.devices.lidar.firing_pattern import F32, I32, aim, fire, read_fan, turned_on
+from linden.sensors.devices.lidar.sweep import (
+    Chances,
+    Losses,
+    Owners,
+    SemanticSweep,
+    Sweep,
+    points_of,
+    semantic_points_of,
+)
+from linden.sensors.devices.noise import dice_of
+from linden.sensors.view import Look, Seen, actor_of_objects, first_of_places, id_of_places
+
+
+class Lidar:
+    """``sensor.lidar.ray_cast``."""
+
+    def __init__(self, description: ActorDescription) -> None:
+        self._fan, self._losses = read_fan(description), read_losses(description)
+        self._angle_deg = 0.0
+
+    def skip(self, interval_s: float) -> None:
+        """Turn on unheard."""
+        self._angle_deg = turned_on(self._fan, self._angle_deg, interval_s)
+
+    def measure(self, look: Look) -> Sweep:
+        """Return the points of the time since the last measurement."""
+        fan, losses, dice = self._fan, self._losses, dice_of(self._losses.seed, look.number)
+        fired = fire(fan, self._angle_deg, look.interval_s)
+        self.skip(look.interval_s)
+        number: I32 = np.arange(fired.rays, dtype=np.int32)
+        if losses.general_rate > 0.0:
+            number = number[dice.random(len(number), np.float32) >= losses.general_rate]
+        hits = look.seen.caster.closest(aim(fired, number, look.pose), fan.range_m, coherent=True, outer=True)
+        error_m: F32 = np.zeros(len(number), np.float32)
+        if losses.deviation_m > 0.0:
+            error_m = np.float32(losses.deviation_m) * dice.standard_normal(len(number), np.float32)
+        chances = Chances(dice.random(len(number), np.float32), error_m)
+        return Sweep(math.radians(self._angle_deg), *points_of(fired, number, hits, losses, chances))
+
+
+def read_losses(description: ActorDescription) -> Losses:
+    """Read a complete description."""
+    return Losses(
+        attenuation_per_m=float(description.attribute("atmosphere_attenuation_rate")),
+        general_rate=float(description.attribute("dropoff_general_rate")),
+        intensity_limit=float(description.attribute("dropoff_intensity_limit")),
+        zero_intensity=float(description.attribute("dropoff_zero_intensity")),
+        deviation_m=float(description.attribute("noise_stddev")),
+        seed=int(description.attribute("noise_seed")),
+    )
+
+
+class SemanticLidar:
+    """``sensor.lidar.ray_cast_semantic``: nothing lost, and of each point whose it is."""
+
+    def __init__(self, description: ActorDescription) -> None:
+        self._fan = read_fan(description)
+        self._angle_deg = 0.0
+
+    def skip(self, interval_s: float) -> None:
+        """Turn on unheard."""
+        self._angle_deg = turned_on(self._fan, self._angle_deg, interval_s)
+
+    def measure(self, look: Look) -> SemanticSweep:
+        """Return the points of the time since the last measurement."""
+        fired = fire(self._fan, self._angle_deg, look.interval_s)
+        self.skip(look.interval_s)
+        rays = aim(fired, np.arange(fired.rays, dtype=np.int32), look.pose)
+        hits = look.seen.caster.closest(rays, self._fan.range_m, coherent=True, outer=True)
+        found = semantic_points_of(fired, rays.direction, hits, owners_of(look.seen))
+        return SemanticSweep(math.radians(self._angle_deg), *found)
+
+
+def owners_of(seen: Seen) -> Owners:
+    """Return whose each face is; scenery has the id 0, as in CARLA."""
+    faces = seen.faces
+    first, actor = first_of_places(faces, seen.instances), id_of_places(seen.instances)
+    return Owners(first, actor, faces.tag, faces.object, actor_of_objects(seen))

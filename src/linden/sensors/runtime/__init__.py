@@ -1,0 +1,1 @@
+"""The sensors of an episode in each frame: scene, visible actors, schedules, measurements."""

@@ -1,0 +1,62 @@
+"""What shines of the things that stand: traffic lights, street lamps, windows; found anew when one of them changes."""
+
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.protocol.values.enums import TrafficLightState
+from linden.scenery.mesh import LampOf
+from linden.scenery.scene.lamp_states import is_night
+from linden.scenery.scene.objects import Kind
+
+if TYPE_CHECKING:
+    from linden.simulation.episode import Episode
+
+_LENS = {
+    TrafficLightState.RED: LampOf.TRAFFIC_RED,
+    TrafficLightState.YELLOW: LampOf.TRAFFIC_YELLOW,
+    TrafficLightState.GREEN: LampOf.TRAFFIC_GREEN,
+}
+
+
+class Shine(NamedTuple):
+    """Of each of the scene's boxes (O,): LampOf bits that shine, and sRGB (O, 3) of what a street lamp shines with."""
+
+    lights: NDArray[np.uint32]
+    colour: NDArray[np.uint8]
+
+
+class Shining:
+    """Remembers the last answer: most frames are like the one before."""
+
+    def __init__(self) -> None:
+        self._last: tuple[Episode, Hashable, Shine] | None = None
+
+    def of(self, episode: "Episode") -> Shine:
+        """Return what shines now."""
+        lamps, colours = episode.surroundings.lamps, episode.traffic.state.colour.tobytes()
+        now = colours, lamps.changes, is_night(episode.weather)
+        if self._last is None or self._last[0] is not episode or self._last[1] != now:
+            self._last = episode, now, shine(episode)
+        return self._last[2]
+
+
+def shine(episode: "Episode") -> Shine:
+    """Return what shines of each box."""
+    scene = episode.surroundings.scene
+    shining, colour = np.zeros(len(scene.things), np.uint32), np.zeros((len(scene.things), 3), np.uint8)
+    kinds = scene.things["kind"]
+    lights = np.flatnonzero(kinds == Kind.TRAFFIC_LIGHT)
+    bits = np.zeros(max(TrafficLightState) + 1, np.uint32)
+    for state, lens in _LENS.items():
+        bits[state] = 1 << lens
+    shining[lights] = bits[episode.traffic.state.colour[: len(lights)]]
+    lamps, states = kinds == Kind.STREET_LAMP, episode.surroundings.lamps.states()
+    shining[lamps] = [int(lamp.active) << LampOf.STREET for lamp in states]
+    colour[lamps] = np.array([lamp.color for lamp in states], np.uint8).reshape(-1, 3)
+    if is_night(episode.weather):
+        shining[kinds == Kind.HOUSE] = 1 << LampOf.WINDOW
+    things = scene.boxes["thing"]
+    return Shine(shining[things], colour[things])

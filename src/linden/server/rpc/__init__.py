@@ -1,0 +1,1 @@
+"""The functions that a client can call, one family a module."""

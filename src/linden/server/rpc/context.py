@@ -1,0 +1,103 @@
+"""What a handler may touch: the simulation, the maps, the streams, and what goes out with this call."""
+
+import logging
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple, Protocol
+
+from linden.maps.library import MapLibrary
+from linden.maps.navigation.library import MeshLibrary
+from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
+from linden.replay.file.folder import RecordingFolder
+from linden.server.rpc.warning_log import Complaints
+from linden.world import World
+
+log = logging.getLogger("linden")
+
+
+class Frames(Protocol):
+    """What one frame looks like on the wire: :mod:`linden.server.frames`."""
+
+    def world_payload(self, simulation: World) -> bytes:
+        """Return the world snapshot: headers and one row for each actor."""
+        ...
+
+    def sensor_payloads(self, simulation: World, listened: set[int]) -> Sequence[tuple[int, bytes]]:
+        """Return what this frame's sensors measured, by stream, for the streams that somebody reads."""
+        ...
+
+
+class PendingLoad(NamedTuple):
+    """An episode that begins with the next call or frame, once the client that loads it knows the present one."""
+
+    begin: Callable[[], None]
+    client: int
+    """Number of the connection that loads."""
+
+
+@dataclass(slots=True)
+class Context:
+    """One server's state as its handlers see it."""
+
+    simulation: World
+    maps: MapLibrary
+    frames: Frames
+    streams: StreamTable
+    variable_step_s: Callable[[], float]
+    meshes: MeshLibrary = field(default_factory=MeshLibrary)
+    recordings: RecordingFolder = field(default_factory=RecordingFolder)
+    outbox: list[tuple[int, bytes]] = field(default_factory=list)
+    """(stream id, message) in the order of sending; the server empties it after every call."""
+    caller: int = 0
+    """Number of the connection whose call is being served."""
+    traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
+    """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
+    pending_load: PendingLoad | None = None
+    """The load that has been answered and has not begun; see ``handlers.session.load_new_episode``."""
+    frame_is_due: bool = False
+    """Whether asynchronous mode's next frame shall not wait for the clock."""
+    complaints: Complaints = field(default_factory=Complaints)
+    bugs: Complaints = field(default_factory=Complaints)
+
+    def advance(self) -> int:
+        """Make one frame, put what it shows into the outbox, and return its number."""
+        fixed_s = self.simulation.settings.fixed_delta_seconds
+        self.simulation.step(self.variable_step_s() if fixed_s is None else fixed_s)
+        listened = self.streams.listened()
+        if WORLD_OBSERVER_ID in listened:
+            self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.simulation)))
+        self.outbox.extend(self.frames.sensor_payloads(self.simulation, listened))
+        return self.simulation.frame
+
+    def begin_pending_load(self) -> None:
+        """Begin the episode that a load has been answered for, if there is one."""
+        pending, self.pending_load = self.pending_load, None
+        if pending is not None:
+            pending.begin()
+
+    def builds_the_scene(self) -> bool:
+        """Whether what sensors look at is being built."""
+        return not self.simulation.seeing.wait(0.0)
+
+    def waits_for_the_scene(self) -> bool:
+        """Whether the next frame has to wait until what sensors look at is built: somebody listens to one of them."""
+        if not self.builds_the_scene():
+            return False
+        world = self.simulation
+        return world.sensors.any_looking(world.episode.actors, self.streams.listened())
+
+    def warn_once(self, sentence: str) -> None:
+        """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""
+        self.complaints.say(sentence)
+
+    def own_up(self, sentence: str, error: BaseException | None = None) -> None:
+        """Log a bug of ours with its traceback; however many warnings clients have called forth, it is seen.
+
+        Where memory does not suffice for the traceback, the log has none.
+        """
+        try:
+            trace = "" if error is None else " " + "".join(traceback.format_exception(error))
+            self.bugs.say(sentence + trace)
+        except MemoryError:
+            log.warning("a bug of ours, for whose traceback the memory does not suffice")

@@ -1,0 +1,151 @@
+"""Functions that CARLA can offer only because of Unreal; they are refused with a reason.
+
+What CARLA can do only because of Unreal or of what is compiled into its server, refused with what it would need.
+
+Source of names and meanings: LibCarla 0.9.16 and ``CarlaServer.cpp``.
+
+Physics engines that CARLA can put in place of its own, and what it shows of its own. Source: LibCarla 0.9.16.
+"""
+
+from linden.errors import Refusal
+from linden.protocol.wire.decode import U32, U64
+from linden.server.rpc.context import Context
+from linden.server.rpc.registry import method
+from linden.simulation.actor_table import ActorRefusal
+
+_NO_GBUFFERS = (
+    "g-buffers are textures inside Unreal's renderer, and this server has none; depth, normals and semantic tags come "
+    "as images of their own from sensor.camera.depth, .normals and .semantic_segmentation"
+)
+
+
+@method("get_gbuffer_token")
+def get_gbuffer_token(context: Context, actor_id: U32, _buffer: U32) -> bytes:
+    """Refuse: g-buffers are textures inside Unreal's renderer."""
+    _check_sensor(context, actor_id)
+    raise Refusal(_NO_GBUFFERS)
+
+
+@method("enable_gbuffers")
+def enable_gbuffers(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
+    """Refuse to switch g-buffers on; off they are."""
+    _check_sensor(context, actor_id)
+    if enabled:
+        raise Refusal(_NO_GBUFFERS)
+
+
+@method("are_gbuffers_enabled")
+def are_gbuffers_enabled(context: Context, actor_id: U32) -> bool:
+    """Whether a sensor sends g-buffers: never."""
+    _check_sensor(context, actor_id)
+    return False
+
+
+@method("enable_sensor_for_ros")
+def enable_sensor_for_ros(_context: Context, stream_id: U32) -> None:
+    """Refuse: the ROS 2 publisher is compiled into CARLA's server."""
+    raise Refusal(
+        f"the sensor of stream {stream_id} cannot publish to ROS 2 by itself: that publisher is compiled into CARLA's "
+        f"own server (--ros2); a bridge that is an ordinary client, such as carla-ros-bridge, does it instead"
+    )
+
+
+@method("disable_sensor_for_ros")
+def disable_sensor_for_ros(_context: Context, _stream_id: U32) -> None:
+    """Stop a sensor's publishing to ROS 2: none does."""
+
+
+@method("is_sensor_enabled_for_ros")
+def is_sensor_enabled_for_ros(_context: Context, _stream_id: U32) -> bool:
+    """Whether a sensor publishes to ROS 2 by itself: never."""
+    return False
+
+
+@method("send")
+def send(context: Context, actor_id: U32, _text: str) -> None:
+    """Refuse to send a message by radio: no actor is a radio."""
+    _check_sensor(context, actor_id)
+    raise Refusal(
+        f"actor {actor_id} cannot send: only sensor.other.v2x_custom does, and it needs a model of the radio channel, "
+        f"which this version has not"
+    )
+
+
+@method("set_ignored_vehicles")
+def set_ignored_vehicles(context: Context, actor_id: U32, vehicle_ids: list[U32]) -> None:
+    """Check which vehicles a sensor shall not show; in 0.9.16 the cosmos camera alone asks, and it is not here."""
+    _check_sensor(context, actor_id)
+    for vehicle_id in vehicle_ids:
+        if "vehicle" not in context.simulation.episode.actors.get(vehicle_id).description.id:
+            raise ActorRefusal("Actor does not match the expected type", vehicle_id)
+    if vehicle_ids:
+        context.warn_once(
+            "set_ignored_vehicles: as in CARLA 0.9.16, only sensor.camera.cosmos_visualization would leave vehicles "
+            "out; the sensors here go on seeing them"
+        )
+
+
+def _check_sensor(context: Context, actor_id: int) -> None:
+    """Refuse whoever is no sensor.
+
+    Raises:
+        ActorRefusal: there is no such actor, or it is no sensor.
+    """
+    if not context.simulation.episode.actors.get(actor_id).description.id.startswith("sensor."):
+        raise ActorRefusal("Actor does not match the expected type", actor_id)
+
+
+@method("enable_carsim")
+def enable_carsim(context: Context, actor_id: U32, _simfile: str) -> None:
+    """Refuse: CarSim is a commercial program that CARLA reaches through a plugin of Unreal's."""
+    context.simulation.episode.vehicle(actor_id)
+    raise Refusal(
+        "CarSim is not here: it would need the VehicleSim library of Mechanical Simulation and a licence; vehicle "
+        f"{actor_id} goes on with linden's own physics"
+    )
+
+
+@method("use_carsim_road")
+def use_carsim_road(context: Context, actor_id: U32, _enabled: bool) -> None:  # noqa: FBT001 - the wire's order
+    """Refuse: there is no CarSim, and so no road of its."""
+    context.simulation.episode.vehicle(actor_id)
+    raise Refusal(
+        "CarSim is not here, nor are its roads: it would need the VehicleSim library of Mechanical Simulation and a "
+        f"licence; vehicle {actor_id} drives on the map"
+    )
+
+
+@method("enable_chrono_physics")
+def enable_chrono_physics(
+    context: Context,
+    actor_id: U32,
+    _substeps: U64,
+    _substep_s: float,
+    _vehicle_json: str,
+    _powertrain_json: str,
+    _tire_json: str,
+    _folder: str,
+) -> None:
+    """Refuse: Project Chrono would have to be compiled in."""
+    context.simulation.episode.vehicle(actor_id)
+    raise Refusal(
+        "Chrono is not here: it would need the Project Chrono vehicle library (CARLA has it only if built with "
+        f"ARGS=--chrono); vehicle {actor_id} goes on with linden's own physics"
+    )
+
+
+@method("restore_physx_physics")
+def restore_physx_physics(context: Context, actor_id: U32) -> None:
+    """Accept: a vehicle never leaves the server's own physics, so it has what is to be restored."""
+    context.simulation.episode.vehicle(actor_id)
+
+
+@method("show_vehicle_debug_telemetry")
+def show_vehicle_debug_telemetry(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
+    """Refuse to show, for there is no spectator window; not to show is what happens anyway."""
+    context.simulation.episode.vehicle(actor_id)
+    if enabled:
+        raise Refusal(
+            f"the telemetry of vehicle {actor_id} cannot be drawn: this server has no spectator window; "
+            "vehicle.get_telemetry_data() returns the same figures"
+        )

@@ -1,1 +1,0 @@
-"""What there is: actors, blueprints, maps and the look-ups over them."""

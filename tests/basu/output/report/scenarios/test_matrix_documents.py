@@ -1,0 +1,98 @@
+"""Claims about the documents of scenario runs: as their schemas say, read as the library reads them."""
+
+import copy
+import json
+import random
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from basu.errors import UserError
+from basu.output.report.documents import RESULT_FILE, mistakes, read_schema, write_json
+from basu.output.report.scenarios.matrix_documents import (
+    CASE_SCHEMA,
+    MATRIX_FILE,
+    MATRIX_SCHEMA,
+    read_case,
+    read_matrix,
+)
+from basu.output.report.streets import write_streets
+from basu.records.history.files import write_history
+from fakes.scenario_documents import STREETS, case_result, crossing, failed, grid, matrix, sweep
+
+DOCUMENTS = [
+    (case_result(), CASE_SCHEMA),
+    (failed(tree=None, actors=[], things=[]), CASE_SCHEMA),
+    (matrix(["basic"], instances=1), MATRIX_SCHEMA),
+    (sweep(10), MATRIX_SCHEMA),
+    (grid(2), MATRIX_SCHEMA),
+]
+
+
+@pytest.mark.parametrize(("document", "name"), DOCUMENTS)
+def test_documents_are_as_their_schemas_say(document: dict[str, Any], name: str) -> None:
+    jsonschema.Draft202012Validator.check_schema(read_schema(name))
+    jsonschema.Draft202012Validator(read_schema(name)).validate(json.loads(json.dumps(document)))
+    assert list(mistakes(document, read_schema(name))) == []
+
+
+@pytest.mark.parametrize(("document", "name"), [DOCUMENTS[0], DOCUMENTS[2]])
+def test_the_schemas_are_read_as_the_library_reads_them(document: dict[str, Any], name: str) -> None:
+    dice, library, refused = random.Random(4), jsonschema.Draft202012Validator(read_schema(name)), 0
+    for _ in range(400):
+        changed = copy.deepcopy(document)
+        place: Any = changed
+        while True:  # down to some place
+            key = dice.choice(list(place) if isinstance(place, dict) else range(len(place)))
+            inside = place[key]
+            if not isinstance(inside, dict | list) or not inside or dice.random() < 0.3:
+                break
+            place = inside
+        place[key] = dice.choice([None, True, -1, 7, 0.5, "text", [], {}, {"odd": 1}])
+        found = list(mistakes(changed, read_schema(name)))
+        assert bool(found) != library.is_valid(changed), (found, key)
+        refused += bool(found)
+    assert 100 < refused < 400
+
+
+def test_a_case_comes_back_from_its_folder(tmp_path: Path) -> None:
+    write_json(tmp_path / RESULT_FILE, case_result())
+    write_history(tmp_path, crossing())
+    write_streets(tmp_path, STREETS)
+    record = read_case(tmp_path)
+    assert record.result == case_result()
+    assert record.history is not None
+    assert len(record.history.frames) == 240
+    assert record.streets == STREETS
+
+
+def test_a_case_in_which_nothing_was_driven_has_no_record(tmp_path: Path) -> None:
+    write_json(tmp_path / RESULT_FILE, case_result(verdict="SETUP_FAULT", tree=None))
+    assert read_case(tmp_path).history is None
+
+
+def test_a_matrix_that_somebody_changed_is_refused_with_the_place(tmp_path: Path) -> None:
+    document = matrix()
+    document["cases"][3]["results"]["basic"]["verdict"] = "PERHAPS"
+    write_json(tmp_path / MATRIX_FILE, document)
+    with pytest.raises(UserError, match=r'cases\[3\]\.results\.basic\.verdict is "PERHAPS"; it must be one of SUCCESS'):
+        read_matrix(tmp_path)
+
+
+def test_a_matrix_of_another_version_is_refused(tmp_path: Path) -> None:
+    write_json(tmp_path / MATRIX_FILE, {**matrix(), "schema_version": 7})
+    with pytest.raises(UserError, match="schema version 7, and this version of basu reads 2"):
+        read_matrix(tmp_path)
+
+
+def test_documents_made_before_the_policy_are_refused_with_what_to_do(tmp_path: Path) -> None:
+    write_json(tmp_path / MATRIX_FILE, {**matrix(), "schema_version": 1})
+    with pytest.raises(
+        UserError, match="before scenarios were judged on safe, completed and exercised; play its cases"
+    ):
+        read_matrix(tmp_path)
+    write_json(tmp_path / RESULT_FILE, case_result(schema_version=1))
+    with pytest.raises(UserError, match="play its cases again"):
+        read_case(tmp_path)

@@ -1,0 +1,67 @@
+"""Claims about driving the experiment: in a live simulator as far as it is short, and what ends it."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from basu.cli import main
+from basu.options import RunOptions
+from basu.outcome import Outcome, Status
+from basu.output.report.documents import RunRecord, point_latest
+from basu.running import thesis_experiment
+from fakes.run_records import crashing, record, written
+from servers import RunningServer
+
+
+def leaving(made: Callable[[str], RunRecord]) -> Callable[[RunOptions, object], int]:
+    """A run that takes no time and leaves what it is told to."""
+
+    def run(options: RunOptions, _scoring: object) -> int:
+        folder = written(options.output / options.agent, made(options.agent))
+        point_latest(folder, options.output)
+        return 0
+
+    return run
+
+
+def test_all_four_are_driven_and_stand_beside_the_thesis(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(thesis_experiment, "run", leaving(lambda agent: record(crashing(), agent=agent)))
+    assert main(["experiment", "thesis", "--output", str(tmp_path)]) == 0
+    told = capsys.readouterr().out
+    assert "0.13 does not follow from one collision and one speeding" in told
+    assert "wall time" in told
+    (folder,) = tmp_path.glob("experiment-thesis-*")
+    assert {path.name for path in folder.iterdir()} == {
+        "basic", "deviating", "forward", "human", "latest", "compare.html", "compare.png",
+    }  # fmt: skip
+    assert "Beside table 5.1" in (folder / "compare.html").read_text()
+
+
+@pytest.mark.parametrize(("status", "code"), [("SetupFailed", 2), ("SimulatorFailed", 3), ("Interrupted", 130)])
+def test_a_drive_that_is_none_ends_it_with_its_own_exit_code(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, status: str, code: int
+) -> None:
+    def failed(agent: str) -> RunRecord:
+        run = record(None, agent=agent)
+        return replace(run, result=replace(run.result, outcome=Outcome(Status(status), "so it ended")))
+
+    monkeypatch.setattr(thesis_experiment, "run", leaving(failed))
+    assert main(["experiment", "thesis", "--output", str(tmp_path)]) == code
+
+
+def test_it_drives_in_a_simulator_that_runs_already(
+    simulator: RunningServer,
+    route_file: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(thesis_experiment, "CASES", thesis_experiment.CASES[:1])
+    monkeypatch.setattr(thesis_experiment, "ROUTE", str(route_file))
+    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
+    assert main(["experiment", "thesis", *address, "--output", str(tmp_path)]) == 0
+    assert "basic  here" in capsys.readouterr().out

@@ -1,0 +1,55 @@
+"""Meshes as files: named by their content, made once, kept beside the map's facts."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from linden.maps.cache import MapCache
+from linden.maps.facts import derive
+from linden.maps.library import LoadedMap
+from linden.maps.navigation import library
+from linden.maps.navigation.detour import Obstacles
+from linden.maps.navigation.library import MeshLibrary
+from opendrive_texts import lane, line, opendrive, road, section, street_through_junction
+
+NOTHING = Obstacles(np.empty((0, 3)), np.empty((0, 3)), np.empty(0))
+
+
+def loaded(text: str) -> LoadedMap:
+    return LoadedMap(name="street", text=text, **vars(derive(text)))
+
+
+@pytest.fixture(scope="module")
+def street() -> LoadedMap:
+    return loaded(street_through_junction())
+
+
+def test_the_name_tells_the_content(street: LoadedMap) -> None:
+    file = MeshLibrary().file_of(street, NOTHING)
+    assert file is not None
+    assert file.name.startswith("Carla/Maps/Nav/street_")
+    box = Obstacles(np.array([[20.0, 4.25, 1.0]]), np.array([[0.5, 0.1, 1.0]]), np.zeros(1))
+    other = MeshLibrary().file_of(street, box)
+    assert other is not None
+    assert other.content != file.content
+    assert other.name != file.name
+
+
+def test_a_map_without_pavements_has_none() -> None:
+    bare = loaded(opendrive(road(1, 60.0, line(0, 0, 0, 0, 60), section(right=lane(-1)))))
+    assert MeshLibrary().file_of(bare, NOTHING) is None
+
+
+def test_what_was_made_is_not_made_again(street: LoadedMap, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    first = MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING)
+    monkeypatch.setattr(library, "_made", lambda *_: pytest.fail("it was kept"))
+    assert MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING) == first
+
+
+def test_a_broken_file_is_made_anew(street: LoadedMap, tmp_path: Path) -> None:
+    first = MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING)
+    (kept,) = tmp_path.glob("*.nav")
+    kept.write_bytes(kept.read_bytes()[:-100] + bytes(100))
+    assert MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING) == first
+    assert MeshLibrary(MapCache(Path("/dev/null"))).file_of(street, NOTHING) == first

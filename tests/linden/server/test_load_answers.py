@@ -1,0 +1,78 @@
+"""Claims about the order of answers round a load by a client that runs Traffic Managers."""
+
+import time
+from collections import deque
+from types import SimpleNamespace
+
+from fakes.raw_client import RawClient
+from linden.protocol.wire.rpc import Call
+from linden.server.load_answers import ASKING_S, GATHERING_S, SETTLING_S, Handover
+from servers import running_server
+
+LOAD = ("load_new_episode", "Linden", True, 0xFFFF)
+
+
+def _peer(*methods: str) -> SimpleNamespace:
+    return SimpleNamespace(calls=deque(Call(n, name, [], False) for n, name in enumerate(methods)))
+
+
+def test_a_load_waits_until_each_traffic_managers_thread_stands_in_a_call() -> None:
+    handover = Handover(b"loaded", threads=2, until_s=GATHERING_S)
+    assert handover.waits(_peer("load_new_episode"), 0.0)
+    assert handover.waits(_peer("load_new_episode", "get_episode_settings"), 0.0)
+    assert not handover.waits(_peer("load_new_episode", "get_episode_settings", "apply_batch"), 0.0)
+    assert not handover.waits(_peer("load_new_episode"), GATHERING_S), "they sleep: synchronous mode"
+
+
+def test_their_calls_wait_until_the_client_has_its_episode() -> None:
+    handover = Handover(b"loaded", threads=1, until_s=GATHERING_S)
+    assert handover.answered(1.0) == b"loaded"
+    assert handover.waits(_peer("apply_batch"), 1.0)
+    peer = _peer("apply_batch", "version")
+    assert not handover.waits(peer, 1.0)
+    assert handover.bring_forward(peer, 1.0)
+    assert peer.calls[0].method == "version"
+    peer = _peer("apply_batch", "get_episode_info")
+    assert handover.bring_forward(peer, 1.5)
+    assert handover.waits(_peer("apply_batch"), 1.5)
+    assert not handover.waits(_peer("apply_batch"), 1.5 + SETTLING_S)
+
+
+def test_a_client_that_never_asks_gets_its_other_answers() -> None:
+    handover = Handover(b"loaded", threads=1, until_s=GATHERING_S)
+    handover.answered(1.0)
+    assert not handover.waits(_peer("apply_batch"), 1.0 + ASKING_S)
+
+
+def test_the_order_of_answers_is_load_episode_and_then_the_threads_call() -> None:
+    with running_server() as server, RawClient(server.port) as client:
+        assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+        before = client.call("get_episode_info")
+        load, thread = client.send(*LOAD), client.send("get_weather_parameters")
+        assert client.answer()[1] == load
+        version, info = client.send("version"), client.send("get_episode_info")
+        answers = [client.answer() for _ in range(3)]
+        after = client.call("get_episode_info")
+    assert [answer[1] for answer in answers] == [version, info, thread]
+    assert answers[1][3][0][1][0] == before[0], "the new episode has begun already"
+    assert after[0] != before[0]
+
+
+def test_a_client_that_vanishes_in_a_load_leaves_a_new_episode() -> None:
+    with running_server() as server, RawClient(server.port) as watcher:
+        before = watcher.call("get_episode_info")[0]
+        with RawClient(server.port) as client:
+            assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+            client.send(*LOAD)
+            client.send("get_weather_parameters")
+            client.answer()
+        deadline_s = time.monotonic() + 5.0
+        while watcher.call("get_episode_info")[0] == before:
+            assert time.monotonic() < deadline_s, "the load is lost"
+
+
+def test_a_load_is_answered_where_no_thread_calls() -> None:
+    with running_server() as server, RawClient(server.port) as client:
+        assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+        client.call(*LOAD)
+        assert client.call("get_weather_parameters")
