@@ -18,21 +18,16 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]
     return main(arguments), capsys.readouterr().err
 
 
-@pytest.mark.parametrize("option", ["sumo"])
-def test_an_option_of_a_later_version_is_refused_before_anything_starts(
-    capsys: pytest.CaptureFixture[str], option: str
-) -> None:
-    code, text = said(capsys, "run", SAMPLE, f"--{option}")
-    assert code == 2
-    assert text.startswith(f"basu: --{option} is not there yet: ")
-
-
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
         (["run", "basik"], "did you mean 'basic'"),
         (["rum"], "there is no command 'rum'; did you mean 'run'?"),
         (["run", "basic", "--agent", "forward"], "two values are given for --agent, basic and forward; give one"),
+        (["run", "basic", "--sumo", "none.sumocfg"], "--sumo none.sumocfg: there is no such file"),
+        (["run", "basic", "--sumo", "much"], "--sumo much: it may be a FILE.sumocfg, random, demand or none"),
+        (["run", "basic", "--sumo-radius", "0"], "--sumo-radius is 0 m; it must be above 0"),
+        (["run", "basic", "--sumo", "random", "--traffic-density", "5"], "--traffic-density goes without it"),
         (["run", "basic", "--repetitions", "0"], "--repetitions is 0; it must be 1 or more"),
         (["run", "basic", "--step-limit", "0"], "--step-limit is 0 s; it must be above 0"),
         (["run", "basic", "--penalty", "singing=0.5"], "--penalty has no 'singing'; there are collision_pedestrian"),
