@@ -117,9 +117,11 @@ def run_agent(arguments: argparse.Namespace) -> int:
     from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
 
     user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
-    from basu.running.runner import run  # noqa: PLC0415 - the client and the plots, which `--help` does not need
+    from basu.simulator import started_early  # noqa: PLC0415 - the client, which `--help` does not need
 
-    with terminated_as_interrupted():
+    with terminated_as_interrupted(), started_early(options):
+        from basu.running.runner import run  # noqa: PLC0415 - the plots, imported while the server starts
+
         return run(options, scoring)
 
 

@@ -27,11 +27,13 @@ from basu.managers import Live
 from basu.managers.base_manager import BaseManager, Driver, Frame, Run, ego_in
 from basu.managers.conduct import ticked
 from basu.managers.metrics_manager import MetricsManager
+from basu.managers.observations import Neighbours
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
+from basu.managers.world_changes import WorldChanges, taken_away
 from basu.outcome import Outcome, Status
 from basu.routing import plan
 from basu.simulator import linden_command
@@ -192,6 +194,8 @@ class Episode:
             server_address=self._simulator.address,
             own_simulator=self._simulator.own,
             weather=spec.weather_along,
+            neighbours=Neighbours(world, vehicle.id),
+            changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
         )
         self._prepared = True
 
@@ -212,7 +216,7 @@ class Episode:
         assert ground is not None, "likewise"
         self.history = self.outcome = self.bug = self.agent_error = None
         self._driver = Driver()
-        routes = RoutesManager()
+        routes = RoutesManager(self._spec.stop_after_s)
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)
@@ -263,6 +267,7 @@ class Episode:
         if managers.sumo is not None:
             managers.sumo.tick(frame)
         run.vehicle.apply_control(applied)
+        run.changes.control = applied
         return Step(self._observe(frame), None, managers.routes.outcome)
 
     def _observe(self, before: Frame | None) -> Observation:
@@ -372,6 +377,9 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
         raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
     if ego is None:
         raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
+    gone = taken_away(run.changes, snapshot)
+    if gone is not None and run.own_simulator:
+        raise AgentCrashedError(f"the agent took {gone} out of the world before frame {snapshot.frame}")
     if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
         raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:

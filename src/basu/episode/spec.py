@@ -45,6 +45,7 @@ class EpisodeSpec:
     lane_invasions: bool = True  # the client takes 0.4 s of each new world to get ready for them
     step_s: float = STEP_S
     timeout_s: float = 20.0  # of wall time to wait for the simulator
+    stop_after_s: float | None = None  # of simulated time; None: the drive goes on to its own end
 
     def description(self, carla_map: carla.Map) -> RouteDescription:
         """The route's description on this map.

@@ -122,9 +122,9 @@ class Subscribers:
             del self._behind[peer]
 
 
-SUBSCRIPTION_WAIT_S = 0.5
+SUBSCRIPTION_WAIT_S = 3.0
 """How long a frame waits for somebody who has asked and does not come. The official client takes a millisecond,
-and some hundreds of them where ten programs share a processor."""
+and more than half a second where ten programs share a processor: a camera that is not waited for is never answered."""
 MOST_IN_VAIN = 3
 """How often frames wait for a client that does not come; then its questions hold up nobody, until it has come once."""
 

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
-    from basu.options import RunOptions
 
 
 RRD_FILE = "run.rrd"  # in the run's folder
@@ -117,11 +116,3 @@ def _vehicle(run: Run) -> Vehicle:
         rear_m=box.extent.x - box.location.x,
         width_m=2.0 * box.extent.y,
     )
-
-
-def viewer_for(options: RunOptions, live: Live) -> list[BaseManager]:
-    """The manager that streams to Rerun, where ``--viewer`` is given."""
-    if not options.viewer:
-        return []
-
-    return [ViewerManager(live, print)]
