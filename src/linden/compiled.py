@@ -42,7 +42,7 @@ def _cached(function: Callable[..., object], **options: Any) -> Any:  # noqa: AN
             raise
         return numba.njit(error_model="numpy", **options)(function)
     if not COMPILER_IS_OFF:
-        compiled._cache = _KernelCache(cast("FunctionType", function))  # noqa: SLF001 - as njit(cache=True) does
+        compiled._cache = _KernelCache(function)  # type: ignore[no-untyped-call] # noqa: SLF001 - as njit(cache=True)
     return compiled
 
 
@@ -54,7 +54,7 @@ class _KernelCache(FunctionCache):
 
     def _index_key(self, *of_function: object) -> tuple[object, ...]:
         key = super()._index_key(*of_function)  # type: ignore[no-untyped-call]
-        return (*key, self.sources) if self.sources else key  # type: ignore[no-any-return]
+        return (*key, self.sources) if self.sources else key
 
     def _load_overload(self, *of_function: object) -> object:
         try:
