@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.options import RunOptions
     from basu.outcome import Outcome
     from basu.running.preparation import Job, Plan
@@ -149,6 +149,7 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
         scenarios=waiting,
         scoring=session.scoring,
         timeout_s=options.timeout_s,
+        stop_after_s=options.stop_after_s,
     )
 
 

@@ -45,7 +45,7 @@ class ViewerManager(BaseManager):
         parts = Parts(start, cameras=cameras, judged=True)
         self._stream = open_stream(run.folder / RRD_FILE, name, parts, screen=has_screen())
         recording = self._stream.recording
-        self._shower = entities.Shower(recording)
+        self._shower = entities.TickLogger(recording)
         self._neighbours = Neighbours(run.world, run.vehicle.id)
         self._shown_at_s: dict[str, float] = {}
         log_map(recording, run.carla_map)
