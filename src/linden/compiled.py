@@ -86,8 +86,8 @@ def part(function: Function) -> Function:
 def kept_part(sources: int) -> Callable[[Function], Function]:
     """Return a decorator that compiles as :func:`part` does, but keeps a file of its own.
 
-    So a kernel that takes long to compile can be cut into parts that several processes compile at once. ``sources``:
-    the fingerprint of every file that the part calls; with another one it is compiled anew.
+    So several processes can compile the parts of one kernel at once. ``sources`` is the fingerprint of every file that
+    the part calls. With another fingerprint the part is compiled anew.
     """
 
     def decorate(function: Function) -> Function:

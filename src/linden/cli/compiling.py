@@ -1,8 +1,8 @@
 """Kernels that are compiled in processes of their own: at a first start, and by ``linden compile``.
 
-numba compiles on one processor. So a first start cuts the work into groups: two processes compile the parts of the
-physics while the server makes the rest of what its first tick needs; a third, of low priority, compiles the kernels of
-sensors after the server is ready. Each leaves what it compiled in numba's cache, where the server finds it.
+numba compiles on one processor. So a first start cuts the work into groups. Two processes compile the parts of the
+physics while the server makes the rest of what its first tick needs. A third, of low priority, compiles the kernels of
+sensors after the server is ready. The server finds the machine code in numba's cache.
 """
 
 import argparse
@@ -45,7 +45,7 @@ def contacts() -> None:
 
 
 def rays() -> None:
-    """Compile rays: those that clients cast, and those of lidars and radars."""
+    """Compile rays: the rays of clients, of lidars and of radars."""
     from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
     from linden.sensors.warming import warm_rays  # noqa: PLC0415 - as in driving
 
@@ -93,7 +93,7 @@ def world() -> None:
 
 
 def frame() -> None:
-    """Compile the frame of physics, whose parts are compiled already, and note that it is."""
+    """Compile the frame of physics from its compiled parts, and note that it is compiled."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
     from linden.physics.warming import warm_up  # noqa: PLC0415 - as in driving
     from linden.sensors.compiling import OF_PHYSICS, note_compiled  # noqa: PLC0415 - as in driving
