@@ -1,0 +1,59 @@
+"""Claims about whole runs amid SUMO's traffic, in a live simulator."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from basu.cli import main
+from servers import RunningServer
+
+
+def run(simulator: RunningServer, route_file: Path, output: Path, *options: str) -> tuple[int, dict[str, Any], Path]:
+    """``basu run basic`` at the shared simulator: exit status, result and folder."""
+    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
+    code = main(["run", "basic", *address, "--routes", str(route_file), "--output", str(output), *options])
+    result = output / "latest" / "result.json"
+    return code, json.loads(result.read_text()) if result.exists() else {}, output / "latest"
+
+
+@pytest.mark.slow
+def test_the_same_seed_gives_the_same_bytes(simulator: RunningServer, route_file: Path, tmp_path: Path) -> None:
+    seen = []
+    for name in ("first", "second"):
+        options = ("--sumo", "random", "--vehicles", "30", "--seed", "3")
+        code, result, folder = run(simulator, route_file, tmp_path / name, *options)
+        assert code == 0
+        assert result["meta"]["traffic"]["vehicles"] >= 30
+        seen.append((folder / "history.parquet").read_bytes())
+    assert seen[0] == seen[1]
+
+
+def test_a_network_of_another_town_is_the_set_up_s_fault(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, _, _ = run(simulator, route_file, tmp_path / "runs", "--sumo", str(folder / "small.sumocfg"))
+    assert code != 0
+    assert "SUMO's network is not that of Linden: route 'piece' was tried" in capsys.readouterr().err
+
+
+def test_a_sumo_that_dies_in_the_middle_is_the_simulator_s_failure_and_the_run_is_written(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import libsumo  # noqa: PLC0415 - an extra
+
+    step, steps = libsumo.simulationStep, iter(range(40))
+
+    def dies(*arguments: object) -> object:
+        if next(steps, None) is None:
+            raise libsumo.FatalTraCIError("connection closed by SUMO")
+        return step(*arguments)
+
+    monkeypatch.setattr(libsumo, "simulationStep", dies)
+    options = ("--sumo", "random", "--vehicles", "5", "--seed", "3")
+    code, result, folder = run(simulator, route_file, tmp_path / "runs", *options)
+    assert code != 0
+    assert result["outcome"]["status"] == "Failed - Simulator Crashed"
+    assert "SUMO failed at making a step (step 40): connection closed by SUMO" in json.dumps(result)
+    assert (folder / "history.parquet").exists()
