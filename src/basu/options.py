@@ -68,6 +68,7 @@ AgentMemory = Annotated[
         default_text="no limit",
     ),
 ]
+Output = Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)]
 Debug = Annotated[bool, Option(help="show the traceback of an agent that fails", group=AGENT, repeats=False)]
 
 
@@ -209,6 +210,19 @@ class RunOptions(Settings):
         int, Option(help="walkers on the pavements near the route", group=CONDITIONS, metavar="N", least=0)
     ] = 0
 
+    stop_after_s: Annotated[
+        float | None,
+        Option(
+            help="end the drive after this simulated time; its score is not comparable",
+            group=CONDITIONS,
+            flag="--stop-after",
+            metavar="S",
+            unit="s",
+            above=0.0,
+            default_text="at the end of the route",
+        ),
+    ] = None
+
     sumo: Annotated[
         str | None,
         Option(
@@ -252,6 +266,15 @@ class RunOptions(Settings):
     host: Host = None
     port: Port = 2000
     timeout_s: Timeout = 20.0
+    maps: Annotated[
+        tuple[Path, ...],
+        Option(
+            help="offer every .xodr of a folder as a map; may be given several times",
+            group=SIMULATOR,
+            metavar="DIR",
+            is_file=True,
+        ),
+    ] = ()
 
     metric_files: Annotated[
         tuple[Path, ...],
@@ -264,9 +287,7 @@ class RunOptions(Settings):
         ),
     ] = ()
     record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
-    output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
-        Path("runs")
-    )
+    output: Output = Path("runs")
     series: Annotated[
         str | None,
         Option(
@@ -358,10 +379,27 @@ class RunOptions(Settings):
             raise UserError("--resume continues a series; name it with --series, as when it was begun")
         if self.hud_screenshot is not None and self.hud is None:
             raise UserError("--hud-screenshot takes a picture of the window; add --hud")
+        self._check_maps()
         self._check_sumo()
         check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
         _check_size("--hud-size", self.hud_size, WINDOWS)
         _check_size("--hud-camera", self.hud_camera, PICTURES)
+
+    def _check_maps(self) -> None:
+        """Check the folders of maps.
+
+        Raises:
+            UserError: one is none, or the simulator is not ours.
+        """
+        if self.maps and self.host is not None:
+            raise UserError(
+                "--maps is for the simulator that basu starts; give that at --host its own: `linden serve --maps DIR`"
+            )
+        for folder in self.maps:
+            if not folder.is_dir():
+                raise UserError(
+                    f"--maps {folder} is no folder; name the one that `linden map build` writes .xodr files to"
+                )
 
     def _check_sumo(self) -> None:
         """Check what was said of SUMO.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import carla
 
 from basu.agents.autonomous_agent import AgentConfig
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import NO_TRAFFIC, STEP_S, Sumo, Traffic
 from basu.routing.route_file import RouteDescription, RoutePoint
 from basu.routing.weather import changed
@@ -45,6 +45,7 @@ class EpisodeSpec:
     lane_invasions: bool = True  # the client takes 0.4 s of each new world to get ready for them
     step_s: float = STEP_S
     timeout_s: float = 20.0  # of wall time to wait for the simulator
+    stop_after_s: float | None = None  # of simulated time; None: the drive goes on to its own end
 
     def description(self, carla_map: carla.Map) -> RouteDescription:
         """The route's description on this map.

@@ -73,6 +73,8 @@ def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
     config = agents.config
     weather_called(config.weather)
     sensors = sensor_set(agents, loaded)
+    if options.host is None and (hint := camera_hint(sensors.specs)) is not None:
+        print(f"basu: hint: {hint}", file=sys.stderr)
     wants_sumo = options.sumo not in (None, SUMO_OFF) or options.sumo_port is not None
     if wants_sumo and not _has_sumo():
         raise UserError(INSTALL)
@@ -139,6 +141,18 @@ def _chosen(
         ids = ", ".join(route.id for route in routes)
         raise UserError(f"{config.routes} has no route '{options.route_id}'; it has {ids}")
     return chosen
+
+
+def camera_hint(specs: tuple[SensorSpec, ...]) -> str | None:
+    """A sentence about what cameras cost on the CPU; None without cameras."""
+    count = sum(spec.type_id.startswith("sensor.camera.") for spec in specs)
+    if count == 0:
+        return None
+    which = "1 camera is" if count == 1 else f"{count} cameras are"
+    return (
+        f"{which} drawn on the CPU, which takes most of the run's time; smaller pictures or a sensor_tick make it "
+        "faster, and so does a GPU: `linden serve --device cuda` and --host (docs/cameras.md)"
+    )
 
 
 def sensor_set(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:

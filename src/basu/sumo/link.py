@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 INSTALL = "SUMO is not installed; install it with: pip install 'linden[sumo]'"
 QUIET = ("--no-step-log", "--no-warnings", "--duration-log.disable")
-VERSION = (1, 20)  # the oldest whose functions are all here
+VERSION = (1, 20)  # the oldest with all functions used here
 
 
 class Link:
@@ -73,7 +73,7 @@ def in_process(config: Path, *, step_s: float, seed: int, more: Sequence[str] = 
             f"there is no SUMO configuration {config}; name a .sumocfg, or write one with `linden map sumo`"
         )
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # it warns of versions of pyarrow whose parts it does not use
+        with contextlib.redirect_stdout(io.StringIO()):  # it warns of versions of pyarrow that do not concern it
             import libsumo  # noqa: PLC0415 - an extra
     except ModuleNotFoundError:
         raise UserError(INSTALL) from None

@@ -1,13 +1,14 @@
 """``linden map``: build OpenDRIVE from streets, check, draw and count it, export what is seen, measure it by lidar."""
 
 import argparse
+import difflib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.cli import map_pointcloud, map_sumo
+from linden.cli import map_convert, map_package, map_pointcloud, map_sumo
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
 
@@ -22,13 +23,26 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     build_parser = _add(actions, "build", build, "turn streets (GeoJSON) into OpenDRIVE")
     build_parser.add_argument("streets", nargs="?", type=Path, help="GeoJSON file (default: the streets of Linden)")
     build_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .xodr file")
+    build_parser.add_argument(
+        "--route",
+        action="append",
+        default=[],
+        metavar="NAME=FILE",
+        help="write the route feature NAME of the streets as a route file, for `basu run --routes`; may be given "
+        "several times",
+    )
 
     check_parser = _add(actions, "check", check, "report what a careful reader finds wrong; exit 1 if anything is")
     _add_file(check_parser)
+    check_parser.add_argument("--against", metavar="MAP", help="the OpenDRIVE map that a Lanelet2 file was made of")
     check_parser.add_argument("--notes", action="store_true", help="tell also what is odd but allowed")
 
     show_parser = _add(actions, "show", show, "draw a map")
     _add_file(show_parser)
+    show_parser.add_argument("--over", metavar="MAP", help="the OpenDRIVE map to draw below a Lanelet2 or Aisan one")
+    show_parser.add_argument(
+        "--window", nargs=3, type=float, metavar=("X", "Y", "SIDE"), help="draw a square of a Lanelet2 or Aisan map, m"
+    )
     show_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .svg file")
 
     export_parser = _add(actions, "export", export, "write all that stands on a map as glTF, for any 3D viewer")
@@ -38,6 +52,12 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     info_parser = _add(actions, "info", info, "count roads, junctions, signals, lanes")
     _add_file(info_parser)
 
+    convert_parser = _add(actions, "convert", map_convert.run, map_convert.HELP)
+    map_convert.add_arguments(convert_parser)
+
+    package_parser = _add(actions, "package", map_package.run, map_package.HELP)
+    map_package.add_arguments(package_parser)
+
     cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
     map_pointcloud.add_arguments(cloud_parser)
 
@@ -45,23 +65,51 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
 
 def build(arguments: argparse.Namespace) -> int:
-    """Write the OpenDRIVE map of a file of streets."""
+    """Write the OpenDRIVE map of a file of streets, and the route files that are wanted."""
     try:
-        from linden.authoring.streets.build import build as opendrive_of  # noqa: PLC0415 - an optional part, and slow to load
+        from linden.authoring.streets.build import assembled  # noqa: PLC0415 - an optional part, and slow to load
+        from linden.authoring.streets.routes import xml  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.street_facts import read  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.writing import text as written  # noqa: PLC0415 - likewise
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("linden"):
             raise
         raise UserError(
             f"building maps needs the package {error.name}; install it with: pip install 'linden[maps]'"
         ) from None
-    text = opendrive_of(_streets(arguments.streets))
+    built = assembled(read(_streets(arguments.streets)))
+    wanted = [_route_and_file(given, built.facts.routes) for given in arguments.route]
+    routes = [(file, xml(built, built.facts.routes[name], number)) for number, (name, file) in enumerate(wanted)]
+    text = written(built.document)
     _write(arguments.output, text)
     _say(f"{arguments.output}: {len(text):,} bytes")
+    for file, route in routes:
+        _write(file, route)
+        _say(f"{file}: {len(route):,} bytes")
+    unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]
+    if unwritten and arguments.streets is not None:
+        _say(f"not written: {', '.join(unwritten)}; `--route {unwritten[0]}=FILE.xml` writes a route feature")
     return 0
+
+
+def _route_and_file(given: str, known: Collection[str]) -> tuple[str, Path]:
+    """The route feature and the file of ``NAME=FILE``."""
+    name, sign, file = given.partition("=")
+    if not (name and sign and file):
+        raise UserError(f"--route {given}: give the name of a route feature and a file, such as --route loop=loop.xml")
+    if name not in known:
+        close = difflib.get_close_matches(name, known, 1)
+        there = f"it has {', '.join(known)}" if known else "it has none"
+        raise UserError(f"the streets have no route '{name}'; {f'did you mean {close[0]!r}?' if close else there}")
+    return name, Path(file)
 
 
 def check(arguments: argparse.Namespace) -> int:
     """Print the findings, one a line, and a summary; return 1 if there are any."""
+    if Path(arguments.file).suffix == ".osm":
+        return map_convert.check(Path(arguments.file), arguments.against)
+    if Path(arguments.file).is_dir():
+        return map_convert.check_folder(Path(arguments.file))
     # here, not above: the server's start does not pay for it
     from linden.authoring.checks.check import Severity  # noqa: PLC0415 - see above
     from linden.authoring.checks.check import check as findings_of  # noqa: PLC0415 - see above
@@ -80,6 +128,11 @@ def show(arguments: argparse.Namespace) -> int:
     """Write a drawing of the map."""
     from linden.authoring.drawing.svg import svg  # noqa: PLC0415 - the server's start does not pay for it
 
+    drawn = map_convert.drawing(arguments)
+    if drawn is not None:
+        _write(arguments.output, drawn.encode())
+        _say(f"{arguments.output}: drawn")
+        return 0
     _write(arguments.output, svg(opendrive_of(arguments.file)).encode())
     _say(f"{arguments.output}: drawn")
     return 0

@@ -53,8 +53,8 @@ def test_a_mistake_is_one_sentence_and_exit_code_2(
     assert len(text.splitlines()) == 1
 
 
-def test_nobody_at_the_address_gets_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
-    with socket.socket() as reserved:  # bound, not listening: nobody answers there
+def test_no_actor_at_the_address_gets_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as reserved:  # bound, not listening: no server answers there
         reserved.bind(("127.0.0.1", 0))
         port = str(reserved.getsockname()[1])
         code, text = said(capsys, "run", "forward", "--host", "127.0.0.1", "--port", port, "--timeout", "0.5")
@@ -81,7 +81,7 @@ def test_a_record_is_scored_again_with_other_penalties(tmp_path: Path, capsys: p
     assert "hit static.poles at 10.00 m/s" in first
 
 
-def test_a_folder_whose_config_is_damaged_gets_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_with_a_config_is_damaged_gets_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_history(tmp_path, driven(at(10.0, 1.0)))
     (tmp_path / "config.json").write_text("{}")
     code, text = said(capsys, "score", str(tmp_path))

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from basu.cli import main
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.outcome import Fault
 from basu.routing.route_file import RouteDescription

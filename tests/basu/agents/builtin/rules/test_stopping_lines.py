@@ -5,6 +5,7 @@ import pytest
 
 from basu.agents.builtin.rules.stopping_lines import DWELL_S, LOOK_M, Light, Phase, ServiceStop, TrafficLight
 from basu.agents.builtin.scene import Ego
+from basu.metrics.path_following import SERVED_M, serves
 from basu.routing import ControlKind
 from driving_plant import SHUTTLE_BODY, Plant, drive, line, make_driver, make_route
 
@@ -27,6 +28,15 @@ def test_standing_in_a_queue_before_the_stop_is_not_halting_at_it() -> None:
     stop = ServiceStop(50.0, "S1")
     assert all(stop.step(ego(float(t), 0.0), 45.0) is not None for t in range(30))
     assert stop.phase is Phase.APPROACHING
+
+
+@pytest.mark.parametrize("left_m", [SERVED_M - 0.1, -SERVED_M + 0.1])
+def test_what_the_metric_counts_as_served_is_served_for_the_driver(left_m: float) -> None:
+    stop = ServiceStop(50.0, "S1")
+    assert serves(left_m, 0.0)
+    stop.step(ego(0.0, 0.0), 50.0 - left_m)
+    assert stop.phase is Phase.DWELLING
+    assert not serves(SERVED_M + 0.1, 0.0)
 
 
 def test_driven_the_door_halts_at_the_stop_and_nothing_is_rougher_than_comfort() -> None:
@@ -58,13 +68,13 @@ def test_what_a_light_asks_for(shows: Light, front_s_m: float, speed_mps: float,
     assert (TrafficLight(LINE_S_M, "1").step(shows, front_s_m, speed_mps) is not None) == asks
 
 
-def test_who_drives_through_yellow_is_not_stopped_by_the_red_that_follows() -> None:
+def test_an_actor_that_drives_through_yellow_is_not_stopped_by_the_red_that_follows() -> None:
     light = TrafficLight(LINE_S_M, "1")
     assert light.step(Light.YELLOW, 94.0, 6.0) is None
     assert light.step(Light.RED, 97.0, 6.0) is None
 
 
-def test_who_has_begun_to_stop_at_yellow_goes_on_stopping() -> None:
+def test_an_actor_that_has_begun_to_stop_at_yellow_goes_on_stopping() -> None:
     light = TrafficLight(LINE_S_M, "1")
     assert light.step(Light.YELLOW, 80.0, 6.0) is not None
     assert light.step(Light.YELLOW, 92.0, 3.5) is not None
