@@ -109,7 +109,7 @@ def main() -> None:
     ticks = round(arguments.seconds / STEP_S)
     server = OwnServer()
     try:
-        client = connect("127.0.0.1", server.port, 120.0)
+        client = connect("127.0.0.1", server.port, 600.0)
         world = client.get_world()
         settings = world.get_settings()
         settings.synchronous_mode, settings.fixed_delta_seconds = True, STEP_S
