@@ -33,11 +33,12 @@ def test_the_same_seed_gives_the_same_bytes(route_file: Path, tmp_path: Path) ->
 
 
 def test_a_network_of_another_town_is_the_set_up_s_fault(
-    simulator: RunningServer, route_file: Path, tmp_path: Path, folder: Path, capsys: pytest.CaptureFixture[str]
+    simulator: RunningServer, route_file: Path, tmp_path: Path, folder: Path
 ) -> None:
-    code, _, _ = run(simulator, route_file, tmp_path / "runs", "--sumo", str(folder / "small.sumocfg"))
+    code, result, _ = run(simulator, route_file, tmp_path / "runs", "--sumo", str(folder / "small.sumocfg"))
     assert code != 0
-    assert "SUMO's network is not that of Linden: route 'piece' was tried" in capsys.readouterr().err
+    assert (result["status"], result["fault"]) == ("SetupFailed", "setup")
+    assert result["message"].startswith("SUMO's network is not that of Linden: route 'piece' was tried")
 
 
 def test_a_sumo_that_dies_in_the_middle_is_the_simulator_s_failure_and_the_run_is_written(
