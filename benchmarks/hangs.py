@@ -23,6 +23,8 @@ HANGS_S = 40.0
 """A tick takes some ms; beside three times as many programs as cores some hundred."""
 TOLD_EACH = 500
 """Ticks."""
+TOLD_EACH_S = 60.0
+"""So that a run that is cut off has figures too."""
 
 
 def tick(port: int, cars: int) -> None:
@@ -76,7 +78,7 @@ class Watch:
     Attributes:
         ticks: by the cars of a pair.
         hangs: likewise.
-        ended: clients that ended themselves.
+        ended: pairs of which one ended itself.
         load: the greatest of the machine.
     """
 
@@ -87,6 +89,7 @@ class Watch:
         self.hangs: collections.Counter[int] = collections.Counter()
         self.ended = 0
         self.load = 0.0
+        self._told_s = time.monotonic()
 
     def add(self, pair: Pair) -> None:
         self._selector.register(pair.client.stdout, selectors.EVENT_READ, pair)
@@ -100,13 +103,17 @@ class Watch:
                 self._heard_s[key.data] = time.monotonic()
             else:
                 self.ended += 1
-                print(f"a client with {key.data.cars} cars ended with {key.data.client.wait()}", flush=True)
+                codes = key.data.server.poll(), key.data.client.poll()
+                print(f"a pair with {key.data.cars} cars ended: server and client with {codes}", flush=True)
                 self._again(key.data)
         for pair in [pair for pair, last_s in self._heard_s.items() if time.monotonic() - last_s > HANGS_S]:
             self.hangs[pair.cars] += 1
             print(f"a client with {pair.cars} cars hangs", flush=True)
             self._again(pair)
         self.load = max(self.load, os.getloadavg()[0])
+        if time.monotonic() - self._told_s > TOLD_EACH_S:
+            self._told_s = time.monotonic()
+            print(f"{self.ticks.total()} ticks, {self.hangs.total()} hangs so far", flush=True)
 
     def _again(self, pair: Pair) -> None:
         self._selector.unregister(pair.client.stdout)
@@ -141,7 +148,7 @@ def main() -> None:
     for count in arguments.cars:
         print(f"{count:4}  {cars.count(count):5}  {watch.ticks[count]:8}  {watch.hangs[count]:5}")
     print(
-        f"{watch.ticks.total()} ticks, {watch.hangs.total()} hangs, {watch.ended} clients that ended, in "
+        f"{watch.ticks.total()} ticks, {watch.hangs.total()} hangs, {watch.ended} pairs that ended, in "
         f"{arguments.seconds:.0f} s on {os.cpu_count()} cores with a load of up to {watch.load:.0f}"
     )
 
