@@ -87,6 +87,23 @@ class Traffic(NamedTuple):
 NO_TRAFFIC = Traffic()
 
 
+class Sumo(NamedTuple):
+    """What SUMO is to do in a run."""
+
+    file: Path | None = None  # a finished .sumocfg; None: the agent's folder, or one made of the town's map
+    is_random: bool = False  # random trips instead of the demand
+    vehicles: int = 0  # that random trips keep on the road
+    radius_m: float | None = None  # around the vehicle under test, within which vehicles are shown; None: all
+    lights: str = "carla"  # which side has the lights
+    port: int | None = None  # of a SUMO that runs
+    folder: str | None = None  # that the agent's config() names
+    beside: Path | None = None  # the agent's file, for relative names
+
+
+SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM = "none", "demand", "random"
+RANDOM_VEHICLES = 50  # of --sumo random without --vehicles
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunOptions(Settings):
     """The options of ``basu run`` without the scoring, which is a model of its own."""
@@ -192,9 +209,71 @@ class RunOptions(Settings):
         int, Option(help="walkers on the pavements near the route", group=CONDITIONS, metavar="N", least=0)
     ] = 0
 
+    stop_after_s: Annotated[
+        float | None,
+        Option(
+            help="end the drive after this simulated time; its score is not comparable",
+            group=CONDITIONS,
+            flag="--stop-after",
+            metavar="S",
+            unit="s",
+            above=0.0,
+            default_text="at the end of the route",
+        ),
+    ] = None
+
+    sumo: Annotated[
+        str | None,
+        Option(
+            help="drive amid SUMO's traffic: FILE.sumocfg, random (--vehicles N on random trips), demand (of the "
+            "town) or none; without a word: demand",
+            group=CONDITIONS,
+            metavar="WHAT",
+            bare=SUMO_DEMAND,
+            default_text="as the agent says",
+            advice="an agent is named before --sumo, as in `basu run basic --sumo`",
+        ),
+    ] = None
+    sumo_radius_m: Annotated[
+        float | None,
+        Option(
+            help="show SUMO's vehicles within this of the vehicle under test; the others drive on in SUMO",
+            group=CONDITIONS,
+            flag="--sumo-radius",
+            metavar="M",
+            unit="m",
+            above=0.0,
+            default_text="show all",
+        ),
+    ] = None
+    sumo_lights: Annotated[
+        Literal["carla", "sumo", "none"],
+        Option(help="which side has the traffic lights; none: each its own", group=CONDITIONS),
+    ] = "carla"
+    sumo_port: Annotated[
+        int | None,
+        Option(
+            help="TraCI port of a running SUMO on this machine",
+            group=CONDITIONS,
+            metavar="N",
+            least=1,
+            most=65_535,
+            default_text="SUMO in this process",
+        ),
+    ] = None
+
     host: Host = None
     port: Port = 2000
     timeout_s: Timeout = 20.0
+    maps: Annotated[
+        tuple[Path, ...],
+        Option(
+            help="offer every .xodr of a folder as a map; may be given several times",
+            group=SIMULATOR,
+            metavar="DIR",
+            is_file=True,
+        ),
+    ] = ()
 
     metric_files: Annotated[
         tuple[Path, ...],
@@ -272,8 +351,24 @@ class RunOptions(Settings):
 
     @property
     def traffic(self) -> Traffic:
-        """The other road users of the run."""
-        return Traffic(self.vehicles, self.walkers, self.traffic_density)
+        """The other road users of the run that the simulator's client drives."""
+        return Traffic(0 if self.sumo == SUMO_RANDOM else self.vehicles, self.walkers, self.traffic_density)
+
+    def sumo_of(self, folder: str | None, beside: Path | None) -> Sumo | None:
+        """What SUMO is to do for an agent that names ``folder``; None where it is to do nothing."""
+        if self.sumo == SUMO_OFF or (self.sumo is None and self.sumo_port is None and folder is None):
+            return None
+        is_file = self.sumo not in (None, SUMO_DEMAND, SUMO_RANDOM)
+        return Sumo(
+            file=Path(str(self.sumo)) if is_file else None,
+            is_random=self.sumo == SUMO_RANDOM,
+            vehicles=self.vehicles or RANDOM_VEHICLES,
+            radius_m=self.sumo_radius_m,
+            lights=self.sumo_lights,
+            port=self.sumo_port,
+            folder=folder,
+            beside=beside,
+        )
 
     def check(self) -> None:
         """Check what concerns several options.
@@ -285,9 +380,41 @@ class RunOptions(Settings):
             raise UserError("--resume continues a series; name it with --series, as when it was begun")
         if self.hud_screenshot is not None and self.hud is None:
             raise UserError("--hud-screenshot takes a picture of the window; add --hud")
+        self._check_maps()
+        self._check_sumo()
         check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
         _check_size("--hud-size", self.hud_size, WINDOWS)
         _check_size("--hud-camera", self.hud_camera, PICTURES)
+
+    def _check_maps(self) -> None:
+        """Check the folders of maps.
+
+        Raises:
+            UserError: one is none, or the simulator is not ours.
+        """
+        if self.maps and self.host is not None:
+            raise UserError(
+                "--maps is for the simulator that basu starts; give that at --host its own: `linden serve --maps DIR`"
+            )
+        for folder in self.maps:
+            if not folder.is_dir():
+                raise UserError(
+                    f"--maps {folder} is no folder; name the one that `linden map build` writes .xodr files to"
+                )
+
+    def _check_sumo(self) -> None:
+        """Check what was said of SUMO.
+
+        Raises:
+            UserError: the file is no configuration of SUMO, or random trips are to be made for a demand of a density.
+        """
+        words = (None, SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM)
+        if self.sumo not in words and not str(self.sumo).endswith(".sumocfg"):
+            raise UserError(f"--sumo {self.sumo}: it may be a FILE.sumocfg, random, demand or none")
+        if self.sumo not in words and not Path(str(self.sumo)).is_file():
+            raise UserError(f"--sumo {self.sumo}: there is no such file; write one with `linden map sumo TOWN -o DIR`")
+        if self.sumo == SUMO_RANDOM and self.traffic_density is not None:
+            raise UserError("--sumo random keeps --vehicles N on the road; --traffic-density goes without it")
 
 
 def check_agent_process(*, in_process: bool, memory_gb: float | None) -> None:

@@ -33,6 +33,7 @@ class Status(enum.Enum):
     ROUTE_DEVIATION = "RouteDeviation"  # the vehicle went too far from the route
     SCENARIO_ENDED = "ScenarioEnded"  # a scenario's own run came to the scenario's end, or ended soon after a collision
     SCENARIO_TIMEOUT = "ScenarioTimeout"  # the simulated time for the scenario was used up
+    STOPPED = "Stopped"  # --stop-after ended the drive before the end of its route
     SETUP_FAILED = "SetupFailed"
     SIMULATOR_FAILED = "SimulatorFailed"
     BENCHMARK_FAILED = "BenchmarkFailed"
@@ -54,6 +55,7 @@ FAULT_OF = {
     Status.ROUTE_DEVIATION: Fault.AGENT,
     Status.SCENARIO_ENDED: Fault.NOBODY,
     Status.SCENARIO_TIMEOUT: Fault.AGENT,
+    Status.STOPPED: Fault.NOBODY,
     Status.SETUP_FAILED: Fault.SETUP,
     Status.SIMULATOR_FAILED: Fault.SIMULATOR,
     Status.BENCHMARK_FAILED: Fault.BENCHMARK,

@@ -10,6 +10,7 @@ import ctypes
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import threading
@@ -24,7 +25,7 @@ import carla
 from basu.errors import SimulatorError, UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Sequence
     from typing import IO
 
     from basu.options import RunOptions
@@ -57,11 +58,12 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         SimulatorError: our own did not start.
     """
     if options.host is not None:
+        print(f"basu: connecting to the simulator at {options.host}:{options.port}", file=sys.stderr, flush=True)
         client = connect(options.host, options.port, options.timeout_s)
         address = (options.host, options.port)
         yield Simulator(client, address, own=False, why_gone=lambda: _silence(client, options), ended=lambda: False)
         return
-    server = OwnServer(options.output if options.record else None)
+    server = OwnServer(options.output if options.record else None, options.maps)
     try:
         client = connect("127.0.0.1", server.port, options.timeout_s)
         yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone, ended=server.ended)
@@ -81,8 +83,10 @@ def _silence(client: carla.Client, options: RunOptions) -> str | None:
 class OwnServer:
     """A ``linden serve`` of our own, on ports that the system chose, still until the first tick."""
 
-    def __init__(self, recordings: Path | None = None) -> None:
-        """Start it and wait for its ready line; it may write logs below the folder ``recordings``.
+    def __init__(self, recordings: Path | None = None, maps: Sequence[Path] = ()) -> None:
+        """Start it and wait for its ready line.
+
+        It may write logs below the folder ``recordings``, and offers each .xodr file of the folders ``maps``.
 
         Raises:
             SimulatorError: it ended, or was not ready in time.
@@ -90,6 +94,7 @@ class OwnServer:
         command = [*linden_command(), "serve", "--port", "0", "--sync"]
         if recordings is not None:
             command += ["--recordings", str(recordings.resolve())]
+        command += [word for folder in maps for word in ("--maps", str(folder.resolve()))]
         self._process = subprocess.Popen(  # noqa: S603 - our own command, arguments of our own
             command,
             stdin=subprocess.DEVNULL,
@@ -126,7 +131,11 @@ class OwnServer:
         for reader in self._readers:
             reader.join(LAST_WORDS_S)
         last = f": {self._log[-1]}" if self._log else ""
-        return f"the simulator ended by itself (exit status {code}){last}"
+        if code >= 0:
+            return f"the simulator ended by itself (exit status {code}){last}"
+        name = signal.Signals(-code).name
+        because = " (as the system does when memory runs out)" if -code == signal.SIGKILL else ""
+        return f"the simulator was ended by the signal {name}{because}{last}"
 
     def end(self) -> None:
         """End it; in good order if it lets us."""
@@ -180,9 +189,17 @@ def _end_with_parent() -> None:
 def connect(host: str, port: int, timeout_s: float) -> carla.Client:
     """A client that has been answered.
 
+    A port that nothing listens at is refused at once: CARLA's client would ask it for the whole time-out.
+
     Raises:
         UserError: no server answers there.
     """
+    try:
+        socket.create_connection((host, port), timeout_s).close()
+    except OSError as error:
+        raise UserError(
+            f"no simulator answers at {host}:{port}; start one with `linden serve`, or leave out --host ({error})"
+        ) from error
     try:
         client = carla.Client(host, port)
         client.set_timeout(timeout_s)

@@ -1,6 +1,9 @@
 """A live simulator for the tests of whole runs, and a short piece of a Linden street to drive on."""
 
-from collections.abc import Iterator
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -18,6 +21,28 @@ def _no_stand_ins() -> Iterator[None]:
     """Forget the modules that an agent's file brought with it: other tests' files find their own."""
     yield
     step_back()
+
+
+KILLER = """
+import os, sys
+while True:
+    for line in open(sys.argv[1]):
+        os.kill(*map(int, line.split()))
+"""
+Kills = Callable[[str, str], str]
+
+
+@pytest.fixture
+def kills(tmp_path: Path) -> Iterator[Kills]:
+    """Code for an agent that has a signal sent by another process: the kernel lets its own signal none but its own.
+
+    The arguments are code as well, of a process's id and a signal.
+    """
+    orders = tmp_path / "orders"
+    os.mkfifo(orders)
+    with subprocess.Popen([sys.executable, "-c", KILLER, str(orders)]) as killer:
+        yield lambda pid, name: f"open({str(orders)!r}, 'w').write(f'{{{pid}}} {{int({name})}}\\n')"
+        killer.kill()
 
 
 @pytest.fixture(scope="session")

@@ -1,12 +1,13 @@
 """Claims about starting a simulator: an error quotes the last line of its log."""
 
+import socket
 import sys
 
 import pytest
 
 from basu import simulator
-from basu.errors import SimulatorError
-from basu.simulator import OwnServer
+from basu.errors import SimulatorError, UserError
+from basu.simulator import OwnServer, connect
 
 
 def commanded(monkeypatch: pytest.MonkeyPatch, program: str) -> None:
@@ -18,6 +19,20 @@ def test_a_server_that_ends_at_once_is_told_with_its_last_words(monkeypatch: pyt
     commanded(monkeypatch, "import sys; print('linden: no map', file=sys.stderr, flush=True); sys.exit(2)")
     with pytest.raises(SimulatorError, match=r"ended by itself \(exit status 2\): linden: no map"):
         OwnServer()
+
+
+def test_a_server_that_was_killed_is_told_with_the_signal(monkeypatch: pytest.MonkeyPatch) -> None:
+    commanded(monkeypatch, "import os, signal; os.kill(os.getpid(), signal.SIGKILL)")
+    with pytest.raises(SimulatorError, match=r"was ended by the signal SIGKILL \(as the system does when memory"):
+        OwnServer()
+
+
+def test_a_port_that_nothing_listens_at_is_refused_at_once() -> None:
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+        with pytest.raises(UserError, match=rf"no simulator answers at 127\.0\.0\.1:{port}; start one with .*refused"):
+            connect("127.0.0.1", port, 3600.0)
 
 
 def test_a_server_that_is_never_ready_is_given_up_and_ended(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -41,5 +56,5 @@ def test_a_servers_progress_is_passed_on_until_it_is_ready(
         assert server.gone() is None
     finally:
         server.end()
-    assert "ended by itself" in (server.gone() or "")
+    assert "ended by the signal SIGTERM" in (server.gone() or "")
     assert capsys.readouterr().err == "linden: compiling\n"

@@ -68,7 +68,8 @@ def score_run(arguments: argparse.Namespace) -> int:
     from basu.outcome import Outcome, Status  # noqa: PLC0415 - likewise
     from basu.output.report.console import judgement, score_lines  # noqa: PLC0415 - likewise
     from basu.output.report.documents import CONFIG_FILE, RESULT_FILE  # noqa: PLC0415 - likewise
-    from basu.records.history.files import read_history  # noqa: PLC0415 - pyarrow, which `--help` does not need
+    from basu.output.report.scenarios.matrix_documents import MATRIX_FILE  # noqa: PLC0415 - likewise
+    from basu.records.history.files import lacks, read_history  # noqa: PLC0415 - pyarrow, which `--help` does not need
     from basu.running.series import SERIES_FILE  # noqa: PLC0415 - likewise
 
     folder: Path = arguments.folder
@@ -76,8 +77,13 @@ def score_run(arguments: argparse.Namespace) -> int:
         raise UserError(f"{folder} is no folder; name a run's, such as runs/latest")
     if (folder / SERIES_FILE).exists():
         raise UserError(f"{folder} is a series of runs; name one of them, a folder in it")
+    if (folder / MATRIX_FILE).exists():
+        again = f"`basu scenario run --config {folder / CONFIG_FILE}`"
+        raise UserError(f"{folder} holds scenario cases, which are judged where they are played; {again} repeats them")
     kept = _kept(folder / RESULT_FILE)
     history = read_history(folder)
+    if (missing := lacks(folder)) is not None:
+        print(f"basu: warning: {missing}", file=sys.stderr)
     scoring = scoring_of(arguments, scoring_of_run(folder / CONFIG_FILE))
     outcome = Outcome(Status(kept["status"]), kept["message"]) if kept else Outcome(Status.COMPLETED, "scored again")
     meta, scenarios = (kept.get("meta"), kept.get("scenarios", ())) if kept else (None, ())
@@ -103,6 +109,11 @@ def _kept(path: Path) -> dict[str, Any] | None:
     if not path.exists():
         return None
     document = read_json(path, "the result", "drive the run again, or remove the file to score its record alone")
+    if isinstance(document, dict) and "verdict" in document:
+        raise UserError(
+            f"{path.parent} is the folder of a played scenario case, whose verdict comes from its place in the town as "
+            f"well: play it again with `basu scenario run --config {path.with_name('config.json')}`"
+        )
     known = {status.value for status in Status}
     if not isinstance(document, dict) or document.get("status") not in known or "scores" not in document:
         raise UserError(f"{path} is no result of a run; remove the file to score the record alone")

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
-from basu.errors import Terminated, UserError
+from basu.errors import Terminated
 from basu.metrics.score import Scoring, read_scoring_file
 from basu.options import RunOptions
 from basu.outcome import EXIT_CODES
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from basu.settings.document import Config
     from basu.settings.option import Settings
 
-LATER = {
-    "sumo": "SUMO co-simulation follows with the TrafficManager",
-}
 SIMULATOR = ("host", "port", "timeout_s")  # the options that say where to drive
 
 
@@ -34,8 +31,6 @@ def add_run(run: argparse.ArgumentParser) -> None:
     run.description, run.epilog = run_agent.__doc__, EXIT_CODES
     add_config(run)
     add_options(run, RunOptions)
-    for name, why in LATER.items():
-        run.add_argument(f"--{name}", action="store_true", help=f"not in this version: {why}")
     add_scoring(run)
     run.set_defaults(command=run_agent)
 
@@ -112,9 +107,6 @@ def config_of(arguments: argparse.Namespace, kind: str, model: type[Settings]) -
 
 def run_agent(arguments: argparse.Namespace) -> int:
     """Drive an agent along its route, faster than real time, and write a scored run folder."""
-    for name, why in LATER.items():
-        if getattr(arguments, name):
-            raise UserError(f"--{name} is not there yet: {why}; run without it")
     config = config_of(arguments, "run", RunOptions)
     options = options_of(arguments, config.options)
     if options.viewer:

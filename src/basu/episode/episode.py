@@ -27,15 +27,19 @@ from basu.managers import Live
 from basu.managers.base_manager import BaseManager, Driver, Frame, Run, ego_in
 from basu.managers.conduct import ticked
 from basu.managers.metrics_manager import MetricsManager
+from basu.managers.observations import Neighbours
 from basu.managers.routes_manager import RoutesManager
 from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
+from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
+from basu.managers.world_changes import WorldChanges, taken_away
 from basu.outcome import Outcome, Status
 from basu.routing import plan
+from basu.simulator import linden_command
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from basu.episode.spec import EpisodeSpec
     from basu.episode.world import Town
@@ -87,6 +91,7 @@ class _Managers(NamedTuple):
     routes: RoutesManager
     metrics: MetricsManager
     traffic: TrafficManager
+    sumo: SumoManager | None
     sensors: SensorsManager
     observers: tuple[BaseManager, ...]
 
@@ -124,7 +129,7 @@ class Episode:
         self.outcome: Outcome | None = None
         self.bug: Exception | None = None  # an error of the benchmark itself
         self.agent_error: AgentError | None = None
-        self.traffic: Mapping[str, int] = {"vehicles": 0, "walkers": 0}  # what the drive has had, once it is over
+        self.traffic: dict[str, int] = {"vehicles": 0, "walkers": 0}  # what the drive has had, once it is over
         self.first_frame: int | None = None  # the server's number of the first recorded frame, likewise
         self._managers: _Managers | None = None
         self._run: Run | None = None
@@ -189,6 +194,8 @@ class Episode:
             server_address=self._simulator.address,
             own_simulator=self._simulator.own,
             weather=spec.weather_along,
+            neighbours=Neighbours(world, vehicle.id),
+            changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),
         )
         self._prepared = True
 
@@ -209,14 +216,16 @@ class Episode:
         assert ground is not None, "likewise"
         self.history = self.outcome = self.bug = self.agent_error = None
         self._driver = Driver()
-        routes = RoutesManager()
+        routes = RoutesManager(self._spec.stop_after_s)
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)
+        sumo = None if self._spec.sumo is None else SumoManager(self._spec.sumo, linden_command())
         observers = tuple(self._new_observers(Live(self._driver, sensors, routes, metrics)))
-        self._managers = _Managers(routes, metrics, traffic, sensors, observers)
+        self._managers = _Managers(routes, metrics, traffic, sumo, sensors, observers)
         # participants before sensors: another program's agent says only once it is set up what it wants to sense
-        for manager in (traffic, *self._participants, sensors, routes, metrics, ground.scenarios, *observers):
+        joined = () if sumo is None else (sumo,)
+        for manager in (traffic, *joined, *self._participants, sensors, routes, metrics, ground.scenarios, *observers):
             self._set_up.append(manager)
             manager.setup(run)
         return self._observe(None)
@@ -255,7 +264,10 @@ class Episode:
             raise SimulatorError("the simulator ended")
         applied = ground.scenarios.through(control)
         managers.metrics.applied(applied)
+        if managers.sumo is not None:
+            managers.sumo.tick(frame)
         run.vehicle.apply_control(applied)
+        run.changes.control = applied
         return Step(self._observe(frame), None, managers.routes.outcome)
 
     def _observe(self, before: Frame | None) -> Observation:
@@ -326,7 +338,9 @@ class Episode:
                 if self.outcome is not None:  # the drive is over and keeps its status
                     self.outcome = self.outcome._replace(message=f"{self.outcome.message}; afterwards {error}")
         if self._managers is not None:
-            self.traffic, self.first_frame = self._managers.traffic.count, self._managers.metrics.first_frame
+            self.traffic, self.first_frame = dict(self._managers.traffic.count), self._managers.metrics.first_frame
+            if self._managers.sumo is not None:
+                self.traffic["vehicles"] += self._managers.sumo.count
         self._managers = self._run = self._unrecorded = None
         self._prepared = self._laid = False
         self._resources.close()
@@ -363,6 +377,9 @@ def _next_frame(run: Run, before: Frame | None) -> Frame:
         raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
     if ego is None:
         raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
+    gone = taken_away(run.changes, snapshot)
+    if gone is not None and run.own_simulator:
+        raise AgentCrashedError(f"the agent took {gone} out of the world before frame {snapshot.frame}")
     if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
         raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:

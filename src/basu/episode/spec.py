@@ -11,7 +11,7 @@ import carla
 
 from basu.agents.autonomous_agent import AgentConfig
 from basu.metrics.score import Scoring
-from basu.options import NO_TRAFFIC, STEP_S, Traffic
+from basu.options import NO_TRAFFIC, STEP_S, Sumo, Traffic
 from basu.routing.route_file import RouteDescription, RoutePoint
 from basu.routing.weather import changed
 from basu.scenarios.paths.lanes import followed, waypoint_at
@@ -37,6 +37,7 @@ class EpisodeSpec:
     weather: carla.WeatherParameters  # at the start
     weather_along: tuple[WeatherMark, ...] = ()  # along the route
     traffic: Traffic = NO_TRAFFIC
+    sumo: Sumo | None = None  # traffic of SUMO
     scenarios: tuple[Playable, ...] = ()  # on the route, or the one case
     is_case: bool = False  # the episode begins and ends with its one scenario
     reload: bool | None = None  # whether the world begins anew; None: see ``Towns.load``
@@ -44,6 +45,7 @@ class EpisodeSpec:
     lane_invasions: bool = True  # the client takes 0.4 s of each new world to get ready for them
     step_s: float = STEP_S
     timeout_s: float = 20.0  # of wall time to wait for the simulator
+    stop_after_s: float | None = None  # of simulated time; None: the drive goes on to its own end
 
     def description(self, carla_map: carla.Map) -> RouteDescription:
         """The route's description on this map.

@@ -124,6 +124,10 @@ class AgentsManager(BaseManager):
             self._by_hand = by_hand is not None
             self.control = by_hand or self.control
 
+    def finish(self) -> None:
+        """Check after the last step that the agent has changed nothing."""
+        self._conduct.finish()
+
     def close(self) -> None:
         """Let the agent put its things away, where it was bound."""
         self._agent.destroy()

@@ -9,11 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
+from basu.managers.world_changes import WorldChanges
+
 if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.manual.inputs import Person
+    from basu.managers.observations import Neighbours
     from basu.routing import Route
     from basu.routing.weather import WeatherMark
 
@@ -35,6 +38,8 @@ class Run:
     server_address: tuple[str, int] = ("127.0.0.1", 2000)
     weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
     own_simulator: bool = False  # nothing but this run and its agent is connected to it
+    neighbours: Neighbours | None = None  # other actors near the vehicle, shared by record and checks
+    changes: WorldChanges = field(default_factory=WorldChanges)  # what the benchmark itself has changed
 
 
 class Ego(NamedTuple):

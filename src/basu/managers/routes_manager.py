@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import carla
@@ -24,7 +25,9 @@ WEATHER_TICKS = 20  # a second of simulated time, between two changes of weather
 class RoutesManager(BaseManager):
     """Follows the vehicle along the route and says when the run is over."""
 
-    def __init__(self) -> None:
+    def __init__(self, stop_after_s: float | None = None) -> None:
+        """``stop_after_s`` of simulated time ends the drive before its own end."""
+        self._stop_after_s = math.inf if stop_after_s is None else stop_after_s
         self.progress = Progress.at_start()
         self.outcome: Outcome | None = None  # None while the run goes on
         self._moved_tick = 0
@@ -34,7 +37,7 @@ class RoutesManager(BaseManager):
         self._route = run.route
         self._step_s = run.step_s
         self._limit_s = time_limit_s(run.route)
-        self._world, self._weather = run.world, run.weather
+        self._world, self._weather, self._changes = run.world, run.weather, run.changes
         if self._weather:
             self._set_weather(0.0)
 
@@ -66,6 +69,7 @@ class RoutesManager(BaseManager):
             setattr(weather, name, value)
         try:
             self._world.set_weather(weather)
+            self._changes.weather = weather
         except RuntimeError as error:
             raise SimulatorError(f"the simulator did not take the weather of the route: {error}") from error
 
@@ -74,6 +78,12 @@ class RoutesManager(BaseManager):
         remaining_m = self._route.length_m - self.progress.s_m
         if has_arrived(remaining_m, speed_mps):
             return Outcome(Status.COMPLETED, f"arrived after {tick * self._step_s:.1f} s")
+        if tick * self._step_s >= self._stop_after_s - self._step_s / 2.0:
+            return Outcome(
+                Status.STOPPED,
+                f"stopped after {self._stop_after_s:g} s at {self.progress.s_m:.0f} m of the route's "
+                f"{self._route.length_m:.0f} m, as --stop-after asks",
+            )
         if self.progress.distance_m > DEVIATION_M:
             return Outcome(
                 Status.ROUTE_DEVIATION,

@@ -19,6 +19,7 @@ from basu.managers.placed_scenario import call_scenario, is_behind, place_scenar
 from basu.managers.stage.environment import SharedWorld
 from basu.managers.stage.live_stage import LiveStage
 from basu.managers.stage.scenario_actors import destroy_actors, spawn_actors
+from basu.managers.world_changes import agents_change
 from basu.outcome import Outcome, Status
 from basu.scenarios.criteria.criterion import Played, moved
 from basu.scenarios.scenario import set_on
@@ -120,8 +121,8 @@ class ScenarioManager(BaseManager):
         Raises:
             ScenarioError: one cannot be placed.
         """
-        self._step_s = run.step_s
-        self._shared = SharedWorld(run.world)
+        self._step_s, self._is_checked = run.step_s, run.changes.checked and run.own_simulator
+        self._shared = SharedWorld(run.world, run.changes)
         self.lay(run.route, run.carla_map)
         for placed in self._placed:
             stage = LiveStage(run, self._routes, self._metrics, placed.planned.case.name, self._shared, placed.way)
@@ -154,6 +155,8 @@ class ScenarioManager(BaseManager):
     def tick(self, frame: Frame) -> None:
         """Play a frame of every scenario that has begun."""
         self._shared.keep_up()
+        if self._is_checked:
+            self._check_cast(frame)
         for playing in self.playing:
             if playing.over:
                 continue
@@ -165,6 +168,17 @@ class ScenarioManager(BaseManager):
                 self._end(playing, frame.tick)
                 if self._own:
                     raise
+
+    def _check_cast(self, frame: Frame) -> None:
+        """Check that the actors of the scenarios have the controls that they were given.
+
+        Raises:
+            AgentCrashedError: one has another control.
+        """
+        for playing in self.playing:
+            fault = None if playing.over else playing.stage.fault(frame)
+            if fault is not None:
+                raise agents_change("the agent", fault, frame.server_frame)
 
     def _begins(self, playing: Playing, tick: int) -> bool:
         """Bring the cast of a scenario that the ego comes near; whether it is at the trigger point."""

@@ -50,6 +50,11 @@ def completion(history: History) -> float:
     return min(1.0, max(0.0, float(history.frames["route_s_m"].max(initial=0.0))) / history.facts.route.length_m)
 
 
+def serves(left_m: float, speed_mps: float) -> bool:
+    """Whether a vehicle with ``left_m`` to a service stop, negative beyond it, serves the stop now."""
+    return abs(left_m) <= SERVED_M and abs(speed_mps) < AT_REST_MPS
+
+
 def near_stop(history: History, stop_s_m: float) -> NDArray[np.bool_]:
     """(T,) the frames in which the vehicle is near enough to a service stop to serve it."""
     near: NDArray[np.bool_] = np.abs(history.frames["route_s_m"] - stop_s_m) <= SERVED_M

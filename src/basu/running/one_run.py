@@ -21,6 +21,7 @@ from basu.output.report.documents import make_draft
 from basu.output.viewer.viewer_manager import viewer_for
 from basu.records.carla_log.sources import LOG_FILE
 from basu.running.drive import drive
+from basu.running.preparation import sumo_folder
 from basu.running.run_folder import OWN_ROUTE, run_config, write_run_folder
 
 if TYPE_CHECKING:
@@ -145,7 +146,9 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
         weather=weather_called(agents.config.weather),
         weather_along=() if options.weather is not None else description.weather,
         traffic=options.traffic,
+        sumo=options.sumo_of(sumo_folder(agents.config), session.plan.loaded.file),
         scenarios=waiting,
         scoring=session.scoring,
         timeout_s=options.timeout_s,
+        stop_after_s=options.stop_after_s,
     )

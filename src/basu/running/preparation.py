@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import random
 import sys
 from dataclasses import dataclass, replace
@@ -16,9 +17,11 @@ from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
 from basu.managers.agents_manager import AgentsManager
+from basu.options import SUMO_OFF
 from basu.output.hud.person_input import person_for
 from basu.routing.route_file import RouteDescription, read_routes, subset
 from basu.scenarios.route_scenarios import scenarios_on
+from basu.sumo.link import INSTALL
 
 if TYPE_CHECKING:
     from basu.agents.autonomous_agent import AgentConfig
@@ -70,12 +73,14 @@ def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
     config = agents.config
     weather_called(config.weather)
     sensors = sensor_set(agents, loaded)
-    if config.sumo is not None:
-        print(
-            f"basu: warning: {loaded.name} asks for the SUMO network {config.sumo}; co-simulation follows in a later "
-            "version, the run goes on without it",
-            file=sys.stderr,
-        )
+    if options.host is None and (hint := camera_hint(sensors.specs)) is not None:
+        print(f"basu: hint: {hint}", file=sys.stderr)
+    wants_sumo = options.sumo not in (None, SUMO_OFF) or options.sumo_port is not None
+    if wants_sumo and not _has_sumo():
+        raise UserError(INSTALL)
+    if config.sumo is not None and options.sumo is None and not _has_sumo():
+        print(f"basu: warning: {loaded.name} asks for SUMO's traffic, and {INSTALL}; the run goes on without it",
+              file=sys.stderr)  # fmt: skip
     routes = _chosen(read_routes(find(config.routes, "route file", loaded.file)), config, options)
     waiting = {route.id: _scenarios(route, options) for route in routes}
     jobs = [
@@ -113,6 +118,16 @@ def new_agents(loaded: FoundAgent, options: RunOptions, seed: int) -> AgentsMana
     return agents
 
 
+def sumo_folder(config: AgentConfig) -> str | None:
+    """The SUMO folder that an agent names; None where SUMO is not installed, which ``prepare`` has said."""
+    return config.sumo if _has_sumo() else None
+
+
+def _has_sumo() -> bool:
+    """Whether SUMO is installed; it is not loaded for that."""
+    return importlib.util.find_spec("libsumo") is not None
+
+
 def _chosen(
     routes: tuple[RouteDescription, ...], config: AgentConfig, options: RunOptions
 ) -> tuple[RouteDescription, ...]:
@@ -126,6 +141,18 @@ def _chosen(
         ids = ", ".join(route.id for route in routes)
         raise UserError(f"{config.routes} has no route '{options.route_id}'; it has {ids}")
     return chosen
+
+
+def camera_hint(specs: tuple[SensorSpec, ...]) -> str | None:
+    """A sentence about what cameras cost on the CPU; None without cameras."""
+    count = sum(spec.type_id.startswith("sensor.camera.") for spec in specs)
+    if count == 0:
+        return None
+    which = "1 camera is" if count == 1 else f"{count} cameras are"
+    return (
+        f"{which} drawn on the CPU, which takes most of the run's time; smaller pictures or a sensor_tick make it "
+        "faster, and so does a GPU: `linden serve --device cuda` and --host (docs/cameras.md)"
+    )
 
 
 def sensor_set(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:

@@ -9,7 +9,9 @@ these holds after the phase "conflict" began:
   it the ego accelerates along its route to the highest speed that it had shown until then, slows for bends, stops at
   stop signs and red lights, and ignores all others. The partner moves as it really moved. They meet where the ego's
   box overlaps the partner's box, widened by `BESIDE_M`: at the same time, or within `MEETING_PET_S` of each other where
-  their paths cross at 30 degrees or more.
+  their paths cross at 30 degrees or more. A meeting at different times counts only where the ego really was elsewhere,
+  by `RESPONSE_M`, when it would have met: an ego that drove just so has not responded, and its record shows what came
+  of that.
 
 An ego that never moved has no continuation, and one that crawled meets only what crossed its path within its own slow
 reach. So a driver that is absent from a conflict has not exercised it.
@@ -40,13 +42,14 @@ if TYPE_CHECKING:
 INTERACTION_TTC_S = 2.0  # somewhat above the 1.5 s that FHWA-HRT-08-051 calls a conflict
 MEETING_PET_S = 2.0  # within this time two actors have to settle which one goes first; FHWA-HRT-08-051 screens with 5 s
 BESIDE_M = 0.5  # beside a partner's box
+RESPONSE_M = 1.0  # between the ego's real place and that of a continuation: less is no response
 START_S, STEP_S = 0.25, 0.25  # between continuations, and within one
 AHEAD_S, CROSSING_S = 6.0, 4.0  # how far ahead a meeting counts: in line, and where the paths cross
 ACCELERATE_MPS2, BRAKE_MPS2, LATERAL_MPS2 = (
     1.0,
     1.5,
     2.0,
-)  # comfortable in public transport: Hoberock 1977, 0.11 to 0.15 g along
+)  # BASU's own drivers for standing and seated passengers; sources and doubts: docs/decisions/0054-verdicts.md
 DWELL_S = 2.0  # at a stop sign: the stop, and the look to both sides
 MOVING_MPS = 0.5  # below this the ego stands; an actor that comes near a standing ego has done so alone
 EFFECT_MPS = 2.5  # a disturbance of the ego's own driving is felt from this speed on
@@ -167,11 +170,21 @@ class _Continuations:
         self.rested_s = self._rested_s()
         self.boxes: NDArray[np.float64] | None = None
         self.reached_mps: NDArray[np.float64] | None = None
+        self.differs: NDArray[np.bool_] | None = None  # (S, J) whether the ego really was elsewhere on its route then
         if len(self.starts) == 0:
             return
         driven = np.array([self._drive(int(start), float(frames["route_s_m"][start])) for start in self.starts])
         self.reached_mps = driven[:, 1]
         self.boxes = self._boxes(driven[:, 0])
+        self.differs = self._differs(driven[:, 0])
+
+    def _differs(self, s_m: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """(S, J) whether the ego really was elsewhere along its route, or the record ends before."""
+        frames, per_step = self.history.frames, STEP_S / self.history.facts.step_s
+        ticks = self.starts[:, None] + np.round(np.arange(s_m.shape[1]) * per_step).astype(np.int64)[None, :]
+        really_m = frames["route_s_m"][np.clip(ticks, 0, len(frames) - 1)]
+        differs: NDArray[np.bool_] = (np.abs(really_m - s_m) >= RESPONSE_M) | (ticks >= len(frames))
+        return differs
 
     def _rested_s(self) -> NDArray[np.float64]:
         """(T,) how long the ego has been at rest in each frame."""
@@ -237,6 +250,7 @@ def _meeting(history: History, driven: _Continuations, key: int) -> tuple[int, f
     """The first start that, continued, meets this partner: its frame, the time until then, and the ego's speed."""
     assert driven.boxes is not None
     assert driven.reached_mps is not None
+    assert driven.differs is not None
     by_tick, moving = _by_tick(history, key)
     count, steps = driven.boxes.shape[:2]
     per_step = STEP_S / history.facts.step_s
@@ -245,6 +259,8 @@ def _meeting(history: History, driven: _Continuations, key: int) -> tuple[int, f
     best: tuple[int, int] | None = None
     for lag in sorted(range(-reach, reach + 1), key=abs):
         met = _met(driven.boxes, by_tick, moving, ticks + round(lag * per_step), crossing_only=lag != 0)
+        if lag != 0:
+            met &= driven.differs
         if met.any():
             start, after = divmod(int(np.argmax(met.reshape(count * steps))), steps)
             if best is None or start < best[0]:

@@ -13,6 +13,8 @@ A near miss is one of these, with any actor in the record:
 - a clearance below 0.45 m: the least lateral offset to an obstruction in towns (1.5 ft; AASHTO, A Policy on Geometric
   Design of Highways and Streets, 2011, section 4.6.2).
 
+Which of these sources could be read, and which are quoted from memory: `docs/decisions/0054-verdicts.md`.
+
 Frames count in which the ego moved faster than 0.5 m/s. An actor that comes near a standing ego has done so alone.
 """
 

@@ -1,13 +1,14 @@
 """``linden map``: build OpenDRIVE from streets, check, draw and count it, export what is seen, measure it by lidar."""
 
 import argparse
+import difflib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.cli import map_pointcloud
+from linden.cli import map_pointcloud, map_sumo
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
 
@@ -22,6 +23,14 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     build_parser = _add(actions, "build", build, "turn streets (GeoJSON) into OpenDRIVE")
     build_parser.add_argument("streets", nargs="?", type=Path, help="GeoJSON file (default: the streets of Linden)")
     build_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .xodr file")
+    build_parser.add_argument(
+        "--route",
+        action="append",
+        default=[],
+        metavar="NAME=FILE",
+        help="write the route feature NAME of the streets as a route file, for `basu run --routes`; may be given "
+        "several times",
+    )
 
     check_parser = _add(actions, "check", check, "report what a careful reader finds wrong; exit 1 if anything is")
     _add_file(check_parser)
@@ -41,21 +50,47 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
     map_pointcloud.add_arguments(cloud_parser)
 
+    map_sumo.add_arguments(_add(actions, "sumo", map_sumo.run, map_sumo.HELP))
+
 
 def build(arguments: argparse.Namespace) -> int:
-    """Write the OpenDRIVE map of a file of streets."""
+    """Write the OpenDRIVE map of a file of streets, and the route files that are wanted."""
     try:
-        from linden.authoring.streets.build import build as opendrive_of  # noqa: PLC0415 - an optional part, and slow to load
+        from linden.authoring.streets.build import assembled  # noqa: PLC0415 - an optional part, and slow to load
+        from linden.authoring.streets.routes import xml  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.street_facts import read  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.writing import text as written  # noqa: PLC0415 - likewise
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("linden"):
             raise
         raise UserError(
             f"building maps needs the package {error.name}; install it with: pip install 'linden[maps]'"
         ) from None
-    text = opendrive_of(_streets(arguments.streets))
+    built = assembled(read(_streets(arguments.streets)))
+    wanted = [_route_and_file(given, built.facts.routes) for given in arguments.route]
+    routes = [(file, xml(built, built.facts.routes[name], number)) for number, (name, file) in enumerate(wanted)]
+    text = written(built.document)
     _write(arguments.output, text)
     _say(f"{arguments.output}: {len(text):,} bytes")
+    for file, route in routes:
+        _write(file, route)
+        _say(f"{file}: {len(route):,} bytes")
+    unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]
+    if unwritten and arguments.streets is not None:
+        _say(f"not written: {', '.join(unwritten)}; `--route {unwritten[0]}=FILE.xml` writes a route feature")
     return 0
+
+
+def _route_and_file(given: str, known: Collection[str]) -> tuple[str, Path]:
+    """The route feature and the file of ``NAME=FILE``."""
+    name, sign, file = given.partition("=")
+    if not (name and sign and file):
+        raise UserError(f"--route {given}: give the name of a route feature and a file, such as --route loop=loop.xml")
+    if name not in known:
+        close = difflib.get_close_matches(name, known, 1)
+        there = f"it has {', '.join(known)}" if known else "it has none"
+        raise UserError(f"the streets have no route '{name}'; {f'did you mean {close[0]!r}?' if close else there}")
+    return name, Path(file)
 
 
 def check(arguments: argparse.Namespace) -> int:

@@ -19,7 +19,7 @@ def opendrive_of(name: str) -> "OpenDrive":
     """
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
 
-    return parse(_content(name))
+    return parse(content_of(name))
 
 
 def world_map_of(name: str) -> "LoadedMap":
@@ -32,7 +32,7 @@ def world_map_of(name: str) -> "LoadedMap":
     from linden.maps.library import LoadedMap  # noqa: PLC0415 - see above
 
     try:
-        text = _content(name).decode("utf-8")
+        text = content_of(name).decode("utf-8")
     except UnicodeDecodeError as error:
         raise UserError(f"{name} is no text in UTF-8: {error.reason} at byte {error.start}") from None
     bare = Path(name).name.removesuffix(".xodr")
@@ -59,7 +59,7 @@ def bytes_of(path: Path) -> bytes:
         ) from None
 
 
-def _content(name: str) -> bytes:
+def content_of(name: str) -> bytes:
     """Return the bytes of a file, or else of the built-in map of that name."""
     path = Path(name)
     built_in = resources.files("linden") / "data" / f"{name.removesuffix('.xodr')}.xodr"

@@ -34,7 +34,7 @@ def compile_driving() -> None:
     """Compile what moves a vehicle on its wheels, and what pushes it."""
     row, spec, work, _ = _types()
     real, whole = numba.float64, numba.int64
-    _compile(advance_vehicle, row, spec, work, numba.typeof(Ground.flat()), real, real, whole)
+    _compile(advance_vehicle, row, spec, work, _type_of(Ground.flat()), real, real, whole)
     _compile(heed_driver, row, spec, real)
     _compile(apply_impulses, row)
     _compile(apply_forces, row, real)
@@ -44,19 +44,23 @@ def compile_contacts() -> None:
     """Compile what finds and parts bodies that overlap, and what moves a vehicle off its wheels."""
     row, spec, _, rows = _types()
     real, whole = numba.float64, numba.int64
-    statics, pairs, account = (numba.typeof(each) for each in (Statics.none(), _PAIRS, _ACCOUNT))
+    statics, pairs, account = (_type_of(each) for each in (Statics.none(), _PAIRS, _ACCOUNT))
     _compile(find_pairs, rows, whole, statics, real)
     _compile(part_bodies, rows, pairs, statics, account)
-    _compile(tumble, row, spec, numba.typeof(Ground.flat()), real, real)
+    _compile(tumble, row, spec, _type_of(Ground.flat()), real, real)
 
 
 _PAIRS, _ACCOUNT = np.empty((0, 2), np.int32), np.empty((0, 7))
 
 
+def _type_of(value: object) -> Any:  # noqa: ANN401 - a type of numba's
+    return numba.typeof(value)  # type: ignore[no-untyped-call] # numba has no hints for it
+
+
 def _types() -> tuple[Any, Any, Any, Any]:
     """Return numba's types of a body, of its constants, of the scratch, and of the array of bodies."""
     bodies = Bodies()
-    columns = [numba.typeof(column) for column in (bodies.state, bodies.specs, bodies.work)]
+    columns = [_type_of(column) for column in (bodies.state, bodies.specs, bodies.work)]
     return (*(column.dtype for column in columns), columns[0])
 
 

@@ -119,9 +119,9 @@ class Subscribers:
             del self._behind[peer]
 
 
-SUBSCRIPTION_WAIT_S = 0.5
-"""How long a frame waits for an expected subscriber. The official client takes a millisecond,
-and some hundreds of them where ten programs share a processor."""
+SUBSCRIPTION_WAIT_S = 3.0
+"""How long a frame waits for an expected subscriber. The official client takes a millisecond, and more than half a second
+where ten programs share a processor. Without the wait a first picture would be missing."""
 MOST_IN_VAIN = 3
 """How often frames wait in vain for a client; then its requests delay no frame until it has subscribed once."""
 

@@ -25,7 +25,7 @@ def test_an_earlier_run_gets_a_new_judgement(capsys: pytest.CaptureFixture[str])
     assert found["scores"] == kept["scores"]
     assert found["passengers"]["harm"]["contacts"] == 0
     assert found["collisions"] == {"number": 0, "at_fault": 0}
-    assert told.err == ""
+    assert "it holds neither standing things nor the applied control" in told.err
 
 
 def test_the_table_of_an_earlier_run(capsys: pytest.CaptureFixture[str]) -> None:
@@ -51,3 +51,16 @@ def test_a_result_that_is_none_is_refused_in_a_sentence(tmp_path: Path, capsys: 
     (folder / "result.json").write_text("[]")
     assert main(["score", str(folder)]) == 2
     assert "is no result of a run; remove the file to score the record alone" in capsys.readouterr().err
+
+
+def test_a_scenario_cases_folder_and_that_of_all_cases_say_how_to_repeat_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = shutil.copytree(EARLIER, tmp_path / "case")
+    (folder / "result.json").write_text('{"id": "roundabout_1", "status": "Completed", "verdict": "SUCCESS"}')
+    assert main(["score", str(folder)]) == 2
+    assert "is the folder of a played scenario case" in (said := capsys.readouterr().err)
+    assert f"basu scenario run --config {folder / 'config.json'}" in said
+    (tmp_path / "matrix.json").write_text("{}")
+    assert main(["score", str(tmp_path)]) == 2
+    assert f"basu scenario run --config {tmp_path / 'config.json'}" in capsys.readouterr().err

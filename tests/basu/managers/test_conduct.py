@@ -11,6 +11,7 @@ from basu.cli import main
 from basu.errors import AgentCrashedError
 from basu.managers.base_manager import Ego
 from basu.managers.conduct import Conduct
+from basu.managers.world_changes import WorldChanges
 from servers import RunningServer
 
 CHEAT = """
@@ -34,7 +35,7 @@ CREEP = (
     "pose.location += carla.Location(0.4 * ahead.x, 0.4 * ahead.y, 0.0); self.vehicle.set_transform(pose)"
 )
 BOOST = "self.vehicle.set_target_velocity(30.0 * self.vehicle.get_transform().get_forward_vector())"
-NIGHT = "self.world.set_weather(carla.WeatherParameters.HardRainNight)"
+NIGHT = "self.world.set_weather(carla.WeatherParameters.HardRainNight); self.world.get_weather()"
 LIGHTER = (
     "physics = self.vehicle.get_physics_control(); physics.mass = 10.0; self.vehicle.apply_physics_control(physics)"
 )
@@ -44,15 +45,18 @@ def ego(x_m: float, speed_mps: float) -> Ego:
     return Ego(x_m, 0.0, 0.0, 0.0, 0.0, 0.0, speed_mps, *[0.0] * 8)
 
 
-def watched(places_and_speeds: list[tuple[float, float]]) -> Conduct:
+def watched(places_and_speeds: list[tuple[float, float]], contact_tick: int | None = None) -> Conduct:
     """A watch that has seen a drive along x, at 20 Hz in an empty world."""
     conduct = Conduct("Cheat")
     world = SimpleNamespace(get_actors=lambda _: [])
     box = SimpleNamespace(extent=SimpleNamespace(x=2.0, y=1.0))
-    run: Any = SimpleNamespace(step_s=0.05, world=world, vehicle=SimpleNamespace(id=1, bounding_box=box))
+    vehicle = SimpleNamespace(id=1, bounding_box=box)
+    contacts: list[Any] = [] if contact_tick is None else [SimpleNamespace(tick=contact_tick, other_id=0)]
+    changes = WorldChanges(contacts=lambda tick: [contact for contact in contacts if contact.tick >= tick])
+    run: Any = SimpleNamespace(step_s=0.05, world=world, vehicle=vehicle, neighbours=None, changes=changes)
     conduct._run = run
     for number, (x_m, speed_mps) in enumerate(places_and_speeds):
-        frame: Any = SimpleNamespace(server_frame=number, ego=ego(x_m, speed_mps), snapshot=[])
+        frame: Any = SimpleNamespace(tick=number, server_frame=number, ego=ego(x_m, speed_mps), snapshot=[])
         conduct.before(frame)
     return conduct
 
@@ -62,7 +66,12 @@ def test_a_drive_that_its_speed_explains_is_one() -> None:
 
 
 def test_a_crash_is_no_cheating() -> None:
-    watched([(0.5 * n, 10.0) for n in range(40)] + [(19.5, 0.0)] * 40)
+    watched([(0.5 * n, 10.0) for n in range(40)] + [(19.5, 0.0)] * 40, contact_tick=40)
+
+
+def test_a_stop_that_no_tyre_gives_needs_a_contact() -> None:
+    with pytest.raises(AgentCrashedError, match=r"lost 10\.0 m/s in one step and touched nothing"):
+        watched([(0.5 * n, 10.0) for n in range(40)] + [(19.5, 0.0)] * 40)
 
 
 @pytest.mark.parametrize("step_m", [0.15, 0.4, 50.0])

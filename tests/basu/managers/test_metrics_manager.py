@@ -9,6 +9,7 @@ import pytest
 
 from basu.managers.base_manager import Ego, Frame
 from basu.managers.metrics_manager import MetricsManager
+from basu.managers.world_changes import WorldChanges
 from basu.metrics.score import Scoring, infractions, score
 from basu.records.history.model import NO_LIGHT
 from basu.routing.planned_route import Progress, advance
@@ -20,6 +21,8 @@ FIRST_FRAME = 4000
 
 class Sensor:
     """Keeps whom to call."""
+
+    id = 7
 
     def listen(self, hear: Any) -> None:
         self.hear = hear
@@ -67,6 +70,8 @@ class Stage:
                 route=self.route,
                 step_s=STEP_S,
                 carla_map=carla.Map("Crossing", crossing()),
+                neighbours=None,
+                changes=WorldChanges(),
             )
         )
         self.tick = 0

@@ -1,11 +1,13 @@
 """Claims about the end of a run: arrival, deviation, standing still, time."""
 
 from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
 from basu.managers.base_manager import Ego, Frame
 from basu.managers.routes_manager import BLOCKED_S, RoutesManager, time_limit_s
+from basu.managers.world_changes import WorldChanges
 from basu.outcome import Outcome, Status
 from fakes.drives import straight_route
 
@@ -14,7 +16,10 @@ STEP_S = 0.05
 
 def begun(length_m: float = 100.0) -> RoutesManager:
     manager = RoutesManager()
-    manager.setup(SimpleNamespace(route=straight_route(length_m), step_s=STEP_S, world=None, weather=()))
+    run: Any = SimpleNamespace(
+        route=straight_route(length_m), step_s=STEP_S, world=None, weather=(), changes=WorldChanges()
+    )
+    manager.setup(run)
     return manager
 
 

@@ -215,7 +215,7 @@ def test_whoever_leaves_first_takes_no_weather_from_the_others() -> None:
     shared.ask_weather("cloud", {"cloudiness": 90.0})
     shared.give_back("rain")
     assert (world.now.wetness, world.now.cloudiness) == (0.0, 90.0)
-    world.now = carla.WeatherParameters(cloudiness=30.0, **SUN)  # the route's own changes meanwhile
+    world.now = shared.changes.weather = carla.WeatherParameters(cloudiness=30.0, **SUN)  # the route's own changes
     shared.keep_up()
     assert world.now.cloudiness == 90.0
     shared.give_back("cloud")

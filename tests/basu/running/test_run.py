@@ -66,6 +66,8 @@ RESULT_FILES = {
     "streets.json",
 }
 Runner = Callable[..., tuple[int, dict[str, Any]]]
+Kills = Callable[[str, str], str]
+WAITS = "__import__('time').sleep(60.0)"
 
 
 @pytest.fixture
@@ -191,8 +193,8 @@ def test_the_agents_process_changes_nothing_of_the_drive(tmp_path: Path, simulat
 
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
-def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path, name: str) -> None:
-    code, result = run(doing(tmp_path, f"os.kill(os.getppid(), signal.{name})"))
+def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path, kills: Kills, name: str) -> None:
+    code, result = run(doing(tmp_path, f"{kills('os.getppid()', f'signal.{name}')}; {WAITS}"))
     assert (code, result["status"]) == (130, "Interrupted")
     assert result["message"] == {"SIGINT": "interrupted by the user", "SIGTERM": "terminated by SIGTERM"}[name]
     assert result["scores"] is not None
@@ -224,9 +226,9 @@ def test_a_sensor_that_the_simulator_cannot_serve_gets_a_sentence(run: Runner, t
 
 
 @pytest.mark.slow
-def test_a_simulator_that_dies_is_not_the_agents_failure(run: Runner, tmp_path: Path) -> None:
+def test_a_simulator_that_dies_is_not_the_agents_failure(run: Runner, tmp_path: Path, kills: Kills) -> None:
     with running_server() as doomed:
-        deed = f"os.kill({doomed.process.pid}, signal.SIGKILL)"
+        deed = kills(str(doomed.process.pid), "signal.SIGKILL")
         code, result = run(doing(tmp_path, deed), "--timeout", "1", port=doomed.port)
     assert (code, result["status"], result["fault"]) == (3, "SimulatorFailed", "simulator")
     assert result["meta"]["ticks"] >= 21
@@ -260,12 +262,14 @@ def test_a_simulator_of_our_own_is_gone_afterwards(tmp_path: Path, route_file: P
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="parents that are killed take their children along on Linux only")
-def test_a_simulator_of_our_own_does_not_outlive_a_killed_benchmark(tmp_path: Path, route_file: Path) -> None:
+def test_a_simulator_of_our_own_does_not_outlive_a_killed_benchmark(
+    tmp_path: Path, route_file: Path, kills: Kills
+) -> None:
     note = tmp_path / "children"
     deed = (
         "import psutil; children = psutil.Process().parent().children(); "  # the simulator, and the agent itself
         f"open({str(note)!r}, 'w').write(' '.join(str(child.pid) for child in children)); "
-        "os.kill(os.getppid(), signal.SIGKILL)"
+        f"{kills('os.getppid()', 'signal.SIGKILL')}; {WAITS}"
     )
     arguments = ["run", str(doing(tmp_path, deed)), "--routes", str(route_file), "--output", str(tmp_path / "runs")]
     program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"

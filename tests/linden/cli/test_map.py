@@ -89,6 +89,35 @@ def test_streets_that_are_no_geojson_are_told(tmp_path: Path, capsys: pytest.Cap
     assert "is no GeoJSON" in capsys.readouterr().err
 
 
+STREETS = """{"type": "FeatureCollection", "metadata": {"name": "Town", "origin": [-83.0, 40.0]}, "features": [
+{"type": "Feature", "geometry": {"type": "LineString", "coordinates": [[-83.0, 40.0], [-82.998, 40.0]]},
+ "properties": {"feature": "street", "id": "east", "name": "East Street", "street_class": "local", "lanes": 2,
+ "width_m": 8.0, "speed_limit_mph": 25, "oneway": "no", "parking": "none", "sidewalk": "both",
+ "confidence": "estimated"}},
+{"type": "Feature", "geometry": {"type": "LineString", "coordinates": [[-83.0, 40.0], [-82.998, 40.0]]},
+ "properties": {"feature": "route", "id": "there", "name": "There", "stops": [], "closed": false}}]}"""
+
+
+@pytest.mark.parametrize(
+    ("option", "code", "said"),
+    [
+        (["--route", "there={file}"], 0, "there.xml: "),
+        ([], 0, "not written: there; `--route there=FILE.xml` writes a route feature"),
+        (["--route", "ther={file}"], 2, "the streets have no route 'ther'; did you mean 'there'?"),
+        (["--route", "there"], 2, "give the name of a route feature and a file"),
+    ],
+)
+def test_a_route_feature_becomes_a_route_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], option: list[str], code: int, said: str
+) -> None:
+    streets, file = tmp_path / "streets.geojson", tmp_path / "there.xml"
+    streets.write_text(STREETS)
+    words = [word.format(file=file) for word in option]
+    assert main(["map", "build", str(streets), "-o", str(tmp_path / "Town.xodr"), *words]) == code
+    assert said in "".join(capsys.readouterr())
+    assert file.exists() == (code == 0 and bool(option))
+
+
 def test_output_that_nobody_reads_ends_it_quietly(good_map: Path) -> None:
     reader, writer = os.pipe()
     os.close(reader)

@@ -19,6 +19,7 @@ import numpy as np
 from basu.agents.calls import AgentCalls
 from basu.agents.loader import load_agent
 from basu.agents.process.channel import AgentsEnd, ChannelClosedError
+from basu.agents.process.confinement import confine
 from basu.agents.sensor_streams import SensorSilentError, SensorStreams
 from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, SimulatorError, UserError
 
@@ -238,6 +239,7 @@ def main() -> None:
     sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
     if is_of_main_thread and sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    confine()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(line_buffering=True)  # what an agent said before it was killed is seen

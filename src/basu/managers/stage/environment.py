@@ -14,6 +14,7 @@ import carla
 
 from basu.errors import ScenarioError
 from basu.managers.stage.scenario_actors import destroy_actors
+from basu.managers.world_changes import WorldChanges
 from basu.routing.weather import WEATHER_FIELDS, changed
 
 if TYPE_CHECKING:
@@ -40,8 +41,9 @@ class Wish(NamedTuple):
 class SharedWorld:
     """One for a run; scenarios are distinguished by their names."""
 
-    def __init__(self, world: carla.World) -> None:
-        self._world = world
+    def __init__(self, world: carla.World, changes: WorldChanges | None = None) -> None:
+        """``changes`` are the run's: what the route sets is read there, and what scenarios set is written there."""
+        self._world, self.changes = world, changes or WorldChanges()
         self._weather: dict[str, dict[str, float]] = {}  # what each asks for, in the order of asking
         self._beneath: carla.WeatherParameters | None = None  # the weather without any scenario
         self._shown: carla.WeatherParameters | None = None  # what was set last
@@ -55,17 +57,15 @@ class SharedWorld:
         """
         changed(carla.WeatherParameters(), values)
         if not self._weather:
-            self._beneath = self._world.get_weather()
+            self._beneath = self.changes.weather or self._world.get_weather()
         self._weather.setdefault(scenario, {}).update(values)
         self._show_weather()
 
     def keep_up(self) -> None:
-        """Where another client or the route has set the weather meanwhile, lay the scenarios' over it."""
-        if self._weather:
-            now = self._world.get_weather()
-            if now != self._shown:
-                self._beneath = now
-                self._show_weather()
+        """Lay the scenarios' weather over that of the route, where the route has set it meanwhile."""
+        if self._weather and self.changes.weather is not self._shown:
+            self._beneath = self.changes.weather
+            self._show_weather()
 
     def ask_light(self, scenario: str, landmark_id: str, state: str) -> None:
         """Let a traffic light show a state; all lights stand still until they are given back, as CARLA's freeze has it.
@@ -78,6 +78,7 @@ class SharedWorld:
         light = self._world.get_traffic_light_from_opendrive_id(landmark_id)
         if light is None:
             raise ScenarioError(f"the map has no traffic light with the OpenDRIVE signal '{landmark_id}'")
+        self.changes.lights += 1
         if not self._lights:
             light.freeze(True)
         wishes = self._lights.setdefault(scenario, {})
@@ -87,6 +88,7 @@ class SharedWorld:
     def give_back(self, scenario: str) -> None:
         """Undo the changes of one of them; where the simulator is gone, so is all this."""
         weather, lights = self._weather.pop(scenario, None), self._lights.pop(scenario, {})
+        self.changes.lights += bool(lights)
         with contextlib.suppress(RuntimeError):
             if weather is not None:
                 self._show_weather()
@@ -106,7 +108,7 @@ class SharedWorld:
         for values in self._weather.values():
             changed(weather, values)
         self._world.set_weather(weather)
-        self._shown = weather
+        self._shown = self.changes.weather = weather
 
 
 TRIGGER_HEIGHT_M = 3.0  # of the box in which wheels feel the friction
@@ -137,6 +139,7 @@ class Surroundings:
             carla.Location(pose.x_m, pose.y_m, pose.z_m), carla.Rotation(yaw=math.degrees(pose.yaw_rad))
         )
         self._patches.append(self._world.spawn_actor(blueprint, place))
+        self._shared.changes.frictions.add(friction)
 
     def set_light(self, landmark_id: str, state: str) -> None:
         """Let a traffic light show a state and stay so.

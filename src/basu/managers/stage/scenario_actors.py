@@ -9,11 +9,12 @@ from __future__ import annotations
 import contextlib
 import difflib
 import math
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 
 from basu.errors import ScenarioError
+from basu.managers.world_changes import CONTROL_TOLERANCE, is_same_control
 from basu.scenarios.stage import EGO
 
 if TYPE_CHECKING:
@@ -171,6 +172,7 @@ class Puppets:
         self._new: list[object] = []  # commands that are sent once
         self._held: set[int] = set()
         self._walkers: dict[int, tuple[float, float]] = {}  # the last command of each, in m/s
+        self._controls: dict[int, tuple[carla.Actor, Any]] = {}  # the last control of each
 
     def move(self, member: Member, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Lead a vehicle."""
@@ -178,11 +180,11 @@ class Puppets:
         before = self._vehicles.get(actor.id)
         if motion == STILL and actor.id not in self._held:
             self._held.add(actor.id)
-            self._new.append(carla.command.ApplyVehicleControl(actor.id, HELD))
+            self._control(actor, HELD)
             self._new.append(carla.command.ApplyTargetVelocity(actor.id, carla.Vector3D()))
         elif motion != STILL and (before is None or actor.id in self._held):
             self._held.discard(actor.id)
-            self._new.append(carla.command.ApplyVehicleControl(actor.id, ROLLING))
+            self._control(actor, ROLLING)
         self._vehicles[actor.id] = (actor, motion)
 
     def walk(self, member: Member, velocity_x_mps: float, velocity_y_mps: float) -> None:
@@ -197,19 +199,42 @@ class Puppets:
         if speed_mps > 0.0:
             control.direction = carla.Vector3D(velocity_x_mps / speed_mps, velocity_y_mps / speed_mps, 0.0)
         self._new.append(carla.command.ApplyWalkerControl(member.actor.id, control))
+        self._controls[member.actor.id] = (member.actor, control)
 
     def let_go(self, member: Member) -> None:
         """Lead it no more."""
         if self._vehicles.pop(member.actor.id, None) is not None and member.actor.id in self._held:
             self._held.discard(member.actor.id)
-            self._new.append(carla.command.ApplyVehicleControl(member.actor.id, ROLLING))
+            self._control(member.actor, ROLLING)
 
     def forget(self) -> None:
         """Command no actor any more."""
         self._vehicles.clear()
         self._held.clear()
         self._walkers.clear()
+        self._controls.clear()
         self._new.clear()
+
+    def with_other_controls(self, snapshot: carla.WorldSnapshot) -> list[carla.Actor]:
+        """Return the actors that have another control than they were given; each is returned once.
+
+        Call it at the beginning of a frame: then all commands so far were sent before the step to it.
+        """
+        found = []
+        for key, (actor, given) in list(self._controls.items()):
+            if not snapshot.has_actor(key):
+                continue
+            had = actor.get_control()
+            same = is_same_control(given, had) if isinstance(given, carla.VehicleControl) else _is_same_gait(given, had)
+            if not same:
+                found.append(actor)
+                del self._controls[key]
+        return found
+
+    def _control(self, actor: carla.Actor, control: carla.VehicleControl) -> None:
+        """Give a vehicle a control, once."""
+        self._new.append(carla.command.ApplyVehicleControl(actor.id, control))
+        self._controls[actor.id] = (actor, control)
 
     def carry_out(self) -> None:
         """Send the commands of all of them."""
@@ -224,3 +249,11 @@ class Puppets:
             commands.append(carla.command.ApplyTargetAngularVelocity(actor_id, turning))
         if commands:
             self._client.apply_batch(commands)
+
+
+def _is_same_gait(one: carla.WalkerControl, other: carla.WalkerControl) -> bool:
+    """Whether two walkers' controls are equal but for the rounding of the wire; a resting one has no direction."""
+    if abs(one.speed - other.speed) > CONTROL_TOLERANCE:
+        return False
+    apart = math.hypot(one.direction.x - other.direction.x, one.direction.y - other.direction.y)
+    return one.speed <= 0.0 or apart < CONTROL_TOLERANCE

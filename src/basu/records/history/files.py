@@ -89,6 +89,17 @@ def read_history(folder: Path) -> History:
         raise UserError(f"{folder} holds a record that this version cannot read: {error}") from error
 
 
+def lacks(folder: Path) -> str | None:
+    """A sentence about what the record of a run folder does not hold, since an earlier version wrote it; else None."""
+    version = json.loads((folder / FACTS_FILE).read_text(encoding="utf-8"))["schema_version"]
+    if version != WITHOUT_APPLIED:
+        return None
+    return (
+        f"the record of {folder} has schema version {version}: it holds neither standing things nor the applied "
+        "control, so a stop for a thing reads as a phantom stop; drive the run again for a full judgement"
+    )
+
+
 def facts_to_json(facts: Facts) -> str:
     """The facts as JSON text; floats as Python writes them, so they read back exactly."""
     vehicle = facts.vehicle

@@ -1,7 +1,7 @@
 """What tells drivers at a junction what to do: signs, lights, stop lines, crosswalks; and where they stand."""
 
 from linden.authoring.streets import roundabouts
-from linden.authoring.streets.cross_section import KERB_M, View
+from linden.authoring.streets.cross_section import KERB_M, PAVED, View
 from linden.authoring.streets.document import Object, Signal
 from linden.authoring.streets.network import Leg
 from linden.authoring.streets.street_facts import Control, Intersection
@@ -13,6 +13,8 @@ CROSSWALK_M = 3.0  # 10 ft, a usual width; MUTCD 3B.18 asks for 6 ft at least
 LINE_TO_CROSSWALK_M = 1.4  # to the line's middle; MUTCD 3B.16 asks for 4 ft of free road between them
 LINE_WIDTH_M = 0.4  # MUTCD 3B.16: 12 to 24 in
 POST_TO_KERB_M = 0.6  # MUTCD 2A.19: 2 ft from the kerb's face
+CLEAR_WIDTHS = 0.7  # LibCarla moves a signal that is nearer to the middle of a lane than this share of its width
+CLEAR_M = 0.05
 ROOM_FOR_CROSSWALK_M = 14.0  # a road that is shorter gets none
 
 
@@ -33,11 +35,22 @@ def sign_of(control: Control, leg: Leg, stops: frozenset[str]) -> str | None:
     return {Control.SIGNAL: LIGHT, Control.ALL_WAY_STOP: STOP, Control.ROUNDABOUT: YIELD}.get(control)
 
 
+def _clear_of_lanes_m(view: View) -> float:
+    """Return how far beyond the right kerb a post has to stand so that LibCarla leaves it there."""
+    paved_m = needed_m = 0.0
+    for _, lane in view.right:
+        if lane.kind in PAVED:
+            if lane.kind != "parking":
+                needed_m = paved_m + (0.5 + CLEAR_WIDTHS) * lane.width_m
+            paved_m += lane.width_m
+    return needed_m + CLEAR_M - paved_m
+
+
 def signal(number: int, kind: str, leg: Leg, road_m: float, confidence: str, *, crosswalk: bool) -> Signal:
     """Return the sign or light of a leg: at the stop line, right of the kerb, valid for the incoming lanes."""
     lanes = leg.view.driving(right=True)
     before_m = line_before_end_m(crosswalk=crosswalk)
-    beside_m = leg.view.kerb_m(right=True) - KERB_M - POST_TO_KERB_M
+    beside_m = leg.view.kerb_m(right=True) - max(KERB_M + POST_TO_KERB_M, _clear_of_lanes_m(leg.view))
     name = {STOP: "Stop", YIELD: "Yield", LIGHT: "Signal"}[kind]
     return Signal(
         id=number,

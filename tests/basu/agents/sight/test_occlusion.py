@@ -9,8 +9,11 @@ import carla
 import numpy as np
 import pytest
 
+from basu.agents.sight import occlusion
 from basu.agents.sight.occlusion import HIDING_LABELS, hidden, make_boxes, sample_points_m, static_boxes
+from basu.simulator import connect
 from naive.line_of_sight import blocks
+from servers import RunningServer
 
 SENSOR_M = np.array([0.0, 0.0, 2.9])
 VAN = (20.0, 3.0, 1.28, 2.96, 0.99, 1.28, 0.0)
@@ -112,6 +115,36 @@ def test_a_town_is_asked_for_its_boxes_once() -> None:
     assert town.questions == len(HIDING_LABELS)
     assert len(static_boxes(town).near(SENSOR_M, 100.0).cos) == 1
     assert town.questions == len(HIDING_LABELS)
+
+
+def test_spawned_actors_never_become_boxes_of_the_town(simulator: RunningServer) -> None:
+    """``get_level_bbs`` lists actors too: those of the case that asks first would hide others in all later cases."""
+    client = connect("127.0.0.1", simulator.port, 20.0)
+    world = client.get_world()
+    van = world.get_blueprint_library().find("vehicle.mercedes.sprinter")
+    pose = world.get_map().get_spawn_points()[0]
+    occlusion._KEPT.clear()
+    before = static_boxes(world).near(place_of(pose), 100.0).centre_m.tolist()
+    actor = world.spawn_actor(van, pose)
+    try:
+        tick_or_wait(world)
+        occlusion._KEPT.clear()
+        assert static_boxes(world).near(place_of(pose), 100.0).centre_m.tolist() == before
+    finally:
+        actor.destroy()
+        occlusion._KEPT.clear()
+
+
+def place_of(pose: carla.Transform) -> np.ndarray:
+    return np.array([pose.location.x, pose.location.y, pose.location.z + 2.0])
+
+
+def tick_or_wait(world: carla.World) -> None:
+    """Let the world make a frame, whoever makes them."""
+    if world.get_settings().synchronous_mode:
+        world.tick()
+    else:
+        world.wait_for_tick()
 
 
 def test_thin_poles_and_crowns_of_trees_hide_nothing() -> None:

@@ -1,6 +1,7 @@
 """``basu scenario run``, whole: what goes well, what goes wrong and whose fault it is, what is left of it."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +47,7 @@ class Dies(Bad):
 
 class EndsTheWorker(Bad):
     def fail(self):
-        os.kill(os.getppid(), signal.SIGKILL)
+        pass  # ends the worker
 
 class Senses(Bad):
     def config(self):
@@ -199,9 +200,12 @@ def test_an_agent_that_breaks_down_is_its_own_fault_and_the_next_case_is_played(
 
 
 @pytest.mark.slow
-def test_a_process_that_dies_costs_its_own_case_only(files: Path, tmp_path: Path) -> None:
+def test_a_process_that_dies_costs_its_own_case_only(
+    files: Path, tmp_path: Path, kills: Callable[[str, str], str]
+) -> None:
     bad = tmp_path / "bad.py"
-    bad.write_text(AGENTS, encoding="utf-8")
+    deed = f"{kills('os.getppid()', 'signal.SIGKILL')}; time.sleep(60.0)"
+    bad.write_text(AGENTS.replace("pass  # ends the worker", deed), encoding="utf-8")
     words = ["goes_well", "--scenarios", files, "--agent", f"{bad}:EndsTheWorker", "--agent", "basic", "--workers", 2]
     code = main(["scenario", "run", *map(str, (*words, "--output", tmp_path))])
     assert code == 70
@@ -212,10 +216,13 @@ def test_a_process_that_dies_costs_its_own_case_only(files: Path, tmp_path: Path
 
 
 def test_ctrl_c_ends_the_run_and_what_was_played_is_written(
-    simulator: RunningServer, files: Path, tmp_path: Path
+    simulator: RunningServer, files: Path, tmp_path: Path, kills: Callable[[str, str], str]
 ) -> None:
     agent = tmp_path / "bad.py"
-    agent.write_text(AGENTS.replace("time.sleep(60.0)", "os.kill(os.getppid(), signal.SIGINT)"), encoding="utf-8")
+    agent.write_text(
+        AGENTS.replace("time.sleep(60.0)", f"{kills('os.getppid()', 'signal.SIGINT')}; time.sleep(60.0)"),
+        encoding="utf-8",
+    )
     words = ("goes_well:ahead=30", "goes_well", "--scenarios", files, "--agent", "basic", "--agent", f"{agent}:Hangs")
     assert run(simulator, tmp_path, *words) == 130
     results = [case["results"] for case in matrix(tmp_path)["cases"]]

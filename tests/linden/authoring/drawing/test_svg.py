@@ -5,6 +5,7 @@ import re
 from lxml import etree
 
 from linden.authoring.drawing.svg import svg
+from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.parse import parse
 from linden.maps.opendrive.spawn_points import spawn_points
 from opendrive_texts import signal, street_through_junction
@@ -63,3 +64,12 @@ def test_the_same_map_gives_the_same_picture() -> None:
 
 def test_a_map_without_roads_is_an_empty_picture() -> None:
     assert etree.fromstring(svg(parse("<OpenDRIVE/>")).encode()).tag.endswith("svg")
+
+
+def test_no_word_of_the_legend_lies_on_the_map() -> None:
+    opendrive = parse(TEXT)
+    west_m = float(road_mesh(opendrive).vertices[:, 0].min())
+    (frame,) = (group for name, group in groups(TEXT).items() if name == "frame")
+    rows = [text for text in frame.iter("{*}text") if text.get("font-weight") is None and text.text != "N"]
+    ends_m = [float(t.get("x", "")) + 0.6 * float(t.get("font-size", "")) * len(t.text or "") for t in rows]
+    assert max(ends_m) < west_m

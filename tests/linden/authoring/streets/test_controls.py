@@ -5,9 +5,12 @@ from typing import Any
 
 import pytest
 
+from linden.authoring.checks.check import Severity, check
 from linden.authoring.streets.build import Built
 from linden.authoring.streets.curves import length, moved, pose_at, seen_from
 from linden.authoring.streets.document import RoadRecord, Signal
+from linden.authoring.streets.writing import text
+from linden.maps.opendrive.parse import parse
 
 
 def signals_of(built: Built) -> list[tuple[RoadRecord, Signal]]:
@@ -69,3 +72,16 @@ def test_a_shuttle_stop_has_a_crosswalk_behind_it(built_of: Any, sketch: Any) ->
     (walk,) = [thing for road in built.document.roads for thing in road.objects if thing.kind == "crosswalk"]
     road = next(road for road in built.document.roads if walk in road.objects)
     assert pose_at(road.path, walk.s_m).x_m == pytest.approx(52.0, abs=0.3)
+
+
+@pytest.mark.parametrize("control", ["signal", "all_way_stop"])
+@pytest.mark.parametrize("width_m", [6.0, 8.0, 10.0])
+def test_libcarla_leaves_every_post_where_it_stands(control: str, width_m: float, built_of: Any, sketch: Any) -> None:
+    wide = {"width_m": width_m, "lanes": 2, "parking": "none"}
+    streets = [
+        sketch.street("east", (-100.0, 0.0), (0.0, 0.0), (100.0, 0.0), **wide),
+        sketch.street("north", (0.0, -100.0), (0.0, 0.0), (0.0, 100.0), **wide),
+        sketch.point("intersection", "middle", (0.0, 0.0), control=control),
+    ]
+    found = check(parse(text(built_of(streets).document)))
+    assert [str(finding) for finding in found if finding.severity is not Severity.NOTE] == []

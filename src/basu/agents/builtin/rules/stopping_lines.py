@@ -6,8 +6,9 @@ import enum
 from typing import TYPE_CHECKING
 
 from basu.agents.builtin.driving.manner import slowing_distance_m
-from basu.agents.builtin.driving.planner import ARRIVED_M, FIRM
+from basu.agents.builtin.driving.planner import FIRM
 from basu.agents.builtin.scene import Restriction, Urgency
+from basu.metrics.path_following import serves
 
 if TYPE_CHECKING:
     from basu.agents.builtin.scene import Ego
@@ -83,7 +84,10 @@ class Phase(enum.Enum):
 
 
 class ServiceStop:
-    """One service stop on the way; the vehicle's origin, where its door is, halts at ``s_m``."""
+    """One service stop on the way; the vehicle's origin, where its door is, halts at ``s_m``.
+
+    The stop is served as `basu.metrics.path_following` defines it, so a driver never waits for what already counts.
+    """
 
     def __init__(self, s_m: float, name: str, dwell_s: float = DWELL_S) -> None:
         self.s_m = s_m
@@ -95,7 +99,8 @@ class ServiceStop:
     def step(self, ego: Ego, ego_s_m: float) -> Restriction | None:
         """What the stop asks for now; None once it has been served."""
         left_m = self.s_m - ego_s_m
-        if self.phase is Phase.APPROACHING and abs(ego.speed_mps) < REST_MPS and left_m < ARRIVED_M:
+        stands = abs(ego.speed_mps) < REST_MPS  # the doors open at a standstill, below what the metric calls rest
+        if self.phase is Phase.APPROACHING and stands and serves(left_m, ego.speed_mps):
             self.phase, self._halted_at_s = Phase.DWELLING, ego.time_s
         if self.phase is Phase.DWELLING and ego.time_s - self._halted_at_s >= self._dwell_s - 1e-6:
             self.phase = Phase.LEFT

@@ -35,6 +35,7 @@ class CarAcrossJunction(AcrossTheWay):
     ego's light is green, or its street has the right of way; neither is a reason to drive into another vehicle.
     """
 
+    comes_before = True
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("side", ("left", "right"), "from which the other comes"),
         Choice("kind", ("van", "car", "truck", "suv"), "the other vehicle"),
@@ -50,6 +51,11 @@ class CarAcrossJunction(AcrossTheWay):
         """Where there are lights, the ego's is green."""
         return green_for_ego(self.place) if has_light(self.place) else None
 
+    @property
+    def lateness_s(self) -> float:
+        """It gets there before the ego."""
+        return -self.number("lead")
+
     def conflict(self) -> Behaviour:
         """It stops in the ego's way until the ego has stopped for it, and a while longer."""
         way, speed_mps = self.crossing, self.number("speed")
@@ -60,7 +66,7 @@ class CarAcrossJunction(AcrossTheWay):
                 way.path,
                 way.meet_s_m - STOPS_M,
                 way.ego_s_m,
-                -self.number("lead"),
+                self.lateness_s,
                 low_mps=low * speed_mps,
                 high_mps=high * speed_mps,
                 accelerate_mps2=SETS_OFF_MPS2,

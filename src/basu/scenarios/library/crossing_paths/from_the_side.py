@@ -91,6 +91,7 @@ class AcrossTheWay(Scenario):
     needs_m = 50.0
     needs_junction = True
     turn: Turn | None = None  # of the other; None: straight on where it can
+    comes_before = False  # whether the other is there seconds before the ego, not at about the same time
 
     @property
     def side(self) -> Side:
@@ -100,12 +101,25 @@ class AcrossTheWay(Scenario):
     @cached_property
     def crossing(self) -> Crossing:
         """Its way, and where that meets the ego's."""
-        before_m = run_up_m(self.number("speed"), self.number("notice")) + 10.0
-        return crossing(self.place, self.side, self.turn, approach_m=before_m, leave_m=LEAVES_M)
+        return crossing(self.place, self.side, self.turn, approach_m=self.run_up_m + 10.0, leave_m=LEAVES_M)
+
+    @property
+    def lateness_s(self) -> float:
+        """When it gets to where they meet, after the ego would; negative: before it."""
+        return self.number("lateness")
+
+    @property
+    def run_up_m(self) -> float:
+        """Its way to where they meet, in the time that it has.
+
+        One that comes seconds before the ego has less time than the ego: with the ego's it would be half as fast again
+        as its parameter says. Where they arrive at about the same time, it varies its speed by a tenth.
+        """
+        return run_up_m(self.number("speed"), self.number("notice") + (self.lateness_s if self.comes_before else 0.0))
 
     def actors(self) -> Sequence[ActorSpec]:
         """The other, waiting for its moment up its street."""
-        begin_m = self.crossing.meet_s_m - run_up_m(self.number("speed"), self.number("notice"))
+        begin_m = self.crossing.meet_s_m - self.run_up_m
         return [ActorSpec(OTHER, BLUEPRINTS[self.choice("kind")], self.crossing.path.at(begin_m))]
 
     def trigger(self) -> Behaviour:
@@ -122,7 +136,7 @@ class AcrossTheWay(Scenario):
                 way.path,
                 way.meet_s_m,
                 way.ego_s_m,
-                self.number("lateness"),
+                self.lateness_s,
                 low_mps=low * speed_mps,
                 high_mps=high * speed_mps,
                 settled_s=SETTLED_S,

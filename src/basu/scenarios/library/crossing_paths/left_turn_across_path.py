@@ -26,6 +26,7 @@ class LeftTurnAcrossPath(AcrossTheWay):
     """
 
     turn = "left"
+    comes_before = True
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("kind", ("car", "van", "suv", "motorcycle"), "the turning vehicle"),
         Number("speed", 3.0, 2.5, 7.0, "m/s", "of the other in its turn"),

@@ -30,6 +30,7 @@ class RightTurnIntoPath(AcrossTheWay):
     """
 
     turn = "right"
+    comes_before = True
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("kind", ("car", "van", "truck", "motorcycle"), "the turning vehicle"),
         Number("speed", 4.0, 2.5, 6.0, "m/s", "of the other in its turn"),
@@ -44,6 +45,11 @@ class RightTurnIntoPath(AcrossTheWay):
         """Right turns come from there."""
         return "right"
 
+    @property
+    def lateness_s(self) -> float:
+        """It gets there before the ego."""
+        return -self.number("lead")
+
     def conflict(self) -> Behaviour:
         """It turns in, dawdles, and drives on."""
         speed_mps, pace_mps, way = self.number("speed"), self.number("pace"), self.crossing
@@ -55,7 +61,7 @@ class RightTurnIntoPath(AcrossTheWay):
                 way.path,
                 way.meet_s_m,
                 way.ego_s_m,
-                -self.number("lead"),
+                self.lateness_s,
                 low_mps=low * speed_mps,
                 high_mps=high * speed_mps,
                 settled_s=SETTLED_S,

@@ -5,6 +5,7 @@ import pytest
 
 from basu.agents.builtin.rules.stopping_lines import DWELL_S, LOOK_M, Light, Phase, ServiceStop, TrafficLight
 from basu.agents.builtin.scene import Ego
+from basu.metrics.path_following import SERVED_M, serves
 from basu.routing import ControlKind
 from driving_plant import SHUTTLE_BODY, Plant, drive, line, make_driver, make_route
 
@@ -27,6 +28,15 @@ def test_standing_in_a_queue_before_the_stop_is_not_halting_at_it() -> None:
     stop = ServiceStop(50.0, "S1")
     assert all(stop.step(ego(float(t), 0.0), 45.0) is not None for t in range(30))
     assert stop.phase is Phase.APPROACHING
+
+
+@pytest.mark.parametrize("left_m", [SERVED_M - 0.1, -SERVED_M + 0.1])
+def test_what_the_metric_counts_as_served_is_served_for_the_driver(left_m: float) -> None:
+    stop = ServiceStop(50.0, "S1")
+    assert serves(left_m, 0.0)
+    stop.step(ego(0.0, 0.0), 50.0 - left_m)
+    assert stop.phase is Phase.DWELLING
+    assert not serves(SERVED_M + 0.1, 0.0)
 
 
 def test_driven_the_door_halts_at_the_stop_and_nothing_is_rougher_than_comfort() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections import defaultdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -160,12 +161,13 @@ def _block(
     rows = []
     for row in block.rows:
         shown = [case for case in row.cases if case["id"] in cards]
+        headers = _headers(row.cases)
         rows.append(
             {
                 "scenario": row.scenario,
                 "title": row.title,
                 "cells": [_cell(row.cases, agent, carded) for agent in agents],
-                "cases": [_case(case, cards[case["id"]]) for case in shown],
+                "cases": [_case(case, headers[case["id"]], cards[case["id"]]) for case in shown],
                 "left": len(row.cases) - len(shown),
             }
         )
@@ -200,10 +202,30 @@ def _sign(case: dict[str, Any], agent: str, carded: Collection[str]) -> dict[str
     return {"look": look, "sentence": sentence, "anchor": anchor if anchor in carded else ""}
 
 
-def _case(case: dict[str, Any], cards: list[Markup]) -> dict[str, Any]:
+def _headers(cases: Sequence[dict[str, Any]]) -> dict[str, str]:
+    """The header of each case, by its id: its place, and for samples of one place their own values."""
+    by_place: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    for case in cases:
+        by_place[case["place"]].append(case)
+    headers = {}
+    for place, there in by_place.items():
+        values = [{each["name"]: _value(each) for each in case["parameters"]} for case in there]
+        for case, own in zip(there, values, strict=True):
+            varied = {name for name, text in own.items() if any(other.get(name) != text for other in values)}
+            headers[case["id"]] = ", ".join(f"{name} {own[name]}" for name in own if name in varied) or place
+    return headers
+
+
+def _value(parameter: dict[str, Any]) -> str:
+    """A parameter's value with its unit."""
+    value = parameter["value"]
+    return f"{value if isinstance(value, str) else f'{value:.4g}'} {parameter['unit']}".rstrip()
+
+
+def _case(case: dict[str, Any], header: str, cards: list[Markup]) -> dict[str, Any]:
     """A case with the cards of all agents."""
     verdicts = [(LOOKS[result["verdict"]], agent) for agent, result in case["results"].items()]
-    return {**{key: case[key] for key in ("id", "place", "parameters")}, "verdicts": verdicts, "cards": cards}
+    return {**{key: case[key] for key in ("id", "parameters")}, "header": header, "verdicts": verdicts, "cards": cards}
 
 
 def _filters(matrix: dict[str, Any]) -> dict[str, dict[str, str]]:

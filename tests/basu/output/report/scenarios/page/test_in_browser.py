@@ -111,6 +111,7 @@ def test_a_phone_needs_no_scrolling_sideways(context: BrowserContext, file: Path
     page = context.new_page()
     page.set_viewport_size({"width": 360, "height": 740})
     page.goto(f"{file.as_uri()}{CARD}")
+    page.evaluate("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
     assert page.evaluate("document.documentElement.scrollWidth") <= 360
 
 

@@ -126,3 +126,13 @@ def test_it_is_written_from_the_folders_of_the_cases(tmp_path: Path) -> None:
 
 def test_the_same_run_gives_the_same_bytes() -> None:
     assert matrix_page(matrix(), left) == matrix_page(matrix(), left)
+
+
+def test_the_header_of_a_sample_shows_its_own_values_and_that_of_a_single_case_its_place() -> None:
+    cases = [case(name, "One", "pedestrian", {"basic": "SUCCESS"}) for name in ("one_1#1", "one_1#2", "one_2")]
+    shared = {"name": "kind", "value": "adult", "unit": "", "about": "who"}
+    for each, ahead_m in zip(cases, (12.5, 31.0, 12.5), strict=True):
+        values = [{"name": "ahead", "value": ahead_m, "unit": "m", "about": "where"}, shared]
+        each.update(place="E 17th Ave" if each["id"].startswith("one_1") else "Bonham Ave", parameters=values)
+    headers = re.findall(r"<summary><b>one_[^<]*</b>.*?<small>([^<]*)</small>", text_of(matrix_of(cases, ["basic"])))
+    assert headers == ["ahead 12.5 m", "ahead 31 m", "Bonham Ave"]

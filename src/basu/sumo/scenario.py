@@ -1,0 +1,98 @@
+"""The scenario that SUMO is started with: a finished .sumocfg, the agent's folder, or one made of the town's map."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from basu.errors import UserError
+from basu.files import places
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+DEMAND, RANDOM, NONE = "demand", "random", "none"
+LIMIT_S = 600.0  # a network of Linden takes 5 s
+
+
+def named_folder(folder: str, town: str, beside: Path | None) -> Path | None:
+    """The folder that an agent's ``config()`` names; None where it is the town's own, still to be made.
+
+    Raises:
+        UserError: it is not there, and bears another name than the town.
+    """
+    for place in places(beside):
+        if (place / folder).is_dir():
+            return place / folder
+    if Path(folder).name.casefold() == town.casefold():
+        return None
+    looked = ", ".join(str(place) for place in places(beside))
+    raise UserError(
+        f"the agent's SUMO folder '{folder}' was not found (looked in {looked}); write one with "
+        f"`linden map sumo {town} -o {folder}`, or run with --sumo none"
+    )
+
+
+def config_in(folder: Path, *, is_random: bool) -> Path:
+    """The one configuration of a folder; the one without a demand for random trips.
+
+    Raises:
+        UserError: it has none, or several.
+    """
+    found = sorted(folder.glob("*.sumocfg"))
+    empty = [path for path in found if path.name.endswith(".empty.sumocfg")]
+    full = [path for path in found if path not in empty]
+    chosen = (empty or full) if is_random else full
+    if len(chosen) != 1:
+        said = "no .sumocfg" if not chosen else f"{len(chosen)} .sumocfg files"
+        raise UserError(f"the SUMO folder {folder} has {said}; name one file with --sumo FILE.sumocfg")
+    return chosen[0]
+
+
+def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str]) -> Path:
+    """The folder with a network and a demand of a town's map, made by ``linden map sumo`` where it is not kept yet.
+
+    ``linden`` is the command that starts it.
+
+    Raises:
+        UserError: it cannot be made.
+    """
+    key = hashlib.sha256(f"{seed}\n{town}\n{opendrive}".encode()).hexdigest()[:16]
+    folder = _cache() / f"{town}-{key}"
+    if folder.is_dir():
+        return folder
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    draft = Path(tempfile.mkdtemp(prefix=f".{town}-", dir=folder.parent))
+    try:
+        map_file = draft / f"{town}.xodr"
+        map_file.write_text(opendrive, encoding="utf-8")
+        _make(map_file, draft, seed, linden)
+        map_file.unlink()
+        draft.rename(folder)
+    except OSError as error:
+        if not folder.is_dir():  # another run has made it meanwhile
+            raise UserError(
+                f"cannot write {folder}: {error.strerror}; set XDG_CACHE_HOME to a folder of yours"
+            ) from error
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+    return folder
+
+
+def _make(map_file: Path, folder: Path, seed: int, linden: Sequence[str]) -> None:
+    command = [*linden, "map", "sumo", str(map_file), "-o", str(folder), "--seed", str(seed)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S, check=False)  # noqa: S603 - ours
+    if done.returncode not in (0, 1):  # 1: it fits but for what it has printed
+        said = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
+        raise UserError(f"no SUMO network could be made of {map_file.stem}: {said.removeprefix('linden: ')}")
+
+
+def _cache() -> Path:
+    """Where scenario folders are kept between runs."""
+    given = os.environ.get("XDG_CACHE_HOME")
+    return (Path(given) if given else Path.home() / ".cache") / "basu" / "sumo"

@@ -1,0 +1,128 @@
+"""Compares a SUMO network with its OpenDRIVE map: lanes, lengths, speeds, controls, who can get where."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import networkx as nx
+
+from linden.authoring.sumo.net import Net
+from linden.authoring.sumo.network import Converted
+from linden.maps.opendrive.model import OpenDrive
+from linden.protocol.values.enums import LaneType
+
+LENGTH_SHARE = 0.02  # of the whole length that netconvert may cut off or add at joints of lanes
+SPEED_MPS = 0.05  # SUMO writes two decimals
+SHORT_M = 0.5  # netconvert drops shorter sections
+
+
+class Compared(NamedTuple):
+    """What was compared, in lines of a table, and what does not fit, a sentence each."""
+
+    table: tuple[tuple[str, str, str], ...]  # what, in the map, in the network
+    misfits: tuple[str, ...]
+
+
+def compare(converted: Converted) -> Compared:
+    """Compare the network with its map."""
+    net, opendrive = converted.net, converted.opendrive
+    lanes = {kind: list(_lanes(opendrive, kind)) for kind in (LaneType.DRIVING, LaneType.SIDEWALK)}
+    car_km, walk_km = (sum(length_m for _, length_m, _ in lanes[kind]) / 1000.0 for kind in lanes)
+    net_car_km = sum(lane.length_m for edge in net.edges.values() for lane in edge.car_lanes) / 1000.0
+    net_walk_km = sum(lane.length_m for e in net.edges.values() for lane in e.lanes if lane.for_people) / 1000.0
+    found, signs, parts = _found(converted), _signs(converted), _parts(net)
+    table = (
+        ("lanes for cars outside junctions, km", f"{car_km:.1f}", f"{net_car_km:.1f}"),
+        ("pavements outside junctions, km", f"{walk_km:.1f}", f"{net_walk_km:.1f}"),
+        *((name, str(wanted), str(kept)) for name, wanted, kept in signs),
+        ("parts that cannot reach each other", "1", str(parts)),
+    )
+    misfits = [
+        *(f"lane {origin}: the network has no edge of it" for origin in found.missing),
+        *found.speeds,
+        *(f"{name}: {kept} of {wanted} are kept" for name, wanted, kept in signs if kept != wanted),
+        *(
+            f"signal {signal.signal_id} (type {signal.type}, road {signal.road_id}): it lies on no edge"
+            for signal in converted.controls.lost
+        ),
+    ]
+    for name, in_map, in_net in (("cars", car_km, net_car_km), ("people", walk_km, net_walk_km)):
+        if in_map and abs(in_net / in_map - 1.0) > LENGTH_SHARE:
+            misfits.append(f"lanes for {name}: {in_net:.1f} km in the network, {in_map:.1f} km in the map")
+    if parts > 1:
+        misfits.append(f"the network falls into {parts} parts that cannot reach each other by car")
+    return Compared(table, tuple(misfits))
+
+
+class _Found(NamedTuple):
+    missing: list[str]
+    speeds: list[str]
+
+
+def _found(converted: Converted) -> _Found:
+    """The lanes of the map that the network lacks, and those whose speed differs."""
+    net, missing, speeds = converted.net, [], []
+    for origin, length_m, limit_mps in _lanes(converted.opendrive, LaneType.DRIVING):
+        edges = net.edges_of_origin.get(origin, [])
+        if not edges and length_m > SHORT_M:
+            missing.append(origin)
+        for edge in edges:
+            lane = next(lane for lane in edge.lanes if origin in lane.origins)
+            if limit_mps is not None and lane.origins == (origin,) and abs(lane.speed_mps - limit_mps) > SPEED_MPS:
+                speeds.append(f"lane {origin}: {lane.speed_mps:.2f} m/s in the network, {limit_mps:.2f} in the map")
+    return _Found(missing, list(dict.fromkeys(speeds)))
+
+
+def _lanes(opendrive: OpenDrive, kind: LaneType) -> Iterator[tuple[str, float, float | None]]:
+    """Yield the lanes of a kind outside junctions, a section each: "ROAD_LANE", length along the road, limit."""
+    for road in opendrive.roads:
+        if road.is_in_junction:
+            continue
+        for section in road.sections:
+            for lane in section.lanes:
+                if lane.type is kind and lane.id != 0:
+                    posted = [each.limit_mps for each in lane.speeds] or [
+                        each.limit_mps for each in road.types if each.has_speed and each.s_m <= section.s_m
+                    ][-1:]
+                    limit = posted[0] if len(set(posted)) == 1 else None
+                    yield f"{road.id}_{lane.id}", section.end_m - section.s_m, limit
+
+
+def _signs(converted: Converted) -> list[tuple[str, int, int]]:
+    """What the map's signs and lights come to: name, number in the map, number whose links act as signed.
+
+    A link's state is ``s`` or ``w`` at a stop, ``m`` where it yields, ``o`` or ``O`` at a light.
+    """
+    controls, net = converted.controls, converted.net
+    states: dict[str, set[str]] = {}
+    for connection in net.connections:
+        edge = net.edges.get(connection.start)
+        if edge is not None and edge.lanes[connection.start_lane].for_cars:
+            states.setdefault(connection.start, set()).add(connection.state)
+    rows = []
+    kinds = (
+        ("stop signs", controls.stops, "sw"),
+        ("yield signs", controls.yields, "m"),
+        ("lights", controls.lights, "oO"),
+    )
+    for name, signals, wanted in kinds:
+        ids = {signal.signal_id for signal in signals.values()}
+        kept = {signal.signal_id for edge, signal in signals.items() if states.get(edge, set()) & set(wanted)}
+        lost = sum(_is_of(name, signal.type, is_light=signal.is_light) for signal in controls.lost)
+        rows.append((name, len(ids) + lost, len(kept)))
+    return rows
+
+
+def _is_of(name: str, kind: str, *, is_light: bool) -> bool:
+    return is_light if name == "lights" else {"stop signs": "206", "yield signs": "205"}[name] == kind
+
+
+def _parts(net: Net) -> int:
+    """How many groups of edges there are within which every edge reaches every other by car."""
+    graph: nx.DiGraph[str] = nx.DiGraph()
+    graph.add_nodes_from(edge.id for edge in net.car_edges())
+    for connection in net.connections:
+        if connection.start in graph and connection.end in graph:
+            start, end = net.edges[connection.start], net.edges[connection.end]
+            if start.lanes[connection.start_lane].for_cars and end.lanes[connection.end_lane].for_cars:
+                graph.add_edge(connection.start, connection.end)
+    return nx.number_strongly_connected_components(graph)

@@ -1,0 +1,128 @@
+"""A demand for a network: trips between homes and the town's edge, drawn from a seed, as many as fit the hour."""
+
+import random
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from lxml import etree
+
+from linden.authoring.sumo.net import Net, NetEdge
+from linden.authoring.sumo.vehicle_types import MIX
+from linden.errors import UserError
+
+BUSY_TRIPS_PER_KM = 14.0
+"""Trips that begin in the busiest hour for each km of lane: an estimate, which gives Linden some 1,100 an hour."""
+
+HOUR_SHARES = (0.10, 0.07, 0.05, 0.06, 0.12, 0.30, 0.60, 0.90, 0.80, 0.62, 0.60, 0.66,
+               0.70, 0.72, 0.82, 0.94, 1.00, 1.00, 0.78, 0.58, 0.44, 0.36, 0.26, 0.17)  # fmt: skip
+"""Trips of each hour of a weekday against the busiest: an estimate in the usual shape, two peaks and a flat noon."""
+
+PURPOSES = ("out", "home", "within", "through")
+"""From a home to the town's edge; the other way; from home to home; from edge to edge."""
+
+MORNING, EVENING, ELSE = (0.40, 0.10, 0.20, 0.30), (0.12, 0.38, 0.20, 0.30), (0.25, 0.25, 0.20, 0.30)
+"""Shares of the purposes before 10:00, from 15:00 to 20:00, and at all other times: estimates."""
+
+HOME_SPEED_MPS = 12.0  # streets up to 25 mph have homes; the faster ones are arterials
+MEAN_TRIP_S = 200.0  # observed on Linden: so many seconds' trips are under way at the beginning
+HOUR_S = 3600.0
+
+
+class Demand(NamedTuple):
+    """What is to be drawn."""
+
+    hour: float = 9.5  # of the day; the shuttle's run departs at half past nine
+    duration_s: float = HOUR_S
+    scale: float = 1.0
+    seed: int = 0
+
+
+class Trip(NamedTuple):
+    """One vehicle's way. One that is under way begins somewhere between its ends."""
+
+    depart_s: float
+    start: str
+    end: str
+    is_under_way: bool
+
+
+def check(demand: Demand) -> None:
+    """Check a demand's figures.
+
+    Raises:
+        UserError: one of them means nothing.
+    """
+    if not 0.0 <= demand.hour < 24.0:
+        raise UserError(f"the hour is {demand.hour:g}; give one from 0 to below 24, such as 7.5 for half past seven")
+    if not demand.duration_s > 0.0:
+        raise UserError(f"the demand's duration is {demand.duration_s:g} s; give a time above 0")
+    if not demand.scale >= 0.0:
+        raise UserError(f"the demand's scale is {demand.scale:g}; give 0 or more, 1 for the usual traffic")
+
+
+def trips_per_hour(net: Net, demand: Demand) -> float:
+    """How many trips begin in an hour at that time of the day."""
+    lane_km = sum(edge.length_m * len(edge.car_lanes) for edge in net.car_edges()) / 1000.0
+    return BUSY_TRIPS_PER_KM * lane_km * HOUR_SHARES[int(demand.hour)] * demand.scale
+
+
+def draw(net: Net, demand: Demand) -> list[Trip]:
+    """The trips of a demand in the order of their departure: those under way first.
+
+    Raises:
+        UserError: the network has no street to begin or end at.
+    """
+    check(demand)
+    dice = random.Random(demand.seed)  # noqa: S311 - to be had again by its seed, not to be a secret
+    homes = [edge for edge in net.car_edges() if _limit_mps(edge) <= HOME_SPEED_MPS] or list(net.car_edges())
+    entries = [edge for edge in net.car_edges() if net.node_types[edge.start] == "dead_end"] or homes
+    exits = [edge for edge in net.car_edges() if net.node_types[edge.end] == "dead_end"] or homes
+    if not homes:
+        raise UserError("the network has no lane for cars; a demand needs some")
+    shares = MORNING if demand.hour < 10.0 else EVENING if 15.0 <= demand.hour < 20.0 else ELSE
+    rate_hz = trips_per_hour(net, demand) / HOUR_S
+    under_way = round(rate_hz * MEAN_TRIP_S)
+    later = round(rate_hz * demand.duration_s)
+    departures = [0.0] * under_way + sorted(round(dice.uniform(0.0, demand.duration_s), 2) for _ in range(later))
+    trips = []
+    for number, depart_s in enumerate(departures):
+        purpose = dice.choices(PURPOSES, shares)[0]
+        starts = homes if purpose in ("out", "within") else entries
+        ends = homes if purpose in ("home", "within") else exits
+        start = _drawn(starts, dice)
+        end = _drawn([edge for edge in ends if _is_elsewhere(edge, start)] or homes, dice)
+        trips.append(Trip(depart_s, start.id, end.id, number < under_way))
+    return trips
+
+
+def _limit_mps(edge: NetEdge) -> float:
+    return max(lane.speed_mps for lane in edge.car_lanes)
+
+
+def _drawn(edges: Sequence[NetEdge], dice: random.Random) -> NetEdge:
+    """One of the edges; the longer it is and the more lanes it has, the likelier."""
+    return dice.choices(edges, [edge.length_m * len(edge.car_lanes) for edge in edges])[0]
+
+
+def _is_elsewhere(edge: NetEdge, start: NetEdge) -> bool:
+    """Whether a trip to this edge leaves the street that it begins in."""
+    return edge.id.lstrip("-") != start.id.lstrip("-") and edge.end != start.start
+
+
+def trips_file(trips: Sequence[Trip]) -> bytes:
+    """SUMO's route file of the trips."""
+    root = etree.Element("routes")
+    for number, trip in enumerate(trips):
+        given = {
+            "id": f"trip{number}",
+            "type": MIX,
+            "depart": f"{trip.depart_s:.2f}",
+            "from": trip.start,
+            "to": trip.end,
+            "departLane": "best",
+            "departSpeed": "max",
+        }
+        if trip.is_under_way:
+            given |= {"departEdge": "random", "departPos": "random_free"}
+        etree.SubElement(root, "trip", given)
+    return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8")
