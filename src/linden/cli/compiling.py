@@ -87,7 +87,7 @@ def world() -> None:
 
 
 def frame() -> None:
-    """Compile the frame of physics, whose parts are compiled already, and note that it is."""
+    """Compile the frame of physics after its parts, and note that it is done."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
     from linden.physics.warming import warm_up  # noqa: PLC0415 - as in driving
     from linden.sensors.compiling import OF_PHYSICS, note_compiled  # noqa: PLC0415 - as in driving
