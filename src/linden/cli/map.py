@@ -8,7 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from linden.cli import map_pointcloud, map_sumo
+from linden.cli import map_convert, map_package, map_pointcloud, map_sumo
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
 
@@ -34,10 +34,15 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
     check_parser = _add(actions, "check", check, "report what a careful reader finds wrong; exit 1 if anything is")
     _add_file(check_parser)
+    check_parser.add_argument("--against", metavar="MAP", help="the OpenDRIVE map that a Lanelet2 file was made of")
     check_parser.add_argument("--notes", action="store_true", help="tell also what is odd but allowed")
 
     show_parser = _add(actions, "show", show, "draw a map")
     _add_file(show_parser)
+    show_parser.add_argument("--over", metavar="MAP", help="the OpenDRIVE map to draw below a Lanelet2 or Aisan one")
+    show_parser.add_argument(
+        "--window", nargs=3, type=float, metavar=("X", "Y", "SIDE"), help="draw a square of a Lanelet2 or Aisan map, m"
+    )
     show_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .svg file")
 
     export_parser = _add(actions, "export", export, "write all that stands on a map as glTF, for any 3D viewer")
@@ -46,6 +51,12 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
 
     info_parser = _add(actions, "info", info, "count roads, junctions, signals, lanes")
     _add_file(info_parser)
+
+    convert_parser = _add(actions, "convert", map_convert.run, map_convert.HELP)
+    map_convert.add_arguments(convert_parser)
+
+    package_parser = _add(actions, "package", map_package.run, map_package.HELP)
+    map_package.add_arguments(package_parser)
 
     cloud_parser = _add(actions, "pointcloud", map_pointcloud.run, map_pointcloud.HELP)
     map_pointcloud.add_arguments(cloud_parser)
@@ -95,6 +106,10 @@ def _route_and_file(given: str, known: Collection[str]) -> tuple[str, Path]:
 
 def check(arguments: argparse.Namespace) -> int:
     """Print the findings, one a line, and a summary; return 1 if there are any."""
+    if Path(arguments.file).suffix == ".osm":
+        return map_convert.check(Path(arguments.file), arguments.against)
+    if Path(arguments.file).is_dir():
+        return map_convert.check_folder(Path(arguments.file))
     # here, not above: the server's start does not pay for it
     from linden.authoring.checks.check import Severity  # noqa: PLC0415 - see above
     from linden.authoring.checks.check import check as findings_of  # noqa: PLC0415 - see above
@@ -113,6 +128,11 @@ def show(arguments: argparse.Namespace) -> int:
     """Write a drawing of the map."""
     from linden.authoring.drawing.svg import svg  # noqa: PLC0415 - the server's start does not pay for it
 
+    drawn = map_convert.drawing(arguments)
+    if drawn is not None:
+        _write(arguments.output, drawn.encode())
+        _say(f"{arguments.output}: drawn")
+        return 0
     _write(arguments.output, svg(opendrive_of(arguments.file)).encode())
     _say(f"{arguments.output}: drawn")
     return 0

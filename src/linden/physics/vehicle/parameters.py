@@ -22,7 +22,7 @@ CHASSIS_AREA_M2 = 1.8 * 1.4
 FRONT_SHARE = 0.45  # of the torque, on four wheels: PhysX's differential by default
 HULL_INERTIA = 0.75
 """Yaw inertia of a vehicle's hull over that of its box: PhysX takes the inertia of the hull, which is shorter at the
-corners and has no mirrors. Values from 0.7 to 0.8 fit the recorded yaw rates best (docs/explanation/fidelity.md)."""
+corners and has no mirrors. Recorded yaw rates fit best between 0.7 and 0.8 (docs/explanation/fidelity.md)."""
 _RPM = 2.0 * math.pi / 60.0
 _LEAST_COM_HEIGHT_M = 0.1
 

@@ -242,3 +242,20 @@ def test_a_load_of_another_map_gives_up_what_was_being_built(world_map: LoadedMa
     simulation.load(MapLibrary().from_opendrive(street_through_junction()), reset_settings=False)
     assert ended.wait(20)
     assert simulation.sensor_scene.wait(0.0)
+
+
+def test_a_lidar_does_not_wait_for_the_kernels_of_cameras(world_map: LoadedMap, sensor_scene: SensorScene) -> None:
+    simulation, waited = World(world_map, EpisodeSettings()), list[bool]()
+    own = SensorScene(simulation.library)
+    own.standing_on, own.await_kernels, own.is_compiling = sensor_scene.standing_on, waited.append, lambda: True
+    simulation.sensor_scene = own
+    simulation.spawn(described("sensor.lidar.ray_cast"), Transform())
+    assert own.wait(60.0)
+    look(simulation)
+    assert waited == [False]
+    simulation.spawn(described("sensor.camera.depth"), Transform())
+    assert own.wait(60.0)
+    look(simulation)
+    assert waited == [False, True]
+    look(simulation)
+    assert waited == [False, True]  # the scene with pictures is kept

@@ -1,0 +1,110 @@
+"""Lanelet2 and Aisan maps of towns: seconds and memory of one process each, what they hold, and how exact they are.
+
+    python benchmarks/map_formats.py Linden path/to/Town01.xodr ...
+
+Seconds are those of the processor, from the file's text to the bytes to be written. ``wall`` is by the clock.
+"""
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from linden.authoring.aisan.convert import convert as aisan_of
+from linden.authoring.aisan.reading import complaints, read_folder
+from linden.authoring.lanelet2.checking import compare, reach, worst_error_m
+from linden.authoring.lanelet2.convert import convert
+from linden.authoring.lanelet2.osm import osm_bytes
+from linden.authoring.lanelet2.second_reader import routes_of
+from linden.authoring.output import write_folder
+from linden.cli.map_source import content_of
+from linden.maps.opendrive.parse import parse
+
+ROWS = (
+    ("parse", "s"),
+    ("lanelet2", "s"),
+    ("aisan", "s"),
+    ("wall", "s"),
+    ("memory", "MB"),
+    ("lanelets", ""),
+    ("nodes", ""),
+    ("elements", ""),
+    ("osm", "MB"),
+    ("rows", ""),
+    ("covered", "%"),
+    ("plan", "mm"),
+    ("height", "mm"),
+    ("load errors", ""),
+    ("pairs", ""),
+    ("missing", ""),
+    ("added", ""),
+    ("complaints", ""),
+)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("maps", nargs="*", default=["Linden"])
+    parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.one:
+        print(json.dumps(measured(arguments.maps[0])))
+        return
+    columns = {}
+    for name in arguments.maps:
+        run = subprocess.run([sys.executable, __file__, "--one", name], capture_output=True, text=True, check=True)
+        columns[Path(name).stem] = json.loads(run.stdout.splitlines()[-1])
+    print("| | " + " | ".join(columns) + " |\n|---|" + "---|" * len(columns))
+    for key, unit in ROWS:
+        cells = " | ".join(f"{column[key]:,.2f}" if unit else f"{column[key]:,}" for column in columns.values())
+        print(f"| {key}{f' ({unit})' if unit else ''} | {cells} |")
+
+
+def measured(name: str) -> dict[str, float]:
+    text, wall = content_of(name), time.perf_counter()
+    marks = [time.process_time()]
+    opendrive = parse(text)
+    marks.append(time.process_time())
+    converted = convert(opendrive)
+    osm = osm_bytes(converted.lanelet_map)
+    marks.append(time.process_time())
+    vectors = aisan_of(converted.lanelet_map)
+    files = vectors.tables.files()
+    marks.append(time.process_time())
+    wall = time.perf_counter() - wall
+    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    with tempfile.TemporaryDirectory() as folder:
+        write_folder(Path(folder) / "aisan", files)
+        found = complaints(read_folder(Path(folder) / "aisan"))
+    routes = routes_of(converted.lanelet_map)
+    pairs = reach(opendrive, routes, converted)
+    driving = compare(converted.lanelet_map, opendrive)[0]
+    plan_m, height_m = worst_error_m(opendrive, converted)
+    return {
+        "parse": marks[1] - marks[0],
+        "lanelet2": marks[2] - marks[1],
+        "aisan": marks[3] - marks[2],
+        "wall": wall,
+        "memory": memory,
+        "lanelets": sum(1 for _ in converted.lanelet_map.lanelets()),
+        "nodes": len(converted.lanelet_map.nodes),
+        "elements": sum(1 for _ in converted.lanelet_map.elements()),
+        "osm": len(osm) / 1e6,
+        "rows": len(vectors.tables.rows["lane"]),
+        "covered": 100.0 * driving.after / driving.before,
+        "plan": 1000.0 * plan_m,
+        "height": 1000.0 * height_m,
+        "load errors": len(routes.errors),
+        "pairs": pairs.both,
+        "missing": len(pairs.missing),
+        "added": len(pairs.added),
+        "complaints": len(found),
+    }
+
+
+if __name__ == "__main__":
+    main()

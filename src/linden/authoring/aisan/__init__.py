@@ -1,0 +1,1 @@
+"""The Aisan vector map of Autoware.AI: a folder of CSV files."""

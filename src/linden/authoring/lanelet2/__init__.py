@@ -1,0 +1,1 @@
+"""Lanelet2 maps: from OpenDRIVE, to and from ``.osm`` files."""

@@ -1,0 +1,154 @@
+"""Intersection areas: a ring of nodes around each junction, along the ends of its legs and the kerbs between them."""
+
+import math
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.authoring.lanelet2.model import Bounds, LaneletMap
+from linden.maps.opendrive.evaluate.pieces import F64
+
+_KERB_REACH_M = 5.0
+"""Between the outermost lane of a leg and the kerb round its corner: a parking lane, and the kerb's own set-back."""
+
+
+class Leg(NamedTuple):
+    """Where a street meets a junction: nodes from the left to the right of those who enter."""
+
+    nodes: tuple[int, ...]
+    angle_rad: float  # round the junction's middle
+
+
+def ring_of(
+    target: LaneletMap,
+    entries: list[Bounds],
+    exits: list[Bounds],
+    ways: list[Bounds],
+    kerbs: list[tuple[int, ...]],
+) -> tuple[int, ...]:
+    """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways.
+
+    First the ends of the legs and the kerbs round the corners between them, then the ends alone, then their convex
+    hull, last the convex hull of the ways. ``entries`` are the lanelets that lead into the junction, ``exits`` those
+    that lead out of it, ``ways`` those inside, all by their sides. Empty where there is no area.
+    """
+    legs = _legs(target, entries, exits) if entries or exits else []
+    ends = [node for leg in legs for node in leg.nodes]
+    middles = np.array([_middle(target, way) for way in ways])
+    for ring in (_ring(target, legs, kerbs), _ring(target, legs, []), _hull(target, ends)):
+        places = _places(target, ring)
+        if len(ring) > 2 and _is_simple(places) and inside(places, middles).all():
+            return ring
+    ring = _hull(target, [node for way in ways for side in way for node in side])
+    return ring if len(ring) > 2 else ()
+
+
+def _middle(target: LaneletMap, way: Bounds) -> F64:
+    """Return the place halfway along a lanelet."""
+    halves = []
+    for side in way:
+        line = _places(target, side)
+        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+        halves.append([np.interp(0.5 * length[-1], length, line[:, axis]) for axis in range(2)])
+    middle: F64 = np.mean(halves, axis=0)
+    return middle
+
+
+def _legs(target: LaneletMap, entries: list[Bounds], exits: list[Bounds]) -> list[Leg]:
+    """Return the legs in the order of their angle; lanes that share a node at the junction are one leg."""
+    edges = [(side.left[-1], side.right[-1]) for side in entries] + [(side.right[0], side.left[0]) for side in exits]
+    groups: list[set[int]] = []
+    order: dict[int, list[tuple[int, int]]] = {}
+    for edge in dict.fromkeys(edges):
+        touched = [group for group in groups if group & set(edge)]
+        merged = set(edge).union(*touched)
+        groups = [group for group in groups if group not in touched] + [merged]
+    for edge in dict.fromkeys(edges):
+        nth = next(number for number, group in enumerate(groups) if edge[0] in group)
+        order.setdefault(nth, []).append(edge)
+    middle = _places(target, tuple(dict.fromkeys(node for edge in edges for node in edge))).mean(axis=0)
+    legs = []
+    for group in order.values():
+        across = sum(_place(target, right) - _place(target, left) for left, right in group)
+        nodes = dict.fromkeys(node for edge in group for node in edge)
+        ranked = sorted(nodes, key=lambda node: (float(_place(target, node) @ across), node))
+        away = _places(target, tuple(ranked)).mean(axis=0) - middle
+        legs.append(Leg(tuple(ranked), math.atan2(away[1], away[0])))
+    return sorted(legs, key=lambda leg: (leg.angle_rad, leg.nodes))
+
+
+def _ring(target: LaneletMap, legs: list[Leg], kerbs: list[tuple[int, ...]]) -> tuple[int, ...]:
+    ring: list[int] = []
+    for leg, following in zip(legs, [*legs[1:], *legs[:1]], strict=True):
+        ring += leg.nodes
+        start, end = _place(target, leg.nodes[-1]), _place(target, following.nodes[0])
+        best: tuple[float, tuple[int, ...]] = (2.0 * _KERB_REACH_M, ())
+        for kerb in kerbs:
+            for way in (kerb, kerb[::-1]):
+                gap_m = math.dist(start, _place(target, way[0])) + math.dist(end, _place(target, way[-1]))
+                best = min(best, (gap_m, way))
+        ring += best[1]
+    return tuple(dict.fromkeys(ring))
+
+
+def _place(target: LaneletMap, node: int) -> F64:
+    return np.array(target.nodes[node][:2])
+
+
+def _places(target: LaneletMap, ring: tuple[int, ...]) -> F64:
+    return np.array([target.nodes[node][:2] for node in ring]).reshape(-1, 2)
+
+
+def _is_simple(ring: F64) -> bool:
+    """Return whether a ring turns to the left as a whole and no two of its edges cross."""
+    a, b = ring, np.roll(ring, -1, axis=0)
+    if _area(ring) <= 0.0:
+        return False
+
+    def side(p: F64, q: F64, r: F64) -> F64:
+        result: F64 = (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (
+            r[..., 0] - p[..., 0]
+        )
+        return result
+
+    p, q, r, s = a[:, None], b[:, None], a[None], b[None]
+    crossed = (side(p, q, r) * side(p, q, s) < 0.0) & (side(r, s, p) * side(r, s, q) < 0.0)
+    return not bool(crossed.any())
+
+
+def _area(ring: F64) -> float:
+    near = ring - ring[0]
+    after = np.roll(near, -1, axis=0)
+    return float(0.5 * (near[:, 0] * after[:, 1] - after[:, 0] * near[:, 1]).sum())
+
+
+def _hull(target: LaneletMap, nodes: list[int]) -> tuple[int, ...]:
+    """Return the convex hull of nodes, counter-clockwise (Andrew, 1979)."""
+    ranked = sorted(dict.fromkeys(nodes), key=lambda node: target.nodes[node][:2])
+
+    def half(chain: list[int]) -> list[int]:
+        kept: list[int] = []
+        for node in chain:
+            while len(kept) > 1 and _turn(target, kept[-2], kept[-1], node) <= 0.0:
+                kept.pop()
+            kept.append(node)
+        return kept[:-1]
+
+    return tuple(half(ranked) + half(ranked[::-1]))
+
+
+def _turn(target: LaneletMap, one: int, two: int, three: int) -> float:
+    (ax, ay), (bx, by), (cx, cy) = (target.nodes[node][:2] for node in (one, two, three))
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+
+
+def inside(ring: F64, points: F64) -> NDArray[np.bool_]:
+    """Return which points (N, 2) lie inside a ring (M, 2), by counting crossings of a ray to the east."""
+    odd = np.zeros(len(points), dtype=np.bool_)
+    for (x0, y0), (x1, y1) in pairwise([*ring.tolist(), ring[0].tolist()]):
+        spans = (y0 > points[:, 1]) != (y1 > points[:, 1])
+        if spans.any():
+            odd ^= spans & (points[:, 0] < x0 + (points[:, 1] - y0) * (x1 - x0) / (y1 - y0 or 1e-18))
+    return odd
