@@ -42,7 +42,8 @@ def _cached(function: Callable[..., object], **options: Any) -> Any:  # noqa: AN
             raise
         return numba.njit(error_model="numpy", **options)(function)
     if not COMPILER_IS_OFF:
-        compiled._cache = _KernelCache(cast("FunctionType", function))  # noqa: SLF001 - as njit(cache=True) does
+        cache = _KernelCache(cast("FunctionType", function))  # type: ignore[no-untyped-call] # of numba
+        compiled._cache = cache  # noqa: SLF001 - as njit(cache=True) does
     return compiled
 
 
@@ -54,7 +55,7 @@ class _KernelCache(FunctionCache):
 
     def _index_key(self, *of_function: object) -> tuple[object, ...]:
         key = super()._index_key(*of_function)  # type: ignore[no-untyped-call]
-        return (*key, self.sources) if self.sources else key  # type: ignore[no-any-return]
+        return (*key, self.sources) if self.sources else key
 
     def _load_overload(self, *of_function: object) -> object:
         try:
