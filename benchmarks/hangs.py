@@ -23,6 +23,8 @@ HANGS_S = 40.0
 """A tick takes some ms; beside three times as many programs as cores some hundred."""
 TOLD_EACH = 500
 """Ticks."""
+TOLD = re.compile(rb"^ticked \d+$", re.MULTILINE)
+"""A client's line; LibCarla writes others."""
 TOLD_EACH_S = 60.0
 """So that a run that is cut off has figures too."""
 
@@ -42,7 +44,7 @@ def tick(port: int, cars: int) -> None:
         world.tick()
         done += 1
         if done % TOLD_EACH == 0:
-            print(done, flush=True)
+            print(f"\nticked {done}", flush=True)
 
 
 class Pair(NamedTuple):
@@ -98,8 +100,8 @@ class Watch:
     def look(self) -> None:
         """Wait a second for lines, count them, and begin those pairs anew that have ended or hang."""
         for key, _ in self._selector.select(1.0):
-            if lines := os.read(key.fd, 4096).count(b"\n"):
-                self.ticks[key.data.cars] += TOLD_EACH * lines
+            if data := os.read(key.fd, 4096):
+                self.ticks[key.data.cars] += TOLD_EACH * len(TOLD.findall(data))
                 self._heard_s[key.data] = time.monotonic()
             else:
                 self.ended += 1
