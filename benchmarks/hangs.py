@@ -21,7 +21,7 @@ from live import LINDEN, free_port, synchronous_world
 
 HANGS_S = 40.0
 """A tick takes some ms; beside three times as many programs as cores some hundred."""
-TOLD_EACH = 500
+TOLD_EACH = 50
 """Ticks."""
 TOLD = re.compile(rb"^ticked \d+$", re.MULTILINE)
 """A client's line; LibCarla writes others."""
