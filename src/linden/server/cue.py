@@ -20,7 +20,7 @@ TICK = "tick_cue"
 
 PATIENCE_S = 0.02
 """How long a tick's answer waits for the question: a busy machine's time slices. Else it is there before the tick."""
-SETTLING_S = 0.0005
+SETTLING_S = 0.001
 """What a thread needs from the answer to its sleep: 0.1 ms, with a margin. The frame's own time is part of it."""
 MOST_LATE = 2
 """Ticks in a row that waited in vain. Then none waits: the Traffic Manager is not in synchronous mode."""

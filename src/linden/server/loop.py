@@ -43,7 +43,7 @@ SWITCH_S = 0.001
 default it would have to wait 5 ms each time."""
 
 COARSE_S = 0.002
-"""Waits shorter than this end on time. The selector counts whole milliseconds; a tick's answer waits half of one."""
+"""Waits shorter than this end on time. The selector counts whole milliseconds; a tick's answer waits one at most."""
 
 _MOST_SELECTED = 1024  # numbers of files that select(2) can take
 _READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE

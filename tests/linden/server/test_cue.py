@@ -115,7 +115,7 @@ def test_a_late_question_counts_for_the_step_it_belongs_to() -> None:
     assert cue.answered_s == 2.0
 
 
-def test_the_wait_after_a_question_is_shorter_than_the_selectors_millisecond() -> None:
+def test_the_wait_after_a_question_is_hardly_longer_than_the_thread_needs() -> None:
     took_s = []
     with running_server("--sync") as server, RawClient(server.port) as client:
         _traffic_manager(client)
@@ -124,4 +124,4 @@ def test_the_wait_after_a_question_is_shorter_than_the_selectors_millisecond() -
             began_s = time.perf_counter()
             client.call("tick_cue")
             took_s.append(time.perf_counter() - began_s)
-    assert min(took_s) < 0.00095
+    assert min(took_s) < SETTLING_S + 0.0005
