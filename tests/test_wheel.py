@@ -52,8 +52,9 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (packages / "others.pth").write_text("\n".join([*site.getsitepackages(), hiding]) + "\n", encoding="utf-8")
     for code in (ROOT / "src" / "linden").rglob("*.nb[ci]"):
         target = packages / code.relative_to(ROOT / "src")
-        target.parent.mkdir(exist_ok=True)
-        shutil.copy(code, target)
+        if target.parents[1].is_dir():  # else it was left by a module that has moved
+            target.parent.mkdir(exist_ok=True)
+            shutil.copy(code, target)
     return environment
 
 
