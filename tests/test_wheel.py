@@ -96,7 +96,7 @@ def test_both_packages_are_those_of_the_wheel(installed: Path, tmp_path: Path) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", [["linden", "--version"], ["linden", "map", "--help"], ["basu", "list", "agents"]])
+@pytest.mark.parametrize("command", [["linden", "--version"], ["linden", "map", "--help"], ["basu", "list"]])
 def test_commands_need_no_optional_package(installed: Path, tmp_path: Path, command: list[str]) -> None:
     done = run(installed, tmp_path, *command)
     assert done.returncode == 0, done.stderr
