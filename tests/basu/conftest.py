@@ -28,6 +28,7 @@ import os, sys
 while True:
     for line in open(sys.argv[1]):
         os.kill(*map(int, line.split()))
+        open(sys.argv[2], "w").close()
 """
 Kills = Callable[[str, str], str]
 
@@ -36,12 +37,17 @@ Kills = Callable[[str, str], str]
 def kills(tmp_path: Path) -> Iterator[Kills]:
     """Code for an agent that has a signal sent by another process: the kernel lets its own signal none but its own.
 
-    The arguments are code as well, of a process's id and a signal.
+    The arguments are code as well, of a process's id and a signal. The code waits until the signal is sent.
     """
-    orders = tmp_path / "orders"
+    orders, done = tmp_path / "orders", tmp_path / "done"
     os.mkfifo(orders)
-    with subprocess.Popen([sys.executable, "-c", KILLER, str(orders)]) as killer:
-        yield lambda pid, name: f"open({str(orders)!r}, 'w').write(f'{{{pid}}} {{int({name})}}\\n')"
+    os.mkfifo(done)
+    with subprocess.Popen([sys.executable, "-c", KILLER, str(orders), str(done)]) as killer:
+        yield (
+            lambda pid, name: (
+                f"open({str(orders)!r}, 'w').write(f'{{{pid}}} {{int({name})}}\\n'); open({str(done)!r}).read()"
+            )
+        )
         killer.kill()
 
 

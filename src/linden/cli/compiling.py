@@ -81,6 +81,7 @@ def world() -> None:
     from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
     from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - as in driving
     from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
+    from linden.protocol.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - as in driving
     from linden.server.rpc import registry  # noqa: PLC0415 - as in driving
     from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - as in driving
     from linden.world import World  # noqa: PLC0415 - as in driving
@@ -89,6 +90,7 @@ def world() -> None:
     cache = MapCache.of_user()
     simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
     simulation.episode.warm_up()
+    warm_batches()
     mesh_file(simulation.episode, MeshLibrary(cache))
 
 

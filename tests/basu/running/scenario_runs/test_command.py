@@ -204,7 +204,7 @@ def test_a_process_that_dies_costs_its_own_case_only(
     files: Path, tmp_path: Path, kills: Callable[[str, str], str]
 ) -> None:
     bad = tmp_path / "bad.py"
-    deed = f"{kills('os.getppid()', 'signal.SIGKILL')}; time.sleep(60.0)"
+    deed = kills("os.getppid()", "signal.SIGKILL")
     bad.write_text(AGENTS.replace("pass  # ends the worker", deed), encoding="utf-8")
     words = ["goes_well", "--scenarios", files, "--agent", f"{bad}:EndsTheWorker", "--agent", "basic", "--workers", 2]
     code = main(["scenario", "run", *map(str, (*words, "--output", tmp_path))])
@@ -219,10 +219,7 @@ def test_ctrl_c_ends_the_run_and_what_was_played_is_written(
     simulator: RunningServer, files: Path, tmp_path: Path, kills: Callable[[str, str], str]
 ) -> None:
     agent = tmp_path / "bad.py"
-    agent.write_text(
-        AGENTS.replace("time.sleep(60.0)", f"{kills('os.getppid()', 'signal.SIGINT')}; time.sleep(60.0)"),
-        encoding="utf-8",
-    )
+    agent.write_text(AGENTS.replace("time.sleep(60.0)", kills("os.getppid()", "signal.SIGINT")), encoding="utf-8")
     words = ("goes_well:ahead=30", "goes_well", "--scenarios", files, "--agent", "basic", "--agent", f"{agent}:Hangs")
     assert run(simulator, tmp_path, *words) == 130
     results = [case["results"] for case in matrix(tmp_path)["cases"]]
