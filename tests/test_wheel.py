@@ -21,7 +21,6 @@ OPTIONAL = (
     "rerun",
     "rerun_bindings",
     "pygame",
-    "pandas",
     "gymnasium",
     "pyproj",
     "shapely",
