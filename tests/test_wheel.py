@@ -21,7 +21,6 @@ OPTIONAL = (
     "rerun",
     "rerun_bindings",
     "pygame",
-    "pandas",
     "gymnasium",
     "pyproj",
     "shapely",
@@ -52,8 +51,9 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (packages / "others.pth").write_text("\n".join([*site.getsitepackages(), hiding]) + "\n", encoding="utf-8")
     for code in (ROOT / "src" / "linden").rglob("*.nb[ci]"):
         target = packages / code.relative_to(ROOT / "src")
-        target.parent.mkdir(exist_ok=True)
-        shutil.copy(code, target)
+        if target.parents[1].is_dir():  # else it was left by a module that has moved
+            target.parent.mkdir(exist_ok=True)
+            shutil.copy(code, target)
     return environment
 
 
@@ -95,7 +95,7 @@ def test_both_packages_are_those_of_the_wheel(installed: Path, tmp_path: Path) -
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", [["linden", "--version"], ["linden", "map", "--help"], ["basu", "list", "agents"]])
+@pytest.mark.parametrize("command", [["linden", "--version"], ["linden", "map", "--help"], ["basu", "list"]])
 def test_commands_need_no_optional_package(installed: Path, tmp_path: Path, command: list[str]) -> None:
     done = run(installed, tmp_path, *command)
     assert done.returncode == 0, done.stderr
