@@ -42,8 +42,7 @@ def _cached(function: Callable[..., object], **options: Any) -> Any:  # noqa: AN
             raise
         return numba.njit(error_model="numpy", **options)(function)
     if not COMPILER_IS_OFF:
-        cache = _KernelCache(cast("FunctionType", function))  # type: ignore[no-untyped-call] # of numba
-        compiled._cache = cache  # noqa: SLF001 - as njit(cache=True) does
+        compiled._cache = _KernelCache(function)  # type: ignore[no-untyped-call] # noqa: SLF001 - as njit(cache=True)
     return compiled
 
 
@@ -87,8 +86,8 @@ def part(function: Function) -> Function:
 def kept_part(sources: int) -> Callable[[Function], Function]:
     """Return a decorator that compiles as :func:`part` does, but keeps a file of its own.
 
-    So a kernel that takes long to compile can be cut into parts that several processes compile at once. ``sources``:
-    the fingerprint of every file that the part calls; with another one it is compiled anew.
+    So several processes can compile the parts of one kernel at once. ``sources`` is the fingerprint of every file that
+    the part calls. With another fingerprint the part is compiled anew.
     """
 
     def decorate(function: Function) -> Function:

@@ -36,8 +36,8 @@ class World:
         frame: number of the last frame made; grows for the life of the server.
         episode: everything that a load of a map begins anew.
         sensors: the sensors of the episode.
-        recorder: writes what happens into a file, where asked to; a load of a map ends the recording.
-        replayer: lets happen again what a file says; a load of a map ends that too.
+        recorder: writes a recording into a file; a load of a map ends the recording.
+        replayer: replays a recording; a load of a map ends the replay.
         sensor_scene: what sensors that look around see; it stays when a map is loaded again.
     """
 

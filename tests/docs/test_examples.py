@@ -17,7 +17,7 @@ def test_the_village_builds_without_findings_and_with_its_route(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     town, route = tmp_path / "Village.xodr", tmp_path / "village.xml"
-    command = ["-m", "linden.authoring.streets", str(VILLAGE), "-o", str(town), "--route", f"round={route}"]
+    command = ["-m", "linden.cli", "map", "build", str(VILLAGE), "-o", str(town), "--route", f"round={route}"]
     subprocess.run([sys.executable, *command], check=True, cwd=ROOT)
     assert linden.cli.main(["map", "check", str(town)]) == 0
     assert "0 findings" in capsys.readouterr().out

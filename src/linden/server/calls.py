@@ -25,9 +25,9 @@ UNREAD_ANSWERS_BYTES = 1024 * 1024
 """A client that leaves more than this unread is not listened to until it has caught up."""
 
 SCENE_S = 0.8
-"""How long an answer waits at most for the scene that sensors look at: so each of the calls that lead to a first
-picture waits a little, rather than the tick all the time. CARLA's examples give a call two seconds, and two may
-stand in line, the Traffic Manager's behind the program's own."""
+"""How long an answer waits at most for the sensor scene. So the calls before a first picture wait a little each, and
+the tick does not wait all the time. CARLA's examples give a call two seconds. Two calls may wait in line: the
+program's own and the Traffic Manager's."""
 
 OF_TRAFFIC = frozenset(
     (

@@ -31,7 +31,7 @@ class _Frame(NamedTuple):
     statics: Statics
     dt_s: float
     substeps: int
-    count: int
+    bodies: int
     fittings: int
     contacts: Contacts
 

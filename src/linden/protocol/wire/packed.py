@@ -135,9 +135,9 @@ def _big_endian(data: U8, at: int, width: int) -> int:  # pragma: no cover - com
 def _number(data: U8, at: int) -> tuple[float, int]:  # pragma: no cover - compiled
     """Return a float of 32 or 64 bits, and where it ends; -1 where it is none."""
     if data[at] == 0xCA:
-        return float(np.uint32(_big_endian(data, at + 1, 4)).view(np.float32)), at + 5  # type: ignore[arg-type]
+        return float(np.uint32(_big_endian(data, at + 1, 4)).view(np.float32)), at + 5
     if data[at] == 0xCB:
-        return float(np.uint64(_big_endian(data, at + 1, 8)).view(np.float64)), at + 9  # type: ignore[arg-type]
+        return float(np.uint64(_big_endian(data, at + 1, 8)).view(np.float64)), at + 9
     return 0.0, -1
 
 
@@ -150,10 +150,10 @@ def _integer(data: U8, at: int) -> tuple[int, int]:  # pragma: no cover - compil
     if first >= 0xE0:
         return int(first - 0x100), at + 1
     if 0xCC <= first <= 0xCE:
-        width = 1 << (first - 0xCC)
+        width = 1 << int(first - 0xCC)
         return int(np.int64(_big_endian(data, at + 1, width))), at + 1 + width
     if 0xD0 <= first <= 0xD2:
-        width = 1 << (first - 0xD0)
+        width = 1 << int(first - 0xD0)
         word = np.int64(_big_endian(data, at + 1, width))
         if word >= np.int64(1) << np.int64(8 * width - 1):
             word -= np.int64(1) << np.int64(8 * width)

@@ -158,7 +158,7 @@ def _of_pixels(data: bytes) -> Call | None:
     head = msgpack.Unpacker(unicode_errors="surrogateescape", max_array_len=MAX_ARRAY_ITEMS, max_map_len=0)
     head.feed(data[:_HEAD_BYTES])
     try:
-        message = [None] * head.read_array_header()
+        message: list[Any] = [None] * head.read_array_header()
         message[:3] = [head.unpack() for _ in range(3)]
         count = head.read_array_header()
         message[3:] = [[head.unpack(), head.unpack(), *(None for _ in range(count - 2))]]
