@@ -117,6 +117,6 @@ def test_every_status_has_a_party_at_fault() -> None:
     assert set(FAULT_OF) == set(Status)
     assert [status for status in Status if status.fault.value == 0] == [
         Status.COMPLETED,
-        Status.STOPPED,
         Status.SCENARIO_ENDED,
+        Status.STOPPED,
     ]
