@@ -115,4 +115,8 @@ def test_the_table_tells_scores_infractions_and_signs() -> None:
 
 def test_every_status_has_a_party_at_fault() -> None:
     assert set(FAULT_OF) == set(Status)
-    assert [status for status in Status if status.fault.value == 0] == [Status.COMPLETED, Status.SCENARIO_ENDED]
+    assert [status for status in Status if status.fault.value == 0] == [
+        Status.COMPLETED,
+        Status.SCENARIO_ENDED,
+        Status.STOPPED,
+    ]
