@@ -1,6 +1,6 @@
 """Loads of maps by clients whose Traffic Managers live on: crashes of the client, and cars off the new town's lanes.
 
-    python benchmarks/loads.py [--loads 200] [--town small|Linden] [--cars 6] [--ticks 40]
+    python benchmarks/loads.py [--loads 200] [--town small|Linden] [--clients 1 2] [--cars 6] [--ticks 40]
 
 Four variants share the loads: Traffic Managers in synchronous and in asynchronous mode, one client and two. Each client
 is a process of its own with one Traffic Manager, made before its first load. The town is loaded by turns as it is and
@@ -158,6 +158,7 @@ def main() -> None:
         return
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--loads", type=int, default=200, help="in all four variants (default: %(default)s)")
+    parser.add_argument("--clients", type=int, nargs="+", default=[1, 2], help="variants with that many clients only")
     parser.add_argument("--town", default="small", choices=("small", "Linden"))
     parser.add_argument("--cars", type=int, default=6, help="of each client (default: %(default)s)")
     parser.add_argument("--ticks", type=int, default=40)
@@ -166,6 +167,8 @@ def main() -> None:
         towns(Path(folder), arguments.town)
         print("Traffic Manager  clients  loads  crashes  cars  off the lanes     s", flush=True)
         for mode, count in VARIANTS:
+            if count not in arguments.clients:
+                continue
             start = [*(word for word in LINDEN if word != "--sync"), "--map", TOWNS[0], "--maps", folder]
             with server(start) as live:
                 began_s = time.perf_counter()

@@ -1,5 +1,7 @@
 """How fast SUMO's vehicles go on beside a world: real-time factors, with libsumo alone as the limit in the same run.
 
+CPU times a tick stand beside them: on a busy machine they say more.
+
     python benchmarks/sumo.py --folder net/ --vehicles 100 300 --seconds 20 [--picture OUT.png]
 
 ``net/`` comes from `linden map sumo Linden -o net/`. The server is one of our own.
@@ -15,6 +17,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import carla
+import psutil
 
 from basu.simulator import OwnServer, connect
 from basu.sumo.bridge import Bridge
@@ -31,18 +34,18 @@ STEP_S = 0.05
 SETTLE_TICKS = 40  # until all are spawned
 
 
-def limit(folder: Path, vehicles: int, ticks: int) -> float:
-    """Seconds that libsumo alone takes, its vehicles' states read."""
+def limit(folder: Path, vehicles: int, ticks: int) -> SimpleNamespace:
+    """What libsumo alone takes, its vehicles' states read."""
     link = in_process(config_in(folder, is_random=True), step_s=STEP_S, seed=1)
     trips = RandomTrips(link, vehicles, 1)
     for _ in range(SETTLE_TICKS):
         step_alone(link, trips)
-    began_s = time.perf_counter()
+    began_s, cpu_s = time.perf_counter(), time.process_time()
     for _ in range(ticks):
         step_alone(link, trips)
-    took_s = time.perf_counter() - began_s
+    took_s, cpu_s = time.perf_counter() - began_s, time.process_time() - cpu_s
     link.close()
-    return took_s
+    return SimpleNamespace(took_s=took_s, cpu_s=cpu_s)
 
 
 def step_alone(link: Link, trips: RandomTrips) -> None:
@@ -53,7 +56,9 @@ def step_alone(link: Link, trips: RandomTrips) -> None:
     link.api.vehicle.getAllSubscriptionResults()
 
 
-def beside(client: carla.Client, folder: Path, vehicles: int, ticks: int, picture: Path | None) -> SimpleNamespace:
+def beside(
+    client: carla.Client, server: psutil.Process, folder: Path, vehicles: int, ticks: int, picture: Path | None = None
+) -> SimpleNamespace:
     """The same through the official client, all vehicles shown."""
     world = client.get_world()
     link = in_process(config_in(folder, is_random=True), step_s=STEP_S, seed=1)
@@ -67,15 +72,16 @@ def beside(client: carla.Client, folder: Path, vehicles: int, ticks: int, pictur
 
     for _ in range(SETTLE_TICKS):
         tick()
-    began_s = time.perf_counter()
+    began_s, client_s, server_s = time.perf_counter(), time.process_time(), sum(server.cpu_times()[:2])
     for _ in range(ticks):
         tick()
     took_s = time.perf_counter() - began_s
+    client_s, server_s = time.process_time() - client_s, sum(server.cpu_times()[:2]) - server_s
+    shown = len(bridge.actor_ids)
     if picture is not None:
         look(world, bridge, picture, tick)
-    shown = len(bridge.actor_ids)
     bridge.close()
-    return SimpleNamespace(took_s=took_s, shown=shown, waiting=bridge.counts.waiting)
+    return SimpleNamespace(took_s=took_s, client_s=client_s, server_s=server_s, shown=shown)
 
 
 def look(world: carla.World, bridge: Bridge, path: Path, tick: Callable[[], None]) -> None:
@@ -95,7 +101,7 @@ def look(world: carla.World, bridge: Bridge, path: Path, tick: Callable[[], None
     pictures: queue.Queue[carla.Image] = queue.Queue()
     camera.listen(pictures.put)
     tick()
-    pictures.get(timeout=120.0).save_to_disk(str(path))
+    pictures.get(timeout=400.0).save_to_disk(str(path))
     camera.destroy()
 
 
@@ -109,18 +115,23 @@ def main() -> None:
     ticks = round(arguments.seconds / STEP_S)
     server = OwnServer()
     try:
-        client = connect("127.0.0.1", server.port, 120.0)
+        client = connect("127.0.0.1", server.port, 600.0)
         world = client.get_world()
         settings = world.get_settings()
         settings.synchronous_mode, settings.fixed_delta_seconds = True, STEP_S
         world.apply_settings(settings)
-        print(f"{'vehicles':>8} {'shown':>6} {'libsumo alone':>14} {'beside Linden':>14} {'ms a tick':>10}")
+        process = psutil.Process(server._process.pid)  # noqa: SLF001 - it has no other name for it
+        heads = ("vehicles", "shown", "libsumo", "beside Linden", "CPU ms: libsumo", "client + SUMO", "server")
+        print("  ".join(heads))
         for vehicles in arguments.vehicles:
-            alone_s = limit(arguments.folder, vehicles, ticks)
-            found = beside(client, arguments.folder, vehicles, ticks, arguments.picture)
-            alone, ours = (arguments.seconds / each for each in (alone_s, found.took_s))
-            cost_ms = 1000.0 * found.took_s / ticks
-            print(f"{vehicles:8} {found.shown:6} {alone:13.1f}x {ours:13.1f}x {cost_ms:10.2f}", flush=True)
+            alone = limit(arguments.folder, vehicles, ticks)
+            found = beside(client, process, arguments.folder, vehicles, ticks)
+            factors = [f"{arguments.seconds / each.took_s:.1f}x" for each in (alone, found)]
+            costs = [f"{1000.0 * each / ticks:.2f}" for each in (alone.cpu_s, found.client_s, found.server_s)]
+            row = (str(vehicles), str(found.shown), *factors, *costs)
+            print("  ".join(each.rjust(len(head)) for each, head in zip(row, heads, strict=True)), flush=True)
+        if arguments.picture is not None:
+            beside(client, process, arguments.folder, arguments.vehicles[-1], 1, arguments.picture)
     finally:
         server.end()
 

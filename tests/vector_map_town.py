@@ -34,7 +34,7 @@ def document(*roads, junctions="", geo=GEO):
 
 
 def two_roads(geo=GEO):
-    """Two straight roads that follow each other, with two lanes to the east and one to the west, kerbs and pavements."""
+    """Two straight roads in a row, with two lanes to the east and one to the west, kerbs and pavements."""
 
     def lanes(to_west, to_east):
         kerb = '<height sOffset="0" inner="0.15" outer="0.15"/>'

@@ -42,7 +42,7 @@ def _cached(function: Callable[..., object], **options: Any) -> Any:  # noqa: AN
             raise
         return numba.njit(error_model="numpy", **options)(function)
     if not COMPILER_IS_OFF:
-        compiled._cache = _KernelCache(cast("FunctionType", function))  # noqa: SLF001 - as njit(cache=True) does
+        compiled._cache = _KernelCache(function)  # type: ignore[no-untyped-call] # noqa: SLF001 - as njit(cache=True)
     return compiled
 
 
@@ -54,7 +54,7 @@ class _KernelCache(FunctionCache):
 
     def _index_key(self, *of_function: object) -> tuple[object, ...]:
         key = super()._index_key(*of_function)  # type: ignore[no-untyped-call]
-        return (*key, self.sources) if self.sources else key  # type: ignore[no-any-return]
+        return (*key, self.sources) if self.sources else key
 
     def _load_overload(self, *of_function: object) -> object:
         try:
@@ -86,8 +86,8 @@ def part(function: Function) -> Function:
 def kept_part(sources: int) -> Callable[[Function], Function]:
     """Return a decorator that compiles as :func:`part` does, but keeps a file of its own.
 
-    So a kernel that takes long to compile can be cut into parts that several processes compile at once. ``sources``:
-    the fingerprint of every file that the part calls; with another one it is compiled anew.
+    So several processes can compile the parts of one kernel at once. ``sources`` is the fingerprint of every file that
+    the part calls. With another fingerprint the part is compiled anew.
     """
 
     def decorate(function: Function) -> Function:

@@ -3,7 +3,7 @@
 import subprocess
 import sys
 from pathlib import Path
-from xml.etree import ElementTree
+from xml.etree import ElementTree as ET
 
 import pytest
 
@@ -17,11 +17,11 @@ def test_the_village_builds_without_findings_and_with_its_route(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     town, route = tmp_path / "Village.xodr", tmp_path / "village.xml"
-    command = ["-m", "linden.authoring.streets", str(VILLAGE), "-o", str(town), "--route", f"round={route}"]
+    command = ["-m", "linden.cli", "map", "build", str(VILLAGE), "-o", str(town), "--route", f"round={route}"]
     subprocess.run([sys.executable, *command], check=True, cwd=ROOT)
     assert linden.cli.main(["map", "check", str(town)]) == 0
     assert "0 findings" in capsys.readouterr().out
-    (found,) = ElementTree.parse(route).getroot().findall("route")
+    (found,) = ET.parse(route).getroot().findall("route")
     assert found.get("town") == "Village"
     assert len(found.findall("waypoints/position")) > 10
     assert [stop.get("id") for stop in found.findall("stops/stop")] == ["S1"]

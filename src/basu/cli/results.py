@@ -111,7 +111,7 @@ def _kept(path: Path) -> dict[str, Any] | None:
     document = read_json(path, "the result", "drive the run again, or remove the file to score its record alone")
     if isinstance(document, dict) and "verdict" in document:
         raise UserError(
-            f"{path.parent} is the folder of a played scenario case, whose verdict comes from its place in the town as "
+            f"{path.parent} is the folder of a played scenario case; its verdict comes from its place in the town as "
             f"well: play it again with `basu scenario run --config {path.with_name('config.json')}`"
         )
     known = {status.value for status in Status}

@@ -21,7 +21,7 @@ from basu.errors import (
     UserError,
 )
 from basu.managers import Live
-from basu.managers.base_manager import BaseManager, Driver, Frame, Run
+from basu.managers.base_manager import BaseManager, Driver, Frame, Run, WorldChanges
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.observations import Neighbours
 from basu.managers.routes_manager import RoutesManager
@@ -29,7 +29,6 @@ from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
-from basu.managers.world_changes import WorldChanges
 from basu.outcome import Outcome, Status
 from basu.routing import plan
 from basu.simulator import linden_command

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.managers.base_manager import Frame, Run
+    from basu.managers.world_changes import WorldChanges
     from basu.options import Sumo
 
 MISFIT_M = 4.0  # from the route to the middle of SUMO's lanes: a lane's width, which is the next lane's
@@ -30,6 +31,7 @@ class SumoManager(BaseManager):
         self._sumo, self._linden = sumo, linden
         self._bridge: Bridge | None = None
         self._trips: RandomTrips | None = None
+        self._changes: WorldChanges | None = None
         self.count = 0
 
     def setup(self, run: Run) -> None:
@@ -53,6 +55,7 @@ class SumoManager(BaseManager):
         if self._sumo.is_random:
             self._trips = RandomTrips(link, self._sumo.vehicles, run.seed)
             self._trips.fill()
+        self._changes = run.changes
         bridge.step(run.world.get_snapshot())
 
     def _start(self, run: Run) -> Link:
@@ -97,7 +100,13 @@ class SumoManager(BaseManager):
         if self._bridge is not None:
             if self._trips is not None:
                 self._trips.fill()
+            before = set(self._bridge.actor_ids.values())
             self._bridge.step(frame.snapshot)
+            now = set(self._bridge.actor_ids.values())
+            if self._changes is not None:  # what SUMO moves and takes away is not the agent's doing
+                self._changes.placed |= now | before
+                self._changes.removed |= before - now
+                self._changes.lights += self._sumo.lights == "sumo"
 
     def close(self) -> None:
         """Take SUMO's vehicles away and end SUMO."""

@@ -7,7 +7,6 @@ benchmark and its agent is connected. CARLA's rules for lights: TrafficLightGrou
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
@@ -15,11 +14,10 @@ import carla
 from basu.errors import AgentCrashedError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
-    from basu.managers.base_manager import Frame
+    from basu.managers.base_manager import Frame, WorldChanges
     from basu.managers.observations import Neighbours
-    from basu.records.history import Collision
     from basu.routing import Route
 
 JUMP_M = 1.0
@@ -35,21 +33,6 @@ COLOURS = {
     carla.TrafficLightState.Green: "green",
 }
 CONTROL_TOLERANCE = 1e-4  # a snapshot holds controls in single precision
-
-
-@dataclass(slots=True)
-class WorldChanges:
-    """What the benchmark itself has done to the world of one run. Managers write it, checks read it."""
-
-    checked: bool = False  # whether an agent with a client of its own takes part
-    control: carla.VehicleControl | None = None  # that the vehicle was given for the coming step
-    weather: carla.WeatherParameters | None = None  # that was set last
-    lights: int = 0  # how often scenarios have changed lights
-    removed: set[int] = field(default_factory=set)  # actors that the benchmark took out of the world
-    placed: set[int] = field(default_factory=set)  # actors that it put elsewhere since the last check
-    needed: dict[int, str] = field(default_factory=dict)  # its own actors that must stay, with their names
-    frictions: set[float] = field(default_factory=set)  # of its slippery places, which a wheel there reports as its own
-    contacts: Callable[[int], Sequence[Collision]] = lambda _tick: ()  # the recorded contacts from a tick on
 
 
 class OthersCheck:

@@ -1,8 +1,8 @@
 """Kernels that are compiled in processes of their own: at a first start, and by ``linden compile``.
 
-numba compiles on one processor. So a first start cuts the work into groups: two processes compile the parts of the
-physics while the server makes the rest of what its first tick needs; a third, of low priority, compiles the kernels of
-sensors after the server is ready. Each leaves what it compiled in numba's cache, where the server finds it.
+numba compiles on one processor. So a first start cuts the work into groups. Two processes compile the parts of the
+physics while the server makes the rest of what its first tick needs. A third, of low priority, compiles the kernels of
+sensors after the server is ready. The server finds the machine code in numba's cache.
 """
 
 import argparse
@@ -45,7 +45,7 @@ def contacts() -> None:
 
 
 def rays() -> None:
-    """Compile rays: those that clients cast, and those of lidars and radars."""
+    """Compile rays: the rays of clients, of lidars and of radars."""
     from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
     from linden.sensors.warming import warm_rays  # noqa: PLC0415 - as in driving
 
@@ -81,6 +81,7 @@ def world() -> None:
     from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
     from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - as in driving
     from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
+    from linden.protocol.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - as in driving
     from linden.server.rpc import registry  # noqa: PLC0415 - as in driving
     from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - as in driving
     from linden.world import World  # noqa: PLC0415 - as in driving
@@ -89,11 +90,12 @@ def world() -> None:
     cache = MapCache.of_user()
     simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
     simulation.episode.warm_up()
+    warm_batches()
     mesh_file(simulation.episode, MeshLibrary(cache))
 
 
 def frame() -> None:
-    """Compile the frame of physics, whose parts are compiled already, and note that it is."""
+    """Compile the frame of physics from its compiled parts, and note that it is compiled."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
     from linden.physics.warming import warm_up  # noqa: PLC0415 - as in driving
     from linden.sensors.compiling import OF_PHYSICS, note_compiled  # noqa: PLC0415 - as in driving
@@ -168,7 +170,9 @@ class FirstStart:
         self._say = say
         self._numbers = count(1)
         self._parts: dict[str, Compiling] = {}
+        self._frame: Compiling | None = None
         self._background: Compiling | None = None
+        self._ending, self._ended = threading.Lock(), False
 
     def begin(self, cache: "MapCache") -> None:
         """Begin to compile the parts of the physics, where they are not compiled."""
@@ -178,6 +182,16 @@ class FirstStart:
         if not is_compiled(OF_PHYSICS, cache):
             self._say("linden: compiling kernels, once on this machine: about half a minute on two processors")
             self._parts = {"vehicles": Compiling("driving"), "contacts": Compiling("contacts")}
+            self._assembling = threading.Thread(target=self._assemble, name="compiling", daemon=True)
+            self._assembling.start()
+
+    def _assemble(self) -> None:
+        """Compile the frame of physics as soon as its parts are, beside what the server does."""
+        for part in tuple(self._parts.values()):
+            part.wait()
+        with self._ending:
+            if not self._ended:
+                self._frame = Compiling("frame")
 
     def step(self, name: str) -> None:
         """Print that a step is done, where any is to be done."""
@@ -185,14 +199,18 @@ class FirstStart:
             self._say(f"linden: compiling kernels, {next(self._numbers)} of {self.STEPS}: {name}")
 
     def finish_physics(self) -> None:
-        """Compile the frame of physics once its parts are compiled, or load it."""
+        """Wait until the frame of physics is compiled, and load it."""
         from linden.physics.warming import warm_up  # noqa: PLC0415 - as in driving
         from linden.sensors.compiling import OF_PHYSICS, note_compiled  # noqa: PLC0415 - as in driving
 
         for name, part in self._parts.items():
-            part.wait()  # what it could not compile is compiled here
+            part.wait()
             self.step(name)
-        warm_up()
+        if self._parts:
+            self._assembling.join()
+        if self._frame is not None:
+            self._frame.wait()
+        warm_up()  # what a process could not compile is compiled here
         if self._parts:
             note_compiled(OF_PHYSICS, self._cache)
             self.step("a frame")
@@ -219,7 +237,9 @@ class FirstStart:
 
     def end(self) -> None:
         """End what is still compiling; a later start goes on with it."""
-        for process in (*self._parts.values(), self._background):
+        with self._ending:
+            self._ended = True
+        for process in (*self._parts.values(), self._frame, self._background):
             if process is not None:
                 process.end()
 

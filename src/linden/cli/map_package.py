@@ -15,7 +15,9 @@ HELP = "write one folder with all that Autoware needs of a town: Lanelet2, point
 def add_arguments(command: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     command.add_argument("file", help="an OpenDRIVE file, or the name of a built-in map")
-    command.add_argument("--for", dest="user", choices=["autoware"], required=True, help="who reads the folder")
+    command.add_argument(
+        "--for", dest="user", choices=["autoware"], required=True, help="the program that reads the folder"
+    )
     command.add_argument("-o", "--output", type=Path, required=True, help="a new folder, or one written before")
     command.add_argument(
         "--pointcloud", type=Path, metavar="PCD", help="take this cloud instead of driving the streets with a lidar"

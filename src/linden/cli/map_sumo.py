@@ -17,7 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--duration", type=float, default=3600.0, metavar="S", help="of the demand (default: 3600)")
     parser.add_argument("--scale", type=float, default=1.0, help="the demand against the usual one (default: 1)")
     parser.add_argument("--seed", type=int, default=0, help="of the demand and of SUMO's drivers (default: 0)")
-    parser.add_argument("--stops", type=Path, metavar="FILE", help="a route file whose stops become bus stops")
+    parser.add_argument("--stops", type=Path, metavar="FILE", help="a route file; its stops become bus stops")
     parser.add_argument("--no-people", action="store_true", help="without crossings and walking areas")
 
 

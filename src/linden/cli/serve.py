@@ -84,6 +84,7 @@ def _make_server(arguments: argparse.Namespace, first_start: FirstStart) -> "Ser
     from linden.maps.cache import MapCache  # noqa: PLC0415 - see above
     from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - see above
     from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - see above
+    from linden.protocol.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - see above
     from linden.replay.file.folder import RecordingFolder  # noqa: PLC0415 - see above
     from linden.scenery.actors.actor_meshes_cache import bodies_of, keep_bodies  # noqa: PLC0415 - see above
     from linden.scenery.map_mesh_cache import keep_standing, standing_of  # noqa: PLC0415 - see above
@@ -116,6 +117,7 @@ def _make_server(arguments: argparse.Namespace, first_start: FirstStart) -> "Ser
         raise UserError(f"--map: {refusal}") from refusal
     simulation = World(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
     simulation.episode.warm_up()
+    warm_batches()
     first_start.step("the world")
     simulation.sensor_scene.device = arguments.device
     simulation.sensor_scene.standing_on = partial(standing_of, cache=cache)

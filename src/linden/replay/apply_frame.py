@@ -72,7 +72,7 @@ class FrameApplier:
         for actor_id, bits in zip(
             lamps.actor_ids.tolist(), frame.vehicle_lights["bits"][lamps.rows].tolist(), strict=True
         ):
-            actors.get(actor_id).light_state = bits
+            actors.set_lamps(actor_id, bits)
 
     def _drive(self, vehicles: Records) -> None:
         found = self._players("vehicles", vehicles["id"], Kind.VEHICLE)

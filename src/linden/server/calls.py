@@ -25,9 +25,9 @@ UNREAD_ANSWERS_BYTES = 1024 * 1024
 """A client that leaves more than this unread is not listened to until it has caught up."""
 
 SCENE_S = 0.8
-"""How long an answer waits at most for the scene that sensors look at: so each of the calls that lead to a first
-picture waits a little, rather than the tick all the time. CARLA's examples give a call two seconds, and two may
-stand in line, the Traffic Manager's behind the program's own."""
+"""How long an answer waits at most for the sensor scene. So the calls before a first picture wait a little each, and
+the tick does not wait all the time. CARLA's examples give a call two seconds. Two calls may wait in line: the
+program's own and the Traffic Manager's."""
 
 OF_TRAFFIC = frozenset(
     (
@@ -86,6 +86,7 @@ class Calls:
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of clients with a Traffic Manager
         self._driven: dict[RpcPeer, Driven] = {}  # of those too
+        self._driven_now: RpcPeer | None = None  # whose batch was the last call
         self._shown_frame = context.simulation.frame
         self._working: dict[RpcPeer, SuspendedCall] = {}  # clients with work in the background
         self._handovers: dict[RpcPeer, Handover] = {}  # of loads by clients with a Traffic Manager
@@ -120,6 +121,7 @@ class Calls:
                 unsent_bytes += len(answers[-1]) if answers else 0
             if answers:
                 peer.outgoing.send(b"".join(answers))
+                self._look_ahead(peer)
             if not peer.calls and peer.connection.is_broken:
                 peer.connection.receive(b"")
         except (OSError, ProtocolError) as error:
@@ -133,6 +135,12 @@ class Calls:
             self._close(peer)
             return
         self._watch(peer)
+
+    def _look_ahead(self, peer: RpcPeer) -> None:
+        """Compute the next frame's physics while a Traffic Manager's threads take note of their batch's end."""
+        if self._driven_now is peer and not peer.calls and self.is_synchronous():
+            self._context.simulation.look_ahead()
+        self._driven_now = None
 
     def _keeps_order(self, peer: RpcPeer) -> bool:
         """Return whether a client's next call is a tick that waits, or a tick or question of one that leads traffic."""
@@ -197,6 +205,7 @@ class Calls:
         """Return what is to be sent for a call of a client that runs Traffic Managers; see ``server.driven``."""
         if call.method == BATCH and call.args:
             ready = self._driven.setdefault(peer, Driven()).batch(call.args[0])
+            self._driven_now = peer
             return b"".join((answer, *ready))
         if call.method != DESTROY or peer not in self._driven or call.is_async or not call.args:
             return answer

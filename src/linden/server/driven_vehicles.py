@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from linden.protocol.wire.commands import COMMANDS, DestroyActor, SpawnActor
+from linden.protocol.wire.controls import Controls
 
 BATCH = "apply_batch"
 DESTROY = "destroy_actor"
@@ -101,6 +102,8 @@ class Driven:
 
 def _actor_ids(commands: Any) -> frozenset[int]:  # noqa: ANN401 - as it came
     """Return the actors of a batch as it came; none where it is not a Traffic Manager's."""
+    if isinstance(commands, Controls):
+        return frozenset(commands.actor_ids.tolist())
     try:
         if any(command[0][0] in _OF_PROGRAMS for command in commands):
             return frozenset()

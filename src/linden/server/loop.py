@@ -6,6 +6,7 @@ There is no lock, because nothing happens at the same time: between two events t
 import contextlib
 import gc
 import logging
+import select
 import selectors
 import socket
 import sys
@@ -28,18 +29,23 @@ from linden.world import World
 
 log = logging.getLogger("linden")
 
-UNFINISHED_BYTES_OF_ALL = 128 * 1024 * 1024
-"""What half-received calls may take in all connections together: two of the largest, hundreds of any usual size."""
-UNFINISHED_ARRAYS_OF_ALL = 8 * 1024 * 1024
-"""How many arrays half-received calls may have in all connections together: two of the most."""
+HELD_BYTES_OF_ALL = 128 * 1024 * 1024
+"""What calls that are half received or wait to be carried out may take in all connections together: two of the largest,
+hundreds of any usual size."""
+HELD_ARRAYS_OF_ALL = 2 * 1024 * 1024
+"""How many arrays such calls may have in all connections together: four of the most, some 140 MB."""
 
 HOARD_BYTES = 64 * 1024
-"""From this size on a half-received call is looked at: smaller ones of a thousand clients are 64 MB."""
+"""From this size on what a client holds is looked at: smaller ones of a thousand clients are 64 MB."""
 
 SWITCH_S = 0.001
 """How long work in the background keeps Python's lock when this thread wants it; a call wants it some times, and by
 default it would have to wait 5 ms each time."""
 
+COARSE_S = 0.002
+"""Waits shorter than this end on time. The selector counts whole milliseconds; a tick's answer waits half of one."""
+
+_MOST_SELECTED = 1024  # numbers of files that select(2) can take
 _READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 _BUG = "internal error in %s; the server goes on"
 
@@ -58,6 +64,8 @@ class Server:
             variable_step_s=lambda: self._pace.variable_step_s(self._clock()),
         )
         self._selector = selectors.DefaultSelector()
+        file = self._selector.fileno() if hasattr(self._selector, "fileno") else _MOST_SELECTED
+        self._fine_files = (file,) if file < _MOST_SELECTED else ()
         self._subscribers = Subscribers(self.context.streams, self._watch, self._close)
         self._acceptor = Acceptor(ports, self._selector, self._clock, self._welcome, self._close)
         self._stall_log = StallLog()
@@ -112,7 +120,11 @@ class Server:
 
     def _turn(self) -> None:
         """Wait for the next thing to do, and do it."""
-        for key, events in self._selector.select(self._wait_s()):
+        wait_s = self._wait_s()
+        if wait_s is not None and 0.0 < wait_s < COARSE_S and self._fine_files:
+            select.select(self._fine_files, (), (), wait_s)
+            wait_s = 0.0
+        for key, events in self._selector.select(wait_s):
             key.data(events)
         for peer in tuple(self._calls.unfinished):
             self._calls.carry_out(peer)
@@ -230,26 +242,27 @@ class Server:
 
     def _called(self, peer: RpcPeer, data: bytes) -> None:
         if data:
-            peer.calls.extend(peer.connection.receive(data))
+            peer.receive(data)
             if peer.calls:
                 self._acceptor.has_spoken(peer)
-            elif peer.connection.unfinished_bytes > HOARD_BYTES:
+            if peer.held()[0] > HOARD_BYTES:
                 self._refuse_to_hoard()
         else:
             peer.at_end = True
         self._calls.carry_out(peer)
 
     def _refuse_to_hoard(self) -> None:
-        """Break off where all the half-received calls together have become too much.
+        """Break off where all that clients have sent and is not carried out has become too much.
 
         Raises:
             ProtocolError: the connection that went too far is to be closed.
         """
-        held = sum(peer.connection.unfinished_bytes for peer in self._clients)
-        arrays = sum(peer.connection.unfinished_arrays for peer in self._clients)
-        if held > UNFINISHED_BYTES_OF_ALL or arrays > UNFINISHED_ARRAYS_OF_ALL:
+        held = [peer.held() for peer in self._clients]
+        size, arrays = sum(each[0] for each in held), sum(each[1] for each in held)
+        if size > HELD_BYTES_OF_ALL or arrays > HELD_ARRAYS_OF_ALL:
             raise ProtocolError(
-                f"half-received calls of all clients hold {held} bytes with {arrays} arrays, too much to receive more"
+                f"calls of all clients that are half received or wait to be carried out hold {size} bytes with "
+                f"{arrays} arrays, too much to receive more"
             )
 
     def _make_due_frame(self) -> None:

@@ -105,8 +105,28 @@ class RpcPeer(Peer):
         self.connection = RpcConnection()
         self.calls: deque[Call] = deque()
         """Received and not yet carried out, in their order."""
+        self._waiting_since = 0, 0
+        """What had come of whole calls, in bytes and arrays, when the first of those that wait came."""
         self.at_end = False
         """Whether the client sends nothing more."""
+
+    def receive(self, data: bytes) -> None:
+        """Take in what has come.
+
+        Raises:
+            ProtocolError: it is no call.
+        """
+        if not self.calls:
+            came = self.connection
+            self._waiting_since = came.bytes - came.unfinished_bytes, came.arrays - came.unfinished_arrays
+        self.calls.extend(self.connection.receive(data))
+
+    def held(self) -> tuple[int, int]:
+        """Return how many bytes and arrays have come and are not carried out: whole calls that wait, and half ones."""
+        came = self.connection
+        if not self.calls:
+            return came.unfinished_bytes, came.unfinished_arrays
+        return came.bytes - self._waiting_since[0], came.arrays - self._waiting_since[1]
 
     def __str__(self) -> str:
         return f"client {self.number} at {self.address}"

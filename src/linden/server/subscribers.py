@@ -121,7 +121,7 @@ class Subscribers:
 
 SUBSCRIPTION_WAIT_S = 3.0
 """How long a frame waits for an expected subscriber. The official client takes a millisecond, and more than half a
-second where ten programs share a processor. A camera whose subscriber the frame does not wait for never answers."""
+second where ten programs share a processor. A camera without its subscriber in time never answers."""
 MOST_IN_VAIN = 3
 """How often frames wait in vain for a client; then its requests delay no frame until it has subscribed once."""
 

@@ -67,6 +67,7 @@ class ActorTable:
         self._children: dict[int, dict[int, ActorRecord]] = {}
         self.version = 0
         """Grows whenever an actor comes or goes, so that what is derived from the set can be kept until then."""
+        self._lamps: tuple[int, list[tuple[int, int]]] | None = None  # with the version they were listed in
         self._allocate(256)
 
     def _allocate(self, capacity: int) -> None:
@@ -102,6 +103,22 @@ class ActorTable:
         if record is None:
             raise ActorRefusal("Actor could not be found in the registry", actor_id)
         return record
+
+    def set_lamps(self, actor_id: int, bits: int) -> None:
+        """Switch a vehicle's lamps, as bits of VehicleLightState.
+
+        Raises:
+            ActorRefusal: there is none of that id.
+        """
+        record = self.get(actor_id)
+        if record.light_state != bits:
+            record.light_state, self._lamps = bits, None
+
+    def lamps(self) -> list[tuple[int, int]]:
+        """Return id and lamps of every vehicle; a Traffic Manager asks for them in each step."""
+        if self._lamps is None or self._lamps[0] != self.version:
+            self._lamps = self.version, [(each.id, each.light_state) for each in self if each.kind is Kind.VEHICLE]
+        return self._lamps[1]
 
     def of_slot(self, slot: int) -> ActorRecord:
         """Return the actor with its body in a slot."""

@@ -14,6 +14,7 @@ from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal
 from linden.simulation.attachments import Sockets
 from linden.simulation.bones import Poses
 from linden.simulation.doors import Doors
+from linden.simulation.foresight import Foresight
 from linden.simulation.friction import RoadFriction
 from linden.simulation.snapshot_rows import MOTION_OFFSET, gather_motion
 from linden.simulation.state import EpisodeState
@@ -37,6 +38,7 @@ class Episode(EpisodeState):
     """Everything that ends with a load.
 
     Attributes:
+        foresight: the bodies of the next frame, where they are known.
         surroundings: what stands there, its lamps, and what clients drew.
         traffic: the lights.
         doors: of the vehicles, which stand open.
@@ -52,6 +54,7 @@ class Episode(EpisodeState):
     def __init__(self, world_map: LoadedMap, *, first_frame: int) -> None:
         super().__init__(world_map, first_frame)
         self.walkers, self.poses = Walkers(), Poses()
+        self.foresight = Foresight()
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)
         self.traffic = Traffic(scenery.signals)
@@ -104,6 +107,17 @@ class Episode(EpisodeState):
         """Oriented boxes that stand in the way, as ``physics`` takes them."""
         return self.surroundings.statics
 
+    def vehicles(self, actor_ids: NDArray[np.int64]) -> NDArray[np.int32] | None:
+        """Return the slots (K,) of vehicles (K,), None where one of them is no vehicle."""
+        if self._seen_version != self.actors.version:
+            self._survey()
+        ids, slots = self._vehicle_index
+        if not len(ids):
+            return None
+        places = np.searchsorted(ids, actor_ids)
+        places[places == len(ids)] = 0
+        return slots[places] if np.array_equal(ids[places], actor_ids) else None
+
     def light(self, actor_id: int) -> int:
         """Return the number of a traffic light.
 
@@ -153,6 +167,8 @@ class Episode(EpisodeState):
         self._keep_limits()
         self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(Kind.VEHICLE)
         self._vehicle_actor_id = np.array(self._vehicle_ids, np.int32)
+        order = np.argsort(self._vehicle_actor_id)
+        self._vehicle_index = self._vehicle_actor_id[order].astype(np.int64), self._vehicle_slots[order]
         self._walker_ids, self._walker_slots, self._walker_rows = self._embodied(Kind.WALKER)
         self._limits_kmh = np.array(
             [self._speed_limit_kmh.get(actor_id, DEFAULT_SPEED_LIMIT_KMH) for actor_id in self._vehicle_ids]

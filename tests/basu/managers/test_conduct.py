@@ -9,9 +9,8 @@ import pytest
 
 from basu.cli import main
 from basu.errors import AgentCrashedError
-from basu.managers.base_manager import Ego
+from basu.managers.base_manager import Ego, WorldChanges
 from basu.managers.conduct import Conduct
-from basu.managers.world_changes import WorldChanges
 from servers import RunningServer
 
 CHEAT = """

@@ -7,9 +7,8 @@ from typing import Any
 import carla
 import pytest
 
-from basu.managers.base_manager import Ego, Frame
+from basu.managers.base_manager import Ego, Frame, WorldChanges
 from basu.managers.metrics_manager import MetricsManager
-from basu.managers.world_changes import WorldChanges
 from basu.metrics.score import infractions, score
 from basu.metrics.scoring import Scoring
 from basu.records.history.model import NO_LIGHT

@@ -5,9 +5,8 @@ from typing import Any
 
 import pytest
 
-from basu.managers.base_manager import Ego, Frame
+from basu.managers.base_manager import Ego, Frame, WorldChanges
 from basu.managers.routes_manager import BLOCKED_S, RoutesManager, time_limit_s
-from basu.managers.world_changes import WorldChanges
 from basu.outcome import Outcome, Status
 from fakes.drives import straight_route
 

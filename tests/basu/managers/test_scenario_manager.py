@@ -158,7 +158,7 @@ def test_a_series_knows_its_scenarios(tmp_path: Path) -> None:
         options = RunOptions(routes=str(path))
         given.append(conditions(options, Scoring(), prepare(options)))
     differs = [name for name in given[0] if given[0][name] != given[1][name]]
-    assert differs == ["the scenarios on the way"]
+    assert differs == ["the scenarios of the routes"]
 
 
 def test_an_unknown_type_names_those_that_there_are(tmp_path: Path) -> None:

@@ -15,8 +15,9 @@ import pytest
 
 from basu.cli import main
 from basu.errors import AgentCrashedError
+from basu.managers.base_manager import WorldChanges
 from basu.managers.conduct import Conduct
-from basu.managers.world_changes import LightsCheck, OthersCheck, WorldChanges, is_same_control
+from basu.managers.world_changes import LightsCheck, OthersCheck, is_same_control
 from basu.records.history.files import read_history
 from basu.running import runner
 from basu.simulator import Simulator, connect

@@ -104,7 +104,7 @@ def test_the_thesis_sample_runs_and_leaves_a_scored_folder(
     assert result["meta"]["wall_s"] > 0.0
     assert result["meta"]["vehicle"] == "vehicle.tesla.model3"
     assert "warning" not in capsys.readouterr().err
-    assert result["traffic"]["vehicles"] > 5, "it names a SUMO folder, so it drives amid SUMO's traffic"
+    assert result["meta"]["traffic"]["vehicles"] > 5, "it names a SUMO folder, so it drives amid SUMO's traffic"
     assert (folder / "path.png").read_bytes().startswith(b"\x89PNG")
 
 

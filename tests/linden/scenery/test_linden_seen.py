@@ -51,7 +51,7 @@ def test_linden_is_not_seen_in_too_many_triangles_and_its_paint_lies_on_the_lane
 def test_what_is_drawn_of_the_road_is_what_wheels_feel_to_three_millimetres(linden: LoadedMap, drawn: Mesh) -> None:
     corners = drawn.vertices_m[drawn.triangles].astype(np.float64)
     points = np.concatenate([np.tensordot(corners, weights, axes=(1, 0)) for weights in CORNERS])
-    height, triangle = linden.maps.ground.surfaces_under(points + UP_M)
+    height, triangle = linden.ground.surfaces_under(points + UP_M)
     near = (triangle >= 0) & (np.abs(points[:, 2] - height) < NEAR_M)
     assert near.mean() > 0.98
     assert np.quantile(np.abs(points[near, 2] - height[near]), 0.999) < ABOVE_M + 1e-3

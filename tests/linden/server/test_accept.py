@@ -97,7 +97,7 @@ def test_where_all_have_spoken_the_doors_close_for_a_while(
     house.knock(house.ports.streaming)  # both doors are knocked at in the turn in which they close
     house.turn()
     assert len(house.inside) == 3
-    assert "nobody more is let in for 1 s" in caplog.text
+    assert "no more connections are accepted for 1 s" in caplog.text
     assert house.acceptor.wait_s(house.now_s) == FULL_PAUSE_S
     house.show_out(house.inside[0])
     house.turn(house.now_s + FULL_PAUSE_S)

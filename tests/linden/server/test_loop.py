@@ -270,7 +270,7 @@ def test_a_call_for_which_the_memory_does_not_suffice_is_refused_even_without_me
             patched.setattr(running.simulation, "step", too_much)
             with pytest.raises(RuntimeError, match="tick_cue is refused: the server's memory does not suffice"):
                 client.call("tick_cue")
-            patched.setattr(running.server._entrance, "look", too_much)
+            patched.setattr(running.server._acceptor, "look", too_much)
             wait_until(lambda: client.call("version") == "0.9.16")
         assert client.call("tick_cue") == 1
 
@@ -498,11 +498,11 @@ def test_a_thousand_clients_and_subscribers_come_and_go_and_nothing_is_kept_of_t
                 passing.call("version")
         for stream_id in range(2, 1002):
             running.subscriber(stream_id).socket.close()
-        wait_until(lambda: client.call("version") == "0.9.16" and running.server._entrance._inside == 1)
+        wait_until(lambda: client.call("version") == "0.9.16" and running.server._acceptor._inside == 1)
         assert len(running.server._clients) == 1
         assert not running.server.context.streams.listened()
         assert not running.server._subscribers._by_stream
-        assert not running.server._entrance._silent[StreamPeer]
+        assert not running.server._acceptor._silent[StreamPeer]
 
 
 def test_ten_who_tick_at_once_get_a_frame_each(running: Live) -> None:

@@ -69,7 +69,7 @@ def test_a_missing_tick_says_whose_it_is_and_when_it_has_come(caplog: pytest.Log
 @pytest.mark.parametrize(
     ("last", "whose"),
     [
-        pytest.param(None, "nobody has ticked yet; connected: client 2 at 127.0.0.1:8", id="nobody yet"),
+        pytest.param(None, "no client has ticked yet; connected: client 2 at 127.0.0.1:8", id="before the first tick"),
         pytest.param(
             FakePeer("client 1 at 127.0.0.1:6", is_open=False),
             "client 1 at 127.0.0.1:6 made that one and has left; another may tick, or end synchronous mode: "

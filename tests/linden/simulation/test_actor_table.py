@@ -122,3 +122,22 @@ def test_the_table_grows() -> None:
     ids = [add(table, x=float(n)).id for n in range(600)]
     assert shown(table) == ids
     assert table.pose[:600, 0].tolist() == list(map(float, range(600)))
+
+
+def test_lamps_are_those_of_the_vehicles_that_are_there() -> None:
+    table = ActorTable()
+    add(table)
+    first, second = add(table), add(table)
+    assert table.lamps() == []
+    for record in (first, second):
+        table.remove(record.id, announce=False)
+    cars = []
+    for _ in range(3):
+        record = ActorRecord(table.next_id(), ActorDescription(0, "car"), Kind.VEHICLE, BoundingBox(), b"")
+        table.add(record, Transform())
+        cars.append(record.id)
+        assert table.lamps() == [(car, 0) for car in cars]
+    table.set_lamps(cars[1], 5)
+    assert table.lamps() == [(cars[0], 0), (cars[1], 5), (cars[2], 0)]
+    table.remove(cars[0], announce=False)
+    assert table.lamps() == [(cars[1], 5), (cars[2], 0)]

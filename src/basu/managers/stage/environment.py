@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 
 from basu.errors import ScenarioError
+from basu.managers.base_manager import WorldChanges
 from basu.managers.stage.scenario_actors import destroy_actors
-from basu.managers.world_changes import WorldChanges
 from basu.routing.weather import WEATHER_FIELDS, changed
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from linden.maps.opendrive.evaluate.pieces import F64
 
 
 class Points:
-    """Adds points; one for each node of the Lanelet2 map that is asked for. Their rows are written at the end."""
+    """Adds points; one for each requested node of the Lanelet2 map. Their rows are written at the end."""
 
     def __init__(self, tables: Tables, projection: Projection) -> None:
         self._tables, self._projection = tables, projection

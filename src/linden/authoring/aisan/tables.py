@@ -64,7 +64,7 @@ class Tables:
         return number
 
     def extend(self, name: str, rows: Iterable[str]) -> None:
-        """Append whole rows, whose first columns go on counting."""
+        """Append whole rows; their first columns continue the count."""
         self.rows[name].extend(rows)
 
     def next_id(self, name: str) -> int:

@@ -15,7 +15,7 @@ _KERB_REACH_M = 5.0
 
 
 class Leg(NamedTuple):
-    """Where a street meets a junction: nodes from the left to the right of those who enter."""
+    """Where a street meets a junction: nodes from left to right in the direction of entry."""
 
     nodes: tuple[int, ...]
     angle_rad: float  # round the junction's middle

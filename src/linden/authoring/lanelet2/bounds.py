@@ -40,7 +40,7 @@ class Laid(NamedTuple):
     """Sides as ways of a map."""
 
     way_of: dict[Side, int]
-    lost_links: tuple[tuple[int, int], ...]  # pairs of stretches whose ends lie too far apart
+    lost_links: tuple[tuple[int, int], ...]  # pairs of stretches with ends too far apart
     largest_gap_m: float  # that was closed
 
 

@@ -1,4 +1,4 @@
-"""Regulatory elements: traffic lights, stop signs, all-way stops, and who goes first where ways meet."""
+"""Regulatory elements: traffic lights, stop signs, all-way stops, and the right of way where ways meet."""
 
 import math
 from collections import defaultdict

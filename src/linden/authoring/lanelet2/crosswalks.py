@@ -75,7 +75,7 @@ def _ordered(pair: F64, axis: F64) -> F64:
 
 
 def crossed(target: LaneletMap, sides: dict[int, Bounds], walks: list[Crosswalk]) -> list[list[int]]:
-    """Return for each crosswalk the lanelets whose middle runs through it."""
+    """Return for each crosswalk the lanelets with a middle that runs through it."""
     numbers, lines = [], []
     spots = np.array([walk.outline.mean(axis=0)[:2] for walk in walks]).reshape(-1, 2)
     for number, bounds in sides.items():

@@ -9,7 +9,7 @@ from linden.maps.opendrive.evaluate.tables import Tables
 
 
 class Draft:
-    """A map in the making: lanelets by stretch, whose regulatory elements come one after the other."""
+    """A map in the making: lanelets by stretch, with their regulatory elements in order."""
 
     def __init__(self, tables: Tables, network: Network) -> None:
         self.tables, self.network = tables, network

@@ -128,7 +128,7 @@ class Ids:
         self._taken: set[int] = set()
 
     def new(self, *key: object) -> int:
-        """Return the id of a key; a key that is asked for twice gets two."""
+        """Return the id of a key; a second request for a key gets a second id."""
         text = "/".join(map(str, key))
         attempt = 0
         while True:

@@ -145,7 +145,7 @@ def _goes_first(
 def _by_rule(one: Movement, other: Movement, *, both_lights: bool) -> tuple[bool, bool]:
     """Return which of two goes first where the same stands before both.
 
-    Oncoming traffic goes before those who turn across it; else who comes from the right goes first (Ohio Revised Code
+    Oncoming traffic goes before traffic that turns across it; else traffic from the right goes first (Ohio Revised Code
     4511.41 and 4511.42), from the left where traffic keeps left. Lights hold one of two that cross.
     """
     angle = math.remainder(one.heading_rad - other.heading_rad, math.tau)

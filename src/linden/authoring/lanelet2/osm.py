@@ -52,7 +52,7 @@ def projector_info(lanelet_map: LaneletMap, *, transverse_mercator: bool = False
     """Return ``map_projector_info.yaml``: Local, which lies on the point cloud for any georeference; or the map's own.
 
     Raises:
-        UserError: Autoware's TransverseMercator is asked for, and the map's projection has another origin than (0, 0).
+        UserError: Autoware's TransverseMercator is requested, and the map's projection has another origin than (0, 0).
     """
     if not transverse_mercator:
         return b"projector_type: Local\n"

@@ -14,7 +14,7 @@ from linden.authoring.lanelet2.projection import NOWHERE, projection_of
 from linden.errors import UserError
 
 KNOWN_ELEMENTS = frozenset({"traffic_light", "traffic_sign", "speed_limit", "right_of_way", "all_way_stop"})
-_LOCATION = "de"  # the only one whose traffic rules the library has; they are those of the tags, not of a country
+_LOCATION = "de"  # the only one with traffic rules in the library; they are those of the tags, not of a country
 
 
 class Routes(NamedTuple):
@@ -68,7 +68,7 @@ def routes_of(lanelet_map: LaneletMap) -> Routes:
     )
 
 
-def _complaints(graph: Any) -> tuple[str, ...]:  # noqa: ANN401 - of a library whose stubs are wrong here
+def _complaints(graph: Any) -> tuple[str, ...]:  # noqa: ANN401 - the stubs of this library are wrong
     """Return what the routing graph finds wrong with itself."""
     return tuple(graph.checkValidity(False) or ())
 

@@ -1,4 +1,4 @@
-"""Compares a SUMO network with its OpenDRIVE map: lanes, lengths, speeds, controls, who can get where."""
+"""Compares a SUMO network with its OpenDRIVE map: lanes, lengths, speeds, controls, connections."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -59,7 +59,7 @@ class _Found(NamedTuple):
 
 
 def _found(converted: Converted) -> _Found:
-    """The lanes of the map that the network lacks, and those whose speed differs."""
+    """The lanes of the map that the network lacks, and the lanes with other speeds."""
     net, missing, speeds = converted.net, [], []
     for origin, length_m, limit_mps in _lanes(converted.opendrive, LaneType.DRIVING):
         edges = net.edges_of_origin.get(origin, [])
@@ -88,7 +88,7 @@ def _lanes(opendrive: OpenDrive, kind: LaneType) -> Iterator[tuple[str, float, f
 
 
 def _signs(converted: Converted) -> list[tuple[str, int, int]]:
-    """What the map's signs and lights come to: name, number in the map, number whose links act as signed.
+    """What the map's signs and lights come to: name, number in the map, number with links that act as signed.
 
     A link's state is ``s`` or ``w`` at a stop, ``m`` where it yields, ``o`` or ``O`` at a light.
     """

@@ -71,7 +71,7 @@ def _approach(opendrive: OpenDrive, lane: AffectedLane, junction: int) -> tuple[
 def node_types(net: Net, controls: Controls) -> dict[str, str]:
     """The type of each node with signs: ``allway_stop``, ``priority_stop`` or ``priority``.
 
-    ``rightOfWay="edgePriority"`` would turn every stop into a yield, so the node's type alone says who stops.
+    ``rightOfWay="edgePriority"`` would turn every stop into a yield, so only the node's type makes traffic stop.
     """
     types = {}
     for node, edges in net.incoming.items():
@@ -151,8 +151,8 @@ def _program(light: str, links: _Links, order: dict[str, int], times_s: tuple[fl
 def _green(links: _Links, turn: set[int], count: int) -> str:
     """The state while the links of ``turn`` are green.
 
-    People cross the approaches that are red. Who turns into a street that people cross gives way (``g``), and so does
-    who turns left where two heads are green at once.
+    People cross the approaches that are red. Traffic that turns into such a street gives way (``g``), and so does
+    traffic that turns left where two heads are green at once.
     """
     state = ["r"] * count
     approaches = {links.ways[link].start for link in turn}

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.physics.columns import Columns, finite
-from linden.physics.state import VEHICLE
+from linden.physics.state import BODY, VEHICLE
 from linden.physics.vehicle.parameters import (
     HULL_INERTIA,
     centre_of_mass,
@@ -30,6 +30,18 @@ from linden.protocol.values.control import (
 from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
 
 F64 = NDArray[np.float64]
+
+_LEAST_PEDALS = np.array([0.0, -1.0, 0.0])
+assert BODY.fields is not None
+_FEET_AND_HANDS = np.dtype(
+    {
+        "names": ["pedals", "switches"],
+        "formats": [("f8", (3,)), ("?", (3,))],
+        "offsets": [BODY.fields["throttle"][1], BODY.fields["hand_brake"][1]],
+        "itemsize": BODY.itemsize,
+    }
+)
+"""Throttle, steer and brake, which lie side by side, as one column; hand brake, reverse and manual as another."""
 
 
 class VehicleApi(Columns):
@@ -63,13 +75,13 @@ class VehicleApi(Columns):
     def set_controls(self, slots: NDArray[np.integer], controls: F64) -> None:
         """Set many at once: ``controls`` (K, 7) in the order of VehicleControl's fields; the last of a slot holds."""
         s = self.state
-        clean = np.nan_to_num(controls, nan=0.0)
-        s["throttle"][slots] = np.clip(clean[:, 0], 0.0, 1.0)
-        s["steer"][slots] = np.clip(clean[:, 1], -1.0, 1.0)
-        s["brake"][slots] = np.clip(clean[:, 2], 0.0, 1.0)
-        for column, name in enumerate(("hand_brake", "reverse", "manual_gear_shift"), start=3):
-            s[name][slots] = clean[:, column] != 0.0
-        s["gear_command"][slots] = np.clip(clean[:, 6], -1, 99)
+        feet_and_hands = s.view(_FEET_AND_HANDS)
+        pedals = controls[:, :3]
+        if not np.isfinite(pedals).all():
+            pedals = np.nan_to_num(pedals, nan=0.0)
+        feet_and_hands["pedals"][slots] = np.minimum(np.maximum(pedals, _LEAST_PEDALS), 1.0)
+        feet_and_hands["switches"][slots] = controls[:, 3:6] != 0.0
+        s["gear_command"][slots] = np.minimum(np.maximum(controls[:, 6], -1.0), 99.0)
         s["ackermann_on"][slots] = False
         s["controlled"][slots] = True
 
@@ -142,6 +154,7 @@ class VehicleApi(Columns):
         under = self._undercarriage[slot]
         com_m = centre_of_mass(control, box, offsets_m, under)
         self.specs[slot] = specification(control, offsets_m, com_m, under)
+        self.fittings += 1
         s["mass_kg"][slot] = control.mass
         s["yaw_inertia_kgm2"][slot] = HULL_INERTIA * yaw_inertia_kgm2(control.mass, box)
         s["centre_of_mass"][slot] = com_m

@@ -254,6 +254,8 @@ def decode_batch(raw: object) -> "tuple[Command | Controls | Transforms, ...]":
     Raises:
         WireTypeError: the first that does not fit, with its place in the batch.
     """
+    if type(raw) is Controls:  # read by linden.protocol.wire.packed
+        return (raw,)
     if type(raw) is not list:
         return decode_commands(raw)
     members: list[Command | Controls | Transforms] = []

@@ -13,6 +13,9 @@ import math
 from math import hypot
 from typing import Annotated, Any, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from linden.protocol.values.control import VehicleControl
 from linden.protocol.wire.decode import DecodedBy, struct_decoder
 
@@ -51,6 +54,7 @@ WORTH_COLUMNS = 8
 LARGEST_ID = 2**32 - 1
 LARGEST_PLAIN = 2**31 - 1
 """Pedals, wheel and gear are far below."""
+CONTROL_FIELDS = len(VehicleControl._fields)
 
 _TYPES = tuple(VehicleControl.__annotations__[name] for name in VehicleControl._fields)
 
@@ -58,8 +62,18 @@ _TYPES = tuple(VehicleControl.__annotations__[name] for name in VehicleControl._
 class Controls(NamedTuple):
     """Controls of vehicles in the order in which they came, none of them unusual."""
 
+    actor_ids: NDArray[np.int64]
+    """(K,)"""
+    fields: NDArray[np.float64]
+    """(K, 7) in the order of VehicleControl."""
+
+
+class Transforms(NamedTuple):
+    """Transforms of actors in the order in which they came, none of them unusual."""
+
     actor_ids: tuple[int, ...]
-    controls: tuple[Any, ...]  # for each a sequence in the order of VehicleControl's fields
+    transforms: tuple[Any, ...]
+    """For each x, y, z in m and pitch, yaw, roll in degrees."""
 
 
 def plain_controls(raw: list[Any]) -> Controls | None:
@@ -69,32 +83,21 @@ def plain_controls(raw: list[Any]) -> Controls | None:
     none in a column is larger than the root of the sum of their squares, which is NaN where one of them is.
     """
     try:
-        ids, controls = zip(*[(actor_id, control) for ((_, (actor_id, control)),) in raw], strict=True)
-        if {*map(type, ids)} != {int} or not 0 <= min(ids) <= max(ids) <= LARGEST_ID:
-            return None
-        if {*map(type, controls)} != {list} or {*map(len, controls)} != {len(_TYPES)}:
+        ids, controls = _ids_and_bodies(raw)
+        if {*map(type, controls)} != {list} or {*map(len, controls)} != {CONTROL_FIELDS}:
             return None
         for column, kind in zip(zip(*controls, strict=True), _TYPES, strict=True):
             if {*map(type, column)} != {kind} or (kind is not bool and not hypot(*column) <= LARGEST_PLAIN):
                 return None
     except (TypeError, ValueError):
         return None
-    return Controls(ids, controls)
-
-
-class Transforms(NamedTuple):
-    """Transforms of actors in the order in which they came, none of them unusual."""
-
-    actor_ids: tuple[int, ...]
-    transforms: tuple[Any, ...]  # for each x, y, z in m and pitch, yaw, roll in degrees
+    return Controls(np.array(ids, np.int64), np.array(controls, np.float64))
 
 
 def plain_transforms(raw: list[Any]) -> Transforms | None:
     """Return actors and places of commands that have the index of a transform, None where one of them is unusual."""
     try:
-        ids, transforms = zip(*[(actor_id, transform) for ((_, (actor_id, transform)),) in raw], strict=True)
-        if {*map(type, ids)} != {int} or not 0 <= min(ids) <= max(ids) <= LARGEST_ID:
-            return None
+        ids, transforms = _ids_and_bodies(raw)
         if {*map(type, transforms)} != {list}:
             return None
         locations, rotations = zip(*transforms, strict=True)
@@ -107,3 +110,15 @@ def plain_transforms(raw: list[Any]) -> Transforms | None:
     except (TypeError, ValueError):
         return None
     return Transforms(ids, tuple((*at, *turned) for at, turned in zip(locations, rotations, strict=True)))
+
+
+def _ids_and_bodies(raw: list[Any]) -> tuple[tuple[int, ...], tuple[Any, ...]]:
+    """Return the actors of commands ``[[index, [actor, body]]]``, and what is to be done with each.
+
+    Raises:
+        TypeError, ValueError: one of them has another form, or its actor is no id.
+    """
+    ids, bodies = zip(*[(actor_id, body) for ((_, (actor_id, body)),) in raw], strict=True)
+    if {*map(type, ids)} != {int} or not 0 <= min(ids) <= max(ids) <= LARGEST_ID:
+        raise ValueError("not the id of an actor")
+    return ids, bodies

@@ -19,20 +19,25 @@ from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin, get_
 import msgpack
 
 from linden.errors import ProtocolError
+from linden.protocol.wire import packed
 from linden.protocol.wire.decode import got
 
 MAX_MESSAGE_BYTES = 64 * 1024 * 1024
 """Largest request; an OpenDRIVE text of a big town is 10 MB, a 4k texture as floats 40 MB."""
-MAX_ARRAYS = 4 * 1024 * 1024
+MAX_ARRAYS = 512 * 1024
 """Most arrays in one message, one within another or side by side: an empty one is a byte of the message and 70 bytes of
-memory. What looks like an array's first byte is counted, so a text has none and numbers have a few too many. A picture
-of 1920 x 1080 pixels has 2 Mi."""
+memory, and nobody is served while they are given back, which takes 0.15 s for that many. What looks like an array's
+first byte is counted, so a text has none and numbers have a few too many. A batch of 10,000 commands has 60,000."""
 MAX_ARRAY_ITEMS = 4 * 1024 * 1024
 """Most items of one array: its list is laid out before the items come, so that 5 bytes must not ask for gigabytes."""
 REQUEST, RESPONSE = 0, 1
 
+OF_PIXELS = ("apply_color_texture_to_objects", "apply_float_color_texture_to_objects")
+"""What has an array for each pixel, 2 Mi in 1920 x 1080; nothing reads them, so no objects are made of them."""
+
 _ARRAYS = bytes((*range(0x80, 0xA0), 0xDC, 0xDD, 0xDE, 0xDF))
 """The first bytes of arrays and maps in msgpack."""
+_HEAD_BYTES = 64 * 1024  # method and names of objects
 _FIRST_BUFFER_BYTES = 4096  # what a buffer starts with; it grows
 _UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
 _pack = msgpack.Packer(unicode_errors="surrogateescape", buf_size=_FIRST_BUFFER_BYTES).pack
@@ -44,6 +49,7 @@ class Call(NamedTuple):
     id: int
     method: str
     args: list[Any]
+    """As msgpack has them; the commands of a batch of plain controls are ``Controls`` (see ``packed``)."""
     is_async: bool
 
 
@@ -67,10 +73,12 @@ class RpcConnection:
             max_array_len=MAX_ARRAY_ITEMS,
             max_map_len=0,  # CARLA sends none
         )
-        self.unfinished_bytes = 0
-        """How much of a call has come that is not yet whole."""
+        self._fed_bytes = self._whole_bytes = 0  # what the unpacker has got, and up to where that is whole calls
+        self.bytes = self.arrays = 0
+        """How much has come in all."""
         self.unfinished_arrays = 0
-        """How many arrays that has at most."""
+        """How many arrays a call has at most that is not yet whole."""
+        self._passed_over: Call | None = None  # that of which the rest is not decoded
         self._failure: ProtocolError | None = None
 
     def receive(self, data: bytes) -> list[Call]:
@@ -91,6 +99,11 @@ class RpcConnection:
         return calls
 
     @property
+    def unfinished_bytes(self) -> int:
+        """How much of a call has come that is not yet whole."""
+        return self._fed_bytes - self._whole_bytes
+
+    @property
     def is_broken(self) -> bool:
         """Whether nothing more can be understood of this peer."""
         return self._failure is not None
@@ -98,19 +111,61 @@ class RpcConnection:
     def _take(self, data: bytes, calls: list[Call]) -> None:
         if self._failure is not None:
             return
-        self.unfinished_bytes += len(data)
-        self.unfinished_arrays += len(data) - len(data.translate(None, _ARRAYS))
+        self.bytes += len(data)
+        if self._fed_bytes == self._whole_bytes and (batch := packed.read(data)) is not None:
+            calls.append(Call(batch.call_id, packed.BATCH, [batch.controls, batch.do_tick], batch.is_async))
+            data = data[batch.end :]
+        begin = self._fed_bytes
+        self._fed_bytes += len(data)
+        if self._passed_over is None:
+            self._passed_over = _of_pixels(data) if begin == self._whole_bytes else None
+        if self._passed_over is None:
+            arrays = len(data) - len(data.translate(None, _ARRAYS))
+            self.arrays += arrays
+            self.unfinished_arrays += arrays
         if self.unfinished_arrays > MAX_ARRAYS:
             raise ProtocolError(f"a message has more than {MAX_ARRAYS} arrays")
         try:
             self._unpacker.feed(data)
-            for message in self._unpacker:
-                calls.append(_call(message))
-                self.unfinished_bytes = self.unfinished_arrays = 0
+            while True:
+                calls.append(self._next())
+                self._whole_bytes = self._unpacker.tell()
+                self.unfinished_arrays = 0
+        except msgpack.OutOfData:
+            pass
         except _UNPACKING_FAILED as error:
             raise ProtocolError(f"what arrived is not msgpack of a call: {error or type(error).__name__}") from error
         if self.unfinished_bytes > MAX_MESSAGE_BYTES:
             raise ProtocolError(f"a message is longer than {MAX_MESSAGE_BYTES} bytes")
+
+    def _next(self) -> Call:
+        """Return the next call that is whole.
+
+        Raises:
+            msgpack.OutOfData: there is none.
+        """
+        if self._passed_over is None:
+            return _call(self._unpacker.unpack())
+        self._unpacker.skip()
+        call, self._passed_over = self._passed_over, None
+        return call
+
+
+def _of_pixels(data: bytes) -> Call | None:
+    """Return the call that ``data`` begins with, where it is one of :data:`OF_PIXELS`; its pixels are None."""
+    if not any(name.encode() in data[:64] for name in OF_PIXELS):
+        return None
+    head = msgpack.Unpacker(unicode_errors="surrogateescape", max_array_len=MAX_ARRAY_ITEMS, max_map_len=0)
+    head.feed(data[:_HEAD_BYTES])
+    try:
+        message: list[Any] = [None] * head.read_array_header()
+        message[:3] = [head.unpack() for _ in range(3)]
+        count = head.read_array_header()
+        message[3:] = [[head.unpack(), head.unpack(), *(None for _ in range(count - 2))]]
+        call = _call(message)
+    except (*_UNPACKING_FAILED, ProtocolError):
+        return None  # the decoder of whole messages says what is wrong
+    return call if call.method in OF_PIXELS else None
 
 
 def _call(message: object) -> Call:
@@ -126,20 +181,20 @@ def _call(message: object) -> Call:
 
 def value(call: Call, result: object) -> bytes:
     """Encode the result of a function that has one."""
-    packed: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
+    return answer
 
 
 def void(call: Call) -> bytes:
     """Encode that a function without a result has done its work."""
-    packed: bytes = _pack((RESPONSE, call.id, None, ((False,),)))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, ((False,),)))
+    return answer
 
 
 def bare(call: Call, result: object) -> bytes:
     """Encode a result that carries its own wrapping: the answers to a batch."""
-    packed: bytes = _pack((RESPONSE, call.id, None, result))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, result))
+    return answer
 
 
 def refusal(call: Call, message: str, reply: Reply) -> bytes:
@@ -150,14 +205,14 @@ def refusal(call: Call, message: str, reply: Reply) -> bytes:
     if reply is Reply.BARE:
         return unknown(call, message)
     failed: bool | int = True if reply is Reply.VOID else 0
-    packed: bytes = _pack((RESPONSE, call.id, None, ((failed, (message,)),)))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, None, ((failed, (message,)),)))
+    return answer
 
 
 def unknown(call: Call, message: str) -> bytes:
     """Encode that there is no such function; the client raises ``rpc::rpc_error during call in function <name>``."""
-    packed: bytes = _pack((RESPONSE, call.id, message, None))
-    return packed
+    answer: bytes = _pack((RESPONSE, call.id, message, None))
+    return answer
 
 
 Encoder = Callable[[Any], Any]

@@ -1,13 +1,12 @@
 """Batches of commands, carried out in their order. Source: LibCarla 0.9.16, ``carla/rpc/Command.h``."""
 
 from collections.abc import Callable
-from itertools import chain, groupby
+from itertools import groupby
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from linden.errors import Refusal
-from linden.protocol.values.control import VehicleControl
 from linden.protocol.values.enums import AttachmentType
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.protocol.wire import commands as cmd
@@ -62,7 +61,8 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
         elif kind is Transforms:
             answers += [answer for transforms in run for answer in _place(context, transforms)]
         elif kind is cmd.ApplyVehicleControl and len(run) >= WORTH_AN_ARRAY:
-            answers += _drive(context, Controls(*zip(*run, strict=True)))
+            ids, fields = zip(*run, strict=True)
+            answers += _drive(context, Controls(np.array(ids, np.int64), np.array(fields, np.float64)))
         elif kind is cmd.ApplyWalkerState and len(run) >= WORTH_AN_ARRAY:
             answers += _lead(context, run)
         else:
@@ -75,18 +75,18 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
 def _drive(context: Context, controls: Controls) -> list[Answer]:
     """Set the controls of many vehicles at once: what a script for traffic sends every tick."""
     episode = context.simulation.episode
+    actor_ids = controls.actor_ids.tolist()
+    slots = episode.vehicles(controls.actor_ids)
+    if slots is not None:
+        episode.bodies.set_controls(slots, controls.fields)
+        return [((1, actor_id),) for actor_id in actor_ids]
     answers: list[Answer] = []
-    slots, chosen = [], []
-    for actor_id, control in zip(*controls, strict=True):
+    for nth, actor_id in enumerate(actor_ids):
         try:
-            slots.append(episode.vehicle(actor_id))
-            chosen.append(control)
+            episode.bodies.set_controls(np.array([episode.vehicle(actor_id)]), controls.fields[nth : nth + 1])
             answers.append(cmd.done(actor_id))
         except Refusal as refusal:  # noqa: PERF203 - each command fails or succeeds by itself
             answers.append(cmd.failed(told("apply_control_to_vehicle", refusal)))
-    if slots:
-        fields = np.fromiter(chain.from_iterable(chosen), np.float64, len(slots) * len(VehicleControl._fields))
-        episode.bodies.set_controls(np.array(slots), fields.reshape(len(slots), -1))
     return answers
 
 

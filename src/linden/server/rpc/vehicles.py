@@ -9,7 +9,6 @@ The wheels as they are seen: which way they point, how far they have rolled. Sou
 As in CARLA they can be set only while the vehicle's physics is off, for otherwise the physics moves them.
 """
 
-from linden.blueprints.library import Kind
 from linden.errors import Refusal
 from linden.protocol.values.control import AckermannControl, AckermannSettings, VehiclePhysicsControl, VehicleTelemetry
 from linden.protocol.values.space import Vector3D
@@ -100,14 +99,13 @@ def set_light_bits(context: Context, actor_id: int, bits: int) -> None:
     """Switch lamps, as bits of VehicleLightState."""
     episode = context.simulation.episode
     episode.vehicle(actor_id)
-    episode.actors.get(actor_id).light_state = bits
+    episode.actors.set_lamps(actor_id, bits)
 
 
 @method("get_vehicle_light_states")
 def get_vehicle_light_states(context: Context) -> list[tuple[int, int]]:
     """Return (id, lamps) of every vehicle."""
-    actors = context.simulation.episode.actors
-    return [(record.id, record.light_state) for record in actors if record.kind is Kind.VEHICLE]
+    return context.simulation.episode.actors.lamps()
 
 
 @method("set_actor_autopilot")

@@ -80,7 +80,7 @@ def test_a_route_against_a_one_way_street_is_refused(built_of: Any, sketch: Any)
     features = sketch.crossing()
     features[1]["properties"].update(oneway="forward", lanes=1)
     built = built_of(features)
-    with pytest.raises(UserError, match="nobody may turn from east Street into north Street"):
+    with pytest.raises(UserError, match="turning from east Street into north Street is not allowed"):
         drive(built, route_through(built, ("east", False), ("north", False)))
 
 

@@ -197,3 +197,24 @@ def test_what_is_quoted_of_a_long_text_is_its_beginning() -> None:
     with pytest.raises(ProtocolError) as caught:
         connection.receive(message)
     assert len(str(caught.value)) < 200
+
+
+@pytest.mark.parametrize("method", rpc.OF_PIXELS)
+@pytest.mark.parametrize("cut", [0, 100, 2000])
+def test_pixels_are_passed_over_and_the_calls_round_them_are_not(
+    method: str, cut: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rpc, "MAX_ARRAYS", 500)
+    picture = request(Call(9, method, [["House_0"], 3, [1000, 1, [[1, 2, 3, 4]] * 1000]], is_async=False))
+    connection = RpcConnection()
+    received = connection.receive(request(CALL))
+    received += connection.receive(picture[:cut]) if cut else []
+    received += connection.receive(picture[cut:] + request(CALL))
+    assert received == [CALL, Call(9, method, [["House_0"], None, None], is_async=False), CALL]
+    assert connection.unfinished_bytes == 0
+
+
+def test_pixels_whose_call_makes_no_sense_are_a_sentence() -> None:
+    broken = b"\x94\x00\x01\xbe" + rpc.OF_PIXELS[0].encode() + b"\x91\xc1"
+    with pytest.raises(ProtocolError, match="not msgpack"):
+        RpcConnection().receive(broken)

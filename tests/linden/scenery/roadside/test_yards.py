@@ -29,13 +29,13 @@ def linden() -> LoadedMap:
 @pytest.fixture(scope="module")
 def lawn(linden: LoadedMap) -> Ground:
     opendrive = parse(linden.text)
-    made = land(simplified_lanes(opendrive), linden.maps.ground, floors(road_mesh(opendrive), linden.maps.ground))
+    made = land(simplified_lanes(opendrive), linden.ground, floors(road_mesh(opendrive), linden.ground))
     return Ground.from_triangles(made.vertices_m, made.triangles)
 
 
 @pytest.fixture(scope="module")
 def slabs(linden: LoadedMap, lawn: Ground) -> Mesh:
-    made = paved_yards(linden.lots, home(linden), linden.maps.ground, lawn)
+    made = paved_yards(linden.lots, home(linden), linden.ground, lawn)
     flat = made.faces["tag"] == SemanticTag.TERRAIN
     return Mesh(made.vertices_m, made.triangles[flat], made.faces[flat])
 
@@ -46,14 +46,14 @@ def test_no_slab_lies_under_the_grass(slabs: Mesh, linden: LoadedMap, lawn: Grou
         points = np.tensordot(corners, weights, axes=(1, 0))
         high = np.column_stack([points[:, :2], np.full(len(points), HIGH_M)])
         under, triangle = lawn.surfaces_under(high)
-        on_lawn = (triangle >= 0) & (linden.maps.ground.surfaces_under(high)[1] < 0)
+        on_lawn = (triangle >= 0) & (linden.ground.surfaces_under(high)[1] < 0)
         assert on_lawn.sum() > 200
         assert (points[on_lawn, 2] > under[on_lawn]).mean() > 0.99
 
 
 def test_a_drive_begins_in_the_street(slabs: Mesh, linden: LoadedMap) -> None:
     low = slabs.vertices_m[slabs.triangles].reshape(-1, 3).astype(np.float64)
-    height, triangle = linden.maps.ground.surfaces_under(np.column_stack([low[:, :2], np.full(len(low), HIGH_M)]))
+    height, triangle = linden.ground.surfaces_under(np.column_stack([low[:, :2], np.full(len(low), HIGH_M)]))
     paved = np.isin(linden.lanes["tag"][linden.lane_of_triangle[triangle]], [SemanticTag.ROADS]) & (triangle >= 0)
     assert paved.sum() > 60
     np.testing.assert_allclose(low[paved, 2], height[paved], atol=0.03)

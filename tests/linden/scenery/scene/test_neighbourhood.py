@@ -21,7 +21,7 @@ def linden() -> LoadedMap:
 
 @pytest.fixture(scope="module")
 def scene(linden: LoadedMap) -> Scene:
-    return furnish(linden.lots, linden.maps.ground)
+    return furnish(linden.lots, linden.ground)
 
 
 def is_hung(scene: Scene) -> np.ndarray:
@@ -44,16 +44,14 @@ def test_nothing_that_stands_on_the_ground_stands_on_a_road_or_pavement(linden: 
     standing = scene.boxes[~is_hung(scene)]
     assert len(standing) == len(scene.things)
     points = footprints(standing)
-    _, triangle = linden.maps.ground.surfaces_under(np.column_stack([points, np.full(len(points), HIGH_M)]))
+    _, triangle = linden.ground.surfaces_under(np.column_stack([points, np.full(len(points), HIGH_M)]))
     assert (triangle < 0).all()
 
 
 def test_an_arm_over_the_street_is_higher_than_any_vehicle(linden: LoadedMap, scene: Scene) -> None:
     hung = scene.boxes[is_hung(scene)]
     assert len(hung) == (scene.things["kind"] == Kind.STREET_LAMP).sum()
-    ground_m, _ = linden.maps.ground.surfaces_under(
-        np.column_stack([hung["centre"][:, :2], np.full(len(hung), HIGH_M)])
-    )
+    ground_m, _ = linden.ground.surfaces_under(np.column_stack([hung["centre"][:, :2], np.full(len(hung), HIGH_M)]))
     assert (hung["centre"][:, 2] - hung["half"][:, 2] - ground_m > 5.0).all()
 
 
@@ -94,10 +92,10 @@ def test_a_house_stands_back_from_the_pavement_within_its_lot(linden: LoadedMap,
 
 
 def test_the_same_map_has_the_same_houses_to_the_last_bit(linden: LoadedMap, scene: Scene) -> None:
-    again = furnish(linden.lots, linden.maps.ground)
+    again = furnish(linden.lots, linden.ground)
     assert again.boxes.tobytes() == scene.boxes.tobytes()
     assert again.things.tobytes() == scene.things.tobytes()
 
 
 def test_a_map_without_lots_is_bare(linden: LoadedMap) -> None:
-    assert len(furnish(linden.lots[:0], linden.maps.ground).boxes) == 0
+    assert len(furnish(linden.lots[:0], linden.ground).boxes) == 0

@@ -42,7 +42,7 @@ def corners(boxes: np.ndarray) -> np.ndarray:
 def lanes_under(linden: LoadedMap, points: np.ndarray) -> np.ndarray:
     """The row in the table of lanes under each point (..., 2), -1 where no road is."""
     flat = points.reshape(-1, 2)
-    _, triangle = linden.maps.ground.surfaces_under(np.column_stack([flat, np.full(len(flat), HIGH_M)]))
+    _, triangle = linden.ground.surfaces_under(np.column_stack([flat, np.full(len(flat), HIGH_M)]))
     return np.where(triangle >= 0, linden.lane_of_triangle[triangle], -1).reshape(points.shape[:-1])
 
 

@@ -1,0 +1,136 @@
+"""Hostile packets against one live server: stops, what a well-behaved client waits for, memory, and bytes of log.
+
+    python benchmarks/attack.py [--packets 100000] [--seed 1]
+
+Packets are noise, requests cut off or changed, right types with values that make no sense, and large ones: texts and
+arrays that are announced and do not come, deep nesting, half a million empty arrays, pictures of a million pixels.
+Meanwhile a client that behaves ticks a synchronous world with a car. Its wait is given in processor time of the
+server, from its call to its answer, for the clock of a busy machine says nothing.
+"""
+
+import argparse
+import contextlib
+import random
+import struct
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import psutil
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+from fakes.nonsense import connections
+from fakes.raw_client import RawClient
+from servers import RunningServer, running_server
+
+OPENING = b"\x94\x00\x01\xa7version\x92\x91\xc2"  # a request, up to where its argument begins
+PIXELS = b"\x94\x00\x01\xbeapply_color_texture_to_objects\x94\x91\xc2\x91\xa1a\x00\x93\xcd\x04\x00\xcd\x04\x00\xdd"
+LARGE_EACH = 250
+"""Packets, of which one is large."""
+SETTINGS = [True, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
+GONE = (EOFError, OSError, ValueError, RuntimeError, AssertionError)
+
+
+def large(chance: random.Random) -> bytes:
+    many = 500_000
+    return chance.choice(
+        [
+            lambda: OPENING + b"\xdb\xff\xff\xff\xff" + bytes(100_000),
+            lambda: OPENING + b"\xdd\xff\xff\xff\xff",
+            lambda: OPENING + b"\x91" * 100_000,
+            lambda: OPENING + b"\xdd" + struct.pack(">I", many) + b"\x90" * (many - 1),
+            lambda: OPENING + b"\xdd" + struct.pack(">I", many) + b"\x90" * many,
+            lambda: PIXELS + struct.pack(">I", 2**20) + b"\x94\x01\x02\x03\x04" * 2**20,
+            lambda: b"\x94\x00\x01\xdb" + struct.pack(">I", 2_000_000) + b"\xff" * 2_000_000 + b"\x91\xc3",
+        ]
+    )()
+
+
+def packets(seed: int, count: int) -> Iterator[list[bytes]]:
+    """Yield the packets of one connection after another, ``count`` in all."""
+    chance, sent, since_large = random.Random(seed), 0, 0
+    for group in connections(seed, count):
+        yield group
+        sent, since_large = sent + len(group), since_large + len(group)
+        if since_large >= LARGE_EACH:
+            since_large = 0
+            yield [large(chance)]
+
+
+class Behaved(threading.Thread):
+    """A client that ticks as long as it is let."""
+
+    def __init__(self, server: RunningServer) -> None:
+        super().__init__(daemon=True)
+        self._server, self.ends = server, threading.Event()
+        self.waits_s: list[float] = []
+        self.refused = 0
+
+    def _cpu_s(self) -> float:
+        text = Path(f"/proc/{self._server.process.pid}/task/{self._server.process.pid}/schedstat").read_text("ascii")
+        return int(text.split()[0]) / 1e9
+
+    def run(self) -> None:
+        with RawClient(self._server.port, 300.0) as client:
+            client.call("set_episode_settings", SETTINGS)
+            client.call("spawn_actor", [0, "vehicle.tesla.model3", []], client.call("get_map_info")[1][0])
+            while not self.ends.is_set():
+                before_s = self._cpu_s()
+                try:
+                    client.call("tick_cue")
+                except RuntimeError:
+                    self.refused += 1
+                self.waits_s.append(self._cpu_s() - before_s)
+
+
+def attack(port: int, group: list[bytes]) -> None:
+    """Send the packets of one connection, read what has come, and vanish."""
+    with contextlib.suppress(*GONE):
+        client = RawClient(port, 10.0)
+        with contextlib.suppress(*GONE):
+            client.socket.sendall(b"".join(group))
+            client.socket.settimeout(0.001)
+            client.socket.recv(65536)
+        client.reset()
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--packets", type=int, default=100_000)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as home, running_server("--recordings", home) as server:
+        process = psutil.Process(server.process.pid)
+        behaved = Behaved(server)
+        behaved.start()
+        before_mib, most_mib, sent, began_s = process.memory_info().rss / 2**20, 0.0, 0, time.monotonic()
+        for group in packets(arguments.seed, arguments.packets):
+            attack(server.port, group)
+            sent += len(group)
+            if server.process.poll() is not None:
+                break
+            if sent % 100 < len(group):
+                most_mib = max(most_mib, process.memory_info().rss / 2**20)
+        behaved.ends.set()
+        behaved.join(300)
+        stopped = server.process.poll() is not None or behaved.is_alive()
+        waits_ms = sorted(1000.0 * wait_s for wait_s in behaved.waits_s)
+        log = server.log()
+        print(f"packets        {sent} in {time.monotonic() - began_s:.0f} s")
+        print(f"stops          {int(stopped)}; bugs in the log: {log.count('internal error')}")
+        print(f"ticks          {len(waits_ms)} by the client that behaves, {behaved.refused} refused")
+        print(
+            f"its wait       median {waits_ms[len(waits_ms) // 2]:.1f} ms, 99.9 % below "
+            f"{waits_ms[int(len(waits_ms) * 0.999)]:.0f} ms, worst {waits_ms[-1]:.0f} ms of the server's processor time"
+        )
+        after_mib = process.memory_info().rss / 2**20
+        print(f"memory         {before_mib:.0f} MiB before, {most_mib:.0f} at most, {after_mib:.0f} after")
+        print(f"log            {len(log)} bytes in {log.count(chr(10))} lines")
+
+
+if __name__ == "__main__":
+    main()
