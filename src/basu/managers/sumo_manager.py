@@ -15,8 +15,7 @@ from basu.sumo.scenario import config_in, made_of, named_folder
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.managers.base_manager import Frame, Run
-    from basu.managers.world_changes import WorldChanges
+    from basu.managers.base_manager import Frame, Run, WorldChanges
     from basu.options import Sumo
 
 MISFIT_M = 4.0  # from the route to the middle of SUMO's lanes: a lane's width, which is the next lane's
