@@ -88,18 +88,28 @@ def driver(folder: Path, name: str, *, at_setup: str = "pass", when: str = "> 20
     return path
 
 
+@pytest.fixture(scope="module")
+def client(simulator: RunningServer) -> carla.Client:
+    """One client for all drives."""
+    return connect("127.0.0.1", simulator.port, 20.0)
+
+
 @pytest.fixture
-def as_own(simulator: RunningServer, monkeypatch: pytest.MonkeyPatch) -> carla.Client:
-    """The session's server, which a run takes for one of its own: it starts none."""
-    client = connect("127.0.0.1", simulator.port, 20.0)
-    client.reload_world(False)
+def as_own(simulator: RunningServer, client: carla.Client, monkeypatch: pytest.MonkeyPatch) -> Iterator[carla.Client]:
+    """The session's server, which a run takes for one of its own: it starts none. Lights are as before afterwards."""
 
     @contextmanager
     def ours(_: object) -> Iterator[Simulator]:
         yield Simulator(client, ("127.0.0.1", simulator.port), own=True, why_gone=lambda: None, ended=lambda: False)
 
     monkeypatch.setattr(runner, "simulator_for", ours)
-    return client
+    world = client.get_world()
+    lights = [(light, light.get_green_time()) for light in world.get_actors().filter("traffic.traffic_light")]
+    yield client
+    for light, green_s in lights:
+        light.set_green_time(green_s)
+    world.freeze_all_traffic_lights(False)
+    world.reset_all_traffic_lights()
 
 
 @pytest.fixture
