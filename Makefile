@@ -12,12 +12,13 @@ test:  ## all that CI runs: check, then all tests
 	@scripts/setup dev
 	@scripts/run-tests
 
-check:  ## format, lint, types, import rules
+check:  ## format, lint, types, import rules, language
 	@scripts/setup dev
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python scripts/check_language.py
 
 format:  ## mend what can be mended by itself
 	@scripts/setup dev

@@ -28,7 +28,7 @@ def stage_by_stage(rounds: int) -> None:
     simulation = World(MapLibrary([], MapCache.of_user().facts_of).load("Linden"))
     simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), simulation.spawn_points[3])
     simulation.step(0.05)
-    seen = simulation.seeing.look(simulation.episode, simulation.frame)
+    seen = simulation.sensor_scene.look(simulation.episode, simulation.frame)
     place = simulation.spawn_points[0]
     pose = Transform(place.location._replace(z=place.location.z + 2.0), Rotation(0.0, place.rotation.yaw, 0.0))
     spec, film = CameraSpec(), Film()

@@ -43,7 +43,7 @@ def compare(options: argparse.Namespace) -> None:
     populate(simulation, rows()[0], options.vehicles)
     for _ in range(10):
         simulation.step(0.05)
-    seen = simulation.seeing.look(simulation.episode, simulation.frame)
+    seen = simulation.sensor_scene.look(simulation.episode, simulation.frame)
     embree = seen.caster if isinstance(seen.caster, EmbreeCaster) else on_the_cpu(seen)
     car = next(record for record in simulation.episode.actors if record.description.id.startswith("vehicle."))
     place = simulation.episode.transform(car.id)

@@ -28,8 +28,8 @@ def town(device: str) -> World:
     check_device(device)
     cache = MapCache.of_user()
     simulation = World(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings(True))
-    simulation.seeing.device = device
-    simulation.seeing.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
+    simulation.sensor_scene.device = device
+    simulation.sensor_scene.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
     return simulation
 
 

@@ -29,7 +29,7 @@ from linden.sensors.casting.embreex_caster import EmbreexCaster
 from linden.sensors.casting.packets import Packet, intersect, new_packet, occlude, put_rays
 from linden.sensors.casting.thread_pool import in_stretches, processors
 from linden.sensors.devices.lidar.firing_pattern import Fan, aim, fire
-from linden.sensors.runtime.looking_sensors import Now
+from linden.sensors.runtime.looking_sensors import SensorFrame
 from linden.world import World
 
 FAR_M = 200.0
@@ -136,7 +136,7 @@ def timed(work: Callable[[], object], rounds: int, before: Callable[[], object] 
 def town(vehicles: int) -> World:
     cache = MapCache.of_user()
     simulation = World(MapLibrary((), cache.facts_of).load(HOME_MAP), EpisodeSettings())
-    simulation.seeing.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
+    simulation.sensor_scene.standing_on = lambda world_map, scene: standing_of(world_map, scene, cache)
     points = simulation.spawn_points
     for point in points[:: max(1, len(points) // vehicles)][:vehicles]:
         simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), point)
@@ -178,8 +178,8 @@ def main() -> None:
     options = parser.parse_args()
     simulation = town(options.vehicles)
     began = time.perf_counter()
-    now = Now(simulation.seeing, simulation.frame, STEP_S)
-    seen = now.seeing.look(simulation.episode, now.frame)
+    now = SensorFrame(simulation.sensor_scene, simulation.frame, STEP_S)
+    seen = now.sensor_scene.look(simulation.episode, now.frame)
     print(f"the first look took {time.perf_counter() - began:.2f} s: bodies, trees")
     caster = seen.caster
     assert isinstance(caster, EmbreeCaster)

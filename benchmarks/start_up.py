@@ -1,10 +1,15 @@
 """How long a server takes until it is ready, what it holds when idle, and how far that is from the limit.
 
     python benchmarks/start_up.py [--runs 5]
+    python benchmarks/start_up.py --first
 
-Every figure is a median over the runs. The limits are processes that simulate nothing: one that only imports numpy and
-numba, and one in which numba is ready for its first kernel as well. The kernels' own cache is filled beforehand; cold
-and warm speak of what is kept of the map. A reload is timed where the client waits for it, ten times a run.
+``--first`` times one first start: nothing is compiled and nothing is kept of the map. It prints the seconds from the
+command to each event: ready, first tick, first tick with a vehicle, first measurement of a lidar and of a camera.
+
+Without it every figure is a median over the runs. The limits are processes that simulate nothing: one that only imports
+numpy and numba, and one in which numba is ready for its first kernel as well. The kernels' own cache is filled
+beforehand; cold and warm speak of what is kept of the map. A reload is timed where the client waits for it, ten times a
+run.
 """
 
 import argparse
@@ -13,6 +18,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -38,7 +44,7 @@ class Figures(NamedTuple):
 
 
 @contextmanager
-def started(arguments: list[str], cache: Path) -> Iterator[tuple[psutil.Process, str, Figures]]:
+def started(arguments: list[str], cache: Path, **environment: str) -> Iterator[tuple[psutil.Process, str, Figures]]:
     """Yield a Python process that has said that it is ready, its line, and what it took until then."""
     begin = time.perf_counter()
     with subprocess.Popen(
@@ -46,7 +52,7 @@ def started(arguments: list[str], cache: Path) -> Iterator[tuple[psutil.Process,
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
-        env={**os.environ, "XDG_CACHE_HOME": str(cache)},
+        env={**os.environ, "XDG_CACHE_HOME": str(cache), **environment},
     ) as child:
         try:
             line = next((line for line in child.stdout if "ready" in line), None)
@@ -85,10 +91,46 @@ def cold_start() -> Figures:
         return start(SERVE, Path(folder))
 
 
+def first_start() -> None:
+    """Print when a first start reaches what its clients wait for."""
+    begin = time.perf_counter()
+
+    def reached(event: str) -> None:
+        print(f"{event:32}{time.perf_counter() - begin:8.1f} s", flush=True)
+
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        started(SERVE, Path(folder), NUMBA_CACHE_DIR=str(Path(folder) / "numba")) as (_, line, _),
+    ):
+        reached("ready")
+        client = carla.Client("127.0.0.1", int(line.split("rpc port ")[1].split(",")[0]))
+        client.set_timeout(600.0)
+        world = client.get_world()
+        world.tick()
+        reached("first tick")
+        blueprints, place = world.get_blueprint_library(), world.get_map().get_spawn_points()[0]
+        car = world.spawn_actor(blueprints.find("vehicle.tesla.model3"), place)
+        world.tick()
+        reached("first tick with a vehicle")
+        for kind in ("sensor.lidar.ray_cast", "sensor.camera.rgb"):
+            measured = threading.Event()
+            sensor = world.spawn_actor(blueprints.find(kind), carla.Transform(carla.Location(z=2.5)), attach_to=car)
+            sensor.listen(lambda _, measured=measured: measured.set())
+            while not measured.is_set():
+                world.tick(600.0)
+            sensor.stop()
+            reached(kind)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=5)
-    runs = range(parser.parse_args().runs)
+    parser.add_argument("--first", action="store_true", help="time one first start instead")
+    arguments = parser.parse_args()
+    if arguments.first:
+        first_start()
+        return
+    runs = range(arguments.runs)
     with tempfile.TemporaryDirectory() as folder:
         cache = Path(folder)
         start(SERVE, cache)  # fills the map's cache, and the kernels' where it is empty

@@ -102,7 +102,7 @@ def config_keys() -> str:
 CONFIG_MEANINGS = {
     "routes": "a route file; `--routes` replaces it",
     "sensors": "a sensor file; none: the agent drives without sensors",
-    "sumo": "folder of a SUMO network; SUMO is not built yet",
+    "sumo": "SUMO's traffic: a folder with a `.sumocfg` file, where SUMO is installed; `--sumo` replaces it",
     "vehicle": "the blueprint; `--vehicle` replaces it",
     "weather": "one of CARLA's presets; the weather of the route and `--weather` replace it",
 }

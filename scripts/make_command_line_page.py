@@ -98,7 +98,7 @@ def value_of(action: argparse.Action) -> str:
     if action.nargs == 0:
         return ""
     if isinstance(action.metavar, str):
-        return f" {action.metavar}"
+        return f" {action.metavar.replace('|', '/')}"
     if action.choices is not None:
         return " " + "/".join(str(choice) for choice in action.choices)
     return f" {action.dest if not action.option_strings else action.dest.upper()}"

@@ -10,7 +10,7 @@ import re
 import sys
 from pathlib import Path
 
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import default_text

@@ -7,6 +7,7 @@ import os
 import signal
 from collections.abc import Generator
 from contextlib import nullcontext
+from pathlib import Path
 
 import hypothesis
 import pytest
@@ -14,22 +15,22 @@ import pytest
 from tracing import untraced
 
 LONGEST = (
-    "test_catalogue.py",
-    "test_run.py",
-    "test_behavioral_live.py",
-    "test_live.py",
-    "test_python_api_page.py",
-    "test_traffic.py",
-    "test_command.py",
-    "test_notebook.py",
-    "test_series_runs.py",
-    "test_run_folder.py",
-    "test_gym.py",
-    "test_fuzzed_files.py",
-    "test_api.py",
-    "test_serve.py",
-    "test_conduct.py",
-    "test_incident.py",
+    "basu/running/scenario_runs/test_catalogue.py",
+    "basu/running/test_run.py",
+    "basu/agents/builtin/test_behavioral_live.py",
+    "basu/output/hud/test_live.py",
+    "basu/test_python_api_page.py",
+    "basu/managers/test_traffic_manager.py",
+    "basu/running/scenario_runs/test_command.py",
+    "basu/test_notebook.py",
+    "basu/running/test_series.py",
+    "basu/running/test_run_folder.py",
+    "basu/test_gym.py",
+    "linden/test_fuzzed_files.py",
+    "basu/test_api.py",
+    "linden/cli/test_serve.py",
+    "basu/managers/test_conduct.py",
+    "basu/test_incident.py",
 )
 """Files of tests that take longest, longest first: they start first, so that no worker idles at the end."""
 
@@ -48,8 +49,9 @@ def pytest_report_header() -> str:
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the longest files first; a file's tests keep their order."""
-    places = {name: place for place, name in enumerate(LONGEST)}
-    items.sort(key=lambda item: places.get(item.path.name, len(LONGEST)))
+    here = Path(__file__).parent
+    places = {here / name: place for place, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: places.get(item.path, len(LONGEST)))
 
 
 @pytest.hookimpl(wrapper=True)

@@ -1,7 +1,4 @@
-"""A live ``linden serve`` in a process of its own, for tests that talk to it as any client does.
-
-``python tests/servers.py`` starts one and ends it, after which the kernels are compiled.
-"""
+"""A live ``linden serve`` in a process of its own, for tests that talk to it as any client does."""
 
 import ctypes
 import re
@@ -87,8 +84,3 @@ def _ports(process: subprocess.Popen[str], log_file: Path) -> tuple[int, int]:
             if not line:
                 break
     raise AssertionError(f"the server did not become ready: {said}{log_file.read_text('utf-8')}")
-
-
-if __name__ == "__main__":
-    with running_server():
-        pass

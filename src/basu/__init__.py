@@ -9,7 +9,7 @@ __all__ = ["AutonomousAgent", "Scoring", "close_simulator", "load", "open_simula
 
 _HOMES = {
     "AutonomousAgent": "basu.agents.autonomous_agent",
-    "Scoring": "basu.metrics.score",
+    "Scoring": "basu.metrics.scoring",
     "close_simulator": "basu.api",
     "load": "basu.api",
     "open_simulator": "basu.api",

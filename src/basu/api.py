@@ -16,7 +16,7 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import LoadedAgent
 from basu.episode import Towns
 from basu.errors import UserError
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.outcome import Status
 from basu.results import RunResult, ScenarioResults, load

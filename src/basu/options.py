@@ -68,6 +68,7 @@ AgentMemory = Annotated[
         default_text="no limit",
     ),
 ]
+Output = Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)]
 Debug = Annotated[bool, Option(help="show the traceback of an agent that fails", group=AGENT, repeats=False)]
 
 
@@ -286,9 +287,7 @@ class RunOptions(Settings):
         ),
     ] = ()
     record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
-    output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
-        Path("runs")
-    )
+    output: Output = Path("runs")
     series: Annotated[
         str | None,
         Option(

@@ -63,12 +63,33 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         address = (options.host, options.port)
         yield Simulator(client, address, own=False, why_gone=lambda: _silence(client, options), ended=lambda: False)
         return
-    server = OwnServer(options.output if options.record else None, options.maps)
+    server = _early.pop() if _early else own_server(options)
     try:
+        server.await_ready()
         client = connect("127.0.0.1", server.port, options.timeout_s)
         yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone, ended=server.ended)
     finally:
         server.end()
+
+
+_early: list[OwnServer] = []  # at most one: a server that has started before anything asked for it
+
+
+@contextlib.contextmanager
+def started_early(options: RunOptions) -> Iterator[None]:
+    """Start our own server, if the run needs one, while this process still imports; ``simulator_for`` takes it over."""
+    if options.host is None:
+        _early.append(own_server(options))
+    try:
+        yield
+    finally:
+        while _early:  # nothing has asked for it: the run could not begin
+            _early.pop().end()
+
+
+def own_server(options: RunOptions) -> OwnServer:
+    """Start a server of our own, which need not be ready yet."""
+    return OwnServer(options.output if options.record else None, options.maps, wait=False)
 
 
 def _silence(client: carla.Client, options: RunOptions) -> str | None:
@@ -83,8 +104,8 @@ def _silence(client: carla.Client, options: RunOptions) -> str | None:
 class OwnServer:
     """A ``linden serve`` of our own, on ports that the system chose, still until the first tick."""
 
-    def __init__(self, recordings: Path | None = None, maps: Sequence[Path] = ()) -> None:
-        """Start it and wait for its ready line.
+    def __init__(self, recordings: Path | None = None, maps: Sequence[Path] = (), *, wait: bool = True) -> None:
+        """Start it, and wait for its ready line unless ``wait`` is false.
 
         It may write logs below the folder ``recordings``, and offers each .xodr file of the folders ``maps``.
 
@@ -113,6 +134,15 @@ class OwnServer:
         ]
         for reader in self._readers:
             reader.start()
+        if wait:
+            self.await_ready()
+
+    def await_ready(self) -> None:
+        """Wait for its ready line; end it where there is none.
+
+        Raises:
+            SimulatorError: it ended, or was not ready in time.
+        """
         try:
             self.port = self._wait_until_ready()
         except BaseException:

@@ -2,4 +2,4 @@
 
 __version__ = "0.1.0"
 CARLA_VERSION = "0.9.16"
-"""The release whose wire protocol is spoken; the official client compares it with its own."""
+"""The release of the wire protocol; the official client compares it with its own."""

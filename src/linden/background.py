@@ -74,5 +74,5 @@ def carry_out(work: Callable[[], Made], done: "Future[Made]") -> None:
     """Do the work and note in ``done`` what it returned or raised."""
     try:
         done.set_result(work())
-    except BaseException as error:  # noqa: BLE001 - it is raised again where the result is asked for
+    except BaseException as error:  # noqa: BLE001 - it is raised again where the result is read
         done.set_exception(error)

@@ -6,6 +6,8 @@ gives the same bits; what is seen has threads (``unlocked``), pictures both. The
 """
 
 import hashlib
+import logging
+import pickle
 from collections.abc import Callable
 from functools import update_wrapper
 from pathlib import Path
@@ -16,6 +18,8 @@ import llvmlite.binding
 import numba
 import numpy as np
 from numba.core.caching import FunctionCache
+
+log = logging.getLogger("linden")
 
 _UNCOUNTED: dict[str, Any] = {"_nrt": False}
 """An option of numba's that its own type hints do not know."""
@@ -32,11 +36,34 @@ def _cached(function: Callable[..., object], **options: Any) -> Any:  # noqa: AN
     numba looks beside the source first, then in the user's cache folder.
     """
     try:
-        return numba.njit(cache=True, error_model="numpy", **options)(function)
+        compiled = numba.njit(cache=True, error_model="numpy", **options)(function)
     except RuntimeError as error:
         if "no locator available" not in str(error):
             raise
         return numba.njit(error_model="numpy", **options)(function)
+    if not COMPILER_IS_OFF:
+        compiled._cache = _KernelCache(cast("FunctionType", function))  # noqa: SLF001 - as njit(cache=True) does
+    return compiled
+
+
+class _KernelCache(FunctionCache):
+    """numba's cache of one function; a file that cannot be read is made anew, and so is one of other sources."""
+
+    sources = 0
+    """Fingerprint of the files that the function calls, where they are not its own."""
+
+    def _index_key(self, *of_function: object) -> tuple[object, ...]:
+        key = super()._index_key(*of_function)  # type: ignore[no-untyped-call]
+        return (*key, self.sources) if self.sources else key  # type: ignore[no-any-return]
+
+    def _load_overload(self, *of_function: object) -> object:
+        try:
+            return super()._load_overload(*of_function)  # type: ignore[no-untyped-call]
+        except (ImportError, AttributeError, EOFError, ValueError, pickle.UnpicklingError) as error:
+            # such as of a class that had another place when the file was written
+            log.info("%s is compiled anew: %s", self, error)
+            self.flush()  # type: ignore[no-untyped-call]
+            return None
 
 
 def kernel(function: Function) -> Function:
@@ -66,21 +93,10 @@ def kept_part(sources: int) -> Callable[[Function], Function]:
     def decorate(function: Function) -> Function:
         compiled = _cached(function)
         if not COMPILER_IS_OFF and compiled.stats.cache_path:
-            compiled._cache = _PartCache(cast("FunctionType", function), sources)  # noqa: SLF001 - as njit(cache=True)
+            compiled._cache.sources = sources  # noqa: SLF001 - as in _cached
         return cast("Function", compiled)
 
     return decorate
-
-
-class _PartCache(FunctionCache):
-    """numba's cache of one function, whose entries are those of one state of the sources."""
-
-    def __init__(self, function: FunctionType, sources: int) -> None:
-        super().__init__(function)  # type: ignore[no-untyped-call]
-        self._sources = sources
-
-    def _index_key(self, *of_function: object) -> tuple[object, ...]:
-        return (*super()._index_key(*of_function), self._sources)  # type: ignore[no-untyped-call]
 
 
 def unlocked(function: Function) -> Function:

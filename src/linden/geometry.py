@@ -14,7 +14,7 @@ Matrix = NDArray[np.float64]
 
 
 def rotation_matrix(rotation: Rotation) -> Matrix:
-    """Return the (3, 3) matrix whose columns are the turned x, y, z axes. Source: GetMatrix of ``carla/geom``."""
+    """Return the (3, 3) matrix with the turned x, y, z axes as columns. Source: GetMatrix of ``carla/geom``."""
     pitch, yaw, roll = (math.radians(angle) for angle in rotation)
     sp, cp, sy, cy, sr, cr = (
         math.sin(pitch),

@@ -47,7 +47,7 @@ def bins_of(centre_m: F64, radius_m: F64) -> Bins:
 
 
 def items_near(bins: Bins, x_m: float, y_m: float, reach_m: float) -> NDArray[np.int64]:
-    """Return all things, ascending, whose bins a square of half size ``reach_m`` around a point touches."""
+    """Return all things, ascending, with bins that a square of half size ``reach_m`` around a point touches."""
     x0, y0, per_m, columns, rows = bins.frame.tolist()
     first_column, last_column = (math.floor((x_m + side - x0) * per_m) for side in (-reach_m, reach_m))
     first_row, last_row = (math.floor((y_m + side - y0) * per_m) for side in (-reach_m, reach_m))

@@ -1,8 +1,6 @@
 """The running world: an episode, its sensors, the recorder, the replayer, and the step that makes the next frame.
 
-The running world: an episode, the settings that rule its time, and the step that makes the next frame.
-
-One step of the world, stage after stage: lights, bodies, then what the snapshot shows of them.
+A step advances the lights, then the bodies, then the snapshot's rows. The replayer and the recorder follow.
 """
 
 import math
@@ -16,9 +14,9 @@ from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Transform
 from linden.replay.recorder import Recorder
 from linden.replay.replayer import Replayer
-from linden.sensors.runtime.looking_sensors import Now
+from linden.sensors.runtime.looking_sensors import SensorFrame
 from linden.sensors.runtime.measure import EpisodeSensors, Measurements, measure, refuse_idle
-from linden.sensors.runtime.sensor_scene import Seeing
+from linden.sensors.runtime.sensor_scene import SensorScene
 from linden.simulation.actor_table import ActorRecord
 from linden.simulation.episode import Episode
 from linden.simulation.spawning import destroy, spawn
@@ -41,11 +39,11 @@ class World:
         sensors: the sensors of the episode.
         recorder: writes what happens into a file, where asked to; a load of a map ends the recording.
         replayer: lets happen again what a file says; a load of a map ends that too.
-        seeing: what sensors that look around see; it stays when a map is loaded again.
+        sensor_scene: what sensors that look around see; it stays when a map is loaded again.
     """
 
     def __init__(self, world_map: LoadedMap, settings: EpisodeSettings = EpisodeSettings()) -> None:  # noqa: B008 - frozen
-        """Begin the first episode on ``world_map``. Nothing is random but sensors' noise, whose seeds clients give."""
+        """Begin the first episode on ``world_map``. Only the noise of sensors is random; clients give its seeds."""
         self.library = BlueprintLibrary.load()
         self.settings = settings
         self.frame = 0
@@ -53,7 +51,7 @@ class World:
         self._next_stream = FIRST_SENSOR_STREAM
         self.recorder = Recorder()
         self.replayer = Replayer()
-        self.seeing = Seeing(self.library)
+        self.sensor_scene = SensorScene(self.library)
         self._begin(world_map)
 
     def load(self, world_map: LoadedMap, *, reset_settings: bool) -> None:
@@ -73,7 +71,7 @@ class World:
         self.replayer.forget()
         self.episode = Episode(world_map, first_frame=self.frame)
         self.sensors = EpisodeSensors()
-        self.seeing.leave(self.episode)
+        self.sensor_scene.leave(self.episode)
         self.delta_s = self.settings.fixed_delta_seconds or 0.0
         self.episode.observe()
 
@@ -133,7 +131,7 @@ class World:
             self._next_stream += 1
         self.sensors.add(record)
         if record.id in self.sensors.looking:
-            self.seeing.prepare(self.episode)
+            self.sensor_scene.prepare(self.episode)
         return record
 
     def has_stream(self, stream_id: int) -> bool:
@@ -152,14 +150,14 @@ class World:
 
     def measure(self, listened: Container[int]) -> Measurements:
         """Return what the sensors measured in this frame; to be called once a frame, ``listened`` being stream ids."""
-        return measure(self.sensors, self.episode, listened, Now(self.seeing, self.frame, self.delta_s))
+        return measure(self.sensors, self.episode, listened, SensorFrame(self.sensor_scene, self.frame, self.delta_s))
 
 
 def step(episode: Episode, dt_s: float, substeps: int) -> None:
-    """Let ``dt_s`` pass in an episode; the physics takes it in ``substeps`` equal parts."""
+    """Advance an episode by ``dt_s``; the physics takes ``substeps`` equal parts."""
     episode.actors.turn_page()
     episode.traffic.step(dt_s)
-    episode.grip.update(episode)
+    episode.friction.update(episode)
     episode.contacts = advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
     episode.elapsed_s += dt_s
     for actor_id in episode.walkers.step(episode, dt_s):

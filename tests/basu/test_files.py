@@ -17,7 +17,7 @@ def test_what_is_in_the_file_comes_back(tmp_path: Path) -> None:
     ("content", "why"),
     [(None, "cannot be read: No such file"), (b'{"a": ', "is no JSON: Expecting value"), (b"\xff\xfe", "is no JSON")],
 )
-def test_what_is_wrong_is_told_with_what_to_do(content: bytes | None, why: str, tmp_path: Path) -> None:
+def test_what_is_wrong_is_reported_with_what_to_do(content: bytes | None, why: str, tmp_path: Path) -> None:
     path = tmp_path / "a.json"
     if content is not None:
         path.write_bytes(content)
@@ -50,7 +50,7 @@ def test_the_working_folder_goes_before_both(agent: Path) -> None:
     assert find("config/sensors.json", "sensor file", agent) == Path.cwd() / "config" / "sensors.json"
 
 
-def test_what_is_nowhere_is_told_with_the_places_that_were_looked_in(agent: Path) -> None:
+def test_what_is_nowhere_is_reported_with_the_places_that_were_looked_in(agent: Path) -> None:
     with pytest.raises(UserError, match=r"sensor file 'x.json' was not found \(looked in .*here, .*beside, .*basu\)"):
         find("x.json", "sensor file", agent)
     with pytest.raises(UserError, match=r"route file '/no/such.xml' was not found \(looked in /no/such.xml\)"):

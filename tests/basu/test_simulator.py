@@ -15,7 +15,7 @@ def commanded(monkeypatch: pytest.MonkeyPatch, program: str) -> None:
     monkeypatch.setattr(simulator, "linden_command", lambda: [sys.executable, "-c", program])
 
 
-def test_a_server_that_ends_at_once_is_told_with_its_last_words(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_server_that_ends_at_once_is_reported_with_its_last_words(monkeypatch: pytest.MonkeyPatch) -> None:
     commanded(monkeypatch, "import sys; print('linden: no map', file=sys.stderr, flush=True); sys.exit(2)")
     with pytest.raises(SimulatorError, match=r"ended by itself \(exit status 2\): linden: no map"):
         OwnServer()

@@ -1,6 +1,7 @@
 """The ways on which ScenarioRunner's classes go, call by call, without ScenarioRunner: small scenarios in its manner.
 
-Each test is one of its behaviours in ``docs/how-to/scenario-runner.md``, made of the same calls in the same order.
+Each test is one of its behaviours as ``docs/how-to/scenario-runner.md`` names them, made of the same calls in the same
+order.
 """
 
 import math

@@ -60,7 +60,8 @@ def test_each_part_of_a_path_in_code_is_the_end_of_one(page: Path) -> None:
 @pytest.mark.parametrize("page", TEXTS, ids=ids)
 def test_each_module_or_member_exists(page: Path) -> None:
     text = re.sub(r"https?://\S+", "", page.read_text("utf-8"))
-    code = " ".join([*INLINE.findall(without_fences(text)), *re.findall(r"^(?:from|import) \S+", text, re.MULTILINE)])
+    typed = re.findall(r"^ *(?:from|import) \S+|python -m \S+", text, re.MULTILINE)
+    code = " ".join([*INLINE.findall(without_fences(text)), *typed])
     assert not sorted(name for name in set(MODULE.findall(code)) - FILES if not member_exists(name))
 
 

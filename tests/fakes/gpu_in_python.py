@@ -25,10 +25,10 @@ WARP.array = lambda **_: None
 sys.modules["warp"] = WARP
 
 from linden.protocol.values.space import Rotation, Transform, Vector3D  # noqa: E402 - likewise
-from linden.sensors.camera.gpu.renderer import GpuDarkroom  # noqa: E402 - likewise
-from linden.sensors.camera.renderer import OnCpu  # noqa: E402 - likewise
+from linden.sensors.camera.gpu.renderer import GpuRenderer  # noqa: E402 - likewise
+from linden.sensors.camera.renderer import CpuRenderer  # noqa: E402 - likewise
 from linden.sensors.camera.spec import CameraSpec, Film, Picture  # noqa: E402 - likewise
-from linden.sensors.casting.gpu_memory import Letter  # noqa: E402 - once there is something that is called warp
+from linden.sensors.casting.gpu_memory import SharedBuffer  # noqa: E402 - once there is something that is called warp
 from linden.sensors.view import Look  # noqa: E402 - likewise
 
 SPEC = CameraSpec(12, 8)
@@ -50,9 +50,9 @@ class PlainGpu:
     def put(self, values):
         return cuda.to_device(np.ascontiguousarray(values))
 
-    def letter(self, size: int) -> Letter:
+    def shared_buffer(self, size: int) -> SharedBuffer:
         here, there = np.zeros(size, np.uint8), cuda.device_array(size, np.uint8)
-        return Letter(here, there, lambda: there.copy_to_device(here))
+        return SharedBuffer(here, there, lambda: there.copy_to_device(here))
 
     def view(self, array):
         return array
@@ -101,7 +101,7 @@ def main() -> None:
     seen = streets.street((8.0, 0.5, 0.8), (7.0, 0.5, 0.8))
     caster = PlainGpuCaster(seen.standing, seen.bodies)
     caster.pose(seen.instances)
-    here, there = OnCpu(), GpuDarkroom(caster)
+    here, there = CpuRenderer(), GpuRenderer(caster)
     for expected in (False, False, True):  # as it stands, captured, and begun before it is asked for
         given = [Look(s, {}, EYE, BEFORE, np.zeros(3), 0, 0, 0.05) for s in (seen, seen._replace(caster=caster))]
         for picture in PICTURES if expected else ():

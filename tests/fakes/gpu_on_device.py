@@ -7,8 +7,8 @@ import warp as wp
 
 from fakes import street as streets
 from linden.protocol.values.space import Rotation, Transform, Vector3D
-from linden.sensors.camera.gpu.renderer import GpuDarkroom
-from linden.sensors.camera.renderer import OnCpu
+from linden.sensors.camera.gpu.renderer import GpuRenderer
+from linden.sensors.camera.renderer import CpuRenderer
 from linden.sensors.camera.spec import CameraSpec, Film, Picture
 from linden.sensors.casting.caster import CPU, Hits, Rays
 from linden.sensors.casting.warp_caster import WarpCaster
@@ -42,7 +42,7 @@ def apart() -> dict[str, np.ndarray] | None:
         seen = streets.street((8.0, 0.5, 0.8), (7.0, 0.5, 0.8))
     finally:
         streets.caster_of = plain
-    here, there, found = OnCpu(), GpuDarkroom(seen.caster), {}
+    here, there, found = CpuRenderer(), GpuRenderer(seen.caster), {}
     given = seen._replace(caster=Answers(seen.caster)), seen
     for _ in range(3):  # as it stands, captured, and replayed
         looks = [Look(moment, {}, EYE, BEFORE, np.zeros(3), 0, 0, 0.05) for moment in given]

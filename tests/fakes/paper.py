@@ -1,4 +1,4 @@
-"""A stage on paper for tests of single nodes: a straight route to the east, and somebody on it."""
+"""An offline stage for tests of single nodes: a straight route to the east, and an actor on it."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 from py_trees.common import Status
 
 from basu.scenarios.stage import ActorSpec, Pose
-from basu.testing import OfflineStage, steady
-from basu.testing import offline_stage as offline_place
+from basu.testing import OfflineStage, offline_place, steady
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
     from basu.testing import Driver
 
 
-def somebody(
+def actor_at(
     x_m: float, y_m: float = 0.0, yaw_rad: float = 0.0, *, speed_mps: float = 0.0, kind: str = "vehicle.audi.a2"
 ) -> ActorSpec:
     """An actor called "other"."""
@@ -33,7 +32,7 @@ def stage_with(
     turn_share: float = 1.0,
     seed: int = 0,
 ) -> OfflineStage:
-    """The ego begins at (0, 0) and drives east along y = 0, at 10 m/s if nobody says else."""
+    """The ego begins at (0, 0) and drives east along y = 0, at 10 m/s by default."""
     place = offline_place([(0.0, 0.0), (length_m, 0.0)], junctions_m=junctions_m)
     return OfflineStage(place, cast, driver or steady(10.0), turn_share=turn_share, seed=seed)
 

@@ -1,12 +1,14 @@
 """The least world a server can serve: it counts frames. For tests of what is around the simulation."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 
 from linden.errors import Refusal
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Transform
 from linden.protocol.wire.measurements import SensorType, episode_header, sensor_header
+from linden.sensors.runtime.measure import EpisodeSensors
 
 EMPTY_MAP = '<?xml version="1.0"?><OpenDRIVE/>'
 
@@ -15,7 +17,7 @@ class FakeEpisode:
     """Stands for its own surroundings, which have no layers, and its own map; nobody is in it."""
 
     map = None
-    eyes: tuple[int, ...] = ()
+    actors: Mapping[int, object] = MappingProxyType({})
 
     @property
     def surroundings(self) -> "FakeEpisode":
@@ -25,7 +27,7 @@ class FakeEpisode:
         assert layers == 0
 
 
-class FakeSeeing:
+class FakeSensorScene:
     """There is nothing to see; notes who would have waited for it."""
 
     def __init__(self, *, is_there: bool = True) -> None:
@@ -49,7 +51,8 @@ class FakeSimulation:
     spawn_points: tuple[Transform, ...] = (Transform(),)
     steps_s: list[float] = field(default_factory=list)
     episode: FakeEpisode = field(default_factory=FakeEpisode)
-    seeing: FakeSeeing = field(default_factory=FakeSeeing)
+    sensor_scene: FakeSensorScene = field(default_factory=FakeSensorScene)
+    sensors: EpisodeSensors = field(default_factory=EpisodeSensors)
 
     def step(self, dt_s: float) -> None:
         self.frame += 1

@@ -108,7 +108,7 @@ class AutonomousAgent(ABC):
         """Return the vehicle, weather and route that the agent wants; called once, before there is a world.
 
         All keys are optional: ``routes`` (route XML), ``sensors`` (sensor JSON), ``vehicle`` (blueprint id),
-        ``weather`` (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO network; not used yet). BASU looks
+        ``weather`` (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO scenario). BASU looks
         for a file in the working folder, then beside the agent's file, then among its own files. Options of the
         command line replace these values.
         """

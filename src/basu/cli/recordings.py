@@ -121,7 +121,7 @@ def replay_run(arguments: argparse.Namespace) -> int:
 
 def _run_in_viewer(arguments: argparse.Namespace, folder: Path) -> int:
     """A run's folder, from its history."""
-    from basu.metrics.score import Scoring, scoring_of_run  # noqa: PLC0415 - as above
+    from basu.metrics.scoring import Scoring, scoring_of_run  # noqa: PLC0415 - as above
     from basu.output.report.documents import CONFIG_FILE  # noqa: PLC0415 - as above
     from basu.output.viewer.record_replay import show_run  # noqa: PLC0415 - as above
     from basu.output.viewer.stream import has_screen  # noqa: PLC0415 - as above

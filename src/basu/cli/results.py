@@ -64,7 +64,7 @@ def score_run(arguments: argparse.Namespace) -> int:
     from basu.cli.run import scoring_of  # noqa: PLC0415 - as above
     from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
     from basu.metrics.result import judge  # noqa: PLC0415 - likewise
-    from basu.metrics.score import scoring_of_run, scoring_to_json  # noqa: PLC0415 - as above
+    from basu.metrics.scoring import scoring_of_run, scoring_to_json  # noqa: PLC0415 - as above
     from basu.outcome import Outcome, Status  # noqa: PLC0415 - likewise
     from basu.output.report.console import judgement, score_lines  # noqa: PLC0415 - likewise
     from basu.output.report.documents import CONFIG_FILE, RESULT_FILE  # noqa: PLC0415 - likewise

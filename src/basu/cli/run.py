@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from basu.errors import Terminated
-from basu.metrics.score import Scoring, read_scoring_file
+from basu.metrics.scoring import Scoring, read_scoring_file
 from basu.options import RunOptions
 from basu.outcome import EXIT_CODES
 from basu.settings.command_line import add_options, typed
@@ -117,9 +117,11 @@ def run_agent(arguments: argparse.Namespace) -> int:
     from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
 
     user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
-    from basu.running.runner import run  # noqa: PLC0415 - the client and the plots, which `--help` does not need
+    from basu.simulator import started_early  # noqa: PLC0415 - the client, which `--help` does not need
 
-    with terminated_as_interrupted():
+    with terminated_as_interrupted(), started_early(options):
+        from basu.running.runner import run  # noqa: PLC0415 - the plots, imported while the server starts
+
         return run(options, scoring)
 
 

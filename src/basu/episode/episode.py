@@ -8,24 +8,20 @@ from __future__ import annotations
 
 import contextlib
 import time
-import traceback
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import carla
 
-from basu.episode.world import Towns, asking, ticked_by_us, vehicle_at_start
+from basu.episode.failures import outcome_of
+from basu.episode.world import Towns, asking, next_frame, ticked_by_us, vehicle_at_start
 from basu.errors import (
-    AgentCrashedError,
     AgentError,
-    AgentInvalidControlError,
-    AgentTimedOutError,
     SimulatorError,
     UserError,
 )
 from basu.managers import Live
-from basu.managers.base_manager import BaseManager, Driver, Frame, Run, ego_in
-from basu.managers.conduct import ticked
+from basu.managers.base_manager import BaseManager, Driver, Frame, Run
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.observations import Neighbours
 from basu.managers.routes_manager import RoutesManager
@@ -33,7 +29,7 @@ from basu.managers.scenario_manager import ScenarioManager
 from basu.managers.sensors_manager import SensorsManager
 from basu.managers.sumo_manager import SumoManager
 from basu.managers.traffic_manager import TrafficManager
-from basu.managers.world_changes import WorldChanges, taken_away
+from basu.managers.world_changes import WorldChanges
 from basu.outcome import Outcome, Status
 from basu.routing import plan
 from basu.simulator import linden_command
@@ -50,11 +46,6 @@ if TYPE_CHECKING:
     from basu.routing.route_file import RouteDescription
     from basu.simulator import Simulator
 
-STATUS_OF: dict[type[AgentError], Status] = {
-    AgentCrashedError: Status.AGENT_CRASHED,
-    AgentTimedOutError: Status.AGENT_TIMED_OUT,
-    AgentInvalidControlError: Status.AGENT_INVALID_CONTROL,
-}
 FAILED_TIMEOUT_S = 1.0  # wall time for each call to a simulator that has failed
 LATE_EVENTS_S = 0.05  # wall time for events of the last frame, which come on connections of their own
 
@@ -275,7 +266,7 @@ class Episode:
         run, managers = self._run, self._managers
         assert run is not None, "reset has prepared it"
         assert managers is not None, "likewise"
-        frame = _next_frame(run, before)
+        frame = next_frame(run, before)
         managers.sensors.tick(frame)
         managers.routes.tick(frame)
         self._unrecorded = Observation(frame, managers.sensors.data, managers.routes.progress)
@@ -297,20 +288,11 @@ class Episode:
         """
         with contextlib.suppress(RuntimeError):  # the simulator is gone
             self._record()
-        if isinstance(error, KeyboardInterrupt):
-            outcome = Outcome(Status.INTERRUPTED, str(error) or "interrupted by the user")
-        elif isinstance(error, AgentError):
+        if isinstance(error, AgentError):
             self.agent_error = error
-            outcome = _agents_end(error, self._simulator.why_gone())
-        elif isinstance(error, UserError):
-            outcome = Outcome(Status.SETUP_FAILED, str(error))
-        elif isinstance(error, SimulatorError):
-            outcome = Outcome(Status.SIMULATOR_FAILED, self._simulator.why_gone() or str(error))
-        elif isinstance(error, Exception):
+        outcome = outcome_of(error, self._simulator.why_gone)
+        if outcome.status is Status.BENCHMARK_FAILED and isinstance(error, Exception):
             self.bug = error
-            outcome = Outcome(Status.BENCHMARK_FAILED, "".join(traceback.format_exception_only(error)).strip())
-        else:
-            raise error
         self.outcome = outcome
         return outcome
 
@@ -363,35 +345,3 @@ class Episode:
     def playing(self) -> Sequence[Playing]:
         """The scenarios of the drive."""
         return () if self.ground is None else self.ground.scenarios.playing
-
-
-def _next_frame(run: Run, before: Frame | None) -> Frame:
-    """Let the simulator make one step and read its snapshot."""
-    try:
-        number = run.world.tick(run.timeout_s)
-        snapshot = run.world.get_snapshot()
-    except RuntimeError as error:
-        raise SimulatorError(f"the simulator did not make a step: {error}") from error
-    ego = snapshot.find(run.vehicle.id)
-    if ego is None and run.own_simulator:
-        raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
-    if ego is None:
-        raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
-    gone = taken_away(run.changes, snapshot)
-    if gone is not None and run.own_simulator:
-        raise AgentCrashedError(f"the agent took {gone} out of the world before frame {snapshot.frame}")
-    if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
-        raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
-    if before is not None and snapshot.frame != before.server_frame + 1:
-        raise UserError(
-            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (requested: {number}); "
-            "another program ticks it too, and a benchmark has to be the only one"
-        )
-    return Frame(0 if before is None else before.tick + 1, snapshot.frame, snapshot, ego_in(ego))
-
-
-def _agents_end(error: AgentError, gone: str | None) -> Outcome:
-    """The outcome of an agent's failure, which is the agent's unless the simulator had gone before."""
-    if gone is not None:
-        return Outcome(Status.SIMULATOR_FAILED, gone)
-    return Outcome(STATUS_OF[type(error)], str(error))

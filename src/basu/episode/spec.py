@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import carla
 
 from basu.agents.autonomous_agent import AgentConfig
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import NO_TRAFFIC, STEP_S, Sumo, Traffic
 from basu.routing.route_file import RouteDescription, RoutePoint
 from basu.routing.weather import changed

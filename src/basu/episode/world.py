@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
-from basu.errors import SimulatorError, UserError
+from basu.errors import AgentCrashedError, SimulatorError, UserError
+from basu.managers.base_manager import Frame, ego_in
+from basu.managers.conduct import ticked
+from basu.managers.world_changes import taken_away
 from basu.routing import lane_graph
 
 if TYPE_CHECKING:
@@ -17,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from basu.managers.base_manager import Run
     from basu.routing import Route
     from basu.routing.lane_graph import LaneGraph
     from basu.simulator import Simulator
@@ -186,3 +190,28 @@ def _blueprint(library: carla.BlueprintLibrary, blueprint_id: str) -> carla.Acto
         hint = f"did you mean '{close[0]}'?" if close else f"it has {', '.join(sorted(known))}"
         raise UserError(f"the simulator has no vehicle '{blueprint_id}'; {hint}")
     return library.find(blueprint_id)
+
+
+def next_frame(run: Run, before: Frame | None) -> Frame:
+    """Let the simulator make one step and read its snapshot."""
+    try:
+        number = run.world.tick(run.timeout_s)
+        snapshot = run.world.get_snapshot()
+    except RuntimeError as error:
+        raise SimulatorError(f"the simulator did not make a step: {error}") from error
+    ego = snapshot.find(run.vehicle.id)
+    if ego is None and run.own_simulator:
+        raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
+    if ego is None:
+        raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
+    gone = taken_away(run.changes, snapshot)
+    if gone is not None and run.own_simulator:
+        raise AgentCrashedError(f"the agent took {gone} out of the world before frame {snapshot.frame}")
+    if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
+        raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
+    if before is not None and snapshot.frame != before.server_frame + 1:
+        raise UserError(
+            f"the simulator went from frame {before.server_frame} to {snapshot.frame} (requested: {number}); "
+            "another program ticks it too, and a benchmark has to be the only one"
+        )
+    return Frame(0 if before is None else before.tick + 1, snapshot.frame, snapshot, ego_in(ego))

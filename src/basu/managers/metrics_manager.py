@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from basu.managers.base_manager import Driver, Frame, Run
     from basu.managers.routes_manager import RoutesManager
     from basu.metrics.infraction import Evidence
-    from basu.metrics.score import Scores, Scoring
+    from basu.metrics.score import Scores
+    from basu.metrics.scoring import Scoring
     from basu.records.history import History
 
 MPS_PER_KMH = 1.0 / 3.6

@@ -18,20 +18,18 @@ The thesis counts every collision (section 5.2.1). The responsibility is reporte
 
 from __future__ import annotations
 
-import enum
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes, touching
-from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
+from basu.metrics.infraction import DEFAULT_PENALTIES, CollisionKind, Evidence, Infraction, Responsibility, evidence
 from basu.metrics.json_schema import integer, record
 from basu.metrics.registry import Column, Drive, Metric, register
 
 if TYPE_CHECKING:
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import Collision, History
 
 
@@ -95,29 +93,6 @@ def _contact(history: History, event: Collision) -> Evidence:
 STOPPED_MPS = 0.05
 BEHIND_RAD = math.radians(150.0)  # between the ego's heading and the direction to the other's middle
 BUMPER_M = 0.25  # a box this near to the front bumper meets it: in a step of 0.05 s, 5 m/s go as far
-
-
-class CollisionKind(enum.Enum):
-    """The five types of nuPlan's ``CollisionType``."""
-
-    STOPPED_EGO = "stopped_ego"
-    STOPPED_OTHER = "stopped_other"
-    REAR = "rear"
-    FRONT = "front"
-    LATERAL = "lateral"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Responsibility:
-    """Whether the vehicle under test is at fault for one collision, and by which clause of the rule."""
-
-    at_fault: bool
-    kind: CollisionKind
-    sentence: str
-
-    def document(self) -> dict[str, bool | str]:
-        """The responsibility as plain values."""
-        return {"at_fault": self.at_fault, "kind": self.kind.value, "sentence": self.sentence}
 
 
 def responsibilities(history: History) -> tuple[tuple[Evidence, Responsibility], ...]:
@@ -248,14 +223,14 @@ class Collisions(Metric):
         """Each contact."""
         return collisions(drive.history)
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """A line where there was one."""
         found = result.metrics[self.name]
         if not found["number"]:
             return []
         return [f"{self.title:<18}{found['number']}, at fault for {found['at_fault']} of them"]
 
-    def columns(self, result: Result) -> list[Column]:
+    def columns(self, result: JudgedRun) -> list[Column]:
         """The number, and that of the collisions at fault."""
         found = result.metrics[self.name] or {"number": 0, "at_fault": 0}
         return [Column("collisions", str(found["number"])), Column("collisions at fault", str(found["at_fault"]))]

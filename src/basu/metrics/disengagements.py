@@ -17,7 +17,7 @@ from basu.metrics.registry import Drive, Metric, register
 from basu.metrics.stretches import chords, path_m, stretches, total_m
 
 if TYPE_CHECKING:
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
 M_PER_MILE = 1609.344
@@ -93,7 +93,7 @@ class Takeovers(Metric):
             "events": [row_of(event) for event in found.events],
         }
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """A line where it happened."""
         found = result.metrics[self.name]
         if not found["number"]:

@@ -16,7 +16,8 @@ from basu.metrics.collisions import Party, contacts
 from basu.metrics.infraction import Evidence, counts
 from basu.metrics.path_following import compared
 from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
-from basu.metrics.score import Scores, Scoring, driving_score, in_order, infraction_score
+from basu.metrics.score import Scores, driving_score, in_order, infraction_score
+from basu.metrics.scoring import Scoring
 from basu.metrics.speeding import LEAST_S, episode, limits_mps
 from basu.metrics.stop_signs import ZONE_BEFORE_M, stop_signs
 from basu.metrics.stretches import SPACING_M, chords, path_m, total_m

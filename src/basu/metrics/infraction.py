@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from basu.metrics.collisions import Responsibility
     from basu.records.history import History
 
 
@@ -53,6 +52,29 @@ DEFAULT_PENALTIES: Mapping[Infraction, float] = {
     Infraction.STOP_SIGN: 0.80,
     Infraction.SPEEDING: 0.80,
 }
+
+
+class CollisionKind(enum.Enum):
+    """The five types of nuPlan's ``CollisionType``."""
+
+    STOPPED_EGO = "stopped_ego"
+    STOPPED_OTHER = "stopped_other"
+    REAR = "rear"
+    FRONT = "front"
+    LATERAL = "lateral"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Responsibility:
+    """Whether the vehicle under test is at fault for one collision, and by which clause of the rule."""
+
+    at_fault: bool
+    kind: CollisionKind
+    sentence: str
+
+    def document(self) -> dict[str, bool | str]:
+        """The responsibility as plain values."""
+        return {"at_fault": self.at_fault, "kind": self.kind.value, "sentence": self.sentence}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.metrics.infraction import Evidence
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
 BEYOND_M = 0.5  # ALLOWED_OUT_DISTANCE of leaderboard 2.0 and 2.1; 1.0 has 1.3
@@ -136,7 +136,7 @@ class OutsideOfLanes(Metric):
             "metres_by_where": {where.value: metres for where, metres in found.metres_by_where.items()},
         }
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """A line where it happened."""
         return share_line(self.title, result.metrics[self.name])
 
@@ -154,6 +154,6 @@ class WrongWay(Metric):
         """Way, share, time and stretches."""
         return share_row(wrong_way(drive.history))
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """A line where it happened."""
         return share_line(self.title, result.metrics[self.name])

@@ -27,7 +27,7 @@ from basu.routing import ControlKind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
     from basu.routing import Control, Route
 
@@ -178,13 +178,13 @@ class RedLights(Metric):
         """Each light that was run, on the route or beside it."""
         return red_lights(drive.history)
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """How many were run."""
         lights = result.metrics[self.name]
         run = sum(light["run"] for light in lights)
         return [f"traffic lights    {run} of {len(lights)} run on red"] if lights else []
 
-    def columns(self, result: Result) -> list[Column]:
+    def columns(self, result: JudgedRun) -> list[Column]:
         """How many were run, those off the route with them."""
         run = sum(found.kind is Infraction.RED_LIGHT for found in result.infractions)
         return [Column("red lights", str(run))]

@@ -16,7 +16,7 @@ import re
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 from basu.errors import UserError
 from basu.files import module_of
@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.metrics.infraction import Evidence
-    from basu.metrics.result import Result
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.outcome import Outcome
     from basu.records.history import History
 
@@ -45,6 +44,18 @@ class Drive:
     history: History
     scoring: Scoring
     outcome: Outcome
+
+
+class JudgedRun(Protocol):
+    """What a metric shows of a result: its own value, and the infractions."""
+
+    @property
+    def metrics(self) -> Mapping[str, Any]:
+        """The value of each metric by name."""
+
+    @property
+    def infractions(self) -> Sequence[Evidence]:
+        """What entered the score."""
 
 
 class Column(NamedTuple):
@@ -89,12 +100,12 @@ class Metric(ABC):
         found: Sequence[Mapping[str, Any]] = value.get("events", ()) if isinstance(value, dict) else ()
         return found
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """The lines of the console's table; nothing that did not happen takes a line."""
         value = result.metrics.get(self.name)
         return [f"{self.title:<{NAME_WIDTH}}{self.shown(value)}"] if isinstance(value, float | int) else []
 
-    def columns(self, result: Result) -> list[Column]:  # noqa: ARG002 - a metric need not be compared
+    def columns(self, result: JudgedRun) -> list[Column]:  # noqa: ARG002 - a metric need not be compared
         """The cells of a table that compares runs."""
         return []
 

@@ -12,7 +12,7 @@ from basu.metrics.path_following import near_stop, path_following, serving
 from basu.metrics.registry import Drive, Metric, register
 
 if TYPE_CHECKING:
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
 
@@ -62,7 +62,7 @@ class Reported(Metric):
             "top_speed_mps": float(drive.history.speed_mps().max()),
         }
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """Lane invasions and the way."""
         found = result.metrics[self.name]
         invasions = f"{found['lane_invasions']['total']} (reported, not scored)"
@@ -107,7 +107,7 @@ class ServiceStops(Metric):
             )
         return rows
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """How many were served."""
         stops = result.metrics[self.name]
         served = sum(stop["served"] for stop in stops)

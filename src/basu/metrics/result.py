@@ -16,12 +16,22 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from basu.files import PACKAGE_FOLDER
-from basu.metrics.collisions import CollisionKind, Responsibility, responsibilities
-from basu.metrics.infraction import Evidence, Incident, Infraction, OwnKind, counts, row_of
+from basu.metrics.collisions import responsibilities
+from basu.metrics.infraction import (
+    CollisionKind,
+    Evidence,
+    Incident,
+    Infraction,
+    OwnKind,
+    Responsibility,
+    counts,
+    row_of,
+)
 from basu.metrics.json_schema import EVIDENCE, choice, flag, integer, listing, mapping, number, record, text
 from basu.metrics.path_following import path_following
 from basu.metrics.registry import Drive, Metric, built_in
-from basu.metrics.score import Scores, Scoring, driving_score, in_order, infraction_score, scoring_to_json
+from basu.metrics.score import Scores, driving_score, in_order, infraction_score
+from basu.metrics.scoring import Scoring, scoring_to_json
 from basu.outcome import Outcome, Status
 
 if TYPE_CHECKING:

@@ -16,13 +16,12 @@ import numpy as np
 from basu.metrics.infraction import Incident
 from basu.metrics.json_schema import number
 from basu.metrics.registry import Drive, Metric, register
+from basu.metrics.scoring import THRESHOLD_M
 from basu.metrics.stretches import Share, share_line, share_of, share_record, share_row
 
 if TYPE_CHECKING:
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
-
-THRESHOLD_M = 2.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +62,6 @@ class DeviationFromRoute(Metric):
         found = route_deviation(drive.history, drive.scoring.route_deviation_m)
         return {**share_row(found.outside), "threshold_m": found.threshold_m, "largest_m": found.largest_m}
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """A line where it happened."""
         return share_line(self.title, result.metrics[self.name])

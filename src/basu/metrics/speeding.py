@@ -9,15 +9,15 @@ import numpy as np
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
 from basu.metrics.json_schema import number, record
 from basu.metrics.registry import Column, Drive, Metric, register
+from basu.metrics.scoring import TOLERANCE_MPS
 from basu.metrics.stretches import stretches
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
-TOLERANCE_MPS = 1.0  # above the limit; 2.2 mph, about what a speedometer may be off at 25 mph
 ON_ROUTE_M = 2.0  # from the planned line; nearer than this the vehicle is on the plan's lane, and its limit holds
 LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of driving
 
@@ -112,7 +112,7 @@ class Speeding(Metric):
         """Each episode."""
         return speeding(drive.history, drive.scoring.speeding_tolerance_mps)
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """A line where it happened."""
         found = result.metrics[self.name]
         if not found["seconds"]:
@@ -121,7 +121,7 @@ class Speeding(Metric):
             f"{self.title:<18}{found['seconds']:.1f} s, up to {found['largest_excess_mps']:.2f} m/s above the limit"
         ]
 
-    def columns(self, result: Result) -> list[Column]:
+    def columns(self, result: JudgedRun) -> list[Column]:
         """The number of episodes."""
         episodes_found = sum(found.kind is Infraction.SPEEDING for found in result.infractions)
         return [Column("speeding", str(episodes_found))]

@@ -22,7 +22,7 @@ from basu.routing import ControlKind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
     from basu.routing import Control
 
@@ -139,7 +139,7 @@ class StopSigns(Metric):
         """Each sign that was run."""
         return stop_signs(drive.history)
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """How many signs were obeyed, and the slowest speed before any line at most."""
         signs = result.metrics[self.name]
         if not signs:
@@ -148,6 +148,6 @@ class StopSigns(Metric):
         obeyed = f"{stopped} of {len(signs)} obeyed"
         return [f"stop signs        {obeyed}; slowest speed before any line at most {slowest:.3f} m/s"]
 
-    def columns(self, result: Result) -> list[Column]:
+    def columns(self, result: JudgedRun) -> list[Column]:
         """How many were run."""
         return [Column("stop signs", str(sum(not sign["stopped"] for sign in result.metrics[self.name])))]

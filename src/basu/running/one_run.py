@@ -18,7 +18,6 @@ from basu.metrics.registry import user_metrics
 from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
 from basu.output.report.documents import make_draft
-from basu.output.viewer.viewer_manager import viewer_for
 from basu.records.carla_log.sources import LOG_FILE
 from basu.running.drive import drive
 from basu.running.preparation import sumo_folder
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.options import RunOptions
     from basu.outcome import Outcome
     from basu.running.preparation import Job, Plan
@@ -81,7 +80,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
             *([] if session.quiet else [ProgressBar(live)]),
             *recording,
             *onlookers_for(session.options, live),
-            *viewer_for(session.options, live),
+            *_viewer(session.options, live),
         ]
 
     episode = Episode(
@@ -152,3 +151,12 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
         timeout_s=options.timeout_s,
         stop_after_s=options.stop_after_s,
     )
+
+
+def _viewer(options: RunOptions, live: Live) -> list[BaseManager]:
+    """The manager that streams to Rerun, where ``--viewer`` is given."""
+    if not options.viewer:
+        return []
+    from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, which is an extra
+
+    return [ViewerManager(live, print)]

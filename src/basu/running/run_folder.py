@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.metrics.registry import Metric
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
     from basu.running.drive import Driven

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from pathlib import Path
 
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.options import RunOptions
     from basu.running.one_run import Finished
     from basu.running.preparation import Job, Plan

@@ -13,12 +13,13 @@ import json
 import shutil
 from dataclasses import replace
 from importlib.metadata import version
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import basu
 from basu.errors import UserError
 from basu.files import write_bytes
-from basu.metrics.score import scoring_to_json
+from basu.metrics.scoring import scoring_to_json
 from basu.outcome import Fault, Status
 from basu.output.report.documents import (
     DRAFTS,
@@ -31,14 +32,14 @@ from basu.output.report.documents import (
     write_json,
 )
 from basu.output.report.series_document import SERIES_SCHEMA_VERSION, row, series_table, totals
+from basu.settings.option import fields_of, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from pathlib import Path
 
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.options import RunOptions
-    from basu.running.preparation import Job, Plan
+from basu.running.preparation import Job, Plan
 
 SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
 COUNTED = frozenset({Fault.NOBODY.name.lower(), Fault.AGENT.name.lower()})  # what ended otherwise says nothing of it
@@ -114,39 +115,45 @@ class Series:
         rows.sort(key=lambda each: each["number"])
 
 
+RESOLVED = frozenset({"agent", "routes", "route_id", "routes_subset", "with_scenarios", "weather", "vehicle"})
+"""Options that the plan of a run resolves: the resolved values are conditions, and not what was typed."""
+
+
 def conditions(options: RunOptions, scoring: Scoring, prepared: Plan) -> dict[str, Any]:
-    """All that the results of a series depend on, by its name on the command line."""
-    config, agent_file, traffic = prepared.agents.config, prepared.loaded.file, options.traffic
+    """All that the results of a series depend on: declared options that repeat a run, and what the plan resolves."""
+    config, agent_file = prepared.agents.config, prepared.loaded.file
     routes = [replace(job.description, source="") for job in prepared.jobs if job.repetition == 0]
     return {
+        **{
+            field.flag: _condition(getattr(options, field.name))
+            for field in fields_of(type(options))
+            if field.option.repeats and field.name not in RESOLVED
+        },
         "the agent": options.agent,
         "the agent's file": None if agent_file is None else _digest(agent_file.read_bytes()),
-        "--agent-config": options.agent_config,
         "the routes": [route.id for route in routes],
-        "what the routes say": _digest(repr(routes).encode()),
-        "the scenarios on the way": [
+        "the contents of the routes": _digest(repr(routes).encode()),
+        "the scenarios of the routes": [
             f"{waiting.case.name}: {waiting.scenario.__name__} {dict(waiting.values)} at {waiting.case.trigger}"
             for job in prepared.jobs
             if job.repetition == 0
             for waiting in job.scenarios
         ],
-        "--scenarios": [_digest(file.read_bytes()) for file in options.scenario_files],
-        "--repetitions": options.repetitions,
-        "--seed": options.seed,
         "the vehicle": config.vehicle,
         "the weather": options.weather or f"{config.weather}, where the route gives none",
         "the sensors": _digest(repr(prepared.sensors.specs).encode()),
-        "--vehicles": traffic.vehicles,
-        "--walkers": traffic.walkers,
-        "--traffic-density": traffic.density_per_km,
-        "--record": options.record,
-        "--keys": options.keys,
-        "--step-limit": options.step_limit_s,
-        "whose simulator": "our own" if options.host is None else "at --host",
+        "the simulator": "our own" if options.host is None else "at --host",
         "the scoring": scoring_to_json(scoring),
         "the version of basu": basu.__version__,
         "the version of carla": version("carla"),
     }
+
+
+def _condition(value: Any) -> Any:  # noqa: ANN401 - values of any option
+    """An option's value as JSON has it; a file by its contents."""
+    if isinstance(value, Path):
+        return _digest(value.read_bytes())
+    return [_condition(each) for each in value] if isinstance(value, list | tuple) else to_json(value)
 
 
 def open_series(folder: Path, given: Mapping[str, Any], jobs: tuple[Job, ...], agent: str, *, resume: bool) -> Series:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.metrics.infraction import Infraction
-from basu.metrics.score import Scoring, driving_score, infraction_score
+from basu.metrics.score import driving_score, infraction_score
+from basu.metrics.scoring import Scoring
 from basu.output.report.templates import e, figure
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from __future__ import annotations
 import difflib
 import enum
 import math
-from dataclasses import asdict, dataclass, fields
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any, get_type_hints
 
 import numpy as np
 
@@ -107,16 +107,8 @@ class Characteristics:
         return {name: value.value for name, value in asdict(self).items()}
 
 
-KINDS: dict[str, type[enum.Enum]] = {
-    "atmosphere": Atmosphere,
-    "lighting": Lighting,
-    "surface": Surface,
-    "alignment": Alignment,
-    "junction": Junction,
-    "control": Control,
-    "obstruction": Obstruction,
-}
-assert list(KINDS) == [one.name for one in fields(Characteristics)]
+KINDS: dict[str, type[enum.Enum]] = get_type_hints(Characteristics)
+"""The values of each field."""
 
 _AT_STOP_SIGN = {"junction": "intersection", "control": "stop-sign"}
 OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ from the defaults

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 ROLE = "sumo"  # role_name of what a bridge has spawned: what is left over is found by it
 MIRROR = "carla"  # begins the ids of CARLA's actors in SUMO
 RADIUS_SLACK_M = 10.0  # beyond the radius: a vehicle at its edge does not come and go
-LEVEL_M = 1.0  # a network whose heights differ from the map's by more has none of its own
+LEVEL_M = 1.0  # a network has no heights of its own where they differ from the map's by more
 
 # SUMO's variables, TraCI protocol: libsumo/TraCIConstants.h
 POSITION, ANGLE, SLOPE, SIGNALS = 0x39, 0x43, 0x36, 0x5B
@@ -256,7 +256,7 @@ class Bridge:
         self._take_in(self._client.apply_batch_sync(commands, False), spawned, len(gone), wanted)
 
     def _take_in(self, answers: Any, spawned: dict[int, str], before: int, wanted: set[str]) -> None:  # noqa: ANN401
-        """Note the new actors; a vehicle whose place is taken is tried again in the next tick."""
+        """Note the new actors; a vehicle without room is tried again in the next tick."""
         self._waiting &= wanted
         for place, name in spawned.items():
             answer = answers[before + place]
@@ -296,7 +296,7 @@ class Bridge:
     # -- the end
 
     def _remove_left_overs(self) -> None:
-        """Destroy what a bridge whose process died has left in this world."""
+        """Destroy what a dead bridge's process has left in this world."""
         left = [actor.id for actor in self._world.get_actors().filter("vehicle.*")
                 if actor.attributes.get("role_name") == ROLE]  # fmt: skip
         if left:

@@ -26,7 +26,7 @@ def from_sumo(
     front_m: tuple[float, float, float], angle_deg: float, slope_deg: float, length_m: float,
     offset_m: tuple[float, float],
 ) -> Pose:  # fmt: skip
-    """The pose of a vehicle whose front bumper is at ``front_m`` in SUMO's network."""
+    """The pose of a vehicle with its front bumper at ``front_m`` in SUMO's network."""
     heading, slope = math.radians(angle_deg), math.radians(slope_deg)
     back_m = 0.5 * length_m * math.cos(slope)
     x_m = front_m[0] - math.sin(heading) * back_m - offset_m[0]

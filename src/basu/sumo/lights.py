@@ -20,7 +20,7 @@ class Lights:
     """The paired lights. ``pairs`` counts the heads that SUMO's network names."""
 
     def __init__(self, link: Link, lights: Iterable[carla.TrafficLight]) -> None:
-        """Pair the heads with the links whose ``linkSignalID`` is theirs."""
+        """Pair the heads with the links of their ``linkSignalID``."""
         self._link = link
         self._heads = {light.get_opendrive_id(): light for light in lights}
         self._links: dict[str, dict[int, str]] = {}  # by SUMO's light: signal of each link
@@ -83,7 +83,7 @@ def _own_green(phases: list[str], nth: int) -> str:
 
 
 def _colour(letters: list[str]) -> carla.TrafficLightState:
-    """What a head shows whose links show these letters: green where any of them is."""
+    """What a head shows when its links show these letters: green where any of them is."""
     seen = {_letter(letter) for letter in letters}
     if "G" in seen:
         return carla.TrafficLightState.Green

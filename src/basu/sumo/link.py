@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 INSTALL = "SUMO is not installed; install it with: pip install 'linden[sumo]'"
 QUIET = ("--no-step-log", "--no-warnings", "--duration-log.disable")
-VERSION = (1, 20)  # the oldest whose functions are all here
+VERSION = (1, 20)  # the oldest with all functions used here
 
 
 class Link:
@@ -73,7 +73,7 @@ def in_process(config: Path, *, step_s: float, seed: int, more: Sequence[str] = 
             f"there is no SUMO configuration {config}; name a .sumocfg, or write one with `linden map sumo`"
         )
     try:
-        with contextlib.redirect_stdout(io.StringIO()):  # it warns of versions of pyarrow whose parts it does not use
+        with contextlib.redirect_stdout(io.StringIO()):  # it warns of versions of pyarrow that do not concern it
             import libsumo  # noqa: PLC0415 - an extra
     except ModuleNotFoundError:
         raise UserError(INSTALL) from None
@@ -86,7 +86,7 @@ def in_process(config: Path, *, step_s: float, seed: int, more: Sequence[str] = 
     except errors as error:
         with contextlib.suppress(*errors):
             libsumo.close()
-        raise UserError(f"SUMO refuses {config}: {_text(error)}") from None
+        raise UserError(f"SUMO refuses {config}: {_reason(error, config)}") from None
     return Link(libsumo, errors, libsumo.close)
 
 
@@ -138,6 +138,24 @@ def _offset_m(network: Path) -> tuple[float, float]:
     except (ET.ParseError, ValueError, KeyError) as error:
         raise UserError(f"SUMO's network {network} cannot be read: {error}") from error
     raise UserError(f"SUMO's network {network} says nothing of its location; make one with `linden map sumo`")
+
+
+def _reason(error: Exception, config: Path) -> str:
+    """Why SUMO did not start; it raises a bare "Process Error" where a file of the configuration is not there."""
+    text = _text(error)
+    if text != "Process Error":
+        return text
+    with contextlib.suppress(OSError, ET.ParseError):
+        for element in ET.parse(config).getroot().iter():  # noqa: S314 - the user's own file
+            names = (
+                element.get("value", "").split(",")
+                if element.tag.endswith("-files") or element.tag == "net-file"
+                else []
+            )
+            for name in names:
+                if not (config.parent / name.strip()).is_file():
+                    return f"its {element.tag} {name.strip()} is not there"
+    return "it could not load it; SUMO's own words stand above"
 
 
 def _text(error: Exception) -> str:

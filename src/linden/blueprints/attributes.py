@@ -28,7 +28,7 @@ def text(value: Value) -> str:
 
 
 def variation(name: str, kind: AttributeType, *choices: str, restricted: bool = False) -> ActorAttribute:
-    """Return an attribute that whoever spawns may set; the first of the choices is its default."""
+    """Return an attribute that a client may set at the spawn; the first of the choices is its default."""
     return ActorAttribute(name, kind, choices[0], choices, is_modifiable=True, restrict_to_recommended=restricted)
 
 
@@ -48,7 +48,7 @@ def from_facts(facts: Mapping[str, Fact]) -> tuple[ActorAttribute, ...]:
 
 
 def names(*roles: str) -> tuple[ActorAttribute, ...]:
-    """Return what every blueprint carries: ``role_name``, whose default is the first of the roles, and ``ros_name``."""
+    """Return the attributes of every blueprint: ``role_name`` (default: the first of the roles) and ``ros_name``."""
     return (
         variation("role_name", AttributeType.STRING, *(roles or DEFAULT_ROLE)),
         variation("ros_name", AttributeType.STRING, ""),

@@ -121,7 +121,7 @@ def _statics(facts: dict[str, Any]) -> Iterator[Blueprint]:
         _definition("static.trigger.friction", trigger), Kind.TRIGGER, BoundingBox(Vector3D(), Vector3D(1.0, 1.0, 1.0))
     )
     mesh = (*names("prop"), *from_facts({"mesh_path": "", "mass": 0.0, "scale": 1.0}))
-    half_m = Vector3D(0.5, 0.5, 0.5)  # CARLA's size is that of a mesh of Unreal's, which nobody has here
+    half_m = Vector3D(0.5, 0.5, 0.5)  # CARLA's size is that of a mesh of Unreal's, which is not available here
     yield Blueprint(_definition("static.prop.mesh", mesh), Kind.PROP, BoundingBox(Vector3D(0.0, 0.0, 0.5), half_m))
     for name, (length_m, width_m, height_m, tag) in facts["props"].items():
         size = next((word for word, limit_m in SIZES if max(length_m, width_m, height_m) <= limit_m), "huge")

@@ -105,7 +105,7 @@ def blended(first: F64, second: F64, share: float) -> F64:
             continue
         axis = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
         length = float(np.linalg.norm(axis))
-        if length < 1e-9:  # half a turn: about which axis nobody can say
+        if length < 1e-9:  # half a turn: the axis is undefined
             between[row, :3, :3] = (first if share < 0.5 else second)[row, :3, :3]
             continue
         x, y, z = axis / length

@@ -10,7 +10,7 @@ from linden import CARLA_VERSION, __version__
 from linden.errors import UserError
 
 NOBODY_READS = 141
-"""Exit code of a program whose output nobody reads any more, as the shell counts it: 128 and the number of SIGPIPE."""
+"""Exit code of a program after its output was closed, as the shell counts it: 128 and the number of SIGPIPE."""
 
 
 def parser() -> argparse.ArgumentParser:
@@ -47,7 +47,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _output_is_read() -> bool:
-    """Tell whether somebody still reads what we print: ``linden map check FILE | head`` stops reading early."""
+    """Return whether the output is still open: ``linden map check FILE | head`` stops reading early."""
     ends = select.poll()
-    ends.register(sys.stdout.fileno(), 0)  # an end that has gone is told without being asked for
+    ends.register(sys.stdout.fileno(), 0)  # a closed end is reported without a request
     return not ends.poll(0)

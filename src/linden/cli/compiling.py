@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 
 NICE = 10
 """Priority of a process that compiles while the server serves."""
+PROGRAM = """
+import os, sys
+from linden.cli.compiling import compile_groups
+os.nice(int(sys.argv[1]))
+compile_groups(sys.argv[2:])
+"""
 
 
 def driving() -> None:
@@ -116,10 +122,9 @@ class Compiling:
 
     def __init__(self, *groups: str, background: bool = False) -> None:
         """Start it; in the background it leaves the processors to others."""
-        program = "import os, sys; from linden.cli.compiling import compile_groups; "
-        program += f"os.nice({NICE if background else 0}); compile_groups(sys.argv[1:])"
+        nice = str(NICE if background else 0)
         self._process = subprocess.Popen(  # noqa: S603 - this very Python
-            [sys.executable, "-c", program, *groups], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE
+            [sys.executable, "-c", PROGRAM, nice, *groups], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE
         )
         self._compiled = {group: threading.Event() for group in groups}
         threading.Thread(target=self._follow, name="compiling", daemon=True).start()
@@ -146,7 +151,8 @@ class Compiling:
         assert self._process.stdout is not None
         with self._process.stdout as named:
             for line in named:
-                self._compiled[line.decode().strip()].set()
+                if (group := self._compiled.get(line.decode(errors="replace").strip())) is not None:
+                    group.set()
         for group in self._compiled.values():
             group.set()
 
@@ -246,7 +252,8 @@ def run(_arguments: argparse.Namespace) -> int:
 
     def compiled(name: str) -> tuple[str, int]:
         ended = name, Compiling(name).wait()
-        print(f"linden: compiling kernels, group {next(numbers)} of {len(GROUPS)} done: {name}", flush=True)  # noqa: T201 - as in serve
+        if not ended[1]:
+            print(f"linden: compiled kernels, group {next(numbers)} of {len(GROUPS)}: {name}", flush=True)  # noqa: T201 - as in serve
         return ended
 
     with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as processors:

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 HELP = "drive the streets with a lidar, or take existing scans, and write one point cloud (.pcd)"
 _DEFAULT_MAP = "Linden"
-_QUIET_S = 10.0  # between two lines of the bar where nobody watches (a log file)
+_QUIET_S = 10.0  # between two lines of the bar where the output is no terminal (a log file)
 
 
 def add_arguments(command: argparse.ArgumentParser) -> None:
@@ -80,7 +80,7 @@ def run(arguments: argparse.Namespace) -> int:
     job = _driven(arguments) if arguments.source is None else _existing(arguments)
     with (
         broken_off_cleanly(),
-        working_folder() as folder,  # before anybody sees that the work has begun, and so before anybody breaks it off
+        working_folder() as folder,  # before the work shows, so that an interrupt finds the folder
         PcdWriter(arguments.output, job.remark, labelled=job.labelled) as writer,
         tqdm(
             total=job.amount,

@@ -15,7 +15,7 @@ from typing import TextIO
 from typing_extensions import Self
 
 from linden.background import end_all
-from linden.server.rpc.warning_log import Sparing
+from linden.server.rpc.warning_log import LogFilter
 
 GRACE_S = 1.0
 """How long what is being done at a signal may take: any call but the loading of an unusual map."""
@@ -77,8 +77,8 @@ def _break_off(number: int, _frame: FrameType | None) -> None:
     raise SystemExit(128 + number)  # as the shell counts it
 
 
-class PatientHandler(logging.StreamHandler):  # type: ignore[type-arg] # subscripted at run time only from Python 3.11 on
-    """Writes the log to stderr as long as somebody reads it: a full pipe costs lines, and never stops the server."""
+class LossyHandler(logging.StreamHandler):  # type: ignore[type-arg] # subscripted at run time only from Python 3.11 on
+    """Writes the log to stderr. A full pipe loses lines and never stops the server."""
 
     def __init__(self) -> None:
         super().__init__(sys.stderr or _nowhere())
@@ -88,7 +88,7 @@ class PatientHandler(logging.StreamHandler):  # type: ignore[type-arg] # subscri
         """Write a line, in parts that a pipe takes at once, or count it as lost."""
         line = (self.format(record) + "\n").encode(errors="backslashreplace")
         if self._lost:
-            line = f"linden: {self._lost} lines of the log are lost here, because nobody read them\n".encode() + line
+            line = f"linden: {self._lost} lines of the log are lost here, because stderr was not read\n".encode() + line
         for start in range(0, len(line), WHOLE_WRITE_BYTES):
             if not self._takes(line[start : start + WHOLE_WRITE_BYTES]):
                 self._lost += 1
@@ -120,11 +120,11 @@ def _nowhere() -> TextIO:
 
 
 def write_log(level: str) -> None:
-    """Write the server's log to stderr from a level on; the compiler's own log is nobody's business."""
-    logging.basicConfig(level=logging.WARNING, handlers=[PatientHandler()], format="linden: %(levelname)s: %(message)s")
+    """Write the server's log to stderr from a level on; the compiler's own log is left out."""
+    logging.basicConfig(level=logging.WARNING, handlers=[LossyHandler()], format="linden: %(levelname)s: %(message)s")
     log = logging.getLogger("linden")
     log.setLevel(level)
-    log.addFilter(Sparing())
+    log.addFilter(LogFilter())
 
 
 def allow_connections() -> None:
@@ -161,5 +161,5 @@ def background_work_ended() -> Iterator[None]:
 
 
 def give_up_stdout() -> None:
-    """Let what is printed from now on go nowhere; for where nobody reads it any more."""
+    """Discard all further output, because its reader has closed it."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -102,8 +102,8 @@ def _make_server(arguments: argparse.Namespace, first_start: FirstStart) -> "Ser
     registry.load_handlers()
     if not is_loopback(arguments.host):
         log.warning(
-            "every machine that reaches %s can control this server, for nothing in CARLA's protocol asks who calls; "
-            "name 127.0.0.1 with --host, or let a firewall choose who comes",
+            "every machine that reaches %s can control this server, for CARLA's protocol has no login; "
+            "name 127.0.0.1 with --host, or restrict access with a firewall",
             arguments.host,
         )
     ports = open_ports(arguments.host, arguments.port, arguments.streaming_port)
@@ -117,10 +117,10 @@ def _make_server(arguments: argparse.Namespace, first_start: FirstStart) -> "Ser
     simulation = World(world_map, SYNCHRONOUS if arguments.sync else EpisodeSettings())
     simulation.episode.warm_up()
     first_start.step("the world")
-    simulation.seeing.device = arguments.device
-    simulation.seeing.standing_on = partial(standing_of, cache=cache)
-    simulation.seeing.bodies_of = partial(bodies_of, cache=cache)
-    simulation.seeing.await_kernels, simulation.seeing.is_compiling = (
+    simulation.sensor_scene.device = arguments.device
+    simulation.sensor_scene.standing_on = partial(standing_of, cache=cache)
+    simulation.sensor_scene.bodies_of = partial(bodies_of, cache=cache)
+    simulation.sensor_scene.await_kernels, simulation.sensor_scene.is_compiling = (
         first_start.await_sensors,
         first_start.is_compiling,
     )
@@ -149,7 +149,7 @@ def _collector_paused() -> Iterator[None]:
 
 
 def _say(line: str) -> None:
-    """Print a line that programs read, at once; a server whose output nobody reads any more serves all the same."""
+    """Print a line for programs, at once. A server with closed output goes on serving."""
     try:
         print(line, flush=True)  # noqa: T201 - what a command says to its user
     except OSError as error:  # a closed pipe, a full disk

@@ -104,7 +104,7 @@ class MapCache:
             self._folder.mkdir(parents=True, exist_ok=True)
             with part.open("wb") as stream:
                 write(stream)
-            part.replace(file)  # at once: nobody reads half a file, and of two writers the last one wins
+            part.replace(file)  # at once: no reader sees half a file, and of two writers the last one wins
             self._prune()
         except OSError as error:
             if not self._is_told:

@@ -13,7 +13,7 @@ from linden.protocol.values.space import Transform
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class MapFacts:
-    """All that is derived from a map. Nobody changes it: every episode on the map has the same.
+    """Everything derived from a map. It never changes: all episodes on the map share it.
 
     Attributes:
         ground: the height under any point.
@@ -21,7 +21,7 @@ class MapFacts:
         lanes: (L,) of ``opendrive.lane_table.LANES``.
         spawn_points: recommended ones.
         signals: lights and signs, in the order of the map.
-        give_way: (B,) of ``opendrive.placed.GIVE_WAY``: whom stop and yield signs let go first, sign after sign.
+        give_way: (B,) of ``opendrive.placed.GIVE_WAY``: squares that stop and yield signs protect, by sign.
         controllers: what switches lights together, in the order of the map.
         geo_origin_deg: latitude and longitude of the map's origin.
         lots: (N,) of ``map_lots.LOTS``: where beside the streets something may stand.

@@ -150,12 +150,12 @@ def _bare(name: str) -> str:
 
 
 def _parsed(text: str) -> "OpenDrive":
-    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - only who sends a map pays for it
+    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - needed only for maps that a client sends
 
     return parse(text)
 
 
 def _walls(opendrive: "OpenDrive", facts: MapFacts, beyond_m: float) -> NDArray[np.float64]:
-    from linden.maps.road_walls import walls_along  # noqa: PLC0415 - only who sends a map pays for it
+    from linden.maps.road_walls import walls_along  # noqa: PLC0415 - needed only for maps that a client sends
 
     return walls_along(opendrive, facts.ground, beyond_m)

@@ -1,12 +1,7 @@
 """Records derived from a map: lanes of the road mesh, placed signals, lots. Values only.
 
-What a placed signal is: a value by itself, so that who only reads one needs none of what computes it.
-
-The table that says what each lane of a road mesh is: its columns, so that who only reads it needs no mesh.
-
-Lots: the pieces of land along a street on which something may stand.
-
-A table by itself, so that who only reads it needs none of what cuts them (:mod:`linden.maps.lot_cutting`).
+A module of its own, so that readers of the records need not import the code that derives them. Lots are the pieces of
+land along a street on which houses may stand (:mod:`linden.maps.lot_cutting`).
 """
 
 from typing import NamedTuple
@@ -23,7 +18,7 @@ GIVE_WAY = np.dtype(
         ("yaw_rad", "f8"),
     ]
 )
-"""A square on the road; whoever stands under the sign lets pass what is in it."""
+"""A square on the road. Vehicles under the sign give way to vehicles in the square."""
 
 
 class AffectedLane(NamedTuple):

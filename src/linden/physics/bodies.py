@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from linden.geometry import rotation_matrix
 from linden.physics.columns import finite, twice
 from linden.physics.state import BODY, PROP, VEHICLE, WALKER
-from linden.physics.vehicle.api import Cockpits
+from linden.physics.vehicle.api import VehicleApi
 from linden.physics.vehicle.parameters import check, default_wheel_offsets, local_wheels, yaw_inertia_kgm2
 from linden.protocol.values.control import (
     UNKNOWN_UNDERCARRIAGE,
@@ -24,7 +24,7 @@ _FARTHEST_M = 1e7
 _MOST_PUSH = 1e9  # N·s, N, N·m·s or N·m
 
 
-class Bodies(Cockpits):
+class Bodies(VehicleApi):
     """Structure of arrays with stable slots; a freed slot is given out again, the lowest first.
 
     What only vehicles have (controls, physics control, telemetry) stands in ``vehicle.cockpit``. Numbers of a client
@@ -43,7 +43,7 @@ class Bodies(Cockpits):
         s = self.state
         s["alive"][slot] = s["simulate"][slot] = s["gravity"][slot] = s["collides"][slot] = True
         s["kind"][slot], s["mass_kg"][slot], s["support_mps2"][slot] = kind, mass_kg, 0.0
-        s["road_grip"][slot], s["friction_here"][slot] = 1.0, -1.0
+        s["road_friction"][slot], s["friction_here"][slot] = 1.0, -1.0
         s["sticky"][slot] = True
         s["box_centre"][slot] = box.location
         s["half_extent"][slot] = np.maximum(box.extent, 1e-3)
@@ -78,7 +78,7 @@ class Bodies(Cockpits):
         return slot
 
     def add_walker(self, pose: Transform, box: BoundingBox, mass_kg: float) -> int:
-        """Add a walker, whose origin is the middle of its body; return its slot."""
+        """Add a walker and return its slot. Its origin is the middle of its body."""
         slot = self._add(WALKER, pose, box, mass_kg)
         self.state["yaw_inertia_kgm2"][slot] = math.inf
         return slot

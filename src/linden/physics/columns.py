@@ -83,7 +83,7 @@ class Columns:
     wheel_long_force: Column[np.float64] = Column()
     wheel_lat_force: Column[np.float64] = Column()
     wheel_torque: Column[np.float64] = Column()
-    road_grip: Column[np.float64] = Column()
+    road_friction: Column[np.float64] = Column()
     friction_here: Column[np.float64] = Column()
     failure: Column[np.uint8] = Column()
     tumbling: Column[np.bool_] = Column()

@@ -128,7 +128,7 @@ BODY = np.dtype(
         ("walker_direction", "f8", 3),
         ("walker_speed", "f8"),
         ("jump", "?"),
-        ("road_grip", "f8"),  # of the road's state: 1 dry; what the tyres' friction is multiplied with
+        ("road_friction", "f8"),  # of the road's state: 1 dry; what the tyres' friction is multiplied with
         ("friction_here", "f8"),  # tyre friction that a trigger imposes, below 0 where there is none
         ("failure", "u1"),  # values.enums.VehicleFailureState
         # from here on: the kernels' memory

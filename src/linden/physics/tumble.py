@@ -163,7 +163,7 @@ def _meet_ground(v: Body, spec: Spec, ground: Ground, axes: F64, arm: F64, point
     met = 0
     local, at = np.empty(3), np.empty(3)
     braked = v.brake > 0.5 or v.hand_brake
-    tyre = (spec.friction[0] if v.friction_here < 0.0 else v.friction_here) * v.road_grip
+    tyre = (spec.friction[0] if v.friction_here < 0.0 else v.friction_here) * v.road_friction
     for k in range(_POINTS):
         _local_point(v, spec, k, local)
         for row in range(3):

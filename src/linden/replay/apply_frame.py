@@ -14,7 +14,7 @@ from linden.protocol.values.enums import TrafficLightState
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.replay.file.packets import Frame, Records, WheelTurns
 from linden.replay.interpolation import Places, within
-from linden.replay.replayed_actors import Cast, ReplayedWorld
+from linden.replay.replayed_actors import ReplayedActors, ReplayedWorld
 from linden.simulation.actor_table import NO_BODY
 
 _EMBODIED = (Kind.VEHICLE, Kind.WALKER)
@@ -26,7 +26,7 @@ Indices = NDArray[np.int64]
 
 
 class _Found(NamedTuple):
-    """Which rows of a list concern somebody who plays, and who that is."""
+    """The rows of a list that belong to replayed actors, and these actors."""
 
     rows: Indices
     actor_ids: Indices
@@ -34,15 +34,15 @@ class _Found(NamedTuple):
     """Of their bodies; ``NO_BODY`` where they have none."""
 
 
-class Stage:
-    """Puts those who play where they belong."""
+class FrameApplier:
+    """Moves replayed actors to their recorded poses."""
 
-    def __init__(self, simulation: ReplayedWorld, cast: Cast) -> None:
-        self._simulation, self._cast = simulation, cast
+    def __init__(self, simulation: ReplayedWorld, replayed: ReplayedActors) -> None:
+        self._simulation, self._replayed = simulation, replayed
         self._kept: dict[str, tuple[tuple[bytes, int, int], _Found]] = {}
 
     def put(self, where: Places) -> None:
-        """Put everybody in their places."""
+        """Move the actors to their recorded places."""
         bodies, found = self._simulation.episode.bodies, self._players("places", where.id)
         embodied = found.slots != NO_BODY
         rows, slots = found.rows[embodied], found.slots[embodied]
@@ -96,7 +96,7 @@ class Stage:
 
     def swing_doors(self, doors: Records) -> None:
         """Open and close the doors that were opened or closed in a frame; a door that the vehicle lacks is skipped."""
-        episode, of = self._simulation.episode, self._cast.of
+        episode, of = self._simulation.episode, self._replayed.of
         for recorded_id, door, opens in doors.tolist():
             record = episode.actors.find(of.get(recorded_id, 0))
             if record is not None and record.kind is Kind.VEHICLE:
@@ -130,20 +130,20 @@ class Stage:
         episode.traffic.restore(lights, colour, elapsed_s, shown["frozen"] != 0)
 
     def _players(self, name: str, ids: NDArray[np.uint32], *kinds: Kind) -> _Found:
-        """Return who plays those of ``ids`` that somebody plays, of some kinds or any; kept while nobody comes or goes.
+        """Return the replayed actors among ``ids``, of some kinds or any; cached until the set of actors changes.
 
-        Whom a client has destroyed meanwhile plays no more.
+        Actors that a client has destroyed meanwhile are left out.
         """
         actors = self._simulation.episode.actors
-        key = (ids.tobytes(), self._cast.version, actors.version)
+        key = (ids.tobytes(), self._replayed.version, actors.version)
         if name in self._kept and self._kept[name][0] == key:
             return self._kept[name][1]
         rows, found = [], []
         for row, recorded_id in enumerate(ids.tolist()):
-            record = actors.find(self._cast.of.get(recorded_id, 0))
+            record = actors.find(self._replayed.of.get(recorded_id, 0))
             if record is None or (kinds and record.kind not in kinds):
                 continue
-            if record.kind in _EMBODIED and kinds and record.slot == NO_BODY:  # one that is attached to somebody
+            if record.kind in _EMBODIED and kinds and record.slot == NO_BODY:  # an attached one
                 continue
             rows.append(row)
             found.append((record.id, record.slot))

@@ -1,14 +1,10 @@
 """One frame of an episode as records of a recording: rows, lamps, contacts.
 
-Rows of the snapshot as records of a recording, column by column. Layouts: ``linden.replay.file.layouts``.
+Layouts: ``linden.replay.file.layouts``. Colours of lamps go from 0 to 1 there.
 
-Lamps of streets and houses as records of a recording, and back. Colours there go from 0 to 1.
-
-The contacts of a frame as collisions of a recording: one a pair, whoever matters more named first.
-
-CARLA records what collision sensors notice; here nobody needs to carry one. A query for two kinds of actors looks at
-the first and the second of a collision, so the order is the one that CARLA's users see: the hero or the vehicle, then
-what it ran into.
+CARLA records the events of collision sensors; here contacts are recorded without a sensor, one a pair. A query for two
+kinds of actors distinguishes the first and the second actor of a collision. So the order is CARLA's: the hero or the
+vehicle, then the other actor.
 """
 
 from collections.abc import Mapping, Sequence
@@ -32,11 +28,11 @@ Indices = NDArray[np.int64]
 
 _ROLL_PITCH_YAW = [2, 0, 1]
 _NOT_PLACED = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN, Kind.SENSOR)
-"""Kinds whose places CARLA does not record: they stand, or follow somebody."""
+"""Kinds without recorded places in CARLA: they stand, or follow a parent."""
 
 
 class Columns(NamedTuple):
-    """Which rows are whose; valid as long as nobody comes or goes."""
+    """The rows of each kind of actor; valid until the set of actors changes."""
 
     placed: Indices
     vehicles: Indices
@@ -47,7 +43,7 @@ class Columns(NamedTuple):
 
 
 def columns(episode: Episode) -> Columns:
-    """Return which rows of the snapshot belong to whom."""
+    """Return the rows of each kind of actor in the snapshot."""
     actors = episode.actors
 
     def rows_where(*kinds: Kind) -> Indices:

@@ -48,7 +48,8 @@ def within(values: NDArray[np.floating[Any]], limit: float) -> F64:
 def between(before: Places, after: Places, share: float) -> Places:
     """Return where everybody of ``before`` was at ``share`` in [0, 1] of the way to ``after``.
 
-    Locations go straight, angles the shorter way round, each by itself as Unreal's do. Who is not there after stays.
+    Locations go straight, angles the shorter way round, each by itself as Unreal's do. Actors without a later place
+    stay.
     """
     if share == 0.0:
         return before

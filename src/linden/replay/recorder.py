@@ -1,4 +1,4 @@
-"""Records an episode as CARLA's recorder does: who comes and goes, and after each frame where all are and what they do.
+"""Records an episode as CARLA's recorder does: added and removed actors, and the state of all actors after each frame.
 
 Rows of the snapshot become records of the file by whole columns. While nothing is recorded, nothing is done.
 Source of what is written when: ``CarlaRecorder.cpp``; docs/reference/recorder.md says where this one does more.
@@ -32,7 +32,7 @@ log = logging.getLogger("linden")
 
 M_TO_CM = 100.0
 _KINDS_OF_FILE = (Kind.OTHER, Kind.VEHICLE, Kind.WALKER, Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN, Kind.SENSOR)
-"""Kinds whose numbers are those of the file; it has none for the others, which are other."""
+"""Kinds with their numbers in the file; all other kinds are ``other``."""
 
 
 class Recorder:
@@ -49,7 +49,7 @@ class Recorder:
     def start(
         self, path: Path, episode: Episode, map_name: str, clock: Callable[[], float], *, additional_data: bool
     ) -> None:
-        """Record from the next frame on, with everybody who is there; a recording under way ends.
+        """Record from the next frame on, with all present actors; a recording under way ends.
 
         Args:
             path: of the file, which is replaced.
@@ -73,7 +73,7 @@ class Recorder:
             self._tape = None
 
     def before_step(self, episode: Episode) -> None:
-        """Note who has come since the last frame, at the place where they came."""
+        """Note the actors added since the last frame, with their first places."""
         if self._tape is not None:
             self._tape.before_step(episode)
 
@@ -183,7 +183,7 @@ class _Tape:
         return found
 
     def _additional(self, episode: Episode, come: list[ActorRecord]) -> Iterator[bytes]:
-        """Yield what only those get who ask for additional data; as in CARLA, lists of nothing are left out."""
+        """Yield the packets of additional data; as in CARLA, lists of nothing are left out."""
         rows, columns = episode.actors.rows, self._columns
         lists = (
             (PacketId.KINEMATICS, rows_of.kinematics(rows, columns.moving)),
@@ -209,7 +209,7 @@ class _Tape:
 
 
 def _added(record: ActorRecord, pose: Transform) -> ActorAdded:
-    """Return an actor that came, at its place in the world, or relative to whom it is attached to, as in CARLA."""
+    """Return an actor that came, at its place in the world, or relative to its parent, as in CARLA."""
     x, y, z = (finite(along, -FARTHEST_M, FARTHEST_M) for along in pose.location)  # a float32 has to hold them in cm
     kind = record.kind if record.kind in _KINDS_OF_FILE else Kind.OTHER
     turned = pose.rotation
@@ -223,7 +223,7 @@ def _added(record: ActorRecord, pose: Transform) -> ActorAdded:
 
 
 def _has_physics(record: ActorRecord) -> bool:
-    """Whether an actor is a vehicle that drives; one that is attached to somebody does not."""
+    """Whether an actor is a vehicle that drives; an attached one does not."""
     return record.kind is Kind.VEHICLE and record.slot != NO_BODY
 
 

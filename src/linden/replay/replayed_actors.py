@@ -1,4 +1,4 @@
-"""Who in the world plays whom of a recording: actors that are reused, spawned, or left out.
+"""Replayed actors: recorded ids to actors of the world, which are reused, spawned, or left out.
 
 Source of the rules: ``CarlaReplayerHelper.cpp``; the releases up to 0.9.15 reuse an actor of the same id and type, and
 so does this one.
@@ -45,19 +45,19 @@ class ReplayedWorld(Protocol):
 
 
 class Rules(NamedTuple):
-    """Whom a replay leaves out."""
+    """The actors that a replay leaves out."""
 
     ignore_hero: bool
     ignore_spectator: bool
     replay_sensors: bool
 
 
-class Cast:
-    """Who plays whom.
+class ReplayedActors:
+    """The actors of the world that stand for recorded actors.
 
     Attributes:
         of: id in the recording -> id in the world.
-        version: grows whenever somebody enters or leaves.
+        version: grows whenever an actor is added or removed.
     """
 
     def __init__(self, simulation: ReplayedWorld, rules: Rules) -> None:
@@ -69,7 +69,7 @@ class Cast:
     def enter(self, actor: ActorAdded, parent_id: int) -> None:
         """Let an actor of the recording into the world.
 
-        ``parent_id`` is to whom it is attached in the recording, 0 nobody; its place is then relative to that one.
+        ``parent_id`` is its parent in the recording, 0 for none; its place is relative to the parent.
         """
         if self._is_ignored(actor):
             return
@@ -95,7 +95,7 @@ class Cast:
         return rules.ignore_hero and actor.description.attribute("role_name") == "hero"
 
     def _existing(self, actor: ActorAdded, pose: Transform) -> ActorRecord | None:
-        """Return who plays the actor without being spawned, moved to its place; None where nobody does."""
+        """Return the existing actor that stands for a recorded one, moved to its place; None where there is none."""
         episode, type_id = self._simulation.episode, actor.description.id
         if type_id == "spectator":
             return episode.actors.get(episode.spectator_id)
@@ -170,7 +170,7 @@ class Cast:
         destroy(self._simulation.episode, actor_id, announce=True)
 
     def dismiss(self) -> None:
-        """Give everybody back to the physics, standing still, as CARLA does at the end of a replay."""
+        """Give all actors back to the physics, standing still, as CARLA does at the end of a replay."""
         episode = self._simulation.episode
         bodies = episode.bodies
         for actor_id in self.of.values():
@@ -193,7 +193,7 @@ class Cast:
 
 
 def pose_of(actor: ActorAdded) -> Transform:
-    """Return where an actor came into the recording: in the world, or relative to whom it is attached to."""
+    """Return where an actor came into the recording: in the world, or relative to its parent."""
     roll, pitch, yaw = within(np.array(actor.rotation_deg), 360.0).tolist()
     x, y, z = within(np.array(actor.location_cm) * CM_TO_M, FARTHEST_M).tolist()
     return Transform(Vector3D(x, y, z), Rotation(pitch, yaw, roll))

@@ -1,4 +1,4 @@
-"""Replays a recording in the running episode: after each step everybody is put where the recording had them.
+"""Replays a recording in the running episode: after each step the actors take their recorded poses.
 
 The first frame after the start shows the moment asked for, and each one after it a step (times the time factor) later;
 so a recording of N steps is replayed by N steps of the same length. Source of the rules: ``CarlaReplayer.cpp``.
@@ -13,11 +13,11 @@ import numpy as np
 from linden.geometry import compose
 from linden.protocol.values.space import Transform
 from linden.replay import frame_records as recorded_lamps
-from linden.replay.apply_frame import Stage
+from linden.replay.apply_frame import FrameApplier
 from linden.replay.file.packets import Frame, RecordingError
 from linden.replay.file.track import Track
 from linden.replay.interpolation import Places, between, places
-from linden.replay.replayed_actors import Cast, ReplayedWorld, Rules
+from linden.replay.replayed_actors import ReplayedActors, ReplayedWorld, Rules
 
 log = logging.getLogger("linden")
 
@@ -29,7 +29,7 @@ class Plan(NamedTuple):
     """What of a recording is replayed.
 
     ``start_s`` counts from the recording's end where it is negative. ``duration_s`` 0 is all that follows. The
-    spectator follows the actor ``follow_id`` of the recording at ``offset`` to it; 0 is nobody.
+    spectator follows the actor ``follow_id`` of the recording at ``offset`` to it; 0 is no actor.
     """
 
     start_s: float
@@ -70,9 +70,9 @@ class Replayer:
         return self._run.span
 
     def stop(self, *, keep_actors: bool) -> None:
-        """End the replay under way, if there is one: everybody stops, and physics has them again.
+        """End the replay under way, if there is one: the actors stop, and physics moves them again.
 
-        Without ``keep_actors`` those go whom the rest of the recording would have taken away.
+        Without ``keep_actors`` the actors that the rest of the recording would remove are destroyed.
         """
         if self._run is None:
             return
@@ -86,7 +86,7 @@ class Replayer:
             self._run = None
 
     def after_step(self, simulation: ReplayedWorld, delta_s: float) -> None:
-        """Put everybody in their places; a recording that turns out damaged ends here, and the log says where."""
+        """Apply the poses of this frame; a recording that turns out damaged ends here, and the log says where."""
         if self._run is None:
             return
         try:
@@ -116,8 +116,8 @@ class _Run:
         self._frames, self._elapsed_s = track.places, track.elapsed_s
         self._events = deque(sorted(track.events.items()))
         self.span = _span(float(self._elapsed_s[-1]), plan)
-        self._cast = Cast(simulation, rules)
-        self._stage = Stage(simulation, self._cast)
+        self._actors = ReplayedActors(simulation, rules)
+        self._applier = FrameApplier(simulation, self._actors)
         self._known: dict[int, Frame] = {}
         self._now_s = self.span.start_s
         self._has_begun = False
@@ -137,12 +137,12 @@ class _Run:
         while self._events and self._events[0][0] <= at:
             self._take_in(self._events.popleft()[1])
         frame = self._frame(at)
-        self._stage.put(self._places(at, now_s))
-        self._stage.show(frame)
+        self._applier.put(self._places(at, now_s))
+        self._applier.show(frame)
         self._follow()
 
     def _places(self, at: int, now_s: float) -> Places:
-        """Return where everybody is ``now_s``, which is in frame ``at``."""
+        """Return the places of all actors at ``now_s``, which is in frame ``at``."""
         here = places(self._frame(at))
         since_s = now_s - float(self._elapsed_s[at])
         if since_s <= _SAME_MOMENT_S or at + 1 == len(self._frames):
@@ -158,7 +158,7 @@ class _Run:
         return self._known[at]
 
     def _take_in(self, frame: Frame | RecordingError) -> None:
-        """Let those come and go who do so in a frame, and switch the lamps that were switched in it.
+        """Add and remove the actors of a frame, and switch the lamps that were switched in it.
 
         Raises:
             RecordingError: the frame is damaged.
@@ -167,17 +167,17 @@ class _Run:
             raise frame
         parent_of = dict(frame.parents.tolist())
         for actor in frame.added:
-            self._cast.enter(actor, parent_of.get(actor.id, 0))
+            self._actors.enter(actor, parent_of.get(actor.id, 0))
         for (actor_id,) in frame.removed.tolist():
-            self._cast.leave(actor_id)
-        self._stage.swing_doors(frame.doors)
+            self._actors.leave(actor_id)
+        self._applier.swing_doors(frame.doors)
         lamps = recorded_lamps.states(frame.scene_lights)
         if unknown := self._simulation.episode.surroundings.lamps.update(lamps):
             log.info("replay: the map lacks %d of the lamps that were switched", len(unknown))
 
     def _follow(self) -> None:
         episode = self._simulation.episode
-        actor_id = self._cast.of.get(self._plan.follow_id, 0)
+        actor_id = self._actors.of.get(self._plan.follow_id, 0)
         if actor_id in episode.actors:
             episode.place(episode.spectator_id, compose(episode.transform(actor_id), self._plan.offset))
 
@@ -186,8 +186,8 @@ class _Run:
         if not keep_actors:
             for _, frame in self._events:
                 for (actor_id,) in () if isinstance(frame, RecordingError) else frame.removed.tolist():
-                    self._cast.leave(actor_id)
-        self._cast.dismiss()
+                    self._actors.leave(actor_id)
+        self._actors.dismiss()
         self.recording.close()
 
 

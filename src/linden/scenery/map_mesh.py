@@ -26,7 +26,7 @@ from linden.scenery.streets.markings import lines
 from linden.scenery.streets.railroad import railroad
 from linden.scenery.streets.road import CONCRETE, kerbs, surface
 from linden.scenery.streets.road_paint import across_lanes, arrows
-from linden.scenery.streets.simplified_lanes import Laid, laid
+from linden.scenery.streets.simplified_lanes import SimplifiedLanes, simplified_lanes
 from linden.scenery.streets.terrain import land
 
 F64 = NDArray[np.float64]
@@ -37,7 +37,7 @@ _SEED = 880
 
 def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:
     """Return what stands: triangles of things name their box in ``scene``, those of the streets and the land none."""
-    lanes = laid(opendrive)
+    lanes = simplified_lanes(opendrive)
     checkpoint()
     under = floors(road_mesh(opendrive), facts.ground)
     checkpoint()
@@ -60,7 +60,7 @@ def _beside(facts: MapFacts, scene: Scene, lawn: Mesh) -> Mesh:
     )
 
 
-def streets(lanes: Laid, opendrive: OpenDrive, facts: MapFacts) -> Mesh:
+def streets(lanes: SimplifiedLanes, opendrive: OpenDrive, facts: MapFacts) -> Mesh:
     """Return the roads with their kerbs and paint."""
     return join(
         [

@@ -1,7 +1,7 @@
 """Flat patches of which everything that stands is put together, many at once: quads, boxes, prisms, fans.
 
-All arrays run over N like things; corners are (N, ..., 3) in m. Which way a patch looks is said by the caller where it
-matters, and patches are turned round to look there: nobody has to think about the order of corners.
+All arrays run over N like things; corners are (N, ..., 3) in m. The caller gives the direction of a
+patch's front where it matters. Patches are turned round to face it, so the order of corners does not matter.
 """
 
 from typing import NamedTuple

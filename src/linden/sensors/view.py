@@ -1,8 +1,6 @@
 """The input of a ray-casting sensor: the scene at one moment, and the pose of the sensor.
 
-What there is to be seen: the faces of all meshes in one table, and the moment in which a sensor looks at them.
-
-What a sensor that looks around is given in a frame of its own, and what every such sensor has to offer.
+``Seen`` holds the faces of all meshes in one table and their poses. ``Look`` adds the pose of one sensor.
 """
 
 from collections.abc import Hashable, Sequence
@@ -131,14 +129,14 @@ class LookingSensor(Protocol):
         ...
 
     def skip(self, interval_s: float) -> None:
-        """Let a measurement pass that nobody listens to; no later reading may depend on whether somebody did."""
+        """Skip a measurement without subscribers; later readings must be the same as after a measurement."""
         ...
 
 
 @runtime_checkable
-class Expectant(Protocol):
-    """A sensor whose measurement goes on by itself once it is begun: those of a frame are begun before any is made."""
+class AsynchronousSensor(Protocol):
+    """A sensor with asynchronous measurements: those of a frame all begin before the first is read."""
 
     def expect(self, look: Look) -> None:
-        """Begin what ``measure`` will be asked for with the same look."""
+        """Begin the measurement that ``measure`` returns for the same look."""
         ...

@@ -1,4 +1,4 @@
-"""The two doors: lets newcomers in as long as there is room, and shows out those who never say what they want.
+"""Acceptance of connections on both ports, up to a limit; connections that stay silent are closed.
 
 A subscriber says at once which stream it wants, so one that keeps silent is sent away. A client may be silent for as
 long as it likes, for a user may think at a prompt; only where there is no room for others it has to make it.
@@ -17,11 +17,11 @@ from linden.server.ports import Ports
 log = logging.getLogger("linden")
 
 FULL_PAUSE_S = 1.0
-"""How long nobody is let in after room has run out."""
+"""How long no connection is accepted after the limit was reached."""
 SILENT_SUBSCRIBER_S = 10.0
 """How long a stream connection may take to say its four bytes; the official client sends them on connecting."""
 LET_IN_AT_ONCE = 64
-"""Newcomers of a door before those who are inside have their turn."""
+"""Connections accepted on a port before the connected clients have their turn."""
 SHOWN_OUT_AT_ONCE = 16
 """Silent clients that leave together when there is no room."""
 RESERVED_FILES = 64
@@ -45,8 +45,8 @@ def most_connections() -> int:
     return max(RESERVED_FILES, min(soft - RESERVED_FILES, MOST_CONNECTIONS_ANYWHERE))
 
 
-class Entrance:
-    """Listens on both ports and knows who has come and not yet said anything."""
+class Acceptor:
+    """Listens on both ports and keeps the connections that have not sent anything yet."""
 
     def __init__(
         self,
@@ -56,7 +56,7 @@ class Entrance:
         welcome: Callable[[Peer], None],
         show_out: Callable[[Peer], None],
     ) -> None:
-        """``welcome`` is told of a newcomer, ``show_out`` of one that is to go."""
+        """``welcome`` is called with a new connection, ``show_out`` with one to close."""
         self._ports = ports
         self._selector = selector
         self._welcome = welcome
@@ -132,14 +132,14 @@ class Entrance:
         self._welcome(peer)
 
     def _make_room(self, why: str) -> None:
-        """Show out the silent ones who have been here longest; where there are none, close the doors for a while."""
+        """Close the oldest silent connections; where there are none, accept no connection for a while."""
         leaving = tuple(islice(chain(self._silent[StreamPeer], self._silent[RpcPeer]), SHOWN_OUT_AT_ONCE))
         for peer in leaving:
             self._show_out(peer)
         if leaving:
             log.warning("%d silent connections are closed to make room for others: %s", len(leaving), why)
             return
-        log.warning("nobody more is let in for %.0f s: %s", FULL_PAUSE_S, why)
+        log.warning("no more connections are accepted for %.0f s: %s", FULL_PAUSE_S, why)
         self._selector.unregister(self._ports.rpc)
         self._selector.unregister(self._ports.streaming)
         self._closed_until_s = self._clock() + FULL_PAUSE_S

@@ -14,7 +14,7 @@ from linden.server.load_answers import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
 from linden.server.rpc import registry
 from linden.server.rpc.context import Context
-from linden.server.rpc.registry import Unanswered
+from linden.server.rpc.registry import SuspendedCall
 from linden.server.subscribers import Expected, Subscribers
 
 log = logging.getLogger("linden")
@@ -55,10 +55,10 @@ class Calls:
     """What clients have asked for and not yet got.
 
     Attributes:
-        unfinished: those whose calls wait for their turn; an ordered set.
-        last_ticker: who made the last frame that was made by a call.
-        joined_s: when somebody last began to listen to a stream.
-        expected: the streams that somebody is about to listen to.
+        unfinished: the clients with calls that wait for their turn; an ordered set.
+        last_ticker: the client with the last call that made a frame.
+        joined_s: the time of the last subscription.
+        expected: the streams that clients are about to subscribe to.
     """
 
     def __init__(
@@ -70,7 +70,7 @@ class Calls:
         close: Callable[[RpcPeer], None],
         wake: Callable[[], None],
     ) -> None:
-        """``watch`` is told of a client whose state has changed, ``close`` of one that is to go.
+        """``watch`` is called with a client that changed its state, ``close`` with one to close.
 
         ``wake`` lets the server look at what is unfinished; other threads call it.
         """
@@ -84,11 +84,11 @@ class Calls:
         self.last_ticker: RpcPeer | None = None
         self.joined_s = -math.inf
         self.expected = Expected()
-        self._cues: dict[RpcPeer, Cue] = {}  # of those who run a Traffic Manager
+        self._cues: dict[RpcPeer, Cue] = {}  # of clients with a Traffic Manager
         self._driven: dict[RpcPeer, Driven] = {}  # of those too
         self._shown_frame = context.simulation.frame
-        self._working: dict[RpcPeer, Unanswered] = {}  # whose call has work in the background
-        self._handovers: dict[RpcPeer, Handover] = {}  # of loads by those who run a Traffic Manager
+        self._working: dict[RpcPeer, SuspendedCall] = {}  # clients with work in the background
+        self._handovers: dict[RpcPeer, Handover] = {}  # of loads by clients with a Traffic Manager
         self._load_until_s = math.inf  # when a pending load begins in any case
         self._held: dict[RpcPeer, tuple[bytes, float]] = {}  # answers that wait for the scene, and until when
 
@@ -98,7 +98,7 @@ class Calls:
         self.unfinished.pop(peer, None)
         self._cues.pop(peer, None)
         self._driven.pop(peer, None)
-        self._working.pop(peer, None)  # what it asked for is made, and nobody gets it
+        self._working.pop(peer, None)  # its result is made and dropped
         self._held.pop(peer, None)
         self._handovers.pop(peer, None)
         self.expected.forget(peer.number)
@@ -106,7 +106,7 @@ class Calls:
     def carry_out(self, peer: RpcPeer) -> None:
         """Carry out a client's calls in their order: some, and the rest at its next turn.
 
-        A client whose last calls are done and who sends nothing more is closed.
+        A client is closed when its last calls are done and it sends nothing more.
         """
         self.unfinished.pop(peer, None)
         answers: list[bytes] = []
@@ -184,7 +184,7 @@ class Calls:
         if self._context.simulation.frame != frame:
             self.last_ticker = peer
         self.publish()
-        if isinstance(answer, Unanswered):
+        if isinstance(answer, SuspendedCall):
             self._working[peer] = answer
             answer.made.add_done_callback(lambda _: self._wake())
             return None
@@ -281,7 +281,7 @@ class Calls:
             self._load_until_s = now_s
 
     def _hand_over(self, peer: RpcPeer) -> bytes | None:
-        """Return the answer to a load whose time has come, None where the client's next call is to be carried out."""
+        """Return the answer to a load that is due, None where the client's next call has to be carried out."""
         handover = self._handovers[peer]
         if handover.phase is Phase.GATHERING:
             return self._done(peer, handover.answered(self._clock()))
@@ -340,7 +340,7 @@ class Calls:
         return max(0.0, min(until_s) - now_s) if until_s else None
 
     def waits_for_subscribers(self, peer: RpcPeer) -> bool:
-        """Whether a client's next call makes a frame, for which somebody who lags behind or comes is not ready."""
+        """Whether a client's next call makes a frame, while a slow or an expected subscriber is not ready."""
         return (
             peer not in self._working
             and registry.advances(peer.calls[0])
@@ -349,7 +349,7 @@ class Calls:
         )
 
     def frame_wait_s(self, now_s: float) -> float | None:
-        """Return how long synchronous mode's next frame waits at most for subscribers who lag behind or are coming."""
+        """Return how long synchronous mode's next frame waits at most for slow and expected subscribers."""
         waits = (self._subscribers.patience_s(now_s), self.expected.wait_s(now_s))
         return min((wait_s for wait_s in waits if wait_s is not None), default=None)
 

@@ -2,9 +2,9 @@
 
 When ``destroy_actor`` is answered, LibCarla's ``Simulator::DestroyActor`` cuts the actor off from its episode. A
 Traffic Manager holds the same object, and its thread ends the process where it still works on it: "trying to operate on
-a destroyed actor". It drops a car at the beginning of a step whose snapshot lacks it, and a batch without the car says
-so. In CARLA the answer comes between two frames, and a race remains. Here the answer waits for that batch, or, where no
-frame comes by itself, until the thread is idle.
+a destroyed actor". It drops a car at the beginning of a step with a snapshot that lacks it. A batch without the car
+shows that. In CARLA the answer comes between two frames, and a race remains. Here the answer waits for that batch, or,
+where no frame comes by itself, until the thread is idle.
 
 A snapshot without the car that comes in the middle of a step is as bad. ``EpisodeState::GetActorSnapshot`` then returns
 memory that was never written, the Traffic Manager takes a speed limit from it, and the process ends in
@@ -22,7 +22,7 @@ BATCH = "apply_batch"
 DESTROY = "destroy_actor"
 
 PATIENCE_S = 0.25
-"""How long an answer or a frame waits. A Traffic Manager whose last car was destroyed sends no batch any more."""
+"""How long an answer or a frame waits. A Traffic Manager without cars sends no batch any more."""
 LONG_PATIENCE_S = 1.0
 """How long an answer waits where other cars are driven, so that a batch will come: on a busy machine a step is long."""
 

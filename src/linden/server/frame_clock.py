@@ -1,7 +1,7 @@
-"""When asynchronous mode's next frame is due, and how long a variable step is. Knows no clock: it is told the time.
+"""The times of frames in asynchronous mode, and the length of variable steps. The caller passes the time.
 
-With a fixed step the frames keep real time, one step each (the original runs as fast as it can; nobody who drives by
-hand wants that). With a variable step there are :data:`VARIABLE_HZ` frames a second, and a step is as long as the time
+With a fixed step the frames keep real time, one step each. (The original runs as fast as it can, which is too fast for
+driving by hand.) With a variable step there are :data:`VARIABLE_HZ` frames a second, and a step is as long as the time
 since the last one, at most :data:`LONGEST_STEP_S`. A server that cannot keep up makes frames one after the other and
 lets simulated time fall behind; it never makes up for them in a burst.
 """
@@ -14,7 +14,7 @@ SHORTEST_STEP_S = 1e-4
 """So that two ticks in a row have a step above zero between them."""
 
 
-class Pace:
+class FrameClock:
     """The rhythm of one server. All times in s of one steady clock."""
 
     def __init__(self, now_s: float) -> None:

@@ -89,7 +89,7 @@ def described(record: ActorRecord) -> Actor:
 
 
 def scenery(type_id: str) -> Actor:
-    """Return what stands for scenery in an event: an actor that nobody has spawned."""
+    """Return the actor that stands for scenery in an event; it was never spawned."""
     return Actor(0, 0, ActorDescription(0, type_id), BoundingBox())
 
 
@@ -123,7 +123,7 @@ def world_payload(simulation: World) -> bytes:
 
 
 def sensor_payloads(simulation: World, listened: set[int]) -> list[tuple[int, bytes]]:
-    """Return (stream id, message) of everything that sensors measured in this frame for somebody who listens."""
+    """Return (stream id, message) of all measurements of this frame that have subscribers."""
     return [(item.sensor.stream_id, _payload(simulation, item)) for item in simulation.measure(listened)]
 
 

@@ -15,14 +15,14 @@ from functools import partial
 from linden.errors import ProtocolError
 from linden.maps.library import MapLibrary
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
-from linden.server.accept import Entrance
+from linden.server.accept import Acceptor
 from linden.server.calls import Calls
-from linden.server.frame_clock import Pace
+from linden.server.frame_clock import FrameClock
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports, port_of
 from linden.server.rpc import session
 from linden.server.rpc.context import Context, Frames
-from linden.server.stall_log import Waiting
+from linden.server.stall_log import StallLog
 from linden.server.subscribers import Subscribers
 from linden.world import World
 
@@ -45,11 +45,11 @@ _BUG = "internal error in %s; the server goes on"
 
 
 class Server:
-    """Listens on two ports and serves one simulation until it is told to stop."""
+    """Listens on two ports and serves one world until :meth:`stop` is called."""
 
     def __init__(self, simulation: World, maps: MapLibrary, frames: Frames, ports: Ports) -> None:
         self._clock = time.monotonic
-        self._pace = Pace(self._clock())
+        self._pace = FrameClock(self._clock())
         self.context = Context(
             simulation=simulation,
             maps=maps,
@@ -59,13 +59,13 @@ class Server:
         )
         self._selector = selectors.DefaultSelector()
         self._subscribers = Subscribers(self.context.streams, self._watch, self._close)
-        self._entrance = Entrance(ports, self._selector, self._clock, self._welcome, self._close)
-        self._waiting = Waiting()
+        self._acceptor = Acceptor(ports, self._selector, self._clock, self._welcome, self._close)
+        self._stall_log = StallLog()
         self._clients: dict[RpcPeer, None] = {}  # an ordered set
         self._calls = Calls(self.context, self._subscribers, self._clock, self._watch, self._close, self._wake)
         self._wake_reader, self._wake_writer = socket.socketpair()
         self._stopping = False
-        simulation.seeing.when_built = self._wake
+        simulation.sensor_scene.when_built = self._wake
         self._wake_reader.settimeout(0.0)
         self._wake_writer.settimeout(0.0)
         self._selector.register(self._wake_reader, _READ, lambda _: self._wake_reader.recv(64))
@@ -83,7 +83,7 @@ class Server:
                 self._selector.unregister(key.fileobj)
                 if isinstance(key.fileobj, socket.socket):
                     key.fileobj.close()
-            for peer in self._clients:  # those who wait are not in the selector
+            for peer in self._clients:  # waiting peers are not in the selector
                 peer.socket.close()
             self._selector.close()
             self._wake_writer.close()
@@ -108,7 +108,7 @@ class Server:
         """Drop what was to be sent, where there is no memory left; what called for it has been unwound by now."""
         self.context.outbox.clear()
         gc.collect()
-        self.context.own_up("the server's memory does not suffice; what was being made is dropped, and it goes on")
+        self.context.log_bug("the server's memory does not suffice; what was being made is dropped, and it goes on")
 
     def _turn(self) -> None:
         """Wait for the next thing to do, and do it."""
@@ -128,8 +128,8 @@ class Server:
         waits = [
             self._calls.frame_wait_s(now_s) if self._calls.unfinished else None,
             self._calls.held_s(now_s),
-            self._entrance.wait_s(now_s),
-            self._waiting.untold_s(now_s),
+            self._acceptor.wait_s(now_s),
+            self._stall_log.untold_s(now_s),
         ]
         settings = self.context.simulation.settings
         if not settings.synchronous_mode:
@@ -140,13 +140,13 @@ class Server:
     def _look_around(self) -> None:
         """Do what is due by the clock and is no frame."""
         now_s = self._clock()
-        self._entrance.look(now_s)
+        self._acceptor.look(now_s)
         held_up = self._calls.unfinished and any(
             self._calls.waits_for_subscribers(peer) for peer in self._calls.unfinished
         )
-        self._waiting.for_subscribers(now_s, self._subscribers.congested(now_s) if held_up else ())
+        self._stall_log.for_subscribers(now_s, self._subscribers.congested(now_s) if held_up else ())
         stands_still = self._calls.is_synchronous() and not held_up
-        self._waiting.for_a_tick(
+        self._stall_log.for_a_tick(
             now_s, self.context.simulation.frame, tuple(self._clients) if stands_still else (), self._calls.last_ticker
         )
 
@@ -192,7 +192,7 @@ class Server:
             log.info("%s is gone: %s", peer, error)
             self._close(peer)
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-            self.context.own_up(f"{_BUG % peer}, without it.", error)
+            self.context.log_bug(f"{_BUG % peer}, without it.", error)
             self._close(peer)
         if peer.is_open:
             self._watch(peer)
@@ -205,7 +205,7 @@ class Server:
             self._selector.unregister(peer.socket)
             peer.interest = 0
         peer.socket.close()
-        self._entrance.has_left(peer)
+        self._acceptor.has_left(peer)
         if isinstance(peer, StreamPeer):
             self._subscribers.remove(peer)
         elif isinstance(peer, RpcPeer):
@@ -218,11 +218,11 @@ class Server:
             log.debug("%s has left", peer)
             self._close(peer)
         elif peer.subscription.receive(data) and peer.subscription.stream_id is not None:
-            self._entrance.has_spoken(peer)
+            self._acceptor.has_spoken(peer)
             self._subscribers.add(peer, peer.subscription.stream_id)
             self._calls.joined_s = self._clock()
             self._calls.expected.came(peer.subscription.stream_id)
-            if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # whoever joins between two ticks sees the world too
+            if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # also between two ticks
                 payload = self.context.frames.world_payload(self.context.simulation)
                 self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.is_synchronous())
 
@@ -232,7 +232,7 @@ class Server:
         if data:
             peer.calls.extend(peer.connection.receive(data))
             if peer.calls:
-                self._entrance.has_spoken(peer)
+                self._acceptor.has_spoken(peer)
             elif peer.connection.unfinished_bytes > HOARD_BYTES:
                 self._refuse_to_hoard()
         else:
@@ -267,6 +267,6 @@ class Server:
                 self.context.begin_pending_load()
             self.context.advance()
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-            self.context.own_up(f"{_BUG % 'a frame'}.", error)
+            self.context.log_bug(f"{_BUG % 'a frame'}.", error)
         self._pace.frame_made(now_s, settings.fixed_delta_seconds)
         self._calls.publish()

@@ -2,7 +2,7 @@
 
 Bytes on their way to a peer that may read slowly or never: a queue before a socket that does not block.
 
-The two kinds of connection: one whose client calls, one whose client listens. Each owns its socket.
+A client calls on one kind of connection and receives streams on the other. Each owns its socket.
 """
 
 import socket

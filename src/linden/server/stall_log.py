@@ -1,6 +1,6 @@
-"""What the log says of waiting: for whom no frame is made, once when it has lasted, and once when it goes on.
+"""Log lines about stalls: the peer that holds up the frames, once when a stall lasts, and once when it ends.
 
-Knows no clock: it is told the time. Two things can hold up the frames of synchronous mode: a subscriber that does not
+The caller passes the time. Two things can hold up the frames of synchronous mode: a subscriber that does not
 read what it is sent, and a client that does not tick.
 """
 
@@ -19,7 +19,7 @@ NO_TICK_S = 10.0
 _NAMED = 5  # how many peers a sentence names
 
 
-class Stretch:
+class Stall:
     """One stretch of waiting after the other, each told of once it has lasted."""
 
     def __init__(self, told_after_s: float) -> None:
@@ -49,16 +49,16 @@ class Stretch:
         return max(0.0, self._since_s + self._told_after_s - now_s)
 
 
-class Waiting:
+class StallLog:
     """The waiting of one server."""
 
     def __init__(self) -> None:
-        self._held_up = Stretch(HELD_UP_S)
-        self._no_tick = Stretch(NO_TICK_S)
+        self._held_up = Stall(HELD_UP_S)
+        self._no_tick = Stall(NO_TICK_S)
         self._frame = -1
 
     def for_subscribers(self, now_s: float, congested: Sequence[StreamPeer]) -> None:
-        """Note for whom a tick waits at this moment; nobody, mostly."""
+        """Note the peers that a tick waits for at this moment; mostly none."""
         if congested:
             if self._held_up.goes_on(now_s):
                 log.warning("a tick waits for %s, with %s unread", _names(congested), _unread(congested))
@@ -66,13 +66,13 @@ class Waiting:
             log.warning("ticks go on after %.1f s of waiting for subscribers", lasted_s)
 
     def for_a_tick(self, now_s: float, frame: int, clients: Sequence[RpcPeer], last: RpcPeer | None) -> None:
-        """Note that time stands still in synchronous mode until somebody ticks.
+        """Note that time stands still in synchronous mode until a client ticks.
 
         Args:
             now_s: the time.
             frame: number of the last frame.
-            clients: who is there and could tick; empty where it is not a tick that is waited for.
-            last: who ticked last, None where nobody has.
+            clients: the clients that could tick; empty where the server does not wait for a tick.
+            last: the client that ticked last, None before the first tick.
         """
         if frame != self._frame or not clients:
             self._frame = frame
@@ -90,9 +90,9 @@ class Waiting:
 
 
 def _whose(clients: Sequence[RpcPeer], last: RpcPeer | None) -> str:
-    """Say whose tick is missing."""
+    """Log the client with the missing tick."""
     if last is None:
-        return f"nobody has ticked yet; connected: {_names(clients)}"
+        return f"no client has ticked yet; connected: {_names(clients)}"
     if last.is_open:
         return f"waiting for {last}, which made that one"
     return f"{last} made that one and has left; another may tick, or end synchronous mode: {_names(clients)}"

@@ -1,17 +1,14 @@
 """Subscribers of the sensor streams: connected ones, expected ones, and how slow ones are treated.
 
-Who listens to which stream, and what is done about those who read too slowly.
+In asynchronous mode a slow subscriber misses whole messages: only the newest one waits for it. In synchronous mode
+every message is sent. Up to :data:`QUEUED_BYTES` wait for each subscriber, and up to :data:`QUEUED_BYTES_OF_ALL` for
+all together. A subscriber with more is congested. No frame is made while a subscriber is congested, and after
+:data:`PATIENCE_S` its connection is closed.
 
-In asynchronous mode whole messages are left out for a subscriber that has not read those before: the newest waits for
-it. In synchronous mode nothing is left out: up to :data:`QUEUED_BYTES` wait for each subscriber, and up to
-:data:`QUEUED_BYTES_OF_ALL` for all together; whoever has more waiting is congested, no frame is made until that is
-over, and after :data:`PATIENCE_S` the connection is closed.
-
-Streams that a client is about to listen to: it has asked where they are, and its subscription is on the way.
-
-The official client asks ``get_sensor_token`` in ``listen()``, subscribes from a thread of its own, and may tick before
-that thread has been heard of. CARLA's frames take so long that the subscription overtakes them; here the frame waits,
-so that a sensor measures from the first tick after ``listen()`` on. Knows no clock: it is told the time.
+A stream is expected while a client has asked for its token and has not subscribed yet. The official client calls
+``get_sensor_token`` in ``listen()``, subscribes in a thread of its own, and may tick before that thread has connected.
+CARLA's frames take so long that the subscription comes first. Here the frame waits, so that a sensor measures from the
+first tick after ``listen()`` on. The caller passes the time.
 """
 
 import logging
@@ -27,7 +24,7 @@ log = logging.getLogger("linden")
 QUEUED_BYTES = 32 * 1024 * 1024
 """What may wait for one subscriber: a second of 800 x 600 pictures at 20 Hz, or an hour of snapshots of one car."""
 QUEUED_BYTES_OF_ALL = 256 * 1024 * 1024
-"""What may wait for all subscribers together; shared evenly among those who are behind, if they are more than eight."""
+"""What may wait for all subscribers together; shared evenly among the slow ones, if they are more than eight."""
 PATIENCE_S = 4.0
 """How long a congested subscriber holds up the frames: less than the 5 s after which other clients give up a call."""
 
@@ -38,7 +35,7 @@ class Subscribers:
     def __init__(
         self, table: StreamTable, watch: Callable[[StreamPeer], None], close: Callable[[StreamPeer], None]
     ) -> None:
-        """``watch`` is told of a peer for which something waits, ``close`` of one that is to go."""
+        """``watch`` is called with a peer that has bytes to send, ``close`` with one to close."""
         self._table = table
         self._watch = watch
         self._close = close
@@ -64,7 +61,7 @@ class Subscribers:
             log.info("%s has missed %d messages in all", peer, peer.dropped)
 
     def publish(self, stream_id: int, payload: bytes, now_s: float, *, may_drop: bool) -> None:
-        """Send one message to all who listen; those whose connection is broken are closed."""
+        """Send one message to all subscribers of a stream; broken connections are closed."""
         for peer in tuple(self._by_stream.get(stream_id, ())):
             self.send(peer, payload, now_s, may_drop=may_drop)
 
@@ -95,7 +92,7 @@ class Subscribers:
         return max(0.0, min(peer.congested_since_s or 0.0 for peer in congested) + PATIENCE_S - now_s)
 
     def congested(self, now_s: float) -> list[StreamPeer]:
-        """Return those for whom frames wait, and close those with whom patience has ended."""
+        """Return the subscribers that frames wait for, and close those that were waited for too long."""
         if not self._behind:
             return []
         for peer in tuple(self._behind):
@@ -123,10 +120,10 @@ class Subscribers:
 
 
 SUBSCRIPTION_WAIT_S = 3.0
-"""How long a frame waits for somebody who has asked and does not come. The official client takes a millisecond,
-and more than half a second where ten programs share a processor: a camera that is not waited for is never answered."""
+"""How long a frame waits for an expected subscriber. The official client takes a millisecond, and more than half a
+second where ten programs share a processor. A camera whose subscriber the frame does not wait for never answers."""
 MOST_IN_VAIN = 3
-"""How often frames wait for a client that does not come; then its questions hold up nobody, until it has come once."""
+"""How often frames wait in vain for a client; then its requests delay no frame until it has subscribed once."""
 
 
 class _Wait(NamedTuple):
@@ -142,23 +139,23 @@ class Expected:
         self._in_vain: Counter[int] = Counter()
 
     def asked(self, stream_id: int, client: int, now_s: float) -> None:
-        """Note that a client wants to know where a stream is; asking again makes nobody wait longer."""
+        """Note that a client wants to know where a stream is; a second request does not extend the wait."""
         if stream_id not in self._waits and self._in_vain[client] < MOST_IN_VAIN:
             self._waits[stream_id] = _Wait(client, now_s + SUBSCRIPTION_WAIT_S)
 
     def came(self, stream_id: int) -> None:
-        """Note that somebody has begun to listen to it."""
+        """Note that a client has subscribed to it."""
         wait = self._waits.pop(stream_id, None)
         if wait is not None:
             self._in_vain.pop(wait.client, None)
 
     def forget(self, client: int) -> None:
-        """Note that a client has gone; whom it asked for need not be waited for."""
+        """Note that a client has gone; the streams that it expected need not be waited for."""
         self._in_vain.pop(client, None)
         self._waits = {stream_id: wait for stream_id, wait in self._waits.items() if wait.client != client}
 
     def wait_s(self, now_s: float) -> float | None:
-        """Return how long the next frame waits at most; None where nobody is expected, or not any more."""
+        """Return how long the next frame waits at most; None where no subscriber is expected, or not any more."""
         if not self._waits:
             return None
         for stream_id, wait in tuple(self._waits.items()):

@@ -1,4 +1,4 @@
-"""The actors of an episode: who they are, whom they follow, and the packed rows in which the snapshot carries them."""
+"""The table of actors: descriptions, parents, and the packed rows that the snapshot carries."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -104,7 +104,7 @@ class ActorTable:
         return record
 
     def of_slot(self, slot: int) -> ActorRecord:
-        """Return the actor whose body lies in a slot."""
+        """Return the actor with its body in a slot."""
         return self._by_slot[slot]
 
     def row(self, actor_id: int) -> int:
@@ -113,7 +113,7 @@ class ActorTable:
 
     @contextmanager
     def preferring(self, actor_id: int) -> Iterator[None]:
-        """Let whoever comes next in the block have this id, if nobody has it; a replay's actors keep theirs so."""
+        """Give this id to the next actor in the block, if the id is free; so replayed actors keep their ids."""
         if actor_id in self._leaving:
             self._drop_leaving()
         is_free = 0 < actor_id <= _LARGEST_WISH and actor_id not in self._records and actor_id not in self._row_of
@@ -180,7 +180,7 @@ class ActorTable:
     def remove(self, actor_id: int, *, announce: bool) -> ActorRecord:
         """Take an actor out; ``announce`` leaves its row, marked as killed, in the next frame's snapshot.
 
-        The client that destroyed an actor knows it; whoever else holds a handle learns it from such a row only.
+        The client that destroyed an actor knows it. Other clients with a handle learn it from such a row only.
         """
         record = self._records.pop(actor_id)
         if record.slot != NO_BODY:
@@ -195,14 +195,14 @@ class ActorTable:
         return record
 
     def turn_page(self) -> None:
-        """Begin a frame: those whose end the last snapshot told go, those that died since then are told in this one."""
+        """Begin a frame: drop actors that the last snapshot marked as destroyed; mark those destroyed since then."""
         self._leaving += self._told
         if self._leaving:
             self._drop_leaving()
         self._told, self._dying = self._dying, []
 
     def _drop_leaving(self) -> None:
-        """Close the gaps that those who have left leave in the rows."""
+        """Close the gaps of removed actors in the rows."""
         actor_ids, self._leaving = self._leaving, []
         self.version += 1
         count = len(self)

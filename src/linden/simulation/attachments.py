@@ -43,7 +43,7 @@ def hung(pose: Transform, attachment: int) -> Transform:
 
 
 class Sockets:
-    """Who is attached where, by the child's actor id."""
+    """The sockets of attached actors, by the child's actor id."""
 
     def __init__(self) -> None:
         self._attached: dict[int, tuple[str, Transform, Transform]] = {}  # socket, pose in it, and what was shown last
@@ -67,7 +67,7 @@ class Sockets:
 
 
 def in_parent(episode: EpisodeState, parent_id: int, socket: str, pose: Transform) -> Transform:
-    """Return a pose in a socket's frame in that of the actor whose socket it is.
+    """Return a pose in a socket's frame in the frame of the parent actor.
 
     Raises:
         Refusal: there is no such actor, or it has no such socket.

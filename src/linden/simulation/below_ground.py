@@ -1,4 +1,4 @@
-"""Actors far below the ground: they stay there without physics until they are put up again.
+"""Actors parked below the ground: they have no physics until a client puts them up again.
 
 Programs hide actors so: those of ScenarioRunner wait for their scenario 500 m below the street. In CARLA they fall,
 unless their physics is switched off; here there is ground everywhere, and it would lift them onto the street.
@@ -11,11 +11,11 @@ from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
 
 DEEP_M = 10.0
-"""So far below the ground nobody stands by mistake; roads under others have a ground of their own."""
+"""No actor stands so far below the ground by mistake; roads under others have a ground of their own."""
 
 
-class Buried:
-    """Whose physics is withheld, by the slots of their bodies."""
+class BelowGround:
+    """The actors without physics, by the slots of their bodies."""
 
     def __init__(self, ground: Ground, bodies: Bodies) -> None:
         self._ground, self._bodies = ground, bodies

@@ -25,11 +25,11 @@ class Door(IntEnum):
 
 
 SIDE_DOORS = (Door.FRONT_LEFT, Door.FRONT_RIGHT, Door.REAR_LEFT, Door.REAR_RIGHT)
-"""Those of every vehicle whose blueprint has dynamic doors; CARLA's models name no others."""
+"""The doors of every blueprint with dynamic doors; CARLA's models name no others."""
 
 
 class Doors:
-    """The doors of an episode. Closed is what nobody has opened."""
+    """The doors of an episode. A door is closed until a client opens it."""
 
     def __init__(self) -> None:
         self._open: dict[int, frozenset[Door]] = {}

@@ -14,7 +14,7 @@ from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal
 from linden.simulation.attachments import Sockets
 from linden.simulation.bones import Poses
 from linden.simulation.doors import Doors
-from linden.simulation.friction import Grip
+from linden.simulation.friction import RoadFriction
 from linden.simulation.snapshot_rows import MOTION_OFFSET, gather_motion
 from linden.simulation.state import EpisodeState
 from linden.simulation.surroundings import Surroundings, scenery_of
@@ -40,8 +40,8 @@ class Episode(EpisodeState):
         surroundings: what stands there, its lamps, and what clients drew.
         traffic: the lights.
         doors: of the vehicles, which stand open.
-        grip: of the road, and who is in a friction trigger.
-        walkers: who is led, who is dead, and how far each has walked.
+        friction: friction of the road, and the vehicles in friction triggers.
+        walkers: controlled walkers, dead walkers, and distances walked.
         poses: of walkers, as clients set them.
         sockets: what is attached to a bone.
     """
@@ -55,7 +55,7 @@ class Episode(EpisodeState):
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)
         self.traffic = Traffic(scenery.signals)
-        self.doors, self.grip = Doors(), Grip()
+        self.doors, self.friction = Doors(), RoadFriction()
         self.sockets = Sockets()
         self.imu_gravity_mps2 = STANDARD_GRAVITY_MPS2
         self.spectator_id = self._add_fixture("spectator", Kind.OTHER, Transform(), DOT).id
@@ -149,7 +149,7 @@ class Episode(EpisodeState):
         return self._walker_ids, self._walker_slots
 
     def _survey(self) -> None:
-        """Note which rows are vehicles' and walkers'; called when somebody has come or gone."""
+        """Note which rows are vehicles' and walkers'; called when the set of actors has changed."""
         self._keep_limits()
         self._vehicle_ids, self._vehicle_slots, self._vehicle_rows = self._embodied(Kind.VEHICLE)
         self._vehicle_actor_id = np.array(self._vehicle_ids, np.int32)

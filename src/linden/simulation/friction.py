@@ -1,7 +1,7 @@
 """What the road gives the tyres: the weather's share of their friction, and friction triggers.
 
 CARLA's weather is for the eye alone ("neither affect the actor's physics"). Here a wet road is a wet road: the tyres'
-friction is multiplied by :func:`road_grip`, which is 1 where both ``wetness`` and ``precipitation_deposits`` are 0.
+friction is multiplied by :func:`road_friction`, which is 1 where both ``wetness`` and ``precipitation_deposits`` are 0.
 What ``get_physics_control`` answers is the tyre's own friction, which the weather leaves as it is.
 
 ``static.trigger.friction`` is CARLA's: from the first frame in which a vehicle's box touches the volume, all its wheels
@@ -28,7 +28,7 @@ DRY, WET, PUDDLES = 0.85, 0.65, 0.50
 Handbook, table "Coefficients of friction of pneumatic tyres". Aquaplaning at higher speeds is left out."""
 
 
-def road_grip(weather: WeatherParameters) -> float:
+def road_friction(weather: WeatherParameters) -> float:
     """Return what the tyres' friction is multiplied with, from 1 (dry) down to PUDDLES / DRY (under water).
 
     ``wetness`` of 100 is a film that covers the road, ``precipitation_deposits`` of 100 a road capped with water;
@@ -53,8 +53,8 @@ def trigger(description: ActorDescription) -> Trigger:
     return Trigger(BoundingBox(Vector3D(), half), float(description.attribute("friction")))
 
 
-class Grip:
-    """Who is in which trigger; to be brought up to date before each step."""
+class RoadFriction:
+    """The vehicles inside friction triggers; to be updated before each step."""
 
     def __init__(self) -> None:
         self._triggers: dict[int, Trigger] = {}
@@ -69,12 +69,12 @@ class Grip:
         self._triggers.pop(actor_id, None)
 
     def update(self, episode: EpisodeState) -> None:
-        """Give every vehicle the friction of where it is; wakes those for whom it changes."""
+        """Give every vehicle the friction of its place; wakes vehicles with changed friction."""
         bodies = episode.bodies
-        here = road_grip(episode.weather)
-        changed = np.flatnonzero(bodies.alive & (bodies.road_grip != here))
+        here = road_friction(episode.weather)
+        changed = np.flatnonzero(bodies.alive & (bodies.road_friction != here))
         if changed.size:
-            bodies.road_grip[changed] = here
+            bodies.road_friction[changed] = here
             bodies.state["resting"][changed] = False
         if self._triggers or self._inside:
             self._apply_triggers(episode)

@@ -1,4 +1,4 @@
-"""Which bodies a box would touch: asked before anything is spawned."""
+"""Overlap of upright boxes: the bodies that a box would touch at a place."""
 
 import math
 
@@ -22,7 +22,7 @@ def world_centres(bodies: Bodies) -> F64:
 def touching(
     box: BoundingBox, pose: Transform, centre_m: F64, half_extent_m: F64, yaw_rad: F64, candidates: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """Return those of ``candidates`` whose boxes touch ``box`` at ``pose``, in their order.
+    """Return the ``candidates`` with boxes that touch ``box`` at ``pose``, in their order.
 
     The columns are (N, 3), (N, 3) and (N,), in the world, centres being those of the boxes. Boxes are upright: they
     touch where their heights overlap and no edge direction of either separates them in the plane (Ericson, Real-Time

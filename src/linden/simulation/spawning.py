@@ -3,7 +3,7 @@
 What CARLA tags as dynamic lies loose (cones, bins, boxes, barriers), and so do warning signs on stands: a car that hits
 one pushes it away. The rest stands fast until ``set_simulate_physics(True)`` lets it go, as scripts for CARLA do with
 containers; from then on its mass decides. ``static.prop.mesh`` is loose if its ``mass`` is above 0, as in CARLA; its
-mesh is Unreal's and nobody has it here, so it is a cube of 1 m times its ``scale``.
+mesh is Unreal's and not available here, so it is a cube of 1 m times its ``scale``.
 """
 
 from typing import NamedTuple
@@ -25,7 +25,7 @@ from linden.simulation.overlap import touching, world_centres
 MESH = "static.prop.mesh"
 LOOSE_SIGNS = ("static.prop.warningaccident", "static.prop.warningconstruction")
 MESH_DENSITY_KGPM3 = 60.0
-"""Of a mesh whose mass nobody says, once it is let go; as ``world.blueprints`` estimates other props."""
+"""Of a mesh without a given mass, once its physics is on; as ``blueprints.library`` estimates other props."""
 
 
 class Solid(NamedTuple):
@@ -90,9 +90,9 @@ def spawn(
     )
     episode.actors.add(record, world_pose, pose if parent_id else None)
     if record.slot != NO_BODY:
-        episode.buried.arrive(record.slot)
+        episode.below_ground.arrive(record.slot)
     if made_trigger is not None:
-        episode.grip.add(record.id, made_trigger)
+        episode.friction.add(record.id, made_trigger)
     return record
 
 
@@ -170,5 +170,5 @@ def destroy(episode: Episode, actor_id: int, *, announce: bool = False) -> None:
         episode.bodies.remove(record.slot)
         episode.forget_contacts(record.slot)
     episode.doors.forget(actor_id)
-    episode.grip.forget(actor_id)
+    episode.friction.forget(actor_id)
     episode.poses.forget(actor_id)

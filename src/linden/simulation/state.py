@@ -13,7 +13,7 @@ from linden.physics.step import CONTACT
 from linden.protocol.values.episode import CLEAR_NOON, WeatherParameters
 from linden.protocol.values.space import Transform
 from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal, ActorTable
-from linden.simulation.below_ground import Buried
+from linden.simulation.below_ground import BelowGround
 
 
 class WalkerFacts(Protocol):
@@ -45,7 +45,7 @@ class EpisodeState(ABC):
         elapsed_s: simulated time since the episode began.
         actors: all actors, with the packed rows of the snapshot.
         bodies: everything that occupies space and moves.
-        buried: bodies far below the ground; their physics is off.
+        below_ground: bodies far below the ground; their physics is off.
         contacts: contacts of the last step, as ``physics`` reports them.
         weather: the weather parameters that clients set.
         walkers: facts about walkers.
@@ -61,7 +61,7 @@ class EpisodeState(ABC):
         self.elapsed_s = 0.0
         self.actors = ActorTable()
         self.bodies = Bodies()
-        self.buried = Buried(world_map.ground, self.bodies)
+        self.below_ground = BelowGround(world_map.ground, self.bodies)
         self.weather: WeatherParameters = CLEAR_NOON
         self.contacts: NDArray[np.void] = np.zeros(0, CONTACT)
 
@@ -110,7 +110,7 @@ class EpisodeState(ABC):
         return carrier
 
     def forget_contacts(self, slot: int) -> None:
-        """Forget what a body has touched, for it is leaving; whoever looks for it later finds nobody there."""
+        """Drop the contacts of a body that leaves the world."""
         if len(self.contacts):
             self.contacts = self.contacts[(self.contacts["a"] != slot) & (self.contacts["b"] != slot)]
 
@@ -136,9 +136,9 @@ class EpisodeState(ABC):
             self.actors.place(actor_id, pose)
         else:
             self.bodies.set_pose(record.slot, pose)
-            self.buried.settle(record.slot)
+            self.below_ground.settle(record.slot)
 
     def place_bodies(self, slots: NDArray[np.integer], poses: NDArray[np.float64]) -> None:
         """Put many bodies somewhere in the world: (K,) slots, each once, and (K, 6) x, y, z in m, pitch, yaw, roll."""
         self.bodies.set_poses(slots, poses)
-        self.buried.settle_all(slots)
+        self.below_ground.settle_all(slots)

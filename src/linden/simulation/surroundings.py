@@ -1,8 +1,7 @@
 """The scene of an episode: what the map has, and what clients change in it.
 
-What stands on a map before anybody comes: its lights and signs, and the scene that they are part of.
-
-What of a scene changes while an episode runs: what is there, how its lamps stand, what clients drew into it.
+Every map has its lights and signs and the scene that they are part of. Clients hide and show objects, switch lamps and
+draw debug shapes.
 """
 
 from collections.abc import Iterable
@@ -141,6 +140,6 @@ class Surroundings:
         self.statics = solid(self.scene, self.present)
 
     def step(self, now_s: float) -> None:
-        """Begin a frame at a simulated time: shapes whose time is over go, and clients are told of lamps."""
+        """Begin a frame at a simulated time: drop expired shapes, and announce changed lamps to clients."""
         self.debug.step(now_s)
         self.lamps.turn_page()

@@ -1,11 +1,7 @@
 """Walkers beyond their bodies: control from outside, distance walked, death; the walking mesh of the map.
 
-Walkers beyond their bodies: those led from outside, how far each has walked, and those that were struck dead.
-
-An AI controller lives in the client: every tick it says where its walker is, and the walker, without physics and
-without collisions, is put there. What the snapshot shows of its motion is how far it was moved.
-
-The walking mesh of an episode's map, clear of what stands on it.
+An AI controller lives in the client. In every tick it sends the pose of its walker. The walker has no physics and no
+collisions then; the server puts it there. The snapshot shows a velocity from the distance that it was moved.
 """
 
 import math
@@ -107,7 +103,7 @@ class Walkers:
     # -- every frame ---------------------------------------------------------------------------------------------
 
     def step(self, episode: EpisodeState, dt_s: float) -> list[int]:
-        """Let a frame pass, after its physics; returns the ids of the dead who have lain long enough."""
+        """Update the walkers after the physics of a frame; return the ids of dead walkers that have to be removed."""
         if self._before or self._velocity:
             self._show_motion(episode, dt_s)
         if len(episode.contacts) and episode.walker_ids_and_slots()[0]:

@@ -1,12 +1,10 @@
 """The cycle of traffic lights: a pure function of state and time.
 
-How traffic lights change: a pure transition over arrays, step for step as CARLA's groups and controllers do.
-
 The lights of a controller share one colour; the controllers of a group (a junction) take turns: green, yellow, red,
 then the next one's green, all others red meanwhile. So the time of red is that between two turns, when all are red.
 Source: CARLA 0.9.16, TrafficLightGroup.cpp, TrafficLightController.cpp and .h.
 
-Lights as somebody else saw them: the state in which they show given colours and times.
+A replay restores lights: it finds the state with given colours and times.
 """
 
 from collections.abc import Sequence
@@ -30,7 +28,7 @@ LAST_STAGE = len(STAGES) - 1
 TIMES_S = (2.0, 3.0, 10.0)
 """Times of red, yellow and green in s, in the order of the colours' numbers."""
 RED_OF_A_SINGLE_LIGHT_S = 10.0
-"""A light without a controller has nobody to take turns with; CARLA gives it a longer red instead."""
+"""A light without a controller has no other light to alternate with; CARLA gives it a longer red instead."""
 
 ROUNDING_S = 1e-6
 """A sum of steps that should equal a time counts as equal, whatever its last bits are."""
@@ -57,9 +55,9 @@ class LightState(NamedTuple):
     colour: U8
     """(L,) TrafficLightState of each light."""
     stage: I32
-    """(C,) index in ``STAGES``; the last one, but for the controllers whose turn it is."""
+    """(C,) index in ``STAGES``; the last one, except for the controllers that have their turn."""
     turn: I32
-    """(G,) the controller whose turn it is."""
+    """(G,) the controller that has its turn."""
     elapsed_s: F64
     """(G,) since its stage began; for all other controllers it is zero."""
     lasts_s: F64
@@ -203,7 +201,7 @@ def restored(
 ) -> LightState:
     """Return the state with these lights (N,) as given, each (N,); all others stay as they are.
 
-    A group's turn is that of the controller whose time has begun to pass, or whose lights are not red; where neither
+    A group's turn belongs to the controller with elapsed time or with lights that are not red; where neither
     tells, it stays. Frozen is the group of a frozen light.
     """
     colours = state.colour.copy()

@@ -47,7 +47,7 @@ class Signals(NamedTuple):
         actors: every light, then every sign, each in the order of the map.
         plan: which lights change together.
         grid: where a vehicle is under which light.
-        rules: where a vehicle is under which stop or yield sign, and whom it has to let go first.
+        rules: the zones of stop and yield signs, and the squares to give way to.
     """
 
     actors: tuple[TrafficActor, ...]
@@ -73,7 +73,7 @@ class Signals(NamedTuple):
 
 
 def _rules(placed: Sequence[PlacedSignal], give_way: NDArray[np.void]) -> SignRules:
-    """Number the stop and yield signs as they stand in the file; one only painted on the road rules nobody."""
+    """Number the stop and yield signs as they stand in the file; one only painted on the road has no effect."""
     kinds = (STOP_SIGN_TYPE, YIELD_SIGN_TYPE)
     numbered = [nth for nth, signal in enumerate(placed) if signal.type in kinds and signal.name != PAINTED]
     signs = [_actor(placed[nth], NO_LIGHT) for nth in numbered]

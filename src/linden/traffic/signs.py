@@ -2,7 +2,7 @@
 
 A vehicle that reaches a stop sign's volume reads red for :data:`STOP_S`, and then for as long as an actor is where its
 way crosses (``opendrive.give_way``); at a yield sign only as long as that. The Traffic Manager asks for no more: under
-such a red it halts, and goes when those who came before it have gone. Source: CARLA 0.9.16, StopSignComponent.cpp and
+such a red it halts, and goes when the vehicles before it have gone. Source: CARLA 0.9.16, StopSignComponent.cpp and
 YieldSignComponent.cpp. There a vehicle that drives off at red reads red until the next sign or light; here it does not.
 """
 

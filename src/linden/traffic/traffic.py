@@ -1,4 +1,4 @@
-"""The traffic of an episode: its lights and signs, how the lights stand, who is under one, and what a sign tells."""
+"""Traffic lights and signs of an episode: states of the lights, vehicles under them, colours that signs show."""
 
 import math
 from typing import Any
@@ -41,7 +41,7 @@ class Traffic:
             self.state = cycle.step(self._plan, self.state, dt_s)
 
     def over(self, position_m: F64, rotation_rad: F64, box_centre_m: F64, half_extent_m: F64, slots: I32) -> I32:
-        """Return for each of ``slots`` (V,) the light whose trigger volume the body touches, or -1.
+        """Return for each of ``slots`` (V,) the light with the trigger volume that the body touches, or -1.
 
         The columns are those of the bodies, (N, 3); ``triggers.owners_over`` says more.
         """
@@ -51,18 +51,18 @@ class Traffic:
         self, position_m: F64, rotation_rad: F64, box_centre_m: F64, half_extent_m: F64, slots: I32, actor_ids: I32,
         now_s: float,
     ) -> U8:  # fmt: skip
-        """Return the colour (V,) that stop and yield signs show to those who are under one; green to all others.
+        """Return the colour (V,) that stop and yield signs show to vehicles under them; green to all others.
 
-        The columns are those of :meth:`over`; ``actor_ids`` (V,) says who is in the slots, ``now_s`` when.
+        The columns are those of :meth:`over`; ``actor_ids`` (V,) are the actors in the slots, ``now_s`` is the time.
         """
         bodies = Columns(position_m, rotation_rad, box_centre_m, half_extent_m)
         return self._signs.told(bodies, slots, actor_ids, now_s)
 
     def _compile(self) -> None:
-        """Compile what is asked in a step for columns such as the bodies have (parts of records), before the first."""
-        column, nobody = np.zeros((2, 4))[:, :3], np.zeros(0, np.int32)
-        self.over(column, column, column, column, nobody)
-        self.at_signs(column, column, column, column, nobody, nobody, 0.0)
+        """Compile the kernels for columns such as the bodies have (parts of records), before the first step."""
+        column, empty = np.zeros((2, 4))[:, :3], np.zeros(0, np.int32)
+        self.over(column, column, column, column, empty)
+        self.at_signs(column, column, column, column, empty, empty, 0.0)
 
     def group(self, light: int) -> tuple[int, ...]:
         """Return the lights that take turns with this one, itself among them."""
@@ -109,7 +109,7 @@ class Traffic:
         """Write how the lights stand into their rows of the snapshot: (L,) of TRAFFIC_LIGHT_ROW, in the lights' order.
 
         The rows keep what they hold from call to call: what has not changed since the last one is not written again.
-        Sign ids and pole indices never change and are left to whoever makes the rows.
+        Sign ids and pole indices never change and are written by the caller.
         """
         state, shown, controller = self.state, self._shown, self._plan.controller_of_light
         rows["elapsed_time"] = cycle.elapsed_s(self._plan, state)

@@ -44,7 +44,7 @@ def test_the_built_in_agents_are_found_by_name(name: str) -> None:
     assert (loaded.name, loaded.file) == (name, None)
 
 
-def test_a_built_in_agent_knows_whom_it_sees_or_everyone() -> None:
+def test_a_built_in_agent_knows_the_actors_in_sight_or_all() -> None:
     seeing, knowing = load_agent("behavioral"), load_agent("behavioral:full")
     assert seeing.agent_class.knowledge is Knowledge.SEEN  # type: ignore[attr-defined]
     assert knowing.agent_class.knowledge is Knowledge.FULL  # type: ignore[attr-defined]

@@ -18,21 +18,16 @@ def said(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]
     return main(arguments), capsys.readouterr().err
 
 
-@pytest.mark.parametrize("option", ["sumo"])
-def test_an_option_of_a_later_version_is_refused_before_anything_starts(
-    capsys: pytest.CaptureFixture[str], option: str
-) -> None:
-    code, text = said(capsys, "run", SAMPLE, f"--{option}")
-    assert code == 2
-    assert text.startswith(f"basu: --{option} is not there yet: ")
-
-
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
         (["run", "basik"], "did you mean 'basic'"),
         (["rum"], "there is no command 'rum'; did you mean 'run'?"),
         (["run", "basic", "--agent", "forward"], "two values are given for --agent, basic and forward; give one"),
+        (["run", "basic", "--sumo", "none.sumocfg"], "--sumo none.sumocfg: there is no such file"),
+        (["run", "basic", "--sumo", "much"], "--sumo much: it may be a FILE.sumocfg, random, demand or none"),
+        (["run", "basic", "--sumo-radius", "0"], "--sumo-radius is 0 m; it must be above 0"),
+        (["run", "basic", "--sumo", "random", "--traffic-density", "5"], "--traffic-density goes without it"),
         (["run", "basic", "--repetitions", "0"], "--repetitions is 0; it must be 1 or more"),
         (["run", "basic", "--step-limit", "0"], "--step-limit is 0 s; it must be above 0"),
         (["run", "basic", "--penalty", "singing=0.5"], "--penalty has no 'singing'; there are collision_pedestrian"),
@@ -58,8 +53,8 @@ def test_a_mistake_is_one_sentence_and_exit_code_2(
     assert len(text.splitlines()) == 1
 
 
-def test_nobody_at_the_address_gets_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
-    with socket.socket() as reserved:  # bound, not listening: nobody answers there
+def test_no_actor_at_the_address_gets_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.socket() as reserved:  # bound, not listening: no server answers there
         reserved.bind(("127.0.0.1", 0))
         port = str(reserved.getsockname()[1])
         code, text = said(capsys, "run", "forward", "--host", "127.0.0.1", "--port", port, "--timeout", "0.5")
@@ -86,7 +81,7 @@ def test_a_record_is_scored_again_with_other_penalties(tmp_path: Path, capsys: p
     assert "hit static.poles at 10.00 m/s" in first
 
 
-def test_a_folder_whose_config_is_damaged_gets_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_folder_with_a_config_is_damaged_gets_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_history(tmp_path, driven(at(10.0, 1.0)))
     (tmp_path / "config.json").write_text("{}")
     code, text = said(capsys, "score", str(tmp_path))

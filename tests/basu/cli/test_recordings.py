@@ -44,13 +44,13 @@ def test_figure_5_1_is_drawn_from_a_recording(
     assert plot.read_bytes().startswith(b"\x89PNG")
 
 
-def test_contacts_are_told_once_while_they_last(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_contacts_are_reported_once_while_they_last(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["metrics", str(recording), "--metric", str(EXAMPLES / "collisions.py")]) == 0
     (line,) = capsys.readouterr().out.splitlines()
     assert line.strip() == "0.85 s  vehicle.easymile.ez10 9 touches vehicle.audi.tt 8 at 20.0 m/s"
 
 
-def test_the_nearest_moment_of_each_other_is_told(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_nearest_moment_of_each_other_is_reported(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["metrics", str(recording), "--metric", str(EXAMPLES / "nearest_vehicle.py")]) == 0
     said = capsys.readouterr().out
     assert "vehicle.audi.tt 8: 5.00 m at 1.0 s, ego 20.0 m/s, it 0.0 m/s" in said

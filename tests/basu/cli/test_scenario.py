@@ -109,7 +109,7 @@ def test_the_list_as_json_has_everything(capsys: pytest.CaptureFixture[str], min
     }
 
 
-def test_a_word_that_means_nothing_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_word_that_means_nothing_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(ScenarioError, match="there is no scenario 'zzz'"):
         told(capsys, "zzz")
 

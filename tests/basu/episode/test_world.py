@@ -25,7 +25,7 @@ class OneTown:
         return ["Carla/Maps/Linden"]
 
 
-def test_all_towns_that_are_missing_are_told_at_once() -> None:
+def test_all_towns_that_are_missing_are_reported_at_once() -> None:
     check_towns(towns_of(OneTown()), ["Linden", "OpenDriveMap", "Linden"])
     with pytest.raises(UserError, match=r"routes are in Town12, Town13, which .* it has Linden, OpenDriveMap: name"):
         check_towns(towns_of(OneTown()), ["Town13", "Linden", "Town12", "Town13"])

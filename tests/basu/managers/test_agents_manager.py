@@ -22,7 +22,7 @@ FRAME: Any = SimpleNamespace(tick=0, server_frame=3)
 
 
 class Docile(AutonomousAgent):
-    """Answers with what it is told to."""
+    """Returns its given answer."""
 
     answer: Any = carla.VehicleControl(throttle=0.5)
 
@@ -98,8 +98,8 @@ def test_values_out_of_range_are_brought_into_it_as_carla_does() -> None:
         (None, "returned None; it must return a carla.VehicleControl"),
         (0.5, "returned a float"),
         ({"throttle": 1.0}, "returned a dict"),
-        (carla.VehicleControl(steer=math.nan), "whose steer is nan"),
-        (carla.VehicleControl(throttle=math.inf), "whose throttle is inf"),
+        (carla.VehicleControl(steer=math.nan), "with steer nan"),
+        (carla.VehicleControl(throttle=math.inf), "with throttle inf"),
     ],
 )
 def test_nonsense_is_an_invalid_control(answer: Any, sentence: str) -> None:

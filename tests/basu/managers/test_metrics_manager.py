@@ -10,7 +10,8 @@ import pytest
 from basu.managers.base_manager import Ego, Frame
 from basu.managers.metrics_manager import MetricsManager
 from basu.managers.world_changes import WorldChanges
-from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.score import infractions, score
+from basu.metrics.scoring import Scoring
 from basu.records.history.model import NO_LIGHT
 from basu.routing.planned_route import Progress, advance
 from fakes.crossing_map import LANE_M, crossing
@@ -20,7 +21,7 @@ FIRST_FRAME = 4000
 
 
 class Sensor:
-    """Keeps whom to call."""
+    """Keeps the callback."""
 
     id = 7
 
@@ -95,7 +96,7 @@ class Stage:
         self.sensors["sensor.other.collision"].hear(event)
 
 
-def test_a_frame_tells_the_lane_who_drives_and_the_light_ahead() -> None:
+def test_a_frame_tells_the_lane_one_that_drives_and_the_light_ahead() -> None:
     stage = Stage()
     stage.drive(1, 8.0)
     stage.agents.manual = True
@@ -128,7 +129,7 @@ def test_asking_twice_in_a_frame_gives_the_same_answer() -> None:
     assert stage.metrics.infractions_so_far() == stage.metrics.infractions_so_far()
 
 
-def test_the_latest_contacts_are_told_by_tick() -> None:
+def test_the_latest_contacts_are_known_by_tick() -> None:
     stage = Stage()
     stage.drive(40, 5.0)
     for tick in (5, 30, 35, 90):
@@ -138,7 +139,7 @@ def test_the_latest_contacts_are_told_by_tick() -> None:
 
 @pytest.mark.parametrize("looked_at", [False, True])
 def test_the_requested_and_the_applied_control_are_recorded(*, looked_at: bool) -> None:
-    """A person's or a scenario's control is not the agent's; it may be known only after somebody has looked."""
+    """A person's or a scenario's control is not the agent's; it may be known only after the frame was read."""
     stage = Stage()
     stage.agents.control = carla.VehicleControl(throttle=0.5, steer=-0.25)
     stage.drive(2, 8.0)

@@ -53,7 +53,7 @@ def test_beside_the_road_there_is_no_lane_but_a_distance_to_its_edge(town: carla
     assert lane.off_lane_m == pytest.approx(beyond_m, abs=1e-3)
 
 
-def test_who_stands_still_is_not_looked_for_again(town: carla.Map) -> None:
+def test_that_stands_still_is_not_looked_for_again(town: carla.Map) -> None:
     asked = []
 
     class Map:

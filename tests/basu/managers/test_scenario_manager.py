@@ -16,7 +16,7 @@ from basu.errors import ScenarioError
 from basu.managers.placed_scenario import is_behind, place_scenario
 from basu.managers.scenario_manager import Playing
 from basu.managers.scenario_results import results_of
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.outcome import Outcome, Status
 from basu.output.report.console import met
@@ -100,7 +100,7 @@ def test_of_two_times_that_a_route_comes_by_the_first_is_meant() -> None:
     assert laid.scenario.place.trigger_s_m == pytest.approx(10.0, abs=0.01)
 
 
-def test_who_stands_in_the_lane_before_the_trigger_point_comes_later() -> None:
+def test_that_stands_in_the_lane_before_the_trigger_point_comes_later() -> None:
     place = place_scenario(waiting_at(20.0), WAY, TOWN, own=False).scenario.place
     assert is_behind(place, ActorSpec("tailgater", "vehicle.*", place.at(-8.0)))
     assert not is_behind(place, ActorSpec("leader", "vehicle.*", place.at(8.0)))
@@ -206,7 +206,7 @@ SUN = {"sun_altitude_angle": 45.0}
 FRAMES_UNDER_WAY = 20  # that a client may still show as they were
 
 
-def test_whoever_leaves_first_takes_no_weather_from_the_others() -> None:
+def test_an_actor_that_leaves_first_takes_no_weather_from_the_others() -> None:
     from basu.managers.stage.environment import SharedWorld  # noqa: PLC0415 - only here
 
     world = Weather()
@@ -235,11 +235,11 @@ def test_lights_go_on_when_the_last_scenario_that_holds_one_is_over() -> None:
     assert world.light.calls[-1] == ("set_state", red)
     shared.give_back("first")
     assert world.light.calls[-2:] == [("reset_group",), ("freeze", False)]
-    with pytest.raises(ScenarioError, match="no traffic light whose OpenDRIVE signal is '8'"):
+    with pytest.raises(ScenarioError, match="no traffic light with the OpenDRIVE signal '8'"):
         shared.ask_light("first", "8", "Red")
 
 
-def test_what_was_not_reached_is_told_as_such() -> None:
+def test_what_was_not_reached_is_reported_as_such() -> None:
     laid = place_scenario(waiting_at(12.0), WAY, TOWN, own=False)
     stage: Any = SimpleNamespace(route=laid.way, roles={}, types={})
     playing = Playing(laid.planned, laid.scenario, laid.composed, stage)
@@ -266,7 +266,7 @@ from basu.scenarios.triggers import EgoPasses
 
 
 class Crosser(Scenario):
-    """Somebody crosses far ahead, in the rain."""
+    """A pedestrian crosses far ahead, in the rain."""
 
     group = Group.PEDESTRIAN
     needs_m = 45.0
@@ -330,7 +330,7 @@ class Dozes(Dark):
 
 @pytest.fixture
 def simulator() -> Iterator[RunningServer]:
-    """One that nobody else has been in, since what is there before and afterwards is compared."""
+    """A simulator of its own, since the actors before and afterwards are compared."""
     with running_server() as running:
         yield running
 
@@ -342,7 +342,7 @@ def world_of(simulator: RunningServer) -> carla.World:
 
 
 def seen(world: carla.World) -> set[tuple[int, str]]:
-    """Who is there, the weather, and which lights stand still."""
+    """The actors, the weather, and the frozen lights."""
     actors = world.get_actors()
     lights = actors.filter("traffic.traffic_light*")
     return {

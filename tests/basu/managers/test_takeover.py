@@ -1,4 +1,4 @@
-"""Claims about a person beside the agent: who is asked, and whose control counts."""
+"""Claims about a person beside the agent: which one is called, and which control counts."""
 
 from types import SimpleNamespace
 from typing import Any

@@ -121,7 +121,7 @@ def test_traffic_is_there_from_the_first_step_and_gone_after_the_last(
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--vehicles", "5000"], "5000 vehicles were asked for, and "),
+        (["--vehicles", "5000"], "5000 vehicles were requested, and "),
         (["--vehicles", "-1"], "--vehicles is -1; it must be 0 or more"),
         (["--traffic-density", "nan"], "--traffic-density is nan; it must be a finite number"),
     ],
@@ -166,7 +166,7 @@ def test_the_same_seed_has_the_same_traffic_beside_its_log_and_another_seed_anot
 
 
 @pytest.mark.slow
-def test_a_simulator_that_dies_under_traffic_is_told_of_and_what_was_measured_is_kept(
+def test_a_simulator_that_dies_under_traffic_is_reported_and_what_was_measured_is_kept(
     tmp_path: Path, route_file: Path
 ) -> None:
     agent = tmp_path / "killer.py"
@@ -183,7 +183,7 @@ def test_a_simulator_that_dies_under_traffic_is_told_of_and_what_was_measured_is
     assert (result["status"], result["meta"]["ticks"]) == ("SimulatorFailed", 20)
 
 
-def test_the_log_of_somebody_elses_simulator_lies_with_them(
+def test_the_log_of_another_users_simulator_lies_with_them(
     tmp_path: Path, agent: Path, route_file: Path, simulator: RunningServer, capsys: pytest.CaptureFixture[str]
 ) -> None:
     output = ["--output", str(tmp_path / "runs")]

@@ -37,13 +37,13 @@ def test_head_on_the_time_is_the_gap_over_both_speeds() -> None:
     assert time_to_touch_s(box(0, 0), box(14, 0), np.array([[-10.0, 0.0]])) == pytest.approx([1.0])
 
 
-def test_who_passes_beside_or_goes_away_never_touches() -> None:
+def test_an_actor_that_passes_beside_or_goes_away_never_touches() -> None:
     speeds = np.array([[-10.0, 0.0], [10.0, 0.0], [0.0, 0.0]])
     a, b = np.repeat(box(0, 0), 3, axis=0), np.vstack([box(14, 2.1), box(14, 0), box(14, 0)])
     assert time_to_touch_s(a, b, speeds).tolist() == [np.inf] * 3
 
 
-def test_who_touches_already_touches_now() -> None:
+def test_an_actor_that_touches_already_touches_now() -> None:
     assert time_to_touch_s(box(0, 0), box(3, 0), np.array([[5.0, 0.0]])).tolist() == [0.0]
 
 

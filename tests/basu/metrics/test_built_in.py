@@ -6,7 +6,7 @@ import numpy as np
 
 from basu.metrics.registry import built_in
 from basu.metrics.result import Result, judge
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.outcome import Outcome, Status
 from basu.records.history import History
 from fakes.drives import at, driven, straight_route, traffic_light

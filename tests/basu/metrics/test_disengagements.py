@@ -31,13 +31,13 @@ def test_each_takeover_is_one_and_handing_back_is_none() -> None:
     assert found.events[0].detail == "a person took over at 10.00 m/s, after 100 m by the agent, for 5.0 s"
 
 
-def test_a_person_who_drives_from_the_beginning_takes_nothing_over() -> None:
+def test_a_person_that_drives_from_the_beginning_takes_nothing_over() -> None:
     found = disengagements(drive((0, 801)))
     assert found.events == ()
     assert (found.autonomous_m, found.manual_m) == (0.0, pytest.approx(400.0))
 
 
-def test_a_person_who_keeps_the_wheel_is_told_so() -> None:
+def test_a_person_that_keeps_the_wheel_is_reported_so() -> None:
     (event,) = disengagements(drive((0, 100), (600, 801))).events
     assert event.tick == 600
     assert event.detail.endswith("after 250 m by the agent, to the end")

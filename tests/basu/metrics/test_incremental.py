@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from basu.metrics.incremental import SoFar
-from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.score import infractions, score
+from basu.metrics.scoring import Scoring
 from basu.records.history import FRAME, Collision, History, Recorder
 from fakes.drives import at, driven, hit, ramp, stop_sign, straight_route, traffic_light
 
@@ -40,7 +41,7 @@ speeds = st.lists(
 
 @settings(max_examples=25)
 @given(speeds, st.lists(st.integers(0, 1200), max_size=8), st.integers(1, 45), st.integers(0, 200))
-def test_what_is_told_while_driving_is_what_the_record_tells(
+def test_what_is_reported_while_driving_is_what_the_record_tells(
     pieces: list[tuple[float, float]], contacts: list[int], every: int, red_until: int
 ) -> None:
     route = straight_route(400.0, controls=(stop_sign(30.0), traffic_light(70.0), stop_sign(90.0, "8")))
@@ -62,7 +63,7 @@ def test_it_holds_at_every_moment_of_a_drive_full_of_infractions() -> None:
     assert {event.kind.value for event in found} == {"speeding", "stop_sign", "red_light", "collision_static"}
 
 
-def test_a_contact_heard_half_a_second_late_is_told_all_the_same() -> None:
+def test_a_contact_heard_half_a_second_late_is_reported_all_the_same() -> None:
     history = driven(at(5.0, 20.0))
     recorder, so_far = Recorder(), SoFar(Scoring())
     for tick, row in enumerate(history.frames.tolist()):
@@ -93,7 +94,7 @@ def test_a_look_late_in_a_drive_judges_no_more_than_the_first_ones_did() -> None
     assert max(judged[10:]) <= max(judged[:10])
 
 
-def test_the_record_is_the_same_whether_or_not_somebody_looked() -> None:
+def test_the_record_is_the_same_whether_or_not_an_actor_looked() -> None:
     history = driven(ramp(0.0, 12.0, 10.0), collisions=[hit(50)])
     quiet, watched = Recorder(), Recorder()
     for tick, row in enumerate(history.frames.tolist()):

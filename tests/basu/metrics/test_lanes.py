@@ -39,7 +39,7 @@ def test_half_a_metre_beyond_the_edge_is_allowed() -> None:
     assert outside_lanes(history).total.metres == 0.0
 
 
-def test_on_a_pavement_is_told_as_such_with_its_place() -> None:
+def test_on_a_pavement_is_reported_as_such_with_its_place() -> None:
     history = along()
     history.frames["off_lane_m"][100:140] = 1.0
     history.frames["lane_type"][100:140] = SIDEWALK

@@ -29,7 +29,7 @@ def test_at_the_end_or_at_rest_just_before_it(left_m: float, speed_mps: float, *
     assert has_arrived(left_m, speed_mps) is there
 
 
-def test_the_record_tells_what_the_run_told_frame_by_frame() -> None:
+def test_the_record_tells_what_the_run_reported_frame_by_frame() -> None:
     history = driven([*at(8.0, 11.7), *ramp(8.0, 0.0, 1.0), *at(0.0, 1.0)], route=straight_route(100.0))
     told = [has_arrived(100.0 - float(frame["route_s_m"]), float(frame["velocity_x_mps"])) for frame in history.frames]
     assert arrivals(history).tolist() == told

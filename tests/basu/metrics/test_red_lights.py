@@ -1,4 +1,4 @@
-"""Claims about red lights: the rear decides, as in the leaderboard; what the front saw is told; others have theirs."""
+"""Claims about red lights: the rear decides, as in the leaderboard; what the front saw is reported beside it."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_driving_through_on_red_is_run() -> None:
     assert "on red at 10.00 m/s; it was red when the front crossed" in found.detail
 
 
-def test_on_green_it_is_passed_and_told() -> None:
+def test_on_green_it_is_passed_and_reported() -> None:
     history = past_the_light(None)
     (passed,) = lights_passed(history)
     assert not passed.run
@@ -57,7 +57,7 @@ def test_red_once_the_tail_is_a_metre_beyond_the_line_is_no_concern_of_the_vehic
     assert red_lights(past_the_light(51.2)) == ()
 
 
-def test_who_stops_with_the_front_beyond_the_line_has_not_run_it() -> None:
+def test_an_actor_that_stops_with_the_front_beyond_the_line_has_not_run_it() -> None:
     route = straight_route(controls=(traffic_light(LINE_M),))
     history = driven([*at(10.0, 4.9), *at(0.0, 5.0)], route=route)
     history.frames["route_light"] = RED
@@ -76,7 +76,7 @@ def test_a_light_is_run_once_however_slowly() -> None:
 @pytest.mark.parametrize(
     ("lateral_m", "state", "forward_mps", "number"),
     [(8.0, RED, 5.0, 1), (8.0, GREEN, 5.0, 0), (8.0, RED, -5.0, 0), (0.0, RED, 5.0, 0)],
-    ids=["on red", "on green", "backwards out of it", "on the plan, whose lights are known"],
+    ids=["on red", "on green", "backwards out of it", "on the plan, with known lights"],
 )
 def test_off_the_route_the_zone_of_a_light_is_what_counts(
     lateral_m: float, state: int, forward_mps: float, number: int

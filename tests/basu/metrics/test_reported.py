@@ -1,7 +1,8 @@
 """Claims about lane invasions: events are counted, corners are not, and the score does not know."""
 
 from basu.metrics.reported import lane_invasions
-from basu.metrics.score import Scoring, score
+from basu.metrics.score import score
+from basu.metrics.scoring import Scoring
 from basu.records.history import LaneInvasion
 from fakes.drives import at, driven
 

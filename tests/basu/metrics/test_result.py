@@ -109,10 +109,10 @@ def test_the_table_tells_scores_infractions_and_signs() -> None:
     assert text.startswith("Completed: arrived")
     assert "driving score        0.6" in text
     assert "collision_static" in text
-    assert "stop signs        0 of 1 stopped at" in text
+    assert "stop signs        0 of 1 obeyed; slowest speed before any line at most " in text
     assert "service stops     1 of 2 served" in text
 
 
-def test_every_status_is_somebodys_doing() -> None:
+def test_every_status_has_a_party_at_fault() -> None:
     assert set(FAULT_OF) == set(Status)
     assert [status for status in Status if status.fault.value == 0] == [Status.COMPLETED, Status.SCENARIO_ENDED]

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from basu.metrics.route_deviation import THRESHOLD_M, route_deviation
+from basu.metrics.route_deviation import route_deviation
+from basu.metrics.scoring import THRESHOLD_M
 from basu.metrics.stretches import chords, path_m, total_m
 from fakes.drives import at, driven, straight_route
 

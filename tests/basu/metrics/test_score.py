@@ -9,16 +9,8 @@ from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights
 from basu.metrics.passengers.felt import Place
-from basu.metrics.score import (
-    Scoring,
-    driving_score,
-    infraction_score,
-    infractions,
-    read_scoring_file,
-    score,
-    scoring_from_json,
-    scoring_to_json,
-)
+from basu.metrics.score import driving_score, infraction_score, infractions, score
+from basu.metrics.scoring import Scoring, read_scoring_file, scoring_from_json, scoring_to_json
 from basu.settings.resolve import resolve
 from fakes.drives import at, driven, hit, stop_sign, straight_route, traffic_light
 

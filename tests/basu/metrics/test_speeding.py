@@ -1,10 +1,11 @@
-"""Claims about speeding: episodes, not frames; a tolerance, stated; whose limit holds."""
+"""Claims about speeding: episodes, not frames; a stated tolerance; the limit that holds."""
 
 import math
 
 import pytest
 
-from basu.metrics.speeding import LEAST_S, TOLERANCE_MPS, limits_mps, speeding
+from basu.metrics.scoring import TOLERANCE_MPS
+from basu.metrics.speeding import LEAST_S, limits_mps, speeding
 from fakes.drives import at, driven, straight_route
 
 

@@ -1,4 +1,4 @@
-"""Claims about timetables: the one that comes with the LEAP route, when rounds begin, and what bad files are told."""
+"""Claims about timetables: the one that comes with the LEAP route, when rounds begin, and the errors of bad files."""
 
 import json
 from dataclasses import replace
@@ -67,7 +67,7 @@ def changed(path: tuple[Any, ...], value: object) -> dict[str, Any]:
         (("calls", 0, "stop"), "S9", "calls at 'S9', which is no stop of its route; it has S1, S2N"),
     ],
 )
-def test_a_mistake_is_told_with_the_file_and_the_place(
+def test_a_mistake_is_reported_with_the_file_and_the_place(
     tmp_path: Path, path: tuple[Any, ...], value: object, sentence: str
 ) -> None:
     file = tmp_path / "mine.json"
@@ -86,7 +86,7 @@ def test_the_leap_route_brings_its_timetable_and_the_record_keeps_it() -> None:
     assert route_from_json(route_to_json(straight_route())).timetable is None
 
 
-def test_a_route_whose_timetable_is_not_there_says_so(tmp_path: Path) -> None:
+def test_a_route_with_a_timetable_is_not_there_says_so(tmp_path: Path) -> None:
     points = '<waypoint x="0" y="0"/><waypoint x="9" y="0"/>'
     file = tmp_path / "mine.xml"
     file.write_text(f'<routes><route id="0" town="T" timetable="none.json">{points}</route></routes>', encoding="utf-8")
@@ -94,7 +94,7 @@ def test_a_route_whose_timetable_is_not_there_says_so(tmp_path: Path) -> None:
         read_routes(file)
 
 
-def test_a_file_that_is_not_there_or_no_json_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_or_no_json_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="cannot be read"):
         read_timetable(tmp_path / "none.json", STOPS)
     (tmp_path / "text.json").write_text("06:00", encoding="utf-8")

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from basu.cli import main, run
-from basu.metrics.score import Scoring
+from basu.cli import main
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.outcome import Fault
 from basu.routing.route_file import RouteDescription
@@ -103,7 +103,3 @@ def test_config_and_command_repeat_the_run_byte_by_byte(
     other = left(tmp_path / "other" / "latest")
     assert other[0] != wanted[0], "the agent draws its throttle, so another seed is another run"
     assert other[2]["scoring"] == {**wanted[2]["scoring"], "harsh_stop_mps2": 1.0}
-
-
-def test_no_option_is_promised_for_later_but_sumo() -> None:
-    assert set(run.LATER) == {"sumo"}

@@ -6,16 +6,20 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from basu.errors import UserError
+from basu.metrics.scoring import Scoring
+from basu.options import RunOptions
 from basu.outcome import Status
 from basu.output.report.documents import make_draft, publish
 from basu.routing.route_file import RouteDescription
 from basu.running.preparation import Job
-from basu.running.series import Series, open_series
+from basu.running.series import RESOLVED, Series, conditions, open_series
+from basu.settings.option import fields_of
 from fakes.results import a_result
 
 ROUTE = RouteDescription(id="0", town="Linden", points=(), stops=(), source="r.xml")
@@ -126,6 +130,34 @@ def test_what_is_different_is_named_and_refused(tmp_path: Path) -> None:
     opened(tmp_path, resume=True)
 
 
+def plan(**agents: Any) -> Any:
+    """What `conditions` reads of a plan without routes."""
+    config = SimpleNamespace(vehicle="vehicle.easymile.ez10", weather="ClearNoon")
+    return SimpleNamespace(
+        agents=SimpleNamespace(config=config, **agents),
+        loaded=SimpleNamespace(file=None),
+        jobs=(),
+        sensors=SimpleNamespace(specs=()),
+    )
+
+
+def test_every_declared_option_that_repeats_a_run_is_a_condition() -> None:
+    found = conditions(RunOptions(), Scoring(), plan())
+    declared = {field.flag for field in fields_of(RunOptions) if field.option.repeats and field.name not in RESOLVED}
+    assert declared <= found.keys()
+    assert {"--metrics", "--agent-memory", "--seed", "--vehicles"} <= declared
+    assert not {"--output", "--hud", "--series"} & found.keys()
+
+
+def test_a_file_among_the_conditions_counts_by_its_contents(tmp_path: Path) -> None:
+    metric = tmp_path / "mine.py"
+    metric.write_text("one = 1")
+    before = conditions(RunOptions(metric_files=(metric,)), Scoring(), plan())
+    metric.write_text("one = 2")
+    after = conditions(RunOptions(metric_files=(metric,)), Scoring(), plan())
+    assert {name for name in before if before[name] != after[name]} == {"--metrics"}
+
+
 def test_a_series_is_not_begun_over_another(tmp_path: Path) -> None:
     run(opened(tmp_path), JOBS[0])
     with pytest.raises(UserError, match="holds a series already, 1 of 4 runs done; add --resume"):
@@ -137,7 +169,7 @@ def test_there_has_to_be_a_series_to_go_on_with(tmp_path: Path) -> None:
         opened(tmp_path / "nothing", resume=True)
 
 
-def test_two_who_drive_one_series_count_each_run_once(tmp_path: Path) -> None:
+def test_two_that_drive_one_series_count_each_run_once(tmp_path: Path) -> None:
     one, other = opened(tmp_path), opened(tmp_path, resume=True)
     run(one, JOBS[0])
     with pytest.raises(UserError, match="another command drives the series"):

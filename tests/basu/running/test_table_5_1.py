@@ -30,7 +30,7 @@ def test_the_printed_infraction_scores_follow_from_the_counts_but_for_the_behavi
     assert PRINTED["behavioral"].infraction_by_formula() == pytest.approx(0.52)
 
 
-def test_stop_signs_are_left_out_as_the_thesis_did_and_told_beside() -> None:
+def test_stop_signs_are_left_out_as_the_thesis_did_and_reported_beside() -> None:
     row = OURS["basic"]
     assert row.infraction == 1.0
     assert row.driving == pytest.approx(0.8 + 0.2 * 0.998)

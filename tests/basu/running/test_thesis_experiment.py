@@ -16,7 +16,7 @@ from servers import RunningServer
 
 
 def leaving(made: Callable[[str], RunRecord]) -> Callable[[RunOptions, object], int]:
-    """A run that takes no time and leaves what it is told to."""
+    """A run that takes no time and writes the given results."""
 
     def run(options: RunOptions, _scoring: object) -> int:
         folder = written(options.output / options.agent, made(options.agent))

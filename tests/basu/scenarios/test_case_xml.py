@@ -110,7 +110,7 @@ def test_our_elements_say_where_it_is_where_it_goes_and_what_arms_it(tmp_path: P
         ('<ego_vehicle x="nan" y="2" yaw="0"/>', "has x='nan', which is no number"),
         ('<ego_vehicle x="1" y="2" yaw="0" modle="a"/>', "has the attribute 'modle', .* did you mean 'model'"),
         ('<ego_vehicle x="1" y="2" yaw="0" speed="4"/>', "has the attribute 'speed', which is not read here"),
-        ('<ego_vehicle x="1" y="2" yaw="0" rolename="hero2"/>', "rolename='hero2'; who is under test is 'hero' here"),
+        ('<ego_vehicle x="1" y="2" yaw="0" rolename="hero2"/>', "rolename='hero2'; the vehicle under test is 'hero'"),
         (EGO + '<other_actor x="1" y="2" yaw="0" autopilot="true"/>', "has the attribute 'autopilot'"),
         (EGO + '\n<weather rain="4"/>', "line 3: <weather> has the attribute 'rain', .*it may have cloudiness"),
         (EGO + '<weather cloudines="4"/>', "did you mean 'cloudiness'"),
@@ -171,7 +171,7 @@ def test_a_file_that_is_not_there_gets_a_sentence(tmp_path: Path) -> None:
         read_cases(tmp_path / "none.xml")
 
 
-def test_two_cases_of_one_name_are_told_with_both_lines(tmp_path: Path) -> None:
+def test_two_cases_of_one_name_are_reported_with_both_lines(tmp_path: Path) -> None:
     case = f'<scenario name="a_1" type="A" town="Linden">{EGO}</scenario>\n'
     with pytest.raises(ScenarioError, match=r"line 3: the name 'a_1' is given in .*line 2 already"):
         read_cases(written(tmp_path, f"<scenarios>\n{case}{case}</scenarios>"))

@@ -211,12 +211,12 @@ def test_a_word_that_means_nothing_gets_a_sentence(mine: Path, wanted: str, sent
         names(wanted, mine)
 
 
-def test_an_id_that_no_case_has_is_told() -> None:
+def test_an_id_that_no_case_has_is_reported() -> None:
     with pytest.raises(ScenarioError, match="there is no case 'nobody_1:sweep-5-1-1'"):
         by_id("nobody_1:sweep-5-1-1")
 
 
-def test_two_files_with_a_case_of_one_name_are_told_only_when_it_matters(tmp_path: Path, mine: Path) -> None:
+def test_two_files_with_a_case_of_one_name_are_reported_only_when_it_matters(tmp_path: Path, mine: Path) -> None:
     other = tmp_path / "other.xml"
     other.write_text(cases_xml(("tree_1", "FallingTree", "")))
     assert names(str(other), mine) == ["tree_1"]

@@ -1,4 +1,4 @@
-"""Claims about a user's Python file of scenarios: what goes wrong in it is told with its line."""
+"""Claims about a user's Python file of scenarios: an error in it is reported with its line."""
 
 from pathlib import Path
 

@@ -28,7 +28,7 @@ def test_the_case_has_its_value_and_the_defaults(playable: Playable) -> None:
     assert playable.values == {"ahead": 50.0, "stands": 8.0, "vehicle": "lorry"}
 
 
-def test_who_waits_gets_by_and_who_does_not_hits_the_lorry(playable: Playable) -> None:
+def test_an_ego_that_waits_gets_by_and_one_that_does_not_hits_the_lorry(playable: Playable) -> None:
     waited = rehearsed(playable, careful(6.0))
     assert waited.over
     assert waited.contacts_s == {}

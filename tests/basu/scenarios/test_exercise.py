@@ -38,14 +38,14 @@ def test_a_driver_that_crawls_far_from_crossing_traffic_has_not_met_it() -> None
     assert "at most 2.00 m/s fast" in found.sentence
 
 
-def test_a_driver_that_stands_has_met_nobody() -> None:
+def test_a_driver_that_stands_has_met_no_actor() -> None:
     assert came_about(drive(lambda _: 0.0, crossing(5.0))).holds is False
     towards_it = moving(60.0, 1.2, -8.0, 0.0)  # passes beside the standing ego
     assert came_about(drive(lambda _: 0.0, towards_it)).holds is False
 
 
 @pytest.mark.parametrize(("late_s", "met"), [(-4.0, False), (-1.0, True), (0.0, True), (1.0, True), (4.0, False)])
-def test_two_who_take_one_place_within_two_seconds_have_met(late_s: float, met: bool) -> None:  # noqa: FBT001
+def test_two_that_take_one_place_within_two_seconds_have_met(late_s: float, met: bool) -> None:  # noqa: FBT001
     arrives_s = CROSSES_AT_M / 8.0
     found = came_about(drive(lambda _: 8.0, crossing(arrives_s + late_s)))
     assert found.holds is met
@@ -78,7 +78,7 @@ def test_a_side_road_that_empties_while_the_ego_stands_at_its_stop_sign_is_not_m
         assert came_about(played(history)).holds is met, meets_s
 
 
-def test_partners_are_who_moves_unless_the_scenario_names_them() -> None:
+def test_partners_are_an_ego_that_moves_unless_the_scenario_names_them() -> None:
     beside = Thing("van", 24.0, 2.4, 0.0, 2.0, 1.0)
     history = ride(12.0, eastward(lambda _: 2.0, 13.0), others=[(9, crossing(2.0))])
     case = played(history, things=(beside,))

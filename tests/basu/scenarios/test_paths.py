@@ -86,7 +86,7 @@ def test_beside_a_bend_to_the_right_is_shorter_on_the_right() -> None:
     assert path.beside(-2.0).length_m == pytest.approx(22.0 * math.pi / 2.0, abs=0.1)
 
 
-def test_a_swerve_begins_and_ends_where_it_is_told_without_a_kink() -> None:
+def test_a_swerve_begins_and_ends_where_it_is_reported_without_a_kink() -> None:
     swerve = Path.through([(0.0, 0.0), (100.0, 0.0)]).swerved(20.0, 30.0, 3.5, 0.0)
     assert swerve.at(10.0).y_m == pytest.approx(3.5)
     y_m = swerve.points_m[:, 1]
@@ -123,7 +123,7 @@ def test_a_stretch_of_the_route_keeps_to_its_right() -> None:
 @pytest.mark.parametrize(
     ("turn", "end"), [("straight", (-40.0, -1.75)), ("right", (1.75, -40.0)), ("left", (-1.75, 40.0))]
 )
-def test_a_path_along_the_lane_turns_as_told(westward: Place, turn: str, end: tuple[float, float]) -> None:
+def test_a_path_along_the_lane_turns_as_commanded(westward: Place, turn: str, end: tuple[float, float]) -> None:
     path = along_lane(westward.carla_map, Pose(58.0, -1.75, 0.0, math.pi), 115.0, (turn,))
     assert path.nearest(*end).distance_m < 0.3
 
@@ -133,7 +133,7 @@ def test_no_lane_is_found_far_from_the_road(westward: Place) -> None:
         along_lane(westward.carla_map, Pose(40.0, 40.0), 20.0)
 
 
-def test_who_comes_the_other_way_drives_in_the_other_lane(westward: Place) -> None:
+def test_an_ego_that_comes_the_other_way_drives_in_the_other_lane(westward: Place) -> None:
     path = oncoming(westward, 50.0, 10.0)
     assert path.points_m[:, 1] == pytest.approx(1.75, abs=0.05)
     assert path.points_m[0, 0] == pytest.approx(10.0, abs=1.0)
@@ -156,10 +156,10 @@ def test_the_junction_ahead_says_what_the_route_does_there(westward: Place) -> N
 
 
 @pytest.mark.parametrize(("side", "from_y_m", "x_m"), [("left", 1.0, 1.75), ("right", -1.0, -1.75)])
-def test_who_comes_from_a_side_crosses_where_the_lanes_cross(
+def test_an_ego_that_comes_from_a_side_crosses_where_the_lanes_cross(
     westward: Place, side: str, from_y_m: float, x_m: float
 ) -> None:
-    # driving west, the left is the south (y > 0), whose northbound lane lies at x 1.75
+    # driving west, the left is the south (y > 0), with its northbound lane at x 1.75
     found = crossing(westward, side, "straight")
     assert math.copysign(1.0, found.path.points_m[0, 1]) == from_y_m
     met = found.path.at(found.meet_s_m)
@@ -208,7 +208,7 @@ def test_every_junction_of_a_street_of_linden_has_ways_that_meet_the_egos(in_lin
             assert np.abs(np.diff(way.path.yaw_rad)).max() < math.radians(40.0)  # no jumps back
 
 
-def test_the_pavement_is_beyond_whoever_parks(in_linden: Place) -> None:
+def test_the_pavement_is_beyond_an_actor_that_parks(in_linden: Place) -> None:
     for ahead_m in (10.0, 100.0, 200.0):
         parked, right, left = (
             parked_m(in_linden, ahead_m),
@@ -225,7 +225,7 @@ def test_without_a_map_pavement_and_parking_are_where_they_mostly_are() -> None:
     assert parked_m(place, 10.0) == pytest.approx(1.75 + 1.05)
 
 
-def test_without_a_map_who_comes_the_other_way_drives_a_lanes_width_to_the_left() -> None:
+def test_without_a_map_an_ego_that_comes_the_other_way_drives_a_lanes_width_to_the_left() -> None:
     path = oncoming(offline_place([(0.0, 0.0), (50.0, 0.0)], lane_width_m=3.0), 40.0, 5.0)
     assert path.points_m[:, 1] == pytest.approx(-3.0)
     assert path.at(0.0).yaw_rad == pytest.approx(math.pi)

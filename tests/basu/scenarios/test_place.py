@@ -17,7 +17,7 @@ def test_ahead_counts_from_the_trigger_point() -> None:
     assert place.left_m == pytest.approx(80.0)
 
 
-def test_right_is_south_of_who_drives_east_and_turned_is_clockwise() -> None:
+def test_right_is_south_of_an_ego_that_drives_east_and_turned_is_clockwise() -> None:
     pose = offline_place([(0.0, 0.0), (100.0, 0.0)]).at(10.0, 3.0, 90.0)
     assert pose[:2] == pytest.approx((10.0, 3.0))
     assert pose.yaw_rad == pytest.approx(math.pi / 2.0)
@@ -42,5 +42,5 @@ def test_the_width_is_that_of_the_routes_lane() -> None:
 
 
 def test_what_only_a_map_knows_is_refused_without_one() -> None:
-    with pytest.raises(ScenarioError, match="'paper' was not laid on a map"):
+    with pytest.raises(ScenarioError, match="'offline' was not laid on a map"):
         offline_place([(0.0, 0.0), (50.0, 0.0)]).waypoint(10.0)

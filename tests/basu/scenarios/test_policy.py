@@ -96,7 +96,7 @@ def test_a_near_miss_fails_a_drive_that_met_every_criterion_of_its_scenario() ->
     assert found.message.startswith("no near miss: child (vehicle.audi.tt) was 0.30 m away")
 
 
-def test_who_comes_near_a_standing_ego_has_done_so_alone() -> None:
+def test_an_ego_that_comes_near_a_standing_ego_has_done_so_alone() -> None:
     assert NoNearMiss().judge(drive(lambda _: 0.0, moving(60.0, 2.0, -8.0, 0.0))).passed is True
 
 

@@ -14,7 +14,7 @@ from basu.scenarios.sampling import LIMIT, Grid, Sweep, check_design, draw
 
 SPEED = Number("speed", 5.0, 2.0, 10.0, "m/s", "of the leader")
 GAP = Number("gap", 1.0, 0.5, 2.0, "s", "before it brakes")
-KIND = Choice("kind", ("car", "motorcycle", "bicycle"), "who leads")
+KIND = Choice("kind", ("car", "motorcycle", "bicycle"), "the leader")
 
 
 @st.composite
@@ -91,7 +91,7 @@ def test_a_grid_goes_from_the_lowest_to_the_highest_and_stays_within(number: Num
         ),
     ],
 )
-def test_a_design_that_nobody_could_drive_is_refused(
+def test_a_design_that_no_actor_could_drive_is_refused(
     design: Sweep | Grid, parameters: list[Parameter], sentence: str
 ) -> None:
     with pytest.raises(ScenarioError, match=sentence):

@@ -172,7 +172,7 @@ def process_wait(process: subprocess.Popen[bytes]) -> None:
 
 
 def free_port() -> int:
-    """One that nobody listens on now."""
+    """A port without a listener."""
     import socket  # noqa: PLC0415 - only here
 
     with socket.socket() as probe:

@@ -71,7 +71,7 @@ def test_the_behaviour_stands_beside_the_criteria(odd: Odd) -> None:
     assert {node["status"] for _, node in walk(tree)} == {"waiting"}
 
 
-def test_kinds_are_told_apart(after: TreeNode) -> None:
+def test_kinds_are_distinguished(after: TreeNode) -> None:
     nodes = by_name(after)
     assert nodes["setup"]["kind"] == "sequence"
     assert nodes['a "choice" & <more>']["kind"] == "selector"

@@ -1,4 +1,4 @@
-"""Claims about triggers: when each comes true on a stage whose bodies move as told."""
+"""Claims about triggers: when each comes true on a stage with bodies that move as commanded."""
 
 import math
 
@@ -33,27 +33,27 @@ from basu.scenarios.triggers import (
     along_route,
 )
 from basu.testing import OfflineStage, steady, waiting_at
-from fakes.paper import play, somebody, stage_with
+from fakes.paper import actor_at, play, stage_with
 
 FRAME_S = 0.051  # a frame, and what rounding adds
 
 
 def test_near_is_from_middle_to_middle() -> None:
     trigger = EgoNear("other", 20.0)
-    assert play(trigger, stage_with(somebody(60.0))) == pytest.approx(4.0, abs=FRAME_S)
+    assert play(trigger, stage_with(actor_at(60.0))) == pytest.approx(4.0, abs=FRAME_S)
     assert trigger.name == "ego within 20 m of other"
     assert trigger.feedback_message.startswith("ego at 20.0 m")
 
 
 def test_near_may_be_between_two_others() -> None:
-    third = somebody(100.0, speed_mps=0.0)._replace(name="third")
-    stage = stage_with(somebody(50.0, speed_mps=5.0), third, driver=steady(0.0))
+    third = actor_at(100.0, speed_mps=0.0)._replace(name="third")
+    stage = stage_with(actor_at(50.0, speed_mps=5.0), third, driver=steady(0.0))
     assert play(Near("other", "third", 10.0), stage) == pytest.approx(8.0, abs=FRAME_S)
 
 
 def test_near_a_place_may_be_asked_of_anybody() -> None:
     assert play(NearPlace(Pose(50.0, 0.0), 10.0), stage_with()) == pytest.approx(4.0, abs=FRAME_S)
-    stage = stage_with(somebody(0.0, 9.0, speed_mps=5.0))
+    stage = stage_with(actor_at(0.0, 9.0, speed_mps=5.0))
     assert play(NearPlace(Pose(50.0, 9.0), 10.0, actor="other"), stage) == pytest.approx(8.0, abs=FRAME_S)
 
 
@@ -82,17 +82,17 @@ def test_a_polygon_with_a_dent_does_not_hold_its_dent() -> None:
 def test_a_line_is_crossed_by_the_front_and_only_in_its_direction() -> None:
     line = Pose(50.0, 0.0, 0.0, 0.0)
     assert play(CrossesLine(line), stage_with()) == pytest.approx(4.8, abs=FRAME_S)  # the front is 2 m ahead
-    against = stage_with(somebody(80.0, 0.0, math.pi, speed_mps=10.0), driver=steady(0.0))
+    against = stage_with(actor_at(80.0, 0.0, math.pi, speed_mps=10.0), driver=steady(0.0))
     with pytest.raises(AssertionError, match="not done"):
         play(CrossesLine(line, actor="other"), against, until_s=10.0)
 
 
-def test_who_passes_beside_the_line_does_not_cross_it() -> None:
+def test_an_ego_that_passes_beside_the_line_does_not_cross_it() -> None:
     with pytest.raises(AssertionError, match="not done"):
         play(CrossesLine(Pose(50.0, 8.0, 0.0, 0.0), 3.0), stage_with(), until_s=15.0)
 
 
-def test_who_begins_beyond_the_line_has_not_crossed_it() -> None:
+def test_an_ego_that_begins_beyond_the_line_has_not_crossed_it() -> None:
     with pytest.raises(AssertionError, match="not done"):
         play(CrossesLine(Pose(-10.0, 0.0)), stage_with(), until_s=5.0)
 
@@ -109,17 +109,17 @@ def test_an_ego_that_stands_is_never_seconds_away() -> None:
 
 def test_an_actors_time_to_a_place_of_its_path() -> None:
     path = Path.through([(0.0, 20.0), (100.0, 20.0)])
-    stage = stage_with(somebody(0.0, 20.0, speed_mps=5.0))
+    stage = stage_with(actor_at(0.0, 20.0, speed_mps=5.0))
     assert play(ActorTimeToArrival("other", path, 60.0, 4.0), stage) == pytest.approx(8.0, abs=FRAME_S)
 
 
-def test_beyond_somebody_is_tail_past_nose() -> None:
+def test_beyond_an_actor_is_tail_past_nose() -> None:
     # the ego's half is 2.0 m, the other's 2.3 m
-    assert play(EgoBeyond("other", 1.0), stage_with(somebody(40.0, 3.0))) == pytest.approx(4.53, abs=FRAME_S)
+    assert play(EgoBeyond("other", 1.0), stage_with(actor_at(40.0, 3.0))) == pytest.approx(4.53, abs=FRAME_S)
 
 
-def test_beyond_somebody_who_stands_across_counts_the_width() -> None:
-    stage = stage_with(somebody(40.0, 5.0, math.pi / 2.0))
+def test_beyond_an_actor_that_stands_across_counts_the_width() -> None:
+    stage = stage_with(actor_at(40.0, 5.0, math.pi / 2.0))
     assert play(EgoBeyond("other"), stage) == pytest.approx(4.295, abs=FRAME_S)
 
 
@@ -139,7 +139,7 @@ def test_speeds_of_the_ego_and_of_others() -> None:
     falling = stage_with(driver=lambda stage: 10.0 - 2.0 * stage.time_s)
     play(Elapsed(0.5), falling)
     assert play(Slower(4.0), falling) == pytest.approx(3.05, abs=FRAME_S)
-    assert play(Faster(3.0, actor="other"), stage_with(somebody(30.0, speed_mps=3.5))) == 0.0
+    assert play(Faster(3.0, actor="other"), stage_with(actor_at(30.0, speed_mps=3.5))) == 0.0
 
 
 def test_standing_counts_only_without_a_break() -> None:
@@ -152,20 +152,20 @@ def test_standing_counts_only_without_a_break() -> None:
 
 
 def test_closing_in_is_from_edge_to_edge_at_the_speed_of_both() -> None:
-    stage = stage_with(somebody(104.3, 0.0, math.pi, speed_mps=10.0))
+    stage = stage_with(actor_at(104.3, 0.0, math.pi, speed_mps=10.0))
     assert play(ClosesIn("other", 2.0), stage) == pytest.approx(3.0, abs=FRAME_S)  # 100 m at 20 m/s, less 2 s
 
 
-def test_who_drives_away_is_never_closed_in_on() -> None:
+def test_an_ego_that_drives_away_is_never_closed_in_on() -> None:
     with pytest.raises(AssertionError, match="not done"):
-        play(ClosesIn("other", 100.0), stage_with(somebody(10.0, speed_mps=12.0)), until_s=5.0)
+        play(ClosesIn("other", 100.0), stage_with(actor_at(10.0, speed_mps=12.0)), until_s=5.0)
 
 
 def test_a_touch_is_seen_of_the_one_asked_for_and_of_anybody() -> None:
-    assert play(EgoTouches(), stage_with(somebody(54.3))) == pytest.approx(5.0, abs=FRAME_S)
-    assert play(EgoTouches("other"), stage_with(somebody(54.3))) == pytest.approx(5.0, abs=FRAME_S)
+    assert play(EgoTouches(), stage_with(actor_at(54.3))) == pytest.approx(5.0, abs=FRAME_S)
+    assert play(EgoTouches("other"), stage_with(actor_at(54.3))) == pytest.approx(5.0, abs=FRAME_S)
     with pytest.raises(AssertionError, match="not done"):
-        play(EgoTouches("third"), stage_with(somebody(54.3)), until_s=10.0)
+        play(EgoTouches("third"), stage_with(actor_at(54.3)), until_s=10.0)
 
 
 @pytest.mark.parametrize("speed_mps", [0.5, 5.0, 15.0, 30.0])
@@ -176,7 +176,7 @@ def test_arriving_is_known_no_later_than_the_run_knows_it(speed_mps: float) -> N
     assert left_m > path_following.AT_END_M or left_m + speed_mps * stage.step_s > path_following.AT_END_M
 
 
-def test_who_parks_near_the_end_has_arrived_as_the_run_has_it() -> None:
+def test_an_ego_that_parks_near_the_end_has_arrived_as_the_run_has_it() -> None:
     assert min(along_route.SLACK_M, along_route.SLACK_MPS) >= 0.0
     stage = stage_with(driver=waiting_at(56.5, 100.0, 8.0), length_m=60.0)
     play(EgoArrives(), stage)

@@ -14,7 +14,7 @@ from basu.scenarios.xml_elements import Case, GivenActor
 PARAMETERS = (
     Number("speed", 5.0, 2.0, 10.0, "m/s", "of the leader"),
     Number("gap", 1.0, 0.5, 2.0, "s", "before it brakes"),
-    Choice("kind", ("car", "motorcycle", "bicycle"), "who leads"),
+    Choice("kind", ("car", "motorcycle", "bicycle"), "the leader"),
 )
 CASE = Case(
     name="leader_1",

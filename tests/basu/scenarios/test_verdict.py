@@ -67,7 +67,7 @@ def test_a_fault_is_the_verdict_whatever_was_driven(
 ) -> None:
     found = judge(CRITERIA, record, Outcome(status, "it broke"), triggered=True)
     assert (found.verdict, found.fault, found.message) == (verdict, fault, "it broke")
-    assert len(found.judgements) == (0 if record is None else 7)  # what was measured is told all the same
+    assert len(found.judgements) == (0 if record is None else 7)  # measured figures are reported all the same
 
 
 def test_every_end_of_a_run_has_a_verdict() -> None:
@@ -92,12 +92,12 @@ def test_of_other_failures_the_earliest_is_named_and_one_without_a_moment_last()
     assert judge(said, ARRIVED, ENDED, triggered=True).message == "c: because of c"
 
 
-def test_what_does_not_decide_fails_nobody() -> None:
+def test_what_does_not_decide_fails_no_actor() -> None:
     found = judge((Arrives(), Says("told", passed=False, deciding=False)), ARRIVED, ENDED, triggered=True)
     assert found.verdict is Verdict.SUCCESS
 
 
-def test_who_arrives_without_having_triggered_it_met_no_scenario() -> None:
+def test_an_ego_that_arrives_without_having_triggered_it_met_no_scenario() -> None:
     found = judge(CRITERIA, ARRIVED, ENDED, triggered=False)
     assert (found.verdict, found.fault) == (Verdict.SETUP_FAULT, Fault.SETUP)
     assert found.message.startswith("it never triggered, although the ego arrived after 9.8 s")
@@ -112,10 +112,10 @@ def test_a_driver_that_never_comes_to_the_trigger_exercised_nothing() -> None:
 
 
 def test_without_a_conflict_success_is_not_earned_and_failure_is_not_charged() -> None:
-    absent = Finding(False, "nobody came")
+    absent = Finding(False, "no actor came")
     for case in (ARRIVED, SHORT):
         found = judge_by(CRITERIA, case, case.outcome, triggered=True, exercised=lambda _: absent)
-        assert (found.verdict, found.message) == (Verdict.NOT_EXERCISED, "nobody came")
+        assert (found.verdict, found.message) == (Verdict.NOT_EXERCISED, "no actor came")
     unsafe = played(driven(at(10.0, 4.0), collisions=[hit(70)]))
     found = judge_by(CRITERIA, unsafe, ENDED, triggered=True, exercised=lambda _: absent)
     assert found.verdict is Verdict.FAILURE
@@ -126,12 +126,12 @@ def test_a_collision_on_the_way_to_the_trigger_is_why_it_was_not_reached() -> No
     assert judge(CRITERIA, case, ENDED, triggered=False).message.startswith("no collision: hit")
 
 
-def test_the_end_of_the_time_fails_who_met_all_else() -> None:
+def test_the_end_of_the_time_fails_an_ego_that_met_all_else() -> None:
     found = judge((NoCollision(), KeepsLane()), SHORT, SHORT.outcome, triggered=True)
     assert (found.verdict, found.message) == (Verdict.FAILURE, "not over after 4 s")
 
 
-def test_where_nothing_could_be_judged_nobody_has_passed() -> None:
+def test_where_nothing_could_be_judged_no_actor_has_passed() -> None:
     found = judge((LeastDistance(0.5, to="child"),), ARRIVED, ENDED, triggered=True)
     assert found.verdict is Verdict.SETUP_FAULT
     assert found.message == "there is nothing to judge it by: child never was within 60 m of the ego"

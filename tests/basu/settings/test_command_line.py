@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from basu.cli import parser
 from basu.errors import UserError
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import typed, words_of
@@ -73,7 +73,7 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
     if given.get("hud") is None:
         given.pop("hud_screenshot", None)
     if given.get("in_process"):
-        given.pop("agent_memory_gb", None)  # there is no process whose memory could be limited
+        given.pop("agent_memory_gb", None)  # without a process there is no memory to limit
     return resolve(model, [Layer(given)])
 
 

@@ -8,7 +8,7 @@ import pytest
 from basu.cli import parser
 from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
-from basu.metrics.score import Scoring
+from basu.metrics.scoring import Scoring
 from basu.options import RunOptions
 from basu.settings.command_line import typed
 from basu.settings.option import Layer

@@ -1,4 +1,4 @@
-"""Claims about rehearsals: a scenario of a user's own is tried on paper, and drivers are told apart."""
+"""Claims about rehearsals: a scenario of a user's own is tried offline, and drivers differ."""
 
 import math
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from basu.testing import OfflineStage, careful, offline_place, rehearse, steady,
 
 
 class StepsOut(Scenario):
-    """Somebody steps out in front of the ego."""
+    """A pedestrian steps out in front of the ego."""
 
     parameters: ClassVar[Sequence[Parameter]] = (Number("ahead", 50.0, 20.0, 80.0, "m", "of the trigger point"),)
 
@@ -69,7 +69,7 @@ def test_a_value_of_the_case_moves_the_conflict(bend: Place) -> None:
     assert far.phases_s["conflict"] - near.phases_s["conflict"] == pytest.approx(30.0 / 6.0, abs=0.1)
 
 
-def test_who_never_comes_never_triggers(bend: Place) -> None:
+def test_one_that_never_comes_never_triggers(bend: Place) -> None:
     played = rehearse(steps_out(bend), steady(0.0), until_s=5.0)
     assert list(played.phases_s) == ["setup", "trigger"]
     assert not played.over

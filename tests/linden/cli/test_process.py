@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from linden.cli.process import GRACE_S, PatientHandler, allow_connections
+from linden.cli.process import GRACE_S, LossyHandler, allow_connections
 
 STUCK = """
 import os
@@ -83,7 +83,7 @@ def pipe_of_log(monkeypatch: pytest.MonkeyPatch) -> tuple[int, logging.Logger]:
     reading, writing = os.pipe()
     monkeypatch.setattr(sys, "stderr", os.fdopen(writing, "w"))
     logger = logging.Logger("test")  # noqa: LOG001 - one that no other test knows
-    logger.addHandler(PatientHandler())
+    logger.addHandler(LossyHandler())
     return reading, logger
 
 
@@ -110,7 +110,7 @@ def test_a_log_whose_reader_has_gone_is_written_nowhere(monkeypatch: pytest.Monk
 def test_a_server_started_without_stderr_has_a_log_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stderr", None)
     logger = logging.Logger("test")  # noqa: LOG001 - one that no other test knows
-    handler = PatientHandler()
+    handler = LossyHandler()
     logger.addHandler(handler)
     logger.warning("into the void")
     handler.stream.close()

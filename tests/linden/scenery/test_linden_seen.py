@@ -10,7 +10,7 @@ from linden.protocol.values.enums import SemanticTag
 from linden.scenery.map_mesh import standing
 from linden.scenery.mesh import Material, Mesh
 from linden.scenery.streets.road import surface
-from linden.scenery.streets.simplified_lanes import ABOVE_M, laid
+from linden.scenery.streets.simplified_lanes import ABOVE_M, simplified_lanes
 from linden.simulation.surroundings import scenery_of
 
 MOST_TRIANGLES = 1_200_000
@@ -27,7 +27,7 @@ def linden() -> LoadedMap:
 
 @pytest.fixture(scope="module")
 def drawn(linden: LoadedMap) -> Mesh:
-    return surface(laid(parse(linden.text)))
+    return surface(simplified_lanes(parse(linden.text)))
 
 
 @pytest.mark.slow

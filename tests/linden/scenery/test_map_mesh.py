@@ -19,7 +19,7 @@ from linden.scenery.scene.objects import Kind, Scene
 from linden.scenery.scene.south_linden import home
 from linden.scenery.streets.junction_floors import floors
 from linden.scenery.streets.road import kerbs, surface
-from linden.scenery.streets.simplified_lanes import laid
+from linden.scenery.streets.simplified_lanes import simplified_lanes
 from linden.scenery.streets.terrain import land
 from linden.sensors.casting.caster import Rays
 from linden.sensors.casting.choose import caster_of
@@ -130,7 +130,7 @@ def test_a_stop_sign_reads_from_the_left_to_the_right(street: LoadedMap) -> None
 
 
 def test_the_surface_is_what_wheels_feel(street: LoadedMap) -> None:
-    mesh = surface(laid(parse(STREET)))
+    mesh = surface(simplified_lanes(parse(STREET)))
     middle = mesh.vertices_m[mesh.triangles].mean(axis=1).astype(np.float64)
     height, triangle = street.ground.surfaces_under(np.column_stack([middle[:, :2], np.full(len(middle), HIGH_M)]))
     np.testing.assert_allclose(height, middle[:, 2], atol=1e-4)
@@ -139,7 +139,7 @@ def test_the_surface_is_what_wheels_feel(street: LoadedMap) -> None:
 
 
 def test_a_kerb_looks_at_the_road_and_is_as_high_as_the_pavement(street: LoadedMap) -> None:
-    mesh = kerbs(laid(parse(STREET)), street.ground)
+    mesh = kerbs(simplified_lanes(parse(STREET)), street.ground)
     at_road = np.isclose(np.abs(mesh.vertices_m[mesh.triangles, 1]), 3.5, atol=1e-3).all(axis=1)
     assert np.ptp(mesh.vertices_m[mesh.triangles[at_road], 2]) == pytest.approx(0.15, abs=1e-4)
     towards_middle = -np.sign(mesh.vertices_m[mesh.triangles[at_road, 0], 1])
@@ -148,7 +148,7 @@ def test_a_kerb_looks_at_the_road_and_is_as_high_as_the_pavement(street: LoadedM
 
 def test_no_ray_slips_through_between_the_land_and_the_street(street: LoadedMap) -> None:
     opendrive = parse(STREET)
-    lanes, under = laid(opendrive), floors(road_mesh(opendrive), street.ground)
+    lanes, under = simplified_lanes(opendrive), floors(road_mesh(opendrive), street.ground)
     mesh = join([surface(lanes), kerbs(lanes, street.ground), under.mesh, land(lanes, street.ground, under)])
     dice, count = np.random.default_rng(5), 50_000
     side = dice.choice([-1.0, 1.0], count)
@@ -164,7 +164,7 @@ def test_no_ray_slips_through_between_the_land_and_the_street(street: LoadedMap)
 
 def test_land_begins_where_the_pavement_ends_and_is_never_on_a_road(street: LoadedMap) -> None:
     opendrive = parse(STREET)
-    mesh = land(laid(opendrive), street.ground, floors(road_mesh(opendrive), street.ground))
+    mesh = land(simplified_lanes(opendrive), street.ground, floors(road_mesh(opendrive), street.ground))
     corners = mesh.vertices_m[mesh.triangles].astype(np.float64)
     for weights in ((1 / 3, 1 / 3, 1 / 3), (0.6, 0.2, 0.2), (0.2, 0.6, 0.2), (0.2, 0.2, 0.6)):
         points = np.tensordot(corners, weights, axes=(1, 0))

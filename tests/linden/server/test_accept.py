@@ -7,14 +7,14 @@ from collections.abc import Iterator
 
 import pytest
 
-from linden.server import accept as entrance
-from linden.server.accept import FULL_PAUSE_S, SHOWN_OUT_AT_ONCE, SILENT_SUBSCRIBER_S, Entrance, most_connections
+from linden.server import accept
+from linden.server.accept import FULL_PAUSE_S, SHOWN_OUT_AT_ONCE, SILENT_SUBSCRIBER_S, Acceptor, most_connections
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports, open_ports
 
 
 class House:
-    """An entrance, and who is inside."""
+    """An acceptor and the connections that it accepted."""
 
     def __init__(self, ports: Ports) -> None:
         self.ports = ports
@@ -22,11 +22,11 @@ class House:
         self.inside: list[Peer] = []
         self.outside: list[socket.socket] = []
         self.selector = selectors.DefaultSelector()
-        self.entrance = Entrance(ports, self.selector, lambda: self.now_s, self.inside.append, self.show_out)
+        self.acceptor = Acceptor(ports, self.selector, lambda: self.now_s, self.inside.append, self.show_out)
 
     def show_out(self, peer: Peer) -> None:
         self.inside.remove(peer)
-        self.entrance.has_left(peer)
+        self.acceptor.has_left(peer)
         peer.socket.close()
 
     def knock(self, door: socket.socket, times: int = 1) -> None:
@@ -36,7 +36,7 @@ class House:
         self.now_s = self.now_s if now_s is None else now_s
         for key, events in self.selector.select(0.0):
             key.data(events)
-        self.entrance.look(self.now_s)
+        self.acceptor.look(self.now_s)
 
 
 @pytest.fixture
@@ -61,24 +61,24 @@ def test_a_subscriber_that_says_nothing_is_shown_out_and_a_client_may_be_silent(
     house.knock(house.ports.rpc)
     house.knock(house.ports.streaming, 2)
     house.turn()
-    house.entrance.has_spoken(next(peer for peer in house.inside if isinstance(peer, StreamPeer)))
-    assert house.entrance.wait_s(101.0) == SILENT_SUBSCRIBER_S - 1.0
+    house.acceptor.has_spoken(next(peer for peer in house.inside if isinstance(peer, StreamPeer)))
+    assert house.acceptor.wait_s(101.0) == SILENT_SUBSCRIBER_S - 1.0
     house.turn(100.0 + SILENT_SUBSCRIBER_S)
     assert [type(peer) for peer in house.inside] == [RpcPeer, StreamPeer]
     house.turn(100_000.0)
     assert len(house.inside) == 2
-    assert house.entrance.wait_s(100_000.0) is None
+    assert house.acceptor.wait_s(100_000.0) is None
 
 
 def test_without_room_the_silent_make_it_and_those_who_have_spoken_stay(
     house: House, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(house.entrance, "_most", 30)
+    monkeypatch.setattr(house.acceptor, "_most", 30)
     house.knock(house.ports.rpc, 30)
     house.turn()
     known = house.inside[:5]
     for peer in known:
-        house.entrance.has_spoken(peer)
+        house.acceptor.has_spoken(peer)
     house.knock(house.ports.rpc)
     house.turn()
     assert len(house.inside) == 30 - SHOWN_OUT_AT_ONCE + 1
@@ -89,16 +89,16 @@ def test_without_room_the_silent_make_it_and_those_who_have_spoken_stay(
 def test_where_all_have_spoken_the_doors_close_for_a_while(
     house: House, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(house.entrance, "_most", 3)
+    monkeypatch.setattr(house.acceptor, "_most", 3)
     house.knock(house.ports.rpc, 4)
     house.turn()
     for peer in house.inside:
-        house.entrance.has_spoken(peer)
+        house.acceptor.has_spoken(peer)
     house.knock(house.ports.streaming)  # both doors are knocked at in the turn in which they close
     house.turn()
     assert len(house.inside) == 3
     assert "nobody more is let in for 1 s" in caplog.text
-    assert house.entrance.wait_s(house.now_s) == FULL_PAUSE_S
+    assert house.acceptor.wait_s(house.now_s) == FULL_PAUSE_S
     house.show_out(house.inside[0])
     house.turn(house.now_s + FULL_PAUSE_S)
     house.turn()
@@ -121,13 +121,13 @@ class Failing:
 @pytest.mark.parametrize("code", [errno.ECONNABORTED, errno.EPROTO, errno.EPERM])
 def test_one_that_has_gone_before_it_is_let_in_keeps_nobody_else_out(house: House, code: int) -> None:
     house.knock(house.ports.rpc)
-    house.entrance._let_in(Failing(house.ports.rpc, code), RpcPeer)
+    house.acceptor._let_in(Failing(house.ports.rpc, code), RpcPeer)
     assert len(house.inside) == 1
 
 
 def test_a_system_without_files_closes_the_doors(house: House) -> None:
     house.knock(house.ports.rpc)
-    house.entrance._let_in(Failing(house.ports.rpc, errno.EMFILE), RpcPeer)
+    house.acceptor._let_in(Failing(house.ports.rpc, errno.EMFILE), RpcPeer)
     assert not house.inside
     house.turn(house.now_s + FULL_PAUSE_S)
     house.turn()
@@ -135,4 +135,4 @@ def test_a_system_without_files_closes_the_doors(house: House) -> None:
 
 
 def test_some_files_are_kept_for_what_is_no_connection() -> None:
-    assert entrance.RESERVED_FILES <= most_connections() <= entrance.MOST_CONNECTIONS_ANYWHERE
+    assert accept.RESERVED_FILES <= most_connections() <= accept.MOST_CONNECTIONS_ANYWHERE

@@ -195,16 +195,16 @@ def test_a_tick_waits_for_whoever_has_just_asked_where_a_stream_is(running: Live
 
 
 def test_an_answer_waits_for_the_scene_and_nobody_else_does(running: Live) -> None:
-    seeing = running.simulation.seeing
+    sensor_scene = running.simulation.sensor_scene
     with running.client() as client, running.client() as other:
-        seeing.is_there = False
+        sensor_scene.is_there = False
         assert client.call("tick_cue") == 1  # nobody listens to a sensor that looks
         number = client.send("version")
         assert other.call("tick_cue") == 2
-        seeing.is_there = True
-        seeing.when_built()
+        sensor_scene.is_there = True
+        sensor_scene.when_built()
         assert client.answer() == [1, number, None, [[1, "0.9.16"]]]
-        seeing.is_there = False
+        sensor_scene.is_there = False
         assert client.call("version") == "0.9.16"  # it does not wait for ever
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from linden.server.stall_log import HELD_UP_S, NO_TICK_S, Stretch, Waiting
+from linden.server.stall_log import HELD_UP_S, NO_TICK_S, Stall, StallLog
 
 
 class FakePeer:
@@ -23,7 +23,7 @@ DRIVER, OTHER = FakePeer("client 1 at 127.0.0.1:6"), FakePeer("client 2 at 127.0
 
 
 def test_a_stretch_is_told_of_once_when_it_has_lasted() -> None:
-    stretch = Stretch(5.0)
+    stretch = Stall(5.0)
     assert [stretch.goes_on(now_s) for now_s in (100.0, 104.9, 105.0, 106.0)] == [False, False, True, False]
     assert stretch.ends(107.5) == 7.5
     assert stretch.ends(108.0) is None
@@ -32,13 +32,13 @@ def test_a_stretch_is_told_of_once_when_it_has_lasted() -> None:
 
 
 def test_a_short_stretch_is_not_told_of_at_all() -> None:
-    stretch = Stretch(5.0)
+    stretch = Stall(5.0)
     assert not stretch.goes_on(100.0)
     assert stretch.ends(104.0) is None
 
 
 def test_a_tick_that_waits_says_for_whom_and_that_it_goes_on(caplog: pytest.LogCaptureFixture) -> None:
-    waiting = Waiting()
+    waiting = StallLog()
     for now_s in (10.0, 10.0 + HELD_UP_S, 10.5 + HELD_UP_S):
         waiting.for_subscribers(now_s, [DEAF])
     waiting.for_subscribers(12.0, ())
@@ -50,14 +50,14 @@ def test_a_tick_that_waits_says_for_whom_and_that_it_goes_on(caplog: pytest.LogC
 
 
 def test_a_crowd_is_not_named_one_by_one(caplog: pytest.LogCaptureFixture) -> None:
-    waiting = Waiting()
+    waiting = StallLog()
     for now_s in (0.0, HELD_UP_S):
         waiting.for_subscribers(now_s, [FakePeer(f"s{i}") for i in range(100)])
     assert caplog.messages == ["a tick waits for s0, s1, s2, s3, s4 and 95 more, with 0.0 MiB unread"]
 
 
 def test_a_missing_tick_says_whose_it_is_and_when_it_has_come(caplog: pytest.LogCaptureFixture) -> None:
-    waiting = Waiting()
+    waiting = StallLog()
     for now_s, frame in ((0.0, 4), (3.0, 5), (3.0 + NO_TICK_S, 5), (20.0, 5), (33.0, 6), (34.0, 7)):
         waiting.for_a_tick(now_s, frame, [DRIVER, OTHER], DRIVER)
     assert caplog.messages == [
@@ -81,7 +81,7 @@ def test_a_missing_tick_says_whose_it_is_and_when_it_has_come(caplog: pytest.Log
 def test_whoever_could_tick_instead_is_named(
     last: FakePeer | None, whose: str, caplog: pytest.LogCaptureFixture
 ) -> None:
-    waiting = Waiting()
+    waiting = StallLog()
     for now_s in (0.0, NO_TICK_S):
         waiting.for_a_tick(now_s, 5, [OTHER], last)
     assert caplog.messages == [f"synchronous mode: no tick for 10 s after frame 5; {whose}"]
@@ -90,7 +90,7 @@ def test_whoever_could_tick_instead_is_named(
 def test_nothing_is_said_of_an_empty_server_or_of_one_that_makes_frames_by_itself(
     caplog: pytest.LogCaptureFixture,
 ) -> None:
-    waiting = Waiting()
+    waiting = StallLog()
     for now_s in range(100):
         waiting.for_a_tick(float(now_s), 5, (), None)
     assert waiting.untold_s(100.0) is None

@@ -12,7 +12,7 @@ from linden.protocol.values.enums import AttributeType
 from linden.protocol.values.episode import WeatherParameters
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.simulation.actor_table import ActorRecord
-from linden.simulation.friction import DRY, FRICTION_TRIGGER, PUDDLES, WET, road_grip
+from linden.simulation.friction import DRY, FRICTION_TRIGGER, PUDDLES, WET, road_friction
 from linden.world import World
 from opendrive_texts import street_through_junction
 
@@ -53,7 +53,7 @@ def friction_of(simulation: World, vehicle: ActorRecord) -> float:
     ],
 )
 def test_the_wetter_the_road_the_less_it_grips(weather: WeatherParameters, share: float) -> None:
-    assert road_grip(weather) == pytest.approx(share)
+    assert road_friction(weather) == pytest.approx(share)
 
 
 def test_every_vehicle_feels_the_weather_whenever_it_came(simulation: World) -> None:
@@ -62,7 +62,7 @@ def test_every_vehicle_feels_the_weather_whenever_it_came(simulation: World) -> 
     simulation.step(0.05)
     late = simulation.spawn(CAR, at(20.0))
     simulation.step(0.05)
-    grips = simulation.episode.bodies.road_grip
+    grips = simulation.episode.bodies.road_friction
     assert grips[early.slot] == grips[late.slot] == pytest.approx(WET / DRY)
     simulation.episode.weather = WeatherParameters()
     simulation.step(0.05)

@@ -112,7 +112,7 @@ def adapted(foreign: ForeignAgent, conf_file: str | None) -> type[LeaderboardAge
 
 
 class Feeds:
-    """One run's. An agent may import ScenarioRunner's modules in the middle of it: they are looked for each step."""
+    """The providers of one run. An agent may import ScenarioRunner's modules late, so each step checks."""
 
     def __init__(self, client: carla.Client, world: carla.World, vehicle: carla.Vehicle, ego_route: Any) -> None:  # noqa: ANN401 - a list of (transform, option)
         self._client, self._world, self._vehicle, self._ego_route = client, world, vehicle, ego_route

@@ -94,8 +94,8 @@ class Played:
         return done._replace(strikes=(*done.strikes, *struck))
 
 
-class Tape:
-    """A source that notes what it passes on."""
+class RecordingSource:
+    """An input source that records what it passes on."""
 
     def __init__(self, source: InputSource) -> None:
         self.source = source

@@ -32,7 +32,7 @@ LIGHT_STATES = {
 
 
 class Wish(NamedTuple):
-    """A light that is to show a state."""
+    """A traffic light with its requested state."""
 
     light: carla.TrafficLight
     state: carla.TrafficLightState

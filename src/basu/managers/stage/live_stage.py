@@ -11,7 +11,7 @@ import carla
 
 from basu.errors import ScenarioError
 from basu.managers.stage.environment import Surroundings
-from basu.managers.stage.scenario_actors import Puppets, destroy_actors, member_of, spawn_actors
+from basu.managers.stage.scenario_actors import ActorCommands, destroy_actors, member_of, spawn_actors
 from basu.scenarios.criteria.criterion import Move, Thing
 from basu.scenarios.stage import EGO, Body
 
@@ -45,7 +45,7 @@ class LiveStage:
         self._cast: dict[str, Member] = {EGO: member_of(run.vehicle, EGO)}
         self._roles: dict[int, str] = {}  # of all actors that were ever in the cast
         self._types: dict[int, str] = {}
-        self._puppets = Puppets(run.client)
+        self._puppets = ActorCommands(run.client)
         self._surroundings = Surroundings(run.client, run.world, shared, case)
         self._changes: dict[str, Callable[[Controls], Controls]] = {}
         self._bodies: dict[str, Body] = {}

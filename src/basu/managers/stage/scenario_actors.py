@@ -163,8 +163,8 @@ class Motion(NamedTuple):
 STILL = Motion(0.0, 0.0, 0.0)
 
 
-class Puppets:
-    """The vehicles and walkers that are led."""
+class ActorCommands:
+    """The commands of vehicles and walkers, sent in one batch a frame."""
 
     def __init__(self, client: carla.Client) -> None:
         self._client = client

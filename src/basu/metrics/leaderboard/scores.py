@@ -21,7 +21,7 @@ from basu.metrics.registry import Column, Drive, Metric, register, shown
 from basu.metrics.stop_signs import stop_signs
 
 if TYPE_CHECKING:
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
 
@@ -121,7 +121,7 @@ class Leaderboard(Metric):
         """The scores of each version with what they come from."""
         return {scores.version.value: _row(drive.history, scores) for scores in leaderboard_scores(drive.history)}
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """A line for each version."""
         return [
             f"leaderboard {version}   {scores['driving']:.2f} = {scores['route_completion']:.2f} % of the route "
@@ -129,7 +129,7 @@ class Leaderboard(Metric):
             for version, scores in result.metrics[self.name].items()
         ]
 
-    def columns(self, result: Result) -> list[Column]:
+    def columns(self, result: JudgedRun) -> list[Column]:
         """The driving score of version 2.1."""
         scores = (result.metrics[self.name] or {}).get("2.1", {})
         return [Column("leaderboard 2.1", shown(scores.get("driving"), "", 1))]

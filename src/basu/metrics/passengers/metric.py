@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from basu.metrics.passengers.harsh_stops import HarshStop
     from basu.metrics.passengers.near_misses import Party
     from basu.metrics.passengers.verdict import Judged
-    from basu.metrics.result import Result
+    from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
 _PLACE = record(
@@ -182,7 +182,7 @@ class Passengers(Metric):
         ]
         return [*stops, *misses]
 
-    def lines(self, result: Result) -> list[str]:
+    def lines(self, result: JudgedRun) -> list[str]:
         """The verdict with its reasons, and the figures behind the comfort score."""
         value = result.metrics[self.name]
         if value is None:
@@ -201,7 +201,7 @@ class Passengers(Metric):
             *_timetable(value["service"]),
         ]
 
-    def columns(self, result: Result) -> list[Column]:
+    def columns(self, result: JudgedRun) -> list[Column]:
         """Passed, failed, or a dash."""
         value = result.metrics[self.name]
         said = "\N{EN DASH}" if value is None else "passed" if value["passed"] else "failed"

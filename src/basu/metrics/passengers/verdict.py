@@ -21,7 +21,8 @@ from basu.metrics.passengers.near_misses import Party, near_misses
 from basu.metrics.passengers.service import Visit, service
 from basu.metrics.path_following import completion
 from basu.metrics.red_lights import red_lights
-from basu.metrics.speeding import TOLERANCE_MPS, speeding
+from basu.metrics.scoring import TOLERANCE_MPS
+from basu.metrics.speeding import speeding
 from basu.metrics.stop_signs import stop_signs
 
 if TYPE_CHECKING:

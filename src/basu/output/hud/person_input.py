@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from basu.agents.manual.devices import Devices, check_display
 from basu.agents.manual.inputs import Person
-from basu.agents.manual.session import Played, Session, Setting, Tape, read_session, write_session
+from basu.agents.manual.session import Played, RecordingSource, Session, Setting, read_session, write_session
 from basu.errors import UserError
 from basu.files import find
 from basu.managers.base_manager import BaseManager
@@ -48,7 +48,7 @@ def person_for(options: RunOptions, *, by_hand: bool) -> Person | None:
     else:
         return None
     return Person(
-        source if options.record_keys is None else Tape(source),
+        source if options.record_keys is None else RecordingSource(source),
         drives_first=by_hand,
         taken_by_any_input=by_hand,
         live=options.keys is None,
@@ -80,7 +80,7 @@ class KeysManager(BaseManager):
     def __init__(self, source: InputSource, path: Path | None) -> None:
         """Take what a person does; ``path`` is where it is written, None for nowhere."""
         self._path = path
-        self._tape = source if isinstance(source, Tape) else None
+        self._tape = source if isinstance(source, RecordingSource) else None
         played = source if self._tape is None else self._tape.source
         self._played = played.session if isinstance(played, Played) else None
         self._here: Setting | None = None

@@ -97,7 +97,7 @@ class Readings(NamedTuple):
 
 
 class Around(NamedTuple):
-    """What the window itself keeps for the instruments."""
+    """Data of the window itself for the instruments."""
 
     setting: Setting
     traffic: tuple[int, int]

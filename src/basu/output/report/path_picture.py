@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from basu.metrics.score import Scoring
+    from basu.metrics.scoring import Scoring
     from basu.records.history import History
 
 

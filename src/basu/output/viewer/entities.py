@@ -169,8 +169,8 @@ class Other(NamedTuple):
     half_size_m: tuple[float, float] | None  # half length and half width
 
 
-class Shower:
-    """Shows ticks one after the other."""
+class TickLogger:
+    """Logs the entities of ticks, one after the other."""
 
     def __init__(self, recording: Any) -> None:  # noqa: ANN401 - rerun.RecordingStream
         self.recording = recording

@@ -47,7 +47,7 @@ def show_log(
     stream = open_stream(rrd, log.path.stem, parts, screen=screen)
     if carla_map is not None:
         log_map(stream.recording, carla_map)
-    shower = entities.Shower(stream.recording)
+    shower = entities.TickLogger(stream.recording)
     others = _others(log, {actor: run for actor, run in runs.items() if actor != hero})
     for index, frame in enumerate(run.frame):
         shower.tick(float(run.t_s[index]), _pose(run, index), _driving(run, index), others.get(int(frame), ()))

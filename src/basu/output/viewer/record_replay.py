@@ -7,7 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from basu.metrics.incremental import SoFar
-from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.score import infractions, score
+from basu.metrics.scoring import Scoring
 from basu.output.viewer import entities
 from basu.output.viewer.entities import log_map, log_route, log_vehicle
 from basu.output.viewer.layout import Parts, Pose
@@ -53,7 +54,7 @@ def show_run(
         log_map(recording, town)
     log_route(recording, history.facts.route)
     log_vehicle(recording, history.facts.vehicle)
-    shower = entities.Shower(recording)
+    shower = entities.TickLogger(recording)
     others = _others(history)
     so_far, every = SoFar(scoring), max(1, round(SCORE_EVERY_S / history.facts.step_s))
     for tick, row in enumerate(history.frames):

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
-    from basu.options import RunOptions
 
 
 RRD_FILE = "run.rrd"  # in the run's folder
@@ -46,7 +45,7 @@ class ViewerManager(BaseManager):
         parts = Parts(start, cameras=cameras, judged=True)
         self._stream = open_stream(run.folder / RRD_FILE, name, parts, screen=has_screen())
         recording = self._stream.recording
-        self._shower = entities.Shower(recording)
+        self._shower = entities.TickLogger(recording)
         self._neighbours = Neighbours(run.world, run.vehicle.id)
         self._shown_at_s: dict[str, float] = {}
         log_map(recording, run.carla_map)
@@ -117,11 +116,3 @@ def _vehicle(run: Run) -> Vehicle:
         rear_m=box.extent.x - box.location.x,
         width_m=2.0 * box.extent.y,
     )
-
-
-def viewer_for(options: RunOptions, live: Live) -> list[BaseManager]:
-    """The manager that streams to Rerun, where ``--viewer`` is given."""
-    if not options.viewer:
-        return []
-
-    return [ViewerManager(live, print)]

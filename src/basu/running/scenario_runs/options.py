@@ -16,13 +16,14 @@ from basu.options import (
     Debug,
     Host,
     InProcess,
+    Output,
     Port,
     RunOptions,
     StepLimit,
     Timeout,
     check_agent_process,
 )
-from basu.settings.option import Option, Settings
+from basu.settings.option import Option, Settings, fields_of
 
 if TYPE_CHECKING:
     from basu.scenarios.sampling import Design
@@ -131,9 +132,7 @@ class ScenarioOptions(Settings):
             repeats=False,
         ),
     ] = field(default_factory=processors)
-    output: Annotated[Path, Option(help="parent of the folders", group=FOLDERS, metavar="DIR", repeats=False)] = Path(
-        "scenario-runs"
-    )
+    output: Output = Path("scenario-runs")
     junit: Annotated[
         Path | None, Option(help="write the JUnit XML there as well", group=FOLDERS, metavar="FILE", repeats=False)
     ] = None
@@ -172,16 +171,6 @@ class ScenarioOptions(Settings):
 
     def run_options(self, agent: str) -> RunOptions:
         """The options of a run with one of the agents."""
-        return RunOptions(
-            agent=agent,
-            host=self.host,
-            port=self.port,
-            timeout_s=self.timeout_s,
-            seed=self.drive_seed,
-            vehicle=self.vehicle,
-            output=self.output,
-            step_limit_s=self.step_limit_s,
-            in_process=self.in_process,
-            agent_memory_gb=self.agent_memory_gb,
-            debug=self.debug,
-        )
+        own = {field.name for field in fields_of(type(self))}
+        shared = {field.name: getattr(self, field.name) for field in fields_of(RunOptions) if field.name in own}
+        return RunOptions(**{**shared, "agent": agent, "seed": self.drive_seed})

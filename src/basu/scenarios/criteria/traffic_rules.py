@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.red_lights import lights_passed, red_lights
-from basu.metrics.speeding import LEAST_S, TOLERANCE_MPS, episodes, limits_mps
+from basu.metrics.scoring import TOLERANCE_MPS
+from basu.metrics.speeding import LEAST_S, episodes, limits_mps
 from basu.metrics.stop_signs import signs_passed, stop_signs
 from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played
 

@@ -1,4 +1,4 @@
-"""Who leads where: links that are not returned, lanes that lead nowhere, junctions that do not add up."""
+"""Checks of links: links that are not returned, lanes that lead nowhere, incomplete junctions."""
 
 from collections.abc import Iterator
 
@@ -65,7 +65,7 @@ def _wrong_link(opendrive: OpenDrive, road: Road, end: str, link: RoadLink) -> s
 
 
 def lane_ends(opendrive: OpenDrive) -> list[Finding]:
-    """Find driving lanes that lead nowhere or that nobody can reach; note the roads that are dead ends."""
+    """Find driving lanes that lead nowhere or that cannot be reached; note the roads that are dead ends."""
     tables, links = tables_of(opendrive), lane_links(opendrive)
     found = []
     for index, road in enumerate(opendrive.roads):

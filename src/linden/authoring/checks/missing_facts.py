@@ -19,7 +19,7 @@ def georeference(opendrive: OpenDrive) -> list[Finding]:
 
 
 def speed_limits(opendrive: OpenDrive) -> list[Finding]:
-    """Find roads whose driving lanes have no speed limit of their own, nor one of the road."""
+    """Find roads with driving lanes that have no speed limit, neither their own nor one of the road."""
     tables = tables_of(opendrive)
     found = []
     for index, road in enumerate(opendrive.roads):

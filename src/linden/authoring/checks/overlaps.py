@@ -1,4 +1,4 @@
-"""Surfaces that lie in one another at one height: driving lanes of different streets, kerbs in somebody's lane."""
+"""Checks for overlaps at one height: driving lanes of different streets, kerbs in driving lanes."""
 
 from collections.abc import Iterator
 
@@ -15,7 +15,7 @@ _CELL_M = 12.0
 
 
 def overlaps(opendrive: OpenDrive) -> list[Finding]:
-    """Find pairs of roads, or of junctions, whose driving lanes share ground, with the depth of it.
+    """Find pairs of roads, or of junctions, with driving lanes that share ground, and the depth of it.
 
     The ways through one junction share ground by nature, and a road touches the junctions it leads into.
     """
@@ -50,7 +50,7 @@ def _shared_ground(
     alike: bool,
     limit_m: float,
 ) -> list[Finding]:
-    """Return the deepest overlap of each two owners, between triangles whose groups are alike (or are not)."""
+    """Return the deepest overlap of each two owners, between triangles of equal groups (or of different ones)."""
     corners = mesh.vertices[mesh.triangles[chosen]]  # (N, 3, 3)
     found: list[tuple[object, Finding]] = []
     for one, other in _near_pairs(corners, owner, group, alike=alike):
@@ -78,7 +78,7 @@ def _finding(mesh: RoadMesh, triangles: tuple[int, int], depth_m: float) -> Find
 def _near_pairs(
     corners: F64, owner: NDArray[np.int32], group: NDArray[np.bool_], *, alike: bool
 ) -> Iterator[tuple[I64, I64]]:
-    """Yield pairs of triangles of different owners whose bounds meet, at about the same height."""
+    """Yield pairs of triangles of different owners with bounds that meet, at about the same height."""
     lowest, highest = corners[:, :, :2].min(axis=1), corners[:, :, :2].max(axis=1)
     low, high = (np.floor(bound / _CELL_M).astype(np.int64) for bound in (lowest, highest))
     span = high - low + 1

@@ -1,4 +1,4 @@
-"""Signals, controllers and crosswalks: do they concern somebody, stand beside the road, belong together?"""
+"""Checks of signals, controllers and crosswalks: affected lanes, place beside the road, references."""
 
 import math
 from collections import Counter

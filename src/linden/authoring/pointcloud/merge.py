@@ -27,7 +27,7 @@ def merge(
 ) -> Merged:
     """Write the points of all scans in the map's frame; where ``voxel_m`` is positive, one for each cell of that width.
 
-    Memory does not grow with the number of scans: cells wait in ``folder``. ``progress`` is told of the amount of work
+    Memory does not grow with the number of scans: cells wait in ``folder``. ``progress`` receives the amount of work
     behind each scan.
 
     Raises:

@@ -44,7 +44,7 @@ def read_header(file: Path, stream: IO[bytes]) -> Header:
     """Read the head from the beginning of a stream, and leave the stream where the points begin.
 
     Raises:
-        UserError: it is no PCD file, or one whose points have no x, y and z.
+        UserError: it is no PCD file, or its points have no x, y and z.
     """
     told: dict[str, list[str]] = {}
     for _ in range(_LONGEST_HEAD_LINES):

@@ -1,4 +1,4 @@
-"""PCD files written a cloud at a time: binary, x, y, z and, where it is asked for, label."""
+"""Writer of PCD files, one cloud at a time: binary; x, y, z and optionally label."""
 
 from pathlib import Path
 from types import TracebackType
@@ -27,7 +27,7 @@ _DIGITS = 12
 
 
 class PcdWriter:
-    """Writes a file of points whose number nobody knows beforehand; it stands there once all of them do.
+    """Writes a file of points without knowing their number beforehand. The file appears when it is complete.
 
     Attributes:
         points: how many were written.
@@ -62,7 +62,7 @@ class PcdWriter:
             self._part.unlink(missing_ok=True)
 
     def write(self, cloud: Cloud) -> None:
-        """Append points; who asked for labels gives them.
+        """Append points, with labels where the file has labels.
 
         Raises:
             UserError: the disk is full, or the like.

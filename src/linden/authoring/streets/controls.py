@@ -27,7 +27,7 @@ def control_of(intersections: list[Intersection], intersection: Intersection | N
 
 
 def sign_of(control: Control, leg: Leg, stops: frozenset[str]) -> str | None:
-    """Return the type of the sign or light for those who come in on a leg, None where they need none."""
+    """Return the type of the sign or light for traffic that enters on a leg, None where it needs none."""
     if not leg.view.driving(right=True):
         return None
     if control is Control.TWO_WAY_STOP:

@@ -37,7 +37,7 @@ class Section(NamedTuple):
 
 
 class View(NamedTuple):
-    """A section as somebody sees it who travels towards a junction; lanes with their OpenDRIVE ids.
+    """A section seen in the direction of travel towards a junction; lanes with their OpenDRIVE ids.
 
     ``axis_m`` is measured to the left of the road's reference line, in the traveller's frame.
     """

@@ -1,7 +1,7 @@
 """Plane curves of lines and arcs: rounding a polyline's corners, joining two poses smoothly. Frame: OpenDRIVE's.
 
-x east, y north, headings counter-clockwise from east; curvature positive to the left. A path is a tuple of pieces whose
-ends meet with equal headings. Lines and arcs alone, because both have exact lengths and exact parallel curves.
+x east, y north, headings counter-clockwise from east; curvature positive to the left. A path is a tuple of pieces;
+their ends meet with equal headings. Lines and arcs alone, because both have exact lengths and exact parallel curves.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""What happens inside a junction: the paths of all allowed turns, the kerbs round its corners, who goes first."""
+"""The inside of a junction: paths of all allowed turns, kerbs round the corners, priorities."""
 
 import math
 from itertools import pairwise
@@ -37,7 +37,7 @@ def turns(legs: tuple[Leg, ...]) -> tuple[Turn, ...]:
     for come, lane_in, go, lane_out in lane_pairs(legs):
         ways = (_direct(legs[come], lane_in, legs[go], lane_out, share) for share in SHARES_OF_ROOM)
         turn = next(ways)
-        if go == (come + 1) % len(legs):  # nobody turns further to the right: the kerb is beside this way
+        if go == (come + 1) % len(legs):  # no turn lies further to the right: the kerb is beside this way
             kerb = _kerb_strip(corner_kerb(legs[come], legs[go]))
             turn = next((way for way in (turn, *ways) if not _touches(way, kerb)), turn)
         found.append(turn)

@@ -1,7 +1,7 @@
 """From street lines to roads and the gaps between them: nodes, edges, and how far each edge is cut back at its ends.
 
 An edge is a street between two nodes. At a node with several legs each leg is cut back until the kerbs of neighbouring
-legs can be joined by an arc; nodes whose legs then leave no road between them become one junction.
+legs can be joined by an arc; nodes without a road between their legs then become one junction.
 """
 
 import math
@@ -15,7 +15,7 @@ from linden.errors import UserError
 
 BEND_RADIUS_M = {"arterial": 60.0, "collector": 40.0, "local": 20.0, "service": 12.0}
 CORNER_RADII_M = (6.0, 4.5, 3.5)
-"""Of kerbs at street corners, the tighter ones where junctions stand close; estimated: nobody measured them."""
+"""Of kerbs at street corners, the tighter ones where junctions stand close; estimated, not measured."""
 
 SHORTEST_ROAD_M = 5.0  # between two junctions; below that they are one
 SHORTEST_SETBACK_M = 6.0

@@ -39,7 +39,7 @@ BEND_RADIUS_M = 7.5
 
 
 class _Approach(NamedTuple):
-    """A straight and a right-hand bend that ends on the ring, seen by somebody who comes in (or left, mirrored)."""
+    """A straight and a right-hand bend that ends on the ring, seen in the direction of entry (or left, mirrored)."""
 
     straight_m: float
     turn_rad: float
@@ -57,7 +57,7 @@ def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
 
 
 def turning_circle(leg: Leg, centre: Point) -> tuple[Turn, ...]:
-    """Return the ways by which those who come to the end of a street go back on it: each lane into its opposite."""
+    """Return the paths for turning back at the end of a street: each lane into its opposite."""
     found = []
     for lane_in, lane_out in zip(leg.view.driving(right=True), leg.view.driving(right=False), strict=False):
         widths_m = leg.view.lane(lane_in).width_m, leg.view.lane(lane_out).width_m
@@ -74,7 +74,7 @@ def circle_kerb(leg: Leg, centre: Point) -> Path:
 
 
 def island(number: int, centre: Point, height_m: float) -> RoadRecord:
-    """Return the central island: a kerb and grass to the left of a circle that nobody drives on."""
+    """Return the central island: a kerb and grass to the left of a circle without traffic."""
     start = Pose(centre[0] + ISLAND_RADIUS_M, centre[1], math.pi / 2)
     first = Piece(start, math.pi * ISLAND_RADIUS_M, 1 / ISLAND_RADIUS_M)
     second = first._replace(start=along(first, first.length_m))

@@ -35,18 +35,18 @@ class Sample(NamedTuple):
     in_junction: bool
 
 
-class Called(NamedTuple):
+class ReachedStop(NamedTuple):
     """A shuttle stop as the route reaches it."""
 
     stop: Stop
     at: Sample
 
 
-class Driven(NamedTuple):
+class DrivenRoute(NamedTuple):
     """A route lane by lane."""
 
     samples: tuple[Sample, ...]
-    stops: tuple[Called, ...]
+    stops: tuple[ReachedStop, ...]
 
     @property
     def length_m(self) -> float:
@@ -63,11 +63,11 @@ class _Strand(NamedTuple):
     to_m: float
 
 
-def drive(built: Built, route: Route) -> Driven:
+def drive(built: Built, route: Route) -> DrivenRoute:
     """Return the lanes of a route. A closed route begins and ends at its first stop.
 
     Raises:
-        UserError: the route leaves the streets, turns where nobody may, or misses a stop.
+        UserError: the route leaves the streets, turns where turning is not allowed, or misses a stop.
     """
     samples = _samples(_strands(built, route, _edges(built, route)))
     known = {stop.id: stop for stop in built.facts.stops}
@@ -81,7 +81,7 @@ def drive(built: Built, route: Route) -> Driven:
     elif not route.closed:
         last_m = samples[-1].driven_m - OPEN_END_M
         samples = tuple(sample for sample in samples if OPEN_END_M <= sample.driven_m <= last_m)
-    return Driven(samples, tuple(_called(built, samples, stop) for stop in wanted))
+    return DrivenRoute(samples, tuple(_called(built, samples, stop) for stop in wanted))
 
 
 def xml(built: Built, route: Route, number: int) -> bytes:
@@ -113,7 +113,7 @@ def xml(built: Built, route: Route, number: int) -> bytes:
     return etree.tostring(root, xml_declaration=True, encoding="UTF-8", pretty_print=True)
 
 
-def positions(driven: Driven) -> list[Sample]:
+def positions(driven: DrivenRoute) -> list[Sample]:
     """Return the samples that make the route unambiguous.
 
     They lie on roads outside junctions, where no two lanes overlap: just after a road's start, every ``SPACING_M`` and
@@ -185,7 +185,9 @@ def _link(built: Built, route: Route, come: tuple[End, int], go: End) -> tuple[_
                 if one.kind == "driving" and one.successor == lane and one.predecessor is not None:
                     return _Strand(way.record, one.id, total_m, 0.0), one.predecessor
     street, after = built.network.edges[end.edge].street, built.network.edges[go.edge].street
-    raise UserError(f"route {route.id}: nobody may turn from {street.name} into {after.name} as the route does")
+    raise UserError(
+        f"route {route.id}: turning from {street.name} into {after.name} is not allowed; choose another street"
+    )
 
 
 def _samples(strands: list[_Strand]) -> tuple[Sample, ...]:
@@ -214,7 +216,7 @@ def _centre(strand: _Strand, s_m: float) -> tuple[Pose, float]:
     return pose if strand.to_m > strand.from_m else turned_back(pose), value(record.elevation, s_m)
 
 
-def _called(built: Built, samples: tuple[Sample, ...], stop: Stop) -> Called:
+def _called(built: Built, samples: tuple[Sample, ...], stop: Stop) -> ReachedStop:
     """Return where a route passes a stop in the stop's own direction."""
     edge, s_m = nearest_road(built.network, stop.street_id, stop.point)
     record = built.roads[edge]
@@ -228,7 +230,7 @@ def _called(built: Built, samples: tuple[Sample, ...], stop: Stop) -> Called:
     ]
     if not ours:
         raise UserError(f"stop {stop.id}: the route does not pass it in its direction; look at its `forward`")
-    return Called(stop, min(ours, key=lambda sample: math.dist(sample.pose[:2], at[:2])))
+    return ReachedStop(stop, min(ours, key=lambda sample: math.dist(sample.pose[:2], at[:2])))
 
 
 def _from(samples: tuple[Sample, ...], first: int) -> tuple[Sample, ...]:

@@ -1,7 +1,8 @@
 """The street facts a map is built from: a GeoJSON file, checked once and turned into frozen values in metres.
 
-``docs/reference/maps.md`` describes the schema. Points are projected (transverse Mercator about the origin) into the
-frame of OpenDRIVE, x east and y north, and rounded to 1 mm: results do not depend on the projection's last bits.
+``docs/reference/maps.md`` describes the schema. Points are projected (transverse Mercator about the origin) into
+OpenDRIVE's frame, x east and y north. They are rounded to 1 mm, so that results do not depend on the projection's last
+bits.
 """
 
 import math
@@ -46,7 +47,7 @@ class Street(NamedTuple):
 
 
 class Intersection(NamedTuple):
-    """Where streets meet, and who must wait there. ``stops`` holds names of streets."""
+    """A place where streets meet, and the streets that must wait there. ``stops`` holds names of streets."""
 
     id: str
     name: str

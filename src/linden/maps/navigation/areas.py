@@ -34,7 +34,7 @@ class Surfaces(NamedTuple):
 
 
 def surfaces_of(opendrive: OpenDrive, ground: Ground, lane_of_triangle: I32, lane_type: NDArray[np.uint32]) -> Surfaces:
-    """Return what can be walked on of a map, whose ground knows the lane of each triangle, and the lane's type bits."""
+    """Return the walkable triangles of a map. The ground knows the lane of each triangle; the lane has type bits."""
     kind_of_lane = np.full(len(lane_type), ROAD, np.uint8)
     kind_of_lane[(lane_type & int(_BETWEEN)) != 0] = EDGE
     kind_of_lane[(lane_type & int(LaneType.SIDEWALK)) != 0] = SIDEWALK

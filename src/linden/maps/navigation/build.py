@@ -37,7 +37,7 @@ _AREA_OF_KIND[[SIDEWALK, CROSSWALK, ROAD, EDGE]] = Area.SIDEWALK, Area.CROSSWALK
 
 
 def build(surfaces: Surfaces, obstacles: Obstacles) -> WalkingMesh:
-    """Return the mesh. Tiles on which there is neither pavement nor crosswalk are left out: nobody begins there."""
+    """Return the mesh. Tiles on which there is neither pavement nor crosswalk are left out: no walker starts there."""
     of_walker = np.flatnonzero((surfaces.kinds == SIDEWALK) | (surfaces.kinds == CROSSWALK))
     if not (surfaces.kinds == SIDEWALK).any():
         return WalkingMesh((0.0, 0.0), CELLS * CELL_M, ())
@@ -50,7 +50,10 @@ def build(surfaces: Surfaces, obstacles: Obstacles) -> WalkingMesh:
     around = obstacles.centre_m[:, :2]
     boxes_of = _by_tile(around - reach_m[:, None], around + reach_m[:, None], low_m, tile_m)
     if len(wanted) > MOST_WALKING_TILES:
-        log.warning("the map's pavements take %d tiles, too many for a walking mesh: nobody walks here", len(wanted))
+        log.warning(
+            "the map's pavements take %d tiles, too many for a walking mesh: walkers cannot find paths on this map",
+            len(wanted),
+        )
         return WalkingMesh((0.0, 0.0), tile_m, ())
     tiles = []
     for column, row in sorted(wanted):

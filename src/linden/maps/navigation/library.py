@@ -60,7 +60,7 @@ class MeshLibrary:
 
 
 def _made(world_map: LoadedMap, obstacles: Obstacles) -> bytes:
-    """Return the file of a map's mesh; empty where nobody could walk."""
+    """Return the file of a map's mesh; empty where there is no place to walk."""
     # here, not above: with a mesh out of the cache a start does not pay for them
     from linden.maps.navigation import detour  # noqa: PLC0415 - see above
     from linden.maps.navigation.areas import surfaces_of  # noqa: PLC0415 - see above

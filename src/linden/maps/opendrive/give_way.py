@@ -3,7 +3,7 @@
 As in CARLA (StopSignComponent.cpp, YieldSignComponent.cpp) they lie along every way through the junction that the
 sign's own ways meet, unless it comes out of the same road, and a little before it. Two things differ: CARLA looks only
 where the signal speaks to a road inside the junction, here one on the approach will do; and no square lies before the
-line of somebody who has a sign of his own, so that two who wait do not wait for each other.
+line of a vehicle with a sign of its own, so that two waiting vehicles do not wait for each other.
 """
 
 from collections import defaultdict

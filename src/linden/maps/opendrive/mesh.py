@@ -44,7 +44,7 @@ class RoadMesh(NamedTuple):
     vertices: F64  # (V, 3), m
     triangles: NDArray[np.int32]  # (T, 3)
     lane_of_triangle: NDArray[np.int32]  # (T,), row of ``lanes``
-    lanes: NDArray[np.void]  # of LANES; a lane whose speed limit changes on the way has a row for each
+    lanes: NDArray[np.void]  # of LANES; a lane with several speed limits has a row for each
 
 
 def road_mesh(opendrive: OpenDrive) -> RoadMesh:

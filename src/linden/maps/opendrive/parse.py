@@ -22,7 +22,7 @@ _CDATA = re.compile(r"^\s*<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
 def parse(text: str | bytes) -> OpenDrive:
-    """Return the map an OpenDRIVE text describes; as long as somebody holds it, the same for the same text.
+    """Return the map an OpenDRIVE text describes; the same object for the same text, as long as it is referenced.
 
     Raises:
         MapError: the text is no XML, no OpenDRIVE, or says something that cannot be; with the line.

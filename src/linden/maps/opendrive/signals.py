@@ -1,4 +1,4 @@
-"""Signals as the actors of a simulation need them: where they stand, whom they concern, where they take effect."""
+"""Signals as actors need them: their places, the lanes that they concern, the zones in which they take effect."""
 
 from collections import defaultdict
 

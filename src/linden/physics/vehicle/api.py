@@ -32,7 +32,7 @@ from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vecto
 F64 = NDArray[np.float64]
 
 
-class Cockpits(Columns):
+class VehicleApi(Columns):
     """The part of the bodies that concerns vehicles. Slots given here must hold one."""
 
     def __init__(self) -> None:
@@ -99,7 +99,7 @@ class Cockpits(Columns):
         self.state["sticky"][slot] = sticky
 
     def set_autopilot(self, slot: int, *, on: bool) -> None:
-        """Take note of who drives; a change takes feet and hands off, unless a control has come since the last frame.
+        """Note the kind of control of a vehicle; a change releases the pedals, unless a control came in this frame.
 
         After CARLA's AWheeledVehicleAIController: a client's own control goes before.
         """
@@ -225,7 +225,7 @@ class Cockpits(Columns):
         here = float(s["friction_here"][slot])
         long_n, lat_n = float(s["wheel_long_force"][slot, k]), float(s["wheel_lat_force"][slot, k])
         return WheelTelemetry(
-            tire_friction=(float(spec["friction"][k]) if here < 0.0 else here) * float(s["road_grip"][slot]),
+            tire_friction=(float(spec["friction"][k]) if here < 0.0 else here) * float(s["road_friction"][slot]),
             lat_slip=math.degrees(float(s["wheel_lat_slip"][slot, k])),
             long_slip=float(s["wheel_long_slip"][slot, k]),
             omega=float(s["wheel_omega"][slot, k]),

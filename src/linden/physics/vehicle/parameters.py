@@ -22,13 +22,13 @@ CHASSIS_AREA_M2 = 1.8 * 1.4
 FRONT_SHARE = 0.45  # of the torque, on four wheels: PhysX's differential by default
 HULL_INERTIA = 0.75
 """Yaw inertia of a vehicle's hull over that of its box: PhysX takes the inertia of the hull, which is shorter at the
-corners and has no mirrors. Values from 0.7 to 0.8 fit the recorded yaw rates best (docs/explanation/fidelity.md)."""
+corners and has no mirrors. Recorded yaw rates fit best between 0.7 and 0.8 (docs/explanation/fidelity.md)."""
 _RPM = 2.0 * math.pi / 60.0
 _LEAST_COM_HEIGHT_M = 0.1
 
 
 def default_wheel_offsets(box: BoundingBox, wheel_count: int) -> tuple[Vector3D, ...]:
-    """Return where wheels sit when nobody says: axles at 0.6 of the half length, 0.75 of the half width; m, local."""
+    """Return the default places of wheels: axles at 0.6 of the half length, 0.75 of the half width; m, local."""
     x, y = 0.6 * box.extent.x, 0.75 * box.extent.y
     if wheel_count == 2:
         return Vector3D(x, 0.0, 0.0), Vector3D(-x, 0.0, 0.0)
@@ -138,8 +138,8 @@ def _check_bounds(part: VehiclePhysicsControl | Gear | Wheel) -> None:
         least, most = BOUNDS.get(name, ANY_NUMBER)
         for number in () if name in _APART else _numbers(value):
             if not least <= number <= most:
-                whose = type(part).__name__
-                raise Refusal(f"{name} of a {whose} lies between {least:g} and {most:g}, not at {number:g}")
+                owner = type(part).__name__
+                raise Refusal(f"{name} of a {owner} lies between {least:g} and {most:g}, not at {number:g}")
 
 
 def _numbers(value: object) -> list[float]:
@@ -186,7 +186,7 @@ def specification(
 ) -> Rows:
     """Return a VEHICLE_SPEC record. ``offsets_m``: wheels in the vehicle's frame, FL, FR, BL, BR.
 
-    Two places (front, back) make a two-wheeler, whose control may have four wheels, as CARLA's have.
+    Two places (front, back) make a two-wheeler. Its control may have four wheels, as CARLA's have.
     """
     spec: Rows = np.zeros((), VEHICLE_SPEC)
     count, wheels = len(offsets_m), control.wheels

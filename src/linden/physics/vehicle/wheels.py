@@ -82,7 +82,7 @@ def prepare_wheels(v: Body, spec: Spec, w: Work, gravity_mps2: float) -> None:
         rest_n = (spec.load_share[k] * v.mass_kg + WHEEL_MASS_KG) * gravity_mps2
         load = grip_load(v.wheel_load[k], rest_n)
         friction = spec.friction[k] if v.friction_here < 0.0 else v.friction_here
-        w.limit_n[k] = ROAD_FRICTION * friction * v.road_grip * load
+        w.limit_n[k] = ROAD_FRICTION * friction * v.road_friction * load
         w.cornering_n[k] = cornering_stiffness(spec.cornering_per_rad[k], spec.cornering_full_load[k], load, rest_n)
         if v.wheel_steer[k] == 0.0:
             w.cosine[k], w.sine[k] = 1.0, 0.0

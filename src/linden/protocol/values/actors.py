@@ -26,7 +26,7 @@ class ActorDefinition(NamedTuple):
 
 
 class AttributeValue(NamedTuple):
-    """One attribute as chosen by whoever spawns."""
+    """One attribute with the value that a client chose at the spawn."""
 
     id: str
     type: int

@@ -66,7 +66,7 @@ class Subscription:
 
 
 class StreamTable:
-    """Who listens to what: the port that tokens name, and how many subscribers each stream has."""
+    """The sensor streams: the port that tokens name, and the number of subscribers of each stream."""
 
     def __init__(self, port: int) -> None:
         self.port = port
@@ -77,7 +77,7 @@ class StreamTable:
         return Token(token_bytes(stream_id, self.port))
 
     def listened(self) -> set[int]:
-        """Return the streams that somebody reads; the others need not be computed."""
+        """Return the streams with subscribers; the other streams need not be computed."""
         return set(self._subscribers)
 
     def subscribe(self, stream_id: int) -> None:

@@ -33,7 +33,7 @@ DOORS = ("Front Left", "Front Right", "Rear Left", "Rear Right", "Hood", "Trunk"
 
 
 def added(actors: Iterable[ActorAdded]) -> Iterator[str]:
-    """Tell who came."""
+    """Yield the lines about added actors."""
     for actor in actors:
         yield f" Create {actor.id}: {actor.description.id} ({actor.kind}) at {triple(actor.location_cm)}\n"
         for attribute in actor.description.attributes:
@@ -41,12 +41,12 @@ def added(actors: Iterable[ActorAdded]) -> Iterator[str]:
 
 
 def removed(records: Records) -> Iterator[str]:
-    """Tell who went."""
+    """Yield the lines about removed actors."""
     return (f" Destroy {actor_id}\n" for (actor_id,) in records.tolist())
 
 
 def parents(records: Records) -> Iterator[str]:
-    """Tell who is attached to whom."""
+    """Yield the lines about attached actors."""
     return (f" Parenting {child} with {parent} (parent)\n" for child, parent in records.tolist())
 
 
@@ -182,7 +182,7 @@ EVENTS: tuple[tuple[PacketId, Callable[[Any], Iterator[str]]], ...] = (
     (PacketId.COLLISIONS, collisions),
     (PacketId.PARENTS, parents),
 )
-"""What is told of every frame, in the order that ScenarioRunner's parser needs; CARLA tells of parents first."""
+"""The events of every frame, in the order that ScenarioRunner's parser needs; CARLA lists parents first."""
 
 STATES: tuple[tuple[PacketId, str, Callable[[Any], Iterator[str]]], ...] = (
     (PacketId.POSITIONS, "Positions", positions),
@@ -201,7 +201,7 @@ STATES: tuple[tuple[PacketId, str, Callable[[Any], Iterator[str]]], ...] = (
     (PacketId.DOORS, "Vehicle door animations", doors),
     (PacketId.WEATHER, "Weathers", weathers),
 )
-"""What is told when all is asked for, with headings: CARLA's order, then what ScenarioRunner's parser stops at."""
+"""The states of a full report, with headings: CARLA's order, then what ScenarioRunner's parser stops at."""
 
 
 _LEFT_OUT_WHEN_EMPTY = (PacketId.DOORS, PacketId.WEATHER)
@@ -209,7 +209,7 @@ _LEFT_OUT_WHEN_EMPTY = (PacketId.DOORS, PacketId.WEATHER)
 
 
 def file_info(recording: Recording, *, show_all: bool) -> str:
-    """Return the report; without ``show_all`` only of frames in which somebody came, went, was attached or collided."""
+    """Return the report; without ``show_all`` only of frames with added, removed, attached or colliding actors."""
     parts = [heading(recording.header)]
     last_number, elapsed_s = 0, 0.0
     for frame in recording.whole_frames():

@@ -1,8 +1,6 @@
 """The content of a recording as values: header, frames, records of varying size; errors of damaged files.
 
-What is wrong with a recording, as sentences that say where.
-
-What a recording says, as values: its header, its frames, and the records of varying size in them.
+Records of fixed size are arrays (``layouts``).
 """
 
 from collections.abc import Mapping
@@ -40,7 +38,7 @@ Triple = tuple[float, float, float]
 
 
 class Header(NamedTuple):
-    """Who wrote when, and on which map; ``date_unix_s`` counts from 1970."""
+    """The version, the time and the map of a recording; ``date_unix_s`` counts from 1970."""
 
     version: int
     date_unix_s: int
@@ -123,7 +121,7 @@ class Frame:
 
     @property
     def parents(self) -> Records:
-        """Who is attached to whom from now on: ``layouts.PARENT``."""
+        """New attachments, child and parent: ``layouts.PARENT``."""
         return self._records(PacketId.PARENTS)
 
     @property

@@ -50,7 +50,7 @@ class Recording:
 
     Attributes:
         path: of the file.
-        header: who wrote when, on which map.
+        header: version, time and map.
     """
 
     def __init__(self, path: Path) -> None:
@@ -124,7 +124,7 @@ class Recording:
             yield FramePlace(number, duration_s, elapsed_s, start, at)
 
     def _after_frame(self, at: int) -> int:
-        """Return the byte after the end of the frame whose second packet lies at ``at``."""
+        """Return the byte after the end of the frame with its second packet at ``at``."""
         while True:
             packet_id, size = self._packet_head(at)
             at += _PACKET_HEAD.size + size

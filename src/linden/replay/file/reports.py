@@ -1,10 +1,7 @@
 """Reports about a recording: actors that stood still, collisions.
 
-How CARLA's reports write numbers, and the lines they begin and end with. Source: ``CarlaRecorderQuery.cpp``.
-
-``show_recorder_actors_blocked``: who stood where for long. Source: ``CarlaRecorderQuery.cpp``.
-
-``show_recorder_collisions``: who ran into whom, and when it began. Source: ``CarlaRecorderQuery.cpp``.
+``show_recorder_actors_blocked`` and ``show_recorder_collisions`` return them. Source of texts and number formats:
+``CarlaRecorderQuery.cpp``.
 """
 
 import math
@@ -144,7 +141,7 @@ LETTERS: dict[int, str] = {
 def collisions(recording: Recording, first_kind: str, second_kind: str) -> str:
     """Return the report of contacts between actors of two kinds: letters of ``ASKED_FOR``.
 
-    A contact that lasts is told once. Where one was told, the duration at the end has no decimals: CARLA's stream
+    A contact that lasts is reported once. After a report, the duration at the end has no decimals: CARLA's stream
     still rounds as for the times.
     """
     told = [heading(recording.header)]

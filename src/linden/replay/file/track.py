@@ -23,7 +23,7 @@ class Track(NamedTuple):
         recording: open.
         places: of its whole frames.
         elapsed_s: (N,) of each, since the recording began; they go forward.
-        events: the frames, by their place in ``places``, in which somebody comes or goes or a lamp is switched, with
+        events: the frames, by their place in ``places``, in which actors are added or removed or lamps switched, with
             these packets alone; or the error by which such a frame is damaged.
     """
 
@@ -34,7 +34,7 @@ class Track(NamedTuple):
 
 
 def track_of(recording: Recording) -> Track:
-    """Read through a recording; as long as this lasts, nobody else may read it. It is closed where it is no good.
+    """Read through a recording; no other reader may use it meanwhile. It is closed where it is damaged.
 
     Raises:
         RecordingError: there is no whole frame, or what is there cannot be.

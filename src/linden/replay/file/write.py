@@ -51,7 +51,7 @@ def packet(packet_id: PacketId, content: bytes) -> bytes:
 
 
 def frame(number: int, elapsed_s: float, packets: Sequence[bytes]) -> bytes:
-    """Return a frame whose duration is not known yet, which is written as -1."""
+    """Return a frame without a known duration; it is written as -1."""
     start = packet(PacketId.FRAME_START, struct.pack("<Qdd", number, -1.0, elapsed_s))
     assert len(start) == _HEAD.size + FRAME_START.itemsize
     return b"".join((start, *packets, packet(PacketId.FRAME_END, b"")))

@@ -37,7 +37,7 @@ def vehicle(blueprint: Blueprint) -> dict[str, list[Shape]]:
 
 
 SCALED = "static.prop.mesh"
-"""The one blueprint whose actors are as large as whoever spawns them says."""
+"""The one blueprint with a size that the client chooses at the spawn."""
 
 
 class Part(NamedTuple):

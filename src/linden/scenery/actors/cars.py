@@ -45,7 +45,7 @@ _BAR_M = 0.13
 
 
 def frame_of(blueprint: Blueprint, *, roof_m: float, mirrors_m: float) -> Frame:
-    """Return where a body lies whose mirrors reach ``mirrors_m`` beyond it and whose roof is at ``roof_m``."""
+    """Return the frame of a body with a roof at ``roof_m`` and mirrors that reach ``mirrors_m`` beyond it."""
     assert blueprint.vehicle is not None
     hubs, (middle, half, *_) = blueprint.vehicle.wheel_offsets_m, blueprint.box
     axles = tuple(sorted({hub.x for hub in hubs}))

@@ -1,7 +1,7 @@
 """The parts of a human body, each in its bone's frame and as large as the body's stature asks.
 
 Lengths follow ``world.skeleton``; girths are drawn by eye, in statures. Legs and arms are a little nearer to the middle
-than their bones, whose distances (Drillis and Contini) are those of a body's outline.
+than their bones: the distances of bones (Drillis and Contini) are those of a body's outline.
 """
 
 from collections.abc import Callable, Sequence

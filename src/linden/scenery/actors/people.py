@@ -68,10 +68,10 @@ def walker(blueprint: Blueprint) -> list[Shape]:
 
 
 def in_wheelchair(blueprint: Blueprint, chair: Mesh) -> list[Shape]:
-    """Return someone who sits in a chair as one part; the chair stands on the ground around the origin."""
-    who = _outfit_of(blueprint)
+    """Return a person in a wheelchair as one part; the chair stands on the ground around the origin."""
+    outfit = _outfit_of(blueprint)
     half_m = blueprint.box.extent.z
-    seated = figure(who, hips_m=(-0.08, 0.56), lean_deg=-6.0, hand_m=(0.26, 0.72), feet_m=((0.5, 0.2), (0.5, 0.2)))
+    seated = figure(outfit, hips_m=(-0.08, 0.56), lean_deg=-6.0, hand_m=(0.26, 0.72), feet_m=((0.5, 0.2), (0.5, 0.2)))
     made = tagged(join([seated, chair]), SemanticTag.PEDESTRIANS)
     return [Shape(moved(made, (0.0, 0.0, -half_m)), 0)]
 
@@ -82,27 +82,27 @@ def _outfit_of(blueprint: Blueprint) -> Outfit:
     return outfit(number, 2.0 * blueprint.box.extent.z, female=gender == "female")
 
 
-def _parts(who: Outfit) -> list[tuple[str, Mesh, Colour]]:
+def _parts(outfit: Outfit) -> list[tuple[str, Mesh, Colour]]:
     """Return bone, mesh and the colour of the clothes on it."""
-    build = who.build
+    build = outfit.build
     parts = [
-        ("crl_hips__C", limbs.hips(build), who.trousers),
-        ("crl_spine01__C", limbs.chest(build), who.shirt),
-        ("crl_Head__C", limbs.head(build), who.shirt),
+        ("crl_hips__C", limbs.hips(build), outfit.trousers),
+        ("crl_spine01__C", limbs.chest(build), outfit.shirt),
+        ("crl_Head__C", limbs.head(build), outfit.shirt),
     ]
     for side, sign in (("L", -1.0), ("R", 1.0)):
         parts += [
-            (f"crl_arm__{side}", limbs.arm(build, sign), who.shirt),
-            (f"crl_foreArm__{side}", limbs.forearm(build, sign), who.shirt),
-            (f"crl_thigh__{side}", limbs.thigh(build, sign), who.trousers),
-            (f"crl_leg__{side}", limbs.shin(build, sign), who.trousers),
-            (f"crl_foot__{side}", limbs.foot(build, sign), who.trousers),
+            (f"crl_arm__{side}", limbs.arm(build, sign), outfit.shirt),
+            (f"crl_foreArm__{side}", limbs.forearm(build, sign), outfit.shirt),
+            (f"crl_thigh__{side}", limbs.thigh(build, sign), outfit.trousers),
+            (f"crl_leg__{side}", limbs.shin(build, sign), outfit.trousers),
+            (f"crl_foot__{side}", limbs.foot(build, sign), outfit.trousers),
         ]
     return parts
 
 
 def figure(
-    who: Outfit,
+    outfit: Outfit,
     *,
     hips_m: tuple[float, float],
     lean_deg: float,
@@ -110,11 +110,11 @@ def figure(
     feet_m: tuple[tuple[float, float], tuple[float, float]],
     hands_apart_m: float = 0.4,
 ) -> Mesh:
-    """Return someone as one mesh whose clothes have their colours: hips at (x, z), leaning forward, limbs reaching.
+    """Return a person as one mesh in coloured clothes: hips at (x, z), leaning forward, limbs reaching.
 
     ``hand_m`` is where both hands are, ``feet_m`` where the left and the right ankle are, all (x, z).
     """
-    size = who.build.stature_m
+    size = outfit.build.stature_m
     hips = np.array(hips_m)
     up = np.array([math.sin(math.radians(lean_deg)), math.cos(math.radians(lean_deg))])
     spine, shoulder, crown = hips + 0.18 * size * up, hips + 0.288 * size * up, hips + 0.355 * size * up
@@ -130,7 +130,7 @@ def figure(
         elbow, arm_deg, lower_deg = _reach(shoulder, np.array(hand_m), 0.186 * size, 0.17 * size, knee=False)
         places |= {f"crl_arm__{side}": (shoulder, arm_deg), f"crl_foreArm__{side}": (elbow, lower_deg)}
     splay = 0.5 * hands_apart_m / size - _APART["crl_arm"] + limbs.ARMS_IN
-    parts = [(bone, _splayed(dyed(mesh, colour), bone, splay, size)) for bone, mesh, colour in _parts(who)]
+    parts = [(bone, _splayed(dyed(mesh, colour), bone, splay, size)) for bone, mesh, colour in _parts(outfit)]
     return join([_placed(mesh, bone, *places[bone], size) for bone, mesh in parts])
 
 

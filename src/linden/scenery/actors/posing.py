@@ -125,7 +125,7 @@ def _bent_rad(chain: _Chain, share: F64, speed_mps: F64) -> F64:
 def posed_frames(in_actor: F64) -> F64:
     """Return ``WALKER_FRAMES`` (14, 3, 4) of one walker from all its bones' frames in the actor's (B, 4, 4).
 
-    So is shown who has a pose that a client gave it: ``in_actor`` is that of ``simulation.bones.bones_of``.
+    Walkers with a pose from a client use this: ``in_actor`` is that of ``simulation.bones.bones_of``.
     """
     names = skeleton().names
     return np.concatenate([np.eye(4)[None, :3], in_actor[[names.index(bone) for bone in WALKER_BONES], :3]])

@@ -1,12 +1,7 @@
 """Closed solids as meshes, their common colours, and the frame that a part of an actor follows.
 
-Closed solids as meshes: lofts, boxes, tubes, balls; how they are looked upon, moved and mirrored.
-
-Every solid is closed and its triangles point outwards, so that what is put together of them is seen from outside only.
-
-How the parts of actors look: colours and materials that several of them share.
-
-A mesh and the frame that it follows: what an actor is made of.
+Solids are lofts, boxes, tubes and balls. Every solid is closed and its triangles point outwards, so that compounds of
+them show their outside only.
 """
 
 import math
@@ -127,7 +122,7 @@ def box(low_m: Point, high_m: Point, look: Look) -> Mesh:
 
 
 def wedge(low_m: Point, high_m: Point, look: Look, *, top_x: tuple[float, float]) -> Mesh:
-    """Return a box whose upper side reaches from ``top_x[0]`` to ``top_x[1]`` instead: a ramp, a leaning board."""
+    """Return a box with an upper side from ``top_x[0]`` to ``top_x[1]``: a ramp, a leaning board."""
     (x0, y0, z0), (x1, y1, z1) = low_m, high_m
     rings = [[(x0, y, z0), (x1, y, z0), (top_x[1], y, z1), (top_x[0], y, z1)] for y in (y0, y1)]
     return loft(np.array(rings), look, look, look)

@@ -1,4 +1,4 @@
-"""Bicycles, motorcycles and scooters with who rides them, and the wheelchair."""
+"""Meshes of bicycles, motorcycles and scooters with their riders, and of the wheelchair."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -61,7 +61,7 @@ def _line(points: Sequence[Point], radius_m: float, look: Look) -> Mesh:
 
 
 def _bars(blueprint: Blueprint, hub: Vector3D, head: tuple[float, float], look: Look, fork_m: float) -> list[Mesh]:
-    """Return fork, stem and handlebar in the fork's frame, whose origin is the hub; ``head`` is where the grips are."""
+    """Return fork, stem and handlebar in the fork's frame (origin: the hub); ``head`` is the place of the grips."""
     half_y, (x, z) = blueprint.box.extent.y, (head[0] - hub.x, head[1] - hub.z)
     top = (0.82 * x, 0.0, 0.82 * z)
     legs = both_sides(_line([(0.0, fork_m, 0.0), (0.45 * x, fork_m, 0.45 * z), top], 0.016, look))
@@ -72,7 +72,7 @@ def _bars(blueprint: Blueprint, hub: Vector3D, head: tuple[float, float], look: 
 
 
 class _Riders(NamedTuple):
-    """Who may sit on it, by ``driver_id``, and how high the saddle is."""
+    """The riders of a two-wheeler, by ``driver_id``, and the height of the saddle."""
 
     meshes: dict[str, Mesh]
     saddle_m: float
@@ -86,18 +86,18 @@ def _riders(
     hand_m: tuple[float, float],
     feet_m: tuple[tuple[float, float], tuple[float, float]],
 ) -> _Riders:
-    """Return riders whose helmets are as high as the box; the rest is as in ``people.figure``."""
+    """Return riders with helmets as high as the box; the rest is as in ``people.figure``."""
     top_m, hips_z = blueprint.box.location.z + blueprint.box.extent.z, 0.0
     meshes: dict[str, Mesh] = {}
     for driver_id, (number, female) in _RIDERS.items():
-        who = outfit(number, _RIDER_M, female=female, helmet=(228, 228, 224))
+        clothes = outfit(number, _RIDER_M, female=female, helmet=(228, 228, 224))
         if not meshes:  # all are of one size
             trial = figure(
-                who, hips_m=(0.0, 0.0), lean_deg=lean_deg, hand_m=(0.0, 0.0), feet_m=((0.0, -0.5), (0.0, -0.5))
+                clothes, hips_m=(0.0, 0.0), lean_deg=lean_deg, hand_m=(0.0, 0.0), feet_m=((0.0, -0.5), (0.0, -0.5))
             )
             hips_z = top_m - float(trial.vertices_m[:, 2].max())
         made = figure(
-            who,
+            clothes,
             hips_m=(hips_x_m, hips_z),
             lean_deg=lean_deg,
             hand_m=hand_m,

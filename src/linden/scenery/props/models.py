@@ -116,7 +116,7 @@ def model(name: str, box: BoundingBox) -> list[Mesh]:
     """Return the solids of a prop about as large as its box, standing on the origin.
 
     Raises:
-        KeyError: nobody has drawn it; a test sees to it that every blueprint has been.
+        KeyError: there is no model of it; a test checks that every blueprint has one.
     """
     size_m = (2.0 * box.extent.x, 2.0 * box.extent.y, 2.0 * box.extent.z)
     if name in _MODELS:

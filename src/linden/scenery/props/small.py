@@ -34,7 +34,7 @@ _WHITE = Look(Material.SIGN_FACE, (232, 232, 226))
 
 
 def cube(length: float, width: float, height: float) -> list[Mesh]:
-    """Return a plain box: what stands for a mesh of Unreal's that nobody has here."""
+    """Return a plain box: the stand-in for a mesh of Unreal's that is not available."""
     return [
         box(
             (-0.5 * length, -0.5 * width, 0.0),

@@ -86,7 +86,7 @@ def houses(frames: Frames, plan: Plan) -> Mesh:
 def _wall_look(plan: Plan) -> tuple[NDArray[np.bool_], NDArray[np.uint8]]:
     brick = plan.draw[:, 2] < _BRICK_SHARE
     siding = (plan.draw[:, 3] * len(_SIDING)).astype(int)
-    for row in np.flatnonzero(siding[1:] == siding[:-1]) + 1:  # nobody paints as the neighbour did
+    for row in np.flatnonzero(siding[1:] == siding[:-1]) + 1:  # neighbours have different colours
         siding[row] = (siding[row - 1] + 3) % len(_SIDING)
     colour = np.where(brick[:, None], _BRICKS[(plan.draw[:, 3] * len(_BRICKS)).astype(int)], _SIDING[siding])
     return brick, colour.astype(np.uint8)
@@ -177,7 +177,7 @@ def _roofs(frames: Frames, plan: Plan) -> Mesh:
 def _windows(frames: Frames, plan: Plan) -> Mesh:
     """Return windows: two a storey on each side, the door in place of one, and one more in gables to the street.
 
-    Where the next house stands close by there is one, and neither there nor behind does anybody see a frame.
+    Where the next house stands close by there is one, and frames are hidden there and behind.
     """
     parts = []
     close = {"back": np.ones(len(frames), bool), **_neighbours(frames, plan)}

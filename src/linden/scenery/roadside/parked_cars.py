@@ -47,7 +47,7 @@ _OUTLINES = {
     ),
 }
 _BELLY, _SILL = 0.14, 0.30  # heights of underside and sills, shares of the box
-_INSET = 0.97  # of the body within the box, whose sides the mirrors reach
+_INSET = 0.97  # of the body within the box; the mirrors reach its sides
 _ROOF_IN = 0.74  # half the width of the roof, in shares of the body's
 
 

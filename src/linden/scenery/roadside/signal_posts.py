@@ -1,8 +1,6 @@
 """Meshes of posts: traffic lights, signs with letters, street lamps.
 
-Letters of flat strokes for signs: a skeleton for each, on a field 4 wide and 6 tall, its lines given a breadth.
-
-What stands on posts beside the road: traffic lights with three lenses, signs with their faces, street lamps.
+Letters are flat strokes: a skeleton for each letter on a field 4 wide and 6 tall, with a width for its lines.
 
 The faces of lights and signs look along y of their things, against the traffic they are meant for.
 """
@@ -163,7 +161,7 @@ def _layers(
         strokes = letters(words, tall)  # (K, 4, 2), read from the front: x to the reader's right
         look = Look(Material.SIGN_FACE, tag, colour, objects)
         for stroke in strokes:
-            # y points south: who looks against it, at the face, has x on the right hand
+            # y points south: seen against it, at the face, x is on the right
             corners = np.column_stack(
                 [stroke[:, 0], np.full(len(stroke), depth + 0.002 * len(sheets)), stroke[:, 1] + up]
             )

@@ -100,7 +100,7 @@ def _solid(frames: Frames, half_m: F64, look: Look) -> Mesh:
 
 
 def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
-    """Return two rails between posts, without what nobody sees of them."""
+    """Return two rails between posts, without their hidden faces."""
     parts = []
     for sides, rows in (
         (("top", "left", "right"), np.flatnonzero(half_m[:, 0] > half_m[:, 1])),

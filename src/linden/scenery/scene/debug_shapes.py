@@ -1,4 +1,4 @@
-"""Shapes that clients draw into the world, kept for whoever shows it: a viewer, a recording."""
+"""Shapes that clients draw into the world, kept for viewers and recordings."""
 
 import math
 from typing import NamedTuple
@@ -47,7 +47,7 @@ class DebugShapes:
         return False
 
     def step(self, now_s: float) -> None:
-        """Let those go whose time is over."""
+        """Drop the expired shapes."""
         if self._shown or self._new:
             self._shown = [kept for kept in self._shown if now_s <= kept.until_s + _ROUNDING_S] + self._new
             self._new = []

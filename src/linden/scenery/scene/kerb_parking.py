@@ -1,6 +1,6 @@
 """Cars parked along the streets, in parking lanes: clear of drives, stops, signs, crossings and spawn points.
 
-Nobody has counted the cars of Linden's kerbs; the share of lots with one before them is an estimate.
+There is no count of the cars at Linden's kerbs; the share of lots with one before them is an estimate.
 """
 
 import numpy as np
@@ -27,7 +27,7 @@ FROM_STOP_M = 27.0  # room for the shuttle to pull in and out, and for the cross
 FROM_SPAWN_M = 7.8  # half a car and half the longest bus, which is wider than its lane
 WRONG_WAY = 0.04
 _ASIDE_M = (1.2, 2.4)
-_OFF_LINE_M, _OFF_LINE_RAD = 0.05, 0.012  # nobody parks like a machine
+_OFF_LINE_M, _OFF_LINE_RAD = 0.05, 0.012  # drivers do not park like machines
 _HIGH_M = 1e9
 
 

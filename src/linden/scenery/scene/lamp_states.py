@@ -1,4 +1,4 @@
-"""The lamps of a scene: how they stand, who changed them, and when day and night switch them."""
+"""The lamps of a scene: their states, changes by clients, and switching by day and night."""
 
 from collections.abc import Sequence
 
@@ -19,9 +19,9 @@ _FRAMES_THAT_TELL = 3
 class Lamps:
     """The lamps of one episode.
 
-    Whoever changes lamps, all clients are told by a bit of the snapshot to ask anew. CARLA keeps a list of clients by
-    the name each one has for the server, which is the same for all of them; so they are told for a few frames instead,
-    and no answer depends on when somebody asked.
+    After a change by any client, a bit of the snapshot asks all clients to read the lamps again. CARLA keeps a list of
+    clients by the name that each has for the server, which is the same for all. So the bit stays set for a few frames,
+    and no answer depends on the time of a request.
 
     Attributes:
         pending: whether the last frame tells of a change.

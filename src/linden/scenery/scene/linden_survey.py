@@ -30,7 +30,7 @@ class Surveyed(NamedTuple):
 
 @cache
 def surveyed(origin_deg: tuple[float, float]) -> Surveyed:
-    """Return the places on a map whose origin lies at this latitude and longitude."""
+    """Return the places on a map with its origin at this latitude and longitude."""
     text = (resources.files("linden") / "data" / "linden.geojson").read_text("utf-8")
     features = json.loads(text)["features"]
     stops = [f for f in features if f["properties"]["feature"] == "shuttle_stop"]

@@ -87,7 +87,7 @@ BOX = np.dtype(
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Things and their boxes, those of one thing next to each other, in the order of the things. Nobody changes it."""
+    """Things and their boxes, those of one thing next to each other, in the order of the things. It never changes."""
 
     things: NDArray[np.void]  # of THING
     boxes: NDArray[np.void]  # of BOX
@@ -179,7 +179,7 @@ def boxes_on(
 
 
 def assembled(things: NDArray[np.void], *parts: NDArray[np.void]) -> Scene:
-    """Return the scene of things whose boxes come part by part, as :func:`boxes_on` makes them."""
+    """Return the scene of things with boxes that come part by part, as :func:`boxes_on` makes them."""
     boxes = np.concatenate(parts)
     return Scene(things, boxes[np.argsort(boxes["thing"], kind="stable")])
 

@@ -45,7 +45,7 @@ class Post(NamedTuple):
 def posts(placed: Sequence[Post], ground: Ground) -> Scene:
     """Return the scene of lights and signs: first all lights, then all signs, in their order.
 
-    They stand on the ground, or at the edge of the bridge whose road they belong to.
+    They stand on the ground, or at the edge of the bridge of their road.
 
     Raises:
         ValueError: a light comes after a sign.

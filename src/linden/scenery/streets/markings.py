@@ -14,7 +14,7 @@ from linden.maps.opendrive.model import RoadMark
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh
 from linden.scenery.patches import Look, strips
-from linden.scenery.streets.simplified_lanes import Laid
+from linden.scenery.streets.simplified_lanes import SimplifiedLanes
 
 F64 = NDArray[np.float64]
 
@@ -49,11 +49,11 @@ class _Stripe(NamedTuple):
     colour: tuple[int, int, int]
 
 
-def lines(laid: Laid) -> Mesh:
+def lines(simplified_lanes: SimplifiedLanes) -> Mesh:
     """Return all painted lines."""
-    tables = laid.tables
+    tables = simplified_lanes.tables
     stripes = list(_stripes(tables))
-    owner, s_m, continues = _places(laid, stripes)
+    owner, s_m, continues = _places(simplified_lanes, stripes)
     lane = np.array([stripe.lane for stripe in stripes], np.int64)[owner]
     is_outer = np.array([stripe.is_outer for stripe in stripes], bool)[owner]
     left_m = np.array([stripe.left_m for stripe in stripes])[owner]
@@ -97,9 +97,11 @@ def _of_mark(mark: RoadMark, row: int, is_outer: bool, start_m: float, end_m: fl
             yield _Stripe(row, is_outer, begin_m, min(begin_m + stripe_m, end_m), left_m, width_m, colour)
 
 
-def _places(laid: Laid, stripes: list[_Stripe]) -> tuple[NDArray[np.int64], F64, NDArray[np.bool_]]:
+def _places(
+    simplified_lanes: SimplifiedLanes, stripes: list[_Stripe]
+) -> tuple[NDArray[np.int64], F64, NDArray[np.bool_]]:
     """Return owner, s and whether the stripe goes on: its ends, and all places between that the surface has."""
-    samples, tables = laid.samples, laid.tables
+    samples, tables = simplified_lanes.samples, simplified_lanes.tables
     before = sections_before(tables)
     begins = np.searchsorted(samples.section, np.arange(before[-1] + 1))
     rows = tables.lanes

@@ -1,8 +1,6 @@
 """Paint across the lanes: crosswalks, stop lines, yield lines, arrows; islands of roundabouts.
 
-What is painted across the lanes: crosswalks, stop lines, yield lines; and the islands of roundabouts.
-
-Arrows on the lanes before a junction with lights, where the lanes of an approach do not all lead the same ways.
+Arrows stand before junctions with lights where the lanes of an approach lead in different directions.
 """
 
 import math
@@ -77,7 +75,7 @@ def _outline(tables: Tables, road_index: int, thing: RoadObject) -> F64:
 
 
 def _towards(tables: Tables, road_index: int, thing: RoadObject) -> F64:
-    """Return the direction, (2,) in CARLA's frame, in which those come whom a yield line concerns."""
+    """Return the direction of travel, (2,) in CARLA's frame, of the traffic that a yield line concerns."""
     road = tables.roads[road_index]
     s_m = np.clip([thing.s_m], 0.0, tables.road_length_m[road_index])
     heading = float(tables.curves.pose(np.array([road_index]), s_m).heading_rad[0])
@@ -111,7 +109,7 @@ def _bars(outline: F64) -> list[F64]:
 
 
 def _teeth(outline: F64, coming: F64) -> list[F64]:
-    """Return the triangles of a yield line, which point at those who come."""
+    """Return the triangles of a yield line, which point at the approaching traffic."""
     sides = np.roll(outline, -1, axis=0) - outline
     lengths = np.hypot(*sides.T)
     longest = int(np.argmax(lengths))
@@ -254,7 +252,7 @@ def _ways(opendrive: OpenDrive, tables: Tables) -> dict[_Approach, dict[int, set
 
 
 def _turn(tables: Tables, road: int, *, backwards: bool) -> str:
-    """Return which way a connecting road leads whoever enters it at its start, or ``backwards`` at its end."""
+    """Return the turn of a connecting road that is entered at its start, or ``backwards`` at its end."""
     ends = tables.curves.pose(np.array([road, road]), np.array([0.0, tables.road_length_m[road]]))
     turn = math.remainder(float(ends.heading_rad[1] - ends.heading_rad[0]), math.tau)
     turn = -turn if backwards else turn

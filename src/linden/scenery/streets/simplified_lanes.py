@@ -1,4 +1,4 @@
-"""The lanes as they are drawn: laid along their roads in as few places as straight lines between them allow.
+"""Simplified lanes for drawing: edges along the roads at as few places as straight lines between them allow.
 
 Wheels feel the road in every place where it was sampled. Most of these lie on straight lines between their neighbours:
 they are left out here, all lanes of a section in the same places, so that no cracks open between them.
@@ -24,7 +24,7 @@ LONGEST_M = 40.0  # long slanting pieces have large bounds, and rays meet bounds
 _MOST_TURNS = 24
 
 
-class Laid(NamedTuple):
+class SimplifiedLanes(NamedTuple):
     """Lane after lane, the places of each in ascending s; all (P,) but ``tables`` and ``samples``."""
 
     tables: Tables
@@ -37,7 +37,7 @@ class Laid(NamedTuple):
     outer: F64
 
 
-def laid(opendrive: OpenDrive) -> Laid:
+def simplified_lanes(opendrive: OpenDrive) -> SimplifiedLanes:
     """Return all lanes of a map."""
     tables = tables_of(opendrive)
     strips = strips_of(tables)
@@ -48,7 +48,9 @@ def laid(opendrive: OpenDrive) -> Laid:
     samples = Samples(every.road[kept], every.section[kept], every.s_m[kept], every.probe_m[kept])
     lane = strips.lane[rows]
     goes_on = np.append(lane[1:] == lane[:-1], [False])[: len(lane)]
-    return Laid(tables, samples, lane, strips.s_m[rows], strips.probe_m[rows], goes_on, inner[rows], outer[rows])
+    return SimplifiedLanes(
+        tables, samples, lane, strips.s_m[rows], strips.probe_m[rows], goes_on, inner[rows], outer[rows]
+    )
 
 
 def _kept(strips: Strips, inner: F64, outer: F64) -> Flags:

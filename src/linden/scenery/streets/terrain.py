@@ -1,7 +1,7 @@
 """The land between and beyond the streets: it begins where the outermost lanes end and follows the ground's heights.
 
-Corners lie densely along the edges of the roads and thinly elsewhere; the triangles between them are Delaunay's, which
-keep to an edge whose corners are closer to each other than to any other corner.
+Corners lie densely along the edges of the roads and thinly elsewhere; the triangles between them are Delaunay's. Such
+triangles keep an edge if its corners are closer to each other than to any other corner.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, faces
 from linden.scenery.streets.junction_floors import Floors
 from linden.scenery.streets.road import GRASS
-from linden.scenery.streets.simplified_lanes import Laid
+from linden.scenery.streets.simplified_lanes import SimplifiedLanes
 
 F64 = NDArray[np.float64]
 
@@ -26,11 +26,11 @@ _FAR_M = 2500.0  # to where a last ring of land reaches, so that the horizon is 
 _HIGH_M = 1e6
 
 
-def land(laid: Laid, ground: Ground, floors: Floors) -> Mesh:
+def land(simplified_lanes: SimplifiedLanes, ground: Ground, floors: Floors) -> Mesh:
     """Return the land of a map; flat and empty where the map has no roads."""
-    from matplotlib.tri import Triangulation  # noqa: PLC0415 - a server whose maps are kept never pays for it
+    from matplotlib.tri import Triangulation  # noqa: PLC0415 - a server with cached maps never needs it
 
-    edges = _edges(laid, ground)
+    edges = _edges(simplified_lanes, ground)
     if not len(edges):
         edges = np.zeros((1, 3))
     points = _thinned(np.concatenate([edges, _open_land(edges, ground), _horizon(edges, ground)]))
@@ -53,15 +53,18 @@ def _on_roads(points: F64, ground: Ground) -> NDArray[np.bool_]:
     return on
 
 
-def _edges(laid: Laid, ground: Ground) -> F64:
+def _edges(simplified_lanes: SimplifiedLanes, ground: Ground) -> F64:
     """Return corners (N, 3) along the outer edges of the outermost lanes, where no other road lies beyond."""
-    if not len(laid.lane):
+    if not len(simplified_lanes.lane):
         return np.empty((0, 3))
-    inside = laid.tables.lanes["inside"]
-    outermost, innermost = ~np.isin(laid.lane, inside), inside[laid.lane] < 0
+    inside = simplified_lanes.tables.lanes["inside"]
+    outermost, innermost = ~np.isin(simplified_lanes.lane, inside), inside[simplified_lanes.lane] < 0
     places = []
-    for line, other, wanted in ((laid.outer, laid.inner, outermost), (laid.inner, laid.outer, innermost)):
-        rows = np.flatnonzero(wanted & laid.continues & np.append(wanted[1:], [False]))
+    for line, other, wanted in (
+        (simplified_lanes.outer, simplified_lanes.inner, outermost),
+        (simplified_lanes.inner, simplified_lanes.outer, innermost),
+    ):
+        rows = np.flatnonzero(wanted & simplified_lanes.continues & np.append(wanted[1:], [False]))
         away = line - other
         away[:, 2] = 0.0
         away /= np.maximum(np.hypot(*away[:, :2].T), 1e-6)[:, None]
@@ -70,7 +73,7 @@ def _edges(laid: Laid, ground: Ground) -> F64:
         piece = np.repeat(np.arange(len(rows)), count)
         share = (np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)) / count[piece]
         found = begin[piece] + share[:, None] * (end - begin)[piece]
-        last = ~laid.continues[rows + 1]
+        last = ~simplified_lanes.continues[rows + 1]
         both = np.concatenate([found, end[last]])
         outward = np.concatenate([away[rows][piece], away[rows + 1][last]])
         places.append(both[~_on_roads(both + _PROBE_M * outward, ground)])

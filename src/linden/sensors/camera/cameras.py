@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.protocol.values.actors import ActorDescription
-from linden.sensors.camera.events import Events, Retina
+from linden.sensors.camera.events import EventPixels, Events
 from linden.sensors.camera.spec import Picture, camera_spec, event_spec, film
 from linden.sensors.view import Look
 
 if TYPE_CHECKING:
-    from linden.sensors.camera.renderer import Darkroom
+    from linden.sensors.camera.renderer import Renderer
 
 Pixels: TypeAlias = NDArray[np.uint8] | NDArray[np.float32]
 
@@ -24,8 +24,8 @@ class Image(NamedTuple):
     pixels: Pixels  # (height, width, 4) bytes B, G, R, A, or (height, width, 2) floats of a flow
 
 
-def darkroom(look: Look) -> "Darkroom":
-    """Return where pictures are made; who never looks does not load what makes them."""
+def renderer(look: Look) -> "Renderer":
+    """Return the renderer; it is imported when the first camera needs it."""
     from linden.sensors.camera.renderer import darkroom_of  # noqa: PLC0415 - see above
 
     return darkroom_of(look.seen.caster)
@@ -35,7 +35,7 @@ def pixels(picture: Picture, look: Look) -> Pixels:
     """Return a picture; cameras of one place, kind, lens and film share it."""
     key = (picture, look.pose, look.before)
     if key not in look.shared:
-        look.shared[key] = darkroom(look).make(picture, look)
+        look.shared[key] = renderer(look).make(picture, look)
     return look.shared[key]  # type: ignore[return-value] # put there above
 
 
@@ -59,7 +59,7 @@ class Camera:
 
     def expect(self, look: Look) -> None:
         """Begin what ``measure`` will be asked for."""
-        darkroom(look).expect(self.picture, look)
+        renderer(look).expect(self.picture, look)
 
     def measure(self, look: Look) -> Image:
         """Return the picture of a frame."""
@@ -120,23 +120,23 @@ class EventCamera:
         """
         self.picture = Picture(ColourCamera.kind, camera_spec(description), film(description))
         self.events = event_spec(description)
-        self._retina: Retina | None = None
+        self._retina: EventPixels | None = None
 
     def expect(self, look: Look) -> None:
         """Begin what ``measure`` will be asked for."""
-        darkroom(look).expect(self.picture, look)
+        renderer(look).expect(self.picture, look)
 
     def measure(self, look: Look) -> Events | None:
         """Return what has changed since the last picture, None where nothing has."""
         image, spec = np.asarray(pixels(self.picture, look), np.uint8), self.picture.spec
         if self._retina is None:
-            self._retina = Retina(self.events, image, look.seen.now_s)
+            self._retina = EventPixels(self.events, image, look.seen.now_s)
             return None
         found = self._retina.watch(image, look.seen.now_s, look.number)
         return Events(spec.width_px, spec.height_px, spec.fov_deg, found) if len(found) else None
 
     def skip(self, _interval_s: float) -> None:
-        """Forget the last picture: to remember one that nobody listens to would mean to make it."""
+        """Forget the last picture: without subscribers the picture of this frame is not rendered."""
         self._retina = None
 
 

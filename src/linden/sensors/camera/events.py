@@ -38,7 +38,7 @@ class Events(NamedTuple):
     events: NDArray[np.void]  # of EVENT
 
 
-class Retina:
+class EventPixels:
     """What an event camera remembers of each pixel; changed by :meth:`watch`."""
 
     def __init__(self, spec: EventSpec, image: U8, now_s: float) -> None:

@@ -16,7 +16,7 @@ from linden.sensors.view import Look
 Pixels: TypeAlias = NDArray[np.uint8] | NDArray[np.float32]
 
 
-class Darkroom(Protocol):
+class Renderer(Protocol):
     """Makes pictures: (height, width, 4) bytes B, G, R, A, and (height, width, 2) floats of a flow."""
 
     def expect(self, picture: Picture, look: Look) -> None:
@@ -28,7 +28,7 @@ class Darkroom(Protocol):
         ...
 
 
-class OnCpu:
+class CpuRenderer:
     """The CPU's pictures."""
 
     def expect(self, picture: Picture, look: Look) -> None:
@@ -57,19 +57,19 @@ def view(spec: CameraSpec, look: Look) -> tuple[Rays, Hits]:
     return look.shared[key]  # type: ignore[return-value] # put there above
 
 
-_ON_CPU = OnCpu()
-_on_gpu: list[tuple[Caster, Darkroom]] = []
+_ON_CPU = CpuRenderer()
+_on_gpu: list[tuple[Caster, Renderer]] = []
 """The last one made, for the caster it was made of."""
 
 
-def darkroom_of(caster: Caster) -> Darkroom:
+def darkroom_of(caster: Caster) -> Renderer:
     """Return where pictures of what a caster sees are made."""
     if caster.device == CPU:
         return _ON_CPU
     if not _on_gpu or _on_gpu[0][0] is not caster:
-        from linden.sensors.camera.gpu.renderer import GpuDarkroom  # noqa: PLC0415 - likewise
+        from linden.sensors.camera.gpu.renderer import GpuRenderer  # noqa: PLC0415 - likewise
         from linden.sensors.casting.warp_caster import WarpCaster  # noqa: PLC0415 - users of a GPU alone have Warp
 
         assert isinstance(caster, WarpCaster)
-        _on_gpu[:] = [(caster, GpuDarkroom(caster))]
+        _on_gpu[:] = [(caster, GpuRenderer(caster))]
     return _on_gpu[0][1]

@@ -1,4 +1,4 @@
-"""What Embree asks where a ray meets a body: hits of inner sides do not count, so that who sits in a car looks out.
+"""The filter for back faces of bodies: their hits do not count, so that a sensor inside a car sees out of it.
 
 An RTCFilterFunctionN (embree4/rtcore_common.h), compiled: Embree calls it in the middle of its search, from whichever
 thread is looking, with rays and hits in the frame of the body.
@@ -37,7 +37,7 @@ _floats_at, _whole_at = _numbers_at(types.float32), _numbers_at(types.int32)
 
 
 def _refuse_inner_sides(given: Any) -> None:  # noqa: ANN401 - the address of Embree's arguments
-    """Clear the mask of each hit whose normal points the way its ray goes."""
+    """Clear the mask of each hit with a normal that points the way its ray goes."""
     count = given[_COUNT] & 0xFFFFFFFF
     valid, ray, hit = _whole_at(given[_VALID]), _floats_at(given[_RAY]), _floats_at(given[_HIT])
     for k in range(count):
@@ -49,7 +49,7 @@ def _refuse_inner_sides(given: Any) -> None:  # noqa: ANN401 - the address of Em
 
 
 _kept: list[Any] = []
-"""Embree calls what it was given as long as it is asked."""
+"""Embree calls the filter as long as the scene lives."""
 
 
 def address() -> int:

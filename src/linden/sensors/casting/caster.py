@@ -1,4 +1,4 @@
-"""What is asked of a caster and what it answers; the same on the CPU (``embree``) and on a GPU (``warp``)."""
+"""The interface of ray casters; the same on the CPU (``embree``) and on a GPU (``warp``)."""
 
 from typing import NamedTuple, Protocol
 
@@ -60,11 +60,11 @@ class Caster(Protocol):
     device: str  # CPU, or a GPU as Warp names it
 
     def __init__(self, standing: Mesh, bodies: list[Mesh]) -> None:
-        """Build what makes asking fast."""
+        """Build the search structures."""
         ...
 
     def pose(self, instances: Instances) -> None:
-        """Put the bodies where they are now; who is not among them is not there."""
+        """Move the bodies to their present poses; other bodies are hidden."""
         ...
 
     def closest(self, rays: Rays, farthest_m: float, *, coherent: bool = False, outer: bool = False) -> Hits:
@@ -74,8 +74,8 @@ class Caster(Protocol):
             rays: as many as there are.
             farthest_m: nothing is met beyond.
             coherent: whether neighbours go side by side, as a camera's; changes no answer, only how fast it comes.
-            outer: whether rays go out through the inner sides of bodies, as if those were not there: then who sits in
-                a car looks out of it, as in Unreal, which draws one side of a face.
+            outer: whether rays go out through the inner sides of bodies, as if those were not there. A sensor
+                inside a car then sees out of it, as in Unreal, which draws one side of a face.
         """
         ...
 

@@ -106,20 +106,20 @@ class EmbreeCaster:
         return geometry
 
     def pose(self, instances: Instances) -> None:
-        """Put the bodies where they are now; who is not among them is not there."""
+        """Move the bodies to their present poses; other bodies are hidden."""
         poses = np.ascontiguousarray(instances.pose, np.float32)
         if np.array_equal(instances.mesh, self._mesh) and np.array_equal(poses, self.pose_of):
             return
         if not np.array_equal(instances.mesh, self._mesh):
             self._recast(instances.mesh)
-            self.pose_of = poses[:0]  # who has another mesh is to be placed, wherever it was
+            self.pose_of = poses[:0]  # an instance with another mesh has to be placed in any case
         place(np.array(self._instances[: len(poses)], np.int64), poses, self.pose_of)
         self.pose_of = poses
         self._library.rtcCommitScene(self.scene)
         self._complain()
 
     def _recast(self, mesh: I32) -> None:
-        """Give each instance its mesh; those that nobody needs wait out of sight."""
+        """Give each instance its mesh; unused instances are hidden."""
         library, before = self._library, self._mesh
         for row, number in enumerate(mesh.tolist()):
             if row == len(self._instances):

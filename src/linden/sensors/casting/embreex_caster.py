@@ -27,7 +27,7 @@ class EmbreexCaster:
         self._moving = EmbreeScene()
 
     def pose(self, instances: Instances) -> None:
-        """Put the bodies where they are now; who is not among them is not there."""
+        """Move the bodies to their present poses; other bodies are hidden."""
         self._moving = EmbreeScene()
         for number, pose in zip(instances.mesh.tolist(), instances.pose, strict=True):
             mesh = self._bodies[number]

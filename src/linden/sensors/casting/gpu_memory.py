@@ -1,4 +1,4 @@
-"""A GPU as kernels of numba's use it: memory, one stream of work, letters to it and pictures back.
+"""GPU memory and one stream of work for kernels of numba: buffers to the GPU, and pictures back.
 
 Warp casts rays there (``warp_caster``); numba compiles the very loops that shade on the CPU for the GPU as well. Needs
 the extra ``gpu``.
@@ -28,7 +28,7 @@ _ALIGNED = 256  # bytes: where arrays begin that numba makes itself
 numba.config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # type: ignore[attr-defined] # small pictures are small
 
 
-class Letter(NamedTuple):
+class SharedBuffer(NamedTuple):
     """Memory that is written here and read on a device, at the same place each time."""
 
     here: NDArray[np.uint8]
@@ -69,11 +69,11 @@ class Gpu:
         self._stream.synchronize()
         return copy
 
-    def letter(self, size: int) -> Letter:
+    def shared_buffer(self, size: int) -> SharedBuffer:
         """Return memory of so many bytes, here and there."""
         here = wp.zeros(size, dtype=wp.uint8, device="cpu", pinned=True)
         there = wp.zeros(size, dtype=wp.uint8, device=self._device)
-        return Letter(
+        return SharedBuffer(
             here.numpy(), cuda.as_cuda_array(there, sync=False), lambda: wp.copy(there, here, stream=self.queue)
         )
 
@@ -91,7 +91,7 @@ class Gpu:
         """Have an array copied to the host once all work before is done; return what waits for the copy and returns it.
 
         It lies in memory that the device writes to by itself, which takes long to get; so it is used again when
-        nobody holds the copy any more.
+        the copy is not referenced any more.
         """
         size, waiting = array.nbytes, self._frames[array.nbytes]
         frame = waiting.pop() if waiting else wp.empty(size, dtype=wp.uint8, device="cpu", pinned=True)
@@ -118,7 +118,7 @@ class Gpu:
         wp.capture_launch(graph, stream=self.queue)
 
 
-class Mailbox:
+class UploadBuffer:
     """Arrays that go to a GPU together, again and again, and lie at the same place there each time.
 
     Attributes:
@@ -129,36 +129,36 @@ class Mailbox:
         self.moves = 0
         self._gpu = gpu
         self._room: dict[str, int] = {}
-        self._letter: Letter | None = None
+        self._shared: SharedBuffer | None = None
         self._slots: dict[str, tuple[NDArray[Any], Any]] = {}
 
-    def send(self, letters: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+    def send(self, inputs: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
         """Return the arrays on the device, each as long as there is room for; what is sent is at its beginning.
 
         The names, dtypes and trailing shapes are the same each time. What was sent before must have been read.
         """
-        if any(len(letter) > self._room.get(name, -1) for name, letter in letters.items()):
-            self._make_room(letters)
-        for name, letter in letters.items():
-            self._slots[name][0][: len(letter)] = letter
-        assert self._letter is not None
-        self._letter.send()
+        if any(len(shared_buffer) > self._room.get(name, -1) for name, shared_buffer in inputs.items()):
+            self._make_room(inputs)
+        for name, shared_buffer in inputs.items():
+            self._slots[name][0][: len(shared_buffer)] = shared_buffer
+        assert self._shared is not None
+        self._shared.send()
         return {name: there for name, (_, there) in self._slots.items()}
 
-    def _make_room(self, letters: Mapping[str, NDArray[Any]]) -> None:
+    def _make_room(self, inputs: Mapping[str, NDArray[Any]]) -> None:
         """Lay all arrays out anew, with room for twice as many rows where there were too few."""
         self.moves += 1
         starts, end = {}, 0
-        for name, letter in letters.items():
-            if len(letter) > self._room.get(name, -1):
-                self._room[name] = max(1, len(letter) if self.moves == 1 else 2 * len(letter))
+        for name, shared_buffer in inputs.items():
+            if len(shared_buffer) > self._room.get(name, -1):
+                self._room[name] = max(1, len(shared_buffer) if self.moves == 1 else 2 * len(shared_buffer))
             starts[name] = end
-            row = letter.dtype.itemsize * math.prod(letter.shape[1:])
+            row = shared_buffer.dtype.itemsize * math.prod(shared_buffer.shape[1:])
             end += -(-self._room[name] * row // _ALIGNED) * _ALIGNED
-        self._letter = self._gpu.letter(end)
-        for name, letter in letters.items():
-            shape = (self._room[name], *letter.shape[1:])
-            span = slice(starts[name], starts[name] + letter.dtype.itemsize * math.prod(shape))
+        self._shared = self._gpu.shared_buffer(end)
+        for name, shared_buffer in inputs.items():
+            shape = (self._room[name], *shared_buffer.shape[1:])
+            span = slice(starts[name], starts[name] + shared_buffer.dtype.itemsize * math.prod(shape))
             self._slots[name] = tuple(  # type: ignore[assignment] # the two of them
-                side[span].view(letter.dtype).reshape(shape) for side in self._letter[:2]
+                side[span].view(shared_buffer.dtype).reshape(shape) for side in self._shared[:2]
             )

@@ -1,6 +1,6 @@
 """Work on long arrays by all processors at once.
 
-The threads are daemons: a process that is told to end does not wait for them. Those of ``concurrent.futures`` it would
+The threads are daemons: a process that ends does not wait for them. Those of ``concurrent.futures`` it would
 wait for, and for ever where the signal came in the moment in which one was started.
 """
 
@@ -30,7 +30,7 @@ def processors() -> int:
 
 @lru_cache(maxsize=1)
 def _tasks() -> "SimpleQueue[Task]":
-    """Return what the threads take their tasks from, one thread for each processor but that of who asks."""
+    """Return the task queue of the threads. There is one thread for each processor but the caller's."""
     tasks: SimpleQueue[Task] = SimpleQueue()
 
     def serve() -> None:

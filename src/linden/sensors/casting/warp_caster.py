@@ -1,6 +1,6 @@
 """The caster for a GPU: NVIDIA's Warp, the same answers as Embree's. Needs the extra ``gpu``.
 
-What stands is one mesh. All bodies together are another, whose corners are moved each tick and whose tree is then
+What stands is one mesh. All bodies together are another; its corners are moved each tick and its tree is then
 refitted, for Warp knows no instances. Of two surfaces at one distance what stands answers.
 """
 
@@ -134,7 +134,7 @@ def _sunny(
     sunny[i] = wp.where(reached, 1.0, 0.0)
 
 
-class Asked(NamedTuple):
+class DeviceRays(NamedTuple):
     """Rays on the device, in arrays of Warp's."""
 
     room: int
@@ -197,7 +197,7 @@ class WarpCaster:
         self.trees += 1  # there is one less
 
     def pose(self, instances: Instances) -> None:
-        """Put the bodies where they are now; who is not among them is not there."""
+        """Move the bodies to their present poses; other bodies are hidden."""
         if not np.array_equal(instances.mesh, self._mesh):
             self._assemble(instances.mesh)
         if not len(self._triangles):
@@ -235,12 +235,12 @@ class WarpCaster:
         answer: NDArray[np.bool_] = hit.numpy()
         return answer
 
-    def closest_into(self, asked: Asked, hits: list[Any], farthest_m: float, gpu: Gpu) -> None:
+    def closest_into(self, asked: DeviceRays, hits: list[Any], farthest_m: float, gpu: Gpu) -> None:
         """Find what rays meet, all in arrays of Warp's; they go out through the inner sides of bodies."""
         where = [*self._ids(), self._owner, self._first, *asked.rays, asked.count, float(farthest_m), _SIDES]
         wp.launch(_closest, dim=asked.room, inputs=[*where, *hits], stream=gpu.queue, block_dim=_THREADS)
 
-    def sunny_into(self, asked: Asked, masks: list[Any], farthest_m: float, gpu: Gpu) -> None:
+    def sunny_into(self, asked: DeviceRays, masks: list[Any], farthest_m: float, gpu: Gpu) -> None:
         """Write into the second mask 1 where a ray of the first meets nothing, else 0, all in arrays of Warp's."""
         facing, sunny = masks
         where = [*self._ids(), *asked.rays, facing, asked.count, float(farthest_m), sunny]

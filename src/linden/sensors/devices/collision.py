@@ -1,4 +1,4 @@
-"""The collision sensor: contacts between bodies, told to whoever carries a sensor.
+"""The collision sensor: contacts of the body that carries the sensor.
 
 Source of meaning: CARLA 0.9.16, CollisionSensor.cpp: an event in every frame of contact, one a pair.
 """

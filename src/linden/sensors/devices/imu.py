@@ -68,7 +68,7 @@ def measure(
     angular_velocity_radps: Vector3D,
     gravity_mps2: float,
 ) -> ImuMeasurement:
-    """Return measurement ``number`` of a unit at ``pose``, whose place accelerates so and whose carrier turns so.
+    """Return measurement ``number`` of a unit at ``pose``, with this acceleration and this turning rate of its carrier.
 
     Both vectors are in the world; at rest the accelerometer reads ``gravity_mps2`` upwards.
     """

@@ -1,4 +1,4 @@
-"""One GNSS receiver or inertial unit over time: what it is, what it remembers, and its reading in a frame."""
+"""One GNSS receiver or inertial unit over time: its attributes, its memory, its reading in a frame."""
 
 from typing import NamedTuple, TypeAlias
 
@@ -46,7 +46,7 @@ def instrument(description: ActorDescription) -> Instrument | None:
 def observe(instrument: Instrument, moment: Moment, *, wanted: bool = True) -> tuple[Reading | None, Instrument]:
     """Return the reading, None in a frame that is not the instrument's, and the instrument after the frame.
 
-    To be called every frame, in order. ``wanted`` False, where nobody listens, saves work and changes no later reading.
+    To be called every frame, in order. ``wanted`` False, without subscribers, saves work and changes no later reading.
     """
     due, schedule = advance(instrument.schedule, moment.now_s)
     if not due:

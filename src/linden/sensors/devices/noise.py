@@ -1,7 +1,7 @@
 """Noise that depends on the sensor's seed and on which of its measurements it is, and on nothing else.
 
 Measurements draw from Philox streams keyed by seed and number (Salmon et al. 2011, "Parallel Random Numbers: As Easy as
-1, 2, 3"), so the same run gives the same noise whoever listened from when on.
+1, 2, 3"), so the same run gives the same noise, whichever clients subscribe.
 """
 
 from collections.abc import Sequence

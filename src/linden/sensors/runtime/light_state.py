@@ -21,29 +21,29 @@ _LENS = {
 }
 
 
-class Shine(NamedTuple):
-    """Of each of the scene's boxes (O,): LampOf bits that shine, and sRGB (O, 3) of what a street lamp shines with."""
+class LightStates(NamedTuple):
+    """For each of the scene's boxes (O,): LampOf bits that are on, and the sRGB colour (O, 3) of a street lamp."""
 
     lights: NDArray[np.uint32]
     colour: NDArray[np.uint8]
 
 
-class Shining:
+class LightStateCache:
     """Remembers the last answer: most frames are like the one before."""
 
     def __init__(self) -> None:
-        self._last: tuple[Episode, Hashable, Shine] | None = None
+        self._last: tuple[Episode, Hashable, LightStates] | None = None
 
-    def of(self, episode: "Episode") -> Shine:
+    def of(self, episode: "Episode") -> LightStates:
         """Return what shines now."""
         lamps, colours = episode.surroundings.lamps, episode.traffic.state.colour.tobytes()
         now = colours, lamps.changes, is_night(episode.weather)
         if self._last is None or self._last[0] is not episode or self._last[1] != now:
-            self._last = episode, now, shine(episode)
+            self._last = episode, now, light_states(episode)
         return self._last[2]
 
 
-def shine(episode: "Episode") -> Shine:
+def light_states(episode: "Episode") -> LightStates:
     """Return what shines of each box."""
     scene = episode.surroundings.scene
     shining, colour = np.zeros(len(scene.things), np.uint32), np.zeros((len(scene.things), 3), np.uint8)
@@ -59,4 +59,4 @@ def shine(episode: "Episode") -> Shine:
     if is_night(episode.weather):
         shining[kinds == Kind.HOUSE] = 1 << LampOf.WINDOW
     things = scene.boxes["thing"]
-    return Shine(shining[things], colour[things])
+    return LightStates(shining[things], colour[things])

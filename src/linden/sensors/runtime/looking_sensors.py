@@ -1,4 +1,4 @@
-"""The sensors that look around: which there are, and what they see in a frame."""
+"""The sensors that cast rays: their constructors, their schedules, their readings in a frame."""
 
 from collections.abc import Callable, Container, Hashable
 from typing import TYPE_CHECKING
@@ -12,8 +12,8 @@ from linden.sensors.devices.attributes import Schedule, advance, interval_s
 from linden.sensors.devices.lidar import Lidar, SemanticLidar
 from linden.sensors.devices.obstacle import ObstacleDetector
 from linden.sensors.devices.radar import Radar
-from linden.sensors.runtime.sensor_scene import Seeing
-from linden.sensors.view import F64, Expectant, Look, LookingSensor, Seen
+from linden.sensors.runtime.sensor_scene import SensorScene
+from linden.sensors.view import F64, AsynchronousSensor, Look, LookingSensor, Seen
 from linden.simulation.actor_table import ActorRecord
 
 if TYPE_CHECKING:
@@ -26,11 +26,11 @@ MAKERS: dict[str, Callable[[ActorDescription], LookingSensor]] = {
     "sensor.other.obstacle": ObstacleDetector,
     "sensor.other.radar": Radar,
 }
-"""What makes a sensor of a complete description, by its blueprint."""
+"""The constructor of each ray-casting sensor by its blueprint."""
 
 
-class Eye:
-    """A sensor that looks, between two frames."""
+class ScheduledSensor:
+    """A ray-casting sensor and its state between two frames."""
 
     def __init__(self, description: ActorDescription) -> None:
         self.sensor = MAKERS[description.id](description)
@@ -38,7 +38,7 @@ class Eye:
         self._last_s: float | None = None
         self._pose: Transform | None = None
 
-    def turn(self, episode: "Episode", sensor: ActorRecord, now: "Now", *, wanted: bool) -> Look | None:
+    def turn(self, episode: "Episode", sensor: ActorRecord, now: "SensorFrame", *, wanted: bool) -> Look | None:
         """Return what there is to be measured, None where nothing is; to be called once in every frame."""
         number = self._schedule.made
         due, self._schedule = advance(self._schedule, episode.elapsed_s)
@@ -63,39 +63,39 @@ class Eye:
         )
 
 
-class Now:
+class SensorFrame:
     """What all sensors of a frame have in common."""
 
-    def __init__(self, seeing: Seeing, frame: int, frame_s: float) -> None:
-        self.seeing, self.frame, self.frame_s = seeing, frame, frame_s
+    def __init__(self, sensor_scene: SensorScene, frame: int, frame_s: float) -> None:
+        self.sensor_scene, self.frame, self.frame_s = sensor_scene, frame, frame_s
         self.shared: dict[Hashable, object] = {}
         self._seen: Seen | None = None
 
     def seen(self, episode: "Episode") -> Seen:
         """Return the moment as it is seen, the bodies posed."""
         if self._seen is None:
-            self._seen = self.seeing.look(episode, self.frame)
+            self._seen = self.sensor_scene.look(episode, self.frame)
         return self._seen
 
 
-def eye_of(description: ActorDescription) -> Eye | None:
+def scheduled_sensor_of(description: ActorDescription) -> ScheduledSensor | None:
     """Return the sensor that a complete description asks for, None where it is no sensor that looks."""
-    return Eye(description) if description.id in MAKERS else None
+    return ScheduledSensor(description) if description.id in MAKERS else None
 
 
 def look_around(
-    eyes: dict[int, Eye], episode: "Episode", now: Now, listened: Container[int]
+    looking: dict[int, ScheduledSensor], episode: "Episode", now: SensorFrame, listened: Container[int]
 ) -> list[tuple[ActorRecord, Transform, object]]:
-    """Return what is due of the sensors whose streams somebody reads: sensor, its pose, reading."""
-    sensors = [(episode.actors.get(sensor_id), eye) for sensor_id, eye in eyes.items()]
+    """Return the readings that are due and have subscribers: sensor, its pose, reading."""
+    sensors = [(episode.actors.get(sensor_id), eye) for sensor_id, eye in looking.items()]
     if any(sensor.stream_id in listened for sensor, _ in sensors):
-        now.seeing.follow(episode, now.frame)
+        now.sensor_scene.follow(episode, now.frame)
     turned = [
         (sensor, eye, eye.turn(episode, sensor, now, wanted=sensor.stream_id in listened)) for sensor, eye in sensors
     ]
     looks = [(sensor, eye.sensor, look) for sensor, eye, look in turned if look is not None]
     for _, eye, look in looks:
-        if isinstance(eye, Expectant):
+        if isinstance(eye, AsynchronousSensor):
             eye.expect(look)
     readings = [(sensor, look.pose, eye.measure(look)) for sensor, eye, look in looks]
     return [(sensor, pose, reading) for sensor, pose, reading in readings if reading is not None]

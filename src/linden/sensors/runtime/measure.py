@@ -8,7 +8,13 @@ from linden.errors import Refusal
 from linden.protocol.values.space import Transform, Vector3D
 from linden.sensors.devices.collision import collisions
 from linden.sensors.devices.instruments import Instrument, Moment, instrument, observe
-from linden.sensors.runtime.looking_sensors import MAKERS, Eye, Now, eye_of, look_around
+from linden.sensors.runtime.looking_sensors import (
+    MAKERS,
+    ScheduledSensor,
+    SensorFrame,
+    look_around,
+    scheduled_sensor_of,
+)
 from linden.simulation.actor_table import ActorRecord, ActorTable
 from linden.simulation.episode import Episode
 
@@ -35,11 +41,11 @@ NOT_YET = {
     "sensor.other.v2x": "it would need a model of the radio channel between vehicles",
     "sensor.camera.cosmos_visualization": "it would need a renderer that draws lanes and boxes into a picture",
 }
-"""Blueprints whose actors would stand about idle, by the beginning of their ids, and what there is instead."""
+"""Blueprints without a sensor behind them, by the beginning of their ids, and the reason."""
 
 
 def refuse_idle(blueprint_id: str) -> None:
-    """Refuse a blueprint that the library lists, as CARLA's does, but behind which nothing is.
+    """Refuse a blueprint that the library lists, as CARLA's does, without a sensor behind it.
 
     Raises:
         Refusal: CARLA has it, this server not yet.
@@ -63,15 +69,15 @@ class EpisodeSensors:
 
     def __init__(self) -> None:
         self.instruments: dict[int, Instrument] = {}
-        self.looking: dict[int, Eye] = {}
+        self.looking: dict[int, ScheduledSensor] = {}
 
     def add(self, record: ActorRecord) -> None:
         """Make the sensor of an actor that was spawned, if the actor is a sensor that measures here."""
         self.remove(record.id)  # an id can be that of an actor that a replay has destroyed
         if (made := instrument(record.description)) is not None:
             self.instruments[record.id] = made
-        if (eye := eye_of(record.description)) is not None:
-            self.looking[record.id] = eye
+        if (sensor := scheduled_sensor_of(record.description)) is not None:
+            self.looking[record.id] = sensor
 
     def remove(self, actor_id: int) -> None:
         """Drop the sensor of an actor that is destroyed."""
@@ -79,7 +85,7 @@ class EpisodeSensors:
         self.looking.pop(actor_id, None)
 
     def remove_destroyed(self, actors: ActorTable) -> None:
-        """Drop the sensors whose actors are gone."""
+        """Drop the sensors of destroyed actors."""
         for actor_id in [*self.instruments, *self.looking]:
             if actor_id not in actors:
                 self.remove(actor_id)
@@ -89,7 +95,7 @@ class EpisodeSensors:
         return any(actors.get(actor_id).stream_id in listened for actor_id in self.looking if actor_id in actors)
 
 
-def measure(sensors: EpisodeSensors, episode: Episode, listened: Container[int], now: Now) -> Measurements:
+def measure(sensors: EpisodeSensors, episode: Episode, listened: Container[int], now: SensorFrame) -> Measurements:
     """Return the measurements that are due in this frame and have subscribers, in the order of the sensors."""
     sensors.remove_destroyed(episode.actors)
     found: Measurements = []

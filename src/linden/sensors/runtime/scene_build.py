@@ -1,7 +1,7 @@
-"""What sensors that look around need once for a map: the mesh of what stands, the faces of all meshes, the caster.
+"""The build of a sensor scene: the mesh of the map, the table of all faces, the ray caster.
 
-Building it takes a second. So it begins in the background when such a sensor is spawned; whoever looks waits for what
-is left of it. What is built is the same whenever it began.
+Building it takes a second. So it begins in the background when a sensor that needs it is spawned. The first
+measurement waits for the rest of it. The result does not depend on the time of the start.
 """
 
 from functools import cache as once
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from linden.simulation.episode import Episode
 
 
-class Stage(NamedTuple):
-    """What is built once and asked often, and what it was built for."""
+class BuiltScene(NamedTuple):
+    """A scene for sensors, cached as long as the map's scene and its present boxes (``statics``) stay the same."""
 
     scene: Scene
     statics: Statics
@@ -35,8 +35,8 @@ class Stage(NamedTuple):
     pictures: bool  # whether what cameras need is loaded
 
 
-class Wanted(NamedTuple):
-    """What a stage is built for: what stands on a map, which boxes of it are there, and whether cameras look."""
+class SceneKey(NamedTuple):
+    """The input of a build and the key of the cached result: map, scene, present boxes, and whether cameras need it."""
 
     world_map: LoadedMap
     scene: Scene
@@ -45,7 +45,7 @@ class Wanted(NamedTuple):
     pictures: bool
 
     @classmethod
-    def of(cls, episode: "Episode", *, pictures: bool) -> "Wanted":
+    def of(cls, episode: "Episode", *, pictures: bool) -> "SceneKey":
         """Return what an episode's sensors want now; ``pictures``: even if no camera is there yet."""
         here = episode.surroundings
         return cls(episode.map, here.scene, here.statics, here.present.copy(), pictures or has_cameras(episode))
@@ -58,13 +58,13 @@ class Wanted(NamedTuple):
 
 
 def has_cameras(episode: "Episode") -> bool:
-    """Return whether a camera is among the sensors that look around."""
+    """Return whether a camera is among the actors of an episode."""
     return any(record.description.id in CAMERAS for record in episode.actors)
 
 
-def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
-    """Return the stage: the caster built beside the rest of it, which a colour picture needs."""
-    # here, not above: a server that nobody looks with does without
+def build(wanted: SceneKey, whole: Mesh, bodies: "Bodies", device: str) -> BuiltScene:
+    """Return the scene. The caster is built in parallel to the tables that a colour picture needs."""
+    # here, not above: a server without such sensors does not need it
     from linden.sensors.camera.picture.rgb import looks_of  # noqa: PLC0415 - see above
     from linden.sensors.casting.choose import caster_of  # noqa: PLC0415 - see above
 
@@ -76,7 +76,7 @@ def build(wanted: Wanted, whole: Mesh, bodies: "Bodies", device: str) -> Stage:
             _load_kernels(pictures=True)
     faces = table_of(standing, bodies.meshes)
     looks_of(standing, bodies.meshes)
-    return Stage(wanted.scene, wanted.statics, standing, faces, caster.result(), wanted.pictures)
+    return BuiltScene(wanted.scene, wanted.statics, standing, faces, caster.result(), wanted.pictures)
 
 
 @once

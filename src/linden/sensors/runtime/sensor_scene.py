@@ -1,4 +1,4 @@
-"""What the sensors of a simulation look at: the caster of the map, built when somebody first looks, and its bodies."""
+"""The scene that sensors see: the ray caster of the map, built on first use, and the visible actors."""
 
 from collections.abc import Callable
 from concurrent.futures import Future, wait
@@ -13,9 +13,9 @@ from linden.maps.library import LoadedMap
 from linden.scenery.mesh import Mesh
 from linden.scenery.scene.objects import Scene
 from linden.sensors.casting.caster import CPU, Instances
-from linden.sensors.runtime.light_state import Shining
-from linden.sensors.runtime.scene_build import Stage, Wanted, build, has_cameras
-from linden.sensors.runtime.visible_actors import Company
+from linden.sensors.runtime.light_state import LightStateCache
+from linden.sensors.runtime.scene_build import BuiltScene, SceneKey, build, has_cameras
+from linden.sensors.runtime.visible_actors import VisibleActors
 from linden.sensors.view import NO_ACTOR_FROM, Seen
 
 if TYPE_CHECKING:
@@ -33,7 +33,7 @@ _OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
 def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
     """Return what stands on a map; made anew each time."""
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - likewise
-    from linden.scenery.map_mesh import standing  # noqa: PLC0415 - a server that nobody looks with does without
+    from linden.scenery.map_mesh import standing  # noqa: PLC0415 - a server without such sensors does not need it
 
     return standing(parse(world_map.text), world_map, scene)
 
@@ -45,7 +45,7 @@ def bodies_of(library: BlueprintLibrary) -> "Bodies":
     return Bodies(library)
 
 
-class Seeing:
+class SensorScene:
     """Lets sensors see an episode; outlives it, since most loads load the same map again.
 
     Nothing is built before a sensor that looks is there, and no body gathered before it is listened to.
@@ -68,23 +68,23 @@ class Seeing:
         self.is_compiling: Callable[[], bool] = lambda: False
         self._library = library
         self._bodies: Future[Bodies] | None = None
-        self._company: Company | None = None
+        self._visible_actors: VisibleActors | None = None
         self._whole: tuple[Scene, Mesh] | None = None
-        self._stage: Stage | None = None
-        self._coming: tuple[Wanted, Future[Stage]] | None = None
+        self._scene: BuiltScene | None = None
+        self._coming: tuple[SceneKey, Future[BuiltScene]] | None = None
         self._unwanted: Unwanted | None = None
         self._episode: Episode | None = None
         self._signals: tuple[Episode, U32] | None = None
-        self._shining = Shining()
+        self._light_states = LightStateCache()
         self._frame = -1
         self._instances: Instances | None = None
 
     def prepare(self, episode: "Episode") -> None:
         """Begin to build what is not built yet, in the background: a sensor that looks was spawned."""
         if not self._is_built(episode) and (self._coming is None or not self._coming[0].is_for(episode)):
-            wanted = Wanted.of(episode, pictures=not self.is_compiling())
+            wanted = SceneKey.of(episode, pictures=not self.is_compiling())
             before, bodies = self._coming, self._bodies_coming()
-            self._stage = None  # before the next is built: two of them at once would take twice the memory
+            self._scene = None  # before the next is built: two of them at once would take twice the memory
             self._give_up()
             self._unwanted = unwanted = Unwanted()
             self._coming = wanted, in_background(lambda: self._built(wanted, bodies, before), unwanted)
@@ -95,8 +95,8 @@ class Seeing:
         if self._coming is not None and not self._coming[0].is_for(episode):
             self._give_up()
             self._coming = None
-        if self._stage is not None and self._stage.scene is not episode.surroundings.scene:
-            self._stage = self._whole = None
+        if self._scene is not None and self._scene.scene is not episode.surroundings.scene:
+            self._scene = self._whole = None
 
     def _give_up(self) -> None:
         if self._unwanted is not None:
@@ -112,28 +112,28 @@ class Seeing:
         So the next frame knows where they came from, whether or not a sensor measures in this one.
         """
         if self._instances is None or episode is not self._episode or frame != self._frame:
-            if self._company is None or episode is not self._episode:
-                self._company = Company(self._all_bodies())
-            self._instances = self._company.gather(episode, goes_on=frame == self._frame + 1)
+            if self._visible_actors is None or episode is not self._episode:
+                self._visible_actors = VisibleActors(self._all_bodies())
+            self._instances = self._visible_actors.gather(episode, goes_on=frame == self._frame + 1)
             self._episode, self._frame = episode, frame
         return self._instances
 
     def look(self, episode: "Episode", frame: int) -> Seen:
         """Return the moment as it is seen, the bodies posed; builds what is not built yet."""
-        instances, stage = self.follow(episode, frame), self._stage_of(episode)
-        stage.caster.pose(instances)
+        instances, scene = self.follow(episode, frame), self._scene_of(episode)
+        scene.caster.pose(instances)
         if self._signals is None or self._signals[0] is not episode:
             self._signals = episode, _object_ids(episode)  # lights and signs are there as long as the episode
-        shine = self._shining.of(episode)
+        light_states = self._light_states.of(episode)
         return Seen(
-            caster=stage.caster,
-            standing=stage.standing,
+            caster=scene.caster,
+            standing=scene.standing,
             bodies=self._all_bodies().meshes,
-            faces=stage.faces,
+            faces=scene.faces,
             instances=instances,
             object_id=self._signals[1],
-            object_lights=shine.lights,
-            object_light_colour=shine.colour,
+            object_lights=light_states.lights,
+            object_light_colour=light_states.colour,
             weather=episode.weather,
             now_s=episode.elapsed_s,
         )
@@ -148,21 +148,23 @@ class Seeing:
 
     def _is_built(self, episode: "Episode") -> bool:
         here = episode.surroundings
-        stage = self._stage
-        is_here = stage is not None and stage.scene is here.scene and stage.statics is here.statics
-        return is_here and stage is not None and (stage.pictures or not has_cameras(episode))
+        scene = self._scene
+        is_here = scene is not None and scene.scene is here.scene and scene.statics is here.statics
+        return is_here and scene is not None and (scene.pictures or not has_cameras(episode))
 
-    def _stage_of(self, episode: "Episode") -> Stage:
-        """Return the stage; what does not stand any more (layers, single objects) is left out of it."""
+    def _scene_of(self, episode: "Episode") -> BuiltScene:
+        """Return the built scene, without hidden layers and objects."""
         self.prepare(episode)
         if self._coming is not None:
             coming, self._coming = self._coming[1], None
-            self._stage = coming.result()
-        assert self._stage is not None
-        return self._stage
+            self._scene = coming.result()
+        assert self._scene is not None
+        return self._scene
 
-    def _built(self, wanted: Wanted, bodies: "Future[Bodies]", before: "tuple[Wanted, Future[Stage]] | None") -> Stage:
-        """Return the stage that is wanted, once that before it, which nobody wants any more, is done."""
+    def _built(
+        self, wanted: SceneKey, bodies: "Future[Bodies]", before: "tuple[SceneKey, Future[BuiltScene]] | None"
+    ) -> BuiltScene:
+        """Return the wanted scene, after the build of the previous one has ended."""
         if before is not None:
             wait([before[1]])
         if self._whole is None or self._whole[0] is not wanted.scene:

@@ -39,8 +39,8 @@ _LAMPS_OF_BIT = {
 _BLINKING = np.uint32(1 << LampOf.BLINKER_LEFT | 1 << LampOf.BLINKER_RIGHT)
 
 
-class _Cast(NamedTuple):
-    """Who there is; made anew when actors come or go. The first block has a row an actor, the second a row a part."""
+class _ActorRows(NamedTuple):
+    """The visible actors, made anew with each new set. The first block has a row per actor, the second per part."""
 
     records: list[ActorRecord]
     row: I32  # in the actor table
@@ -55,71 +55,71 @@ class _Cast(NamedTuple):
     scale: F64
 
 
-class Company:
+class VisibleActors:
     """Gathers bodies frame by frame."""
 
     def __init__(self, bodies: "Bodies") -> None:
         self._bodies = bodies
-        self._cast: _Cast | None = None
+        self._rows: _ActorRows | None = None
         self._version = -1
         self._poses: dict[int, NDArray[np.float32]] = {}
 
     def gather(self, episode: "Episode", *, goes_on: bool) -> Instances:
         """Return all bodies as they are now; ``goes_on`` where the last gathering was in the frame before this one."""
-        cast = self._cast_of(episode)
-        place = matrices(episode.actors.pose[cast.row])
-        turn, parts = place[cast.actor, :, :3], self._frames(episode, cast)[cast.actor, cast.frame]
-        pose = np.empty((len(cast.mesh), 3, 4), np.float32)
-        pose[:, :, :3] = turn @ parts[:, :, :3] * cast.scale[:, None, None]
+        rows = self._rows_of(episode)
+        place = matrices(episode.actors.pose[rows.row])
+        turn, parts = place[rows.actor, :, :3], self._frames(episode, rows)[rows.actor, rows.frame]
+        pose = np.empty((len(rows.mesh), 3, 4), np.float32)
+        pose[:, :, :3] = turn @ parts[:, :, :3] * rows.scale[:, None, None]
         arm_m = (turn @ parts[:, :, 3:])[:, :, 0]
-        pose[:, :, 3] = place[cast.actor, :, 3] + arm_m
-        velocity, turning = _motion(episode, cast.slot)
-        actor_id = np.array([record.id for record in cast.records], np.uint32)
+        pose[:, :, 3] = place[rows.actor, :, 3] + arm_m
+        velocity, turning = _motion(episode, rows.slot)
+        actor_id = np.array([record.id for record in rows.records], np.uint32)
         return Instances(
-            mesh=cast.mesh,
+            mesh=rows.mesh,
             pose=pose,
-            before=self._before(cast, pose, goes_on=goes_on),
-            actor_id=actor_id[cast.actor],
-            colour=cast.paint,
-            lights=_lights(cast.records, episode.elapsed_s)[cast.actor],
-            velocity_mps=(velocity[cast.actor] + np.cross(turning[cast.actor], arm_m)).astype(np.float32),
-            turning_radps=turning[cast.actor].astype(np.float32),
+            before=self._before(rows, pose, goes_on=goes_on),
+            actor_id=actor_id[rows.actor],
+            colour=rows.paint,
+            lights=_lights(rows.records, episode.elapsed_s)[rows.actor],
+            velocity_mps=(velocity[rows.actor] + np.cross(turning[rows.actor], arm_m)).astype(np.float32),
+            turning_radps=turning[rows.actor].astype(np.float32),
         )
 
-    def _cast_of(self, episode: "Episode") -> _Cast:
-        if self._cast is None or self._version != episode.actors.version:
-            self._cast, self._version = _survey(episode, self._bodies), episode.actors.version
-        return self._cast
+    def _rows_of(self, episode: "Episode") -> _ActorRows:
+        if self._rows is None or self._version != episode.actors.version:
+            self._rows, self._version = _survey(episode, self._bodies), episode.actors.version
+        return self._rows
 
-    def _frames(self, episode: "Episode", cast: _Cast) -> F64:
+    def _frames(self, episode: "Episode", rows: _ActorRows) -> F64:
         """Return the frames (A, 14, 3, 4) of the parts in those of the actors."""
-        frames = np.zeros((len(cast.records), len(WALKER_FRAMES), 3, 4))
+        frames = np.zeros((len(rows.records), len(WALKER_FRAMES), 3, 4))
         frames[:, 0, :, :3] = np.eye(3)
         bodies = episode.bodies
-        if len(cast.vehicles):
-            slots = cast.slot[cast.vehicles]
+        if len(rows.vehicles):
+            slots = rows.slot[rows.vehicles]
             hubs = np.stack([bodies.specs[name][slots] for name in ("wheel_x_m", "wheel_y_m", "wheel_radius_m")], -1)
             rolling = (bodies.wheel_steer[slots], bodies.wheel_turned[slots])
-            frames[cast.vehicles, : len(VEHICLE_FRAMES)] = vehicle_frames(hubs, *rolling)
-        if len(cast.walkers):
-            walking = [cast.records[who] for who in cast.walkers.tolist()]
-            velocity = bodies.velocity[cast.slot[cast.walkers]]
+            frames[rows.vehicles, : len(VEHICLE_FRAMES)] = vehicle_frames(hubs, *rolling)
+        if len(rows.walkers):
+            walking = [rows.records[index] for index in rows.walkers.tolist()]
+            velocity = bodies.velocity[rows.slot[rows.walkers]]
             alive = np.array([not episode.walkers.is_dead(record.id) for record in walking])
-            frames[cast.walkers] = walker_frames(
+            frames[rows.walkers] = walker_frames(
                 np.array([2.0 * record.box.extent.z for record in walking]),
                 np.array([episode.walkers.walked_m(record.id) for record in walking]),
                 alive * np.hypot(velocity[:, 0], velocity[:, 1]),
             )
-            for who, record in zip(cast.walkers.tolist(), walking, strict=True):
+            for index, record in zip(rows.walkers.tolist(), walking, strict=True):
                 if episode.poses.is_posed(record.id):
-                    frames[who] = posed_frames(bones_of(episode, record.id).in_actor)
+                    frames[index] = posed_frames(bones_of(episode, record.id).in_actor)
         return frames
 
-    def _before(self, cast: _Cast, pose: NDArray[np.float32], *, goes_on: bool) -> NDArray[np.float32]:
-        """Return where the parts were when they were gathered last; who was not there then was where it is now."""
-        first = np.searchsorted(cast.actor, np.arange(len(cast.records) + 1))
+    def _before(self, rows: _ActorRows, pose: NDArray[np.float32], *, goes_on: bool) -> NDArray[np.float32]:
+        """Return the previous poses of the parts; new actors have their present pose."""
+        first = np.searchsorted(rows.actor, np.arange(len(rows.records) + 1))
         known = self._poses if goes_on else {}
-        self._poses = {record.id: pose[first[who] : first[who + 1]] for who, record in enumerate(cast.records)}
+        self._poses = {record.id: pose[first[index] : first[index + 1]] for index, record in enumerate(rows.records)}
         if not known or not len(pose):
             return pose
         return np.concatenate([known.get(actor_id, now) for actor_id, now in self._poses.items()])
@@ -137,23 +137,23 @@ def matrices(pose: F64) -> F64:
     return made
 
 
-def _survey(episode: "Episode", bodies: "Bodies") -> _Cast:
+def _survey(episode: "Episode", bodies: "Bodies") -> _ActorRows:
     actors = episode.actors
     records = [record for record in actors if record.kind in _VISIBLE and bodies.parts(record.description)]
     embodied = [record.slot != NO_BODY for record in records]
-    parts = [(who, part) for who, record in enumerate(records) for part in bodies.parts(record.description)]
+    parts = [(index, part) for index, record in enumerate(records) for part in bodies.parts(record.description)]
     colours = [_colour(record) for record in records]
     kinds = np.array([record.kind if own else Kind.PROP for record, own in zip(records, embodied, strict=True)], int)
-    return _Cast(
+    return _ActorRows(
         records=records,
         row=np.array([actors.row(record.id) for record in records], np.int32),
         slot=np.array([_carrying_slot(episode, record) for record in records], np.int32),
         vehicles=np.flatnonzero(kinds == Kind.VEHICLE),
         walkers=np.flatnonzero(kinds == Kind.WALKER),
-        actor=np.array([who for who, _ in parts], np.intp),
+        actor=np.array([index for index, _ in parts], np.intp),
         mesh=np.array([part.mesh for _, part in parts], np.int32),
         frame=np.array([part.frame for _, part in parts], np.intp),
-        paint=np.array([part.colour or colours[who] for who, part in parts], np.uint8).reshape(-1, 3),
+        paint=np.array([part.colour or colours[index] for index, part in parts], np.uint8).reshape(-1, 3),
         scale=np.array([part.scale for _, part in parts], np.float64),
     )
 

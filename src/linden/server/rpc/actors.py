@@ -27,7 +27,7 @@ def get_actor_definitions(context: Context) -> tuple[ActorDefinition, ...]:
 
 @method("get_actors_by_id")
 def get_actors_by_id(context: Context, actor_ids: list[U32]) -> list[Actor]:
-    """Return the actors of these ids; ids that nobody has are left out."""
+    """Return the actors of these ids; unknown ids are left out."""
     found = map(context.simulation.episode.actors.find, actor_ids)
     return [message(context, record) for record in found if record is not None]
 
@@ -83,7 +83,7 @@ def destroy_actor(context: Context, actor_id: U32) -> bool:
 
 @method("get_actor_bounding_box")
 def get_actor_bounding_box(context: Context, actor_id: U32) -> BoundingBox:
-    """Return the box in the actor's frame; the empty box for an id that nobody has.
+    """Return the box in the actor's frame; the empty box for an unknown id.
 
     The client then takes the box it knows. Its Traffic Manager asks for vehicles that another client may have destroyed
     since the last snapshot, in a thread where an error would end the whole program.
@@ -189,7 +189,7 @@ def _from_unreal(moment: Vector3D) -> Vector3D:
 def set_actor_simulate_physics(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let forces move an actor, or hold it where it is put."""
     episode = context.simulation.episode
-    episode.buried.simulate(episode.body(actor_id), wanted=enabled)
+    episode.below_ground.simulate(episode.body(actor_id), wanted=enabled)
 
 
 @method("set_actor_enable_gravity")

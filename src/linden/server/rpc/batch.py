@@ -48,7 +48,7 @@ RUN: dict[type[cmd.Command], Callable[..., object]] = {
     cmd.SetVehicleLightState: vehicles.set_light_bits,
     cmd.SetTrafficLightState: lights.set_traffic_light_state,
 }
-"""Commands whose fields are the arguments of a function that can also be called alone."""
+"""Commands with the same fields as a function that can also be called alone."""
 
 
 @method("apply_batch", bare=True, advances=True)
@@ -139,7 +139,7 @@ def _run(context: Context, command: cmd.Command) -> int:
 def _spawn(context: Context, command: cmd.SpawnActor) -> int:
     """Spawn, then do what should follow; as in CARLA, what fails of the latter does not undo the spawn."""
     parent_id, socket = command.parent_id or 0, command.socket if command.parent_id else ""
-    # the client leaves the attachment unset unless it is told one: any byte may come, those seen were multiples of 8
+    # the client leaves the attachment unset unless the script sets one; then any byte may come
     on_arm = command.parent_id and command.attachment in {AttachmentType.SPRING_ARM, AttachmentType.SPRING_ARM_GHOST}
     pose = hung(command.transform, command.attachment) if on_arm else command.transform
     record = actors.attach(context, command.description, pose, parent_id, socket)

@@ -10,7 +10,7 @@ from linden.maps.library import MapLibrary
 from linden.maps.navigation.library import MeshLibrary
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.replay.file.folder import RecordingFolder
-from linden.server.rpc.warning_log import Complaints
+from linden.server.rpc.warning_log import WarningLog
 from linden.world import World
 
 log = logging.getLogger("linden")
@@ -24,7 +24,7 @@ class Frames(Protocol):
         ...
 
     def sensor_payloads(self, simulation: World, listened: set[int]) -> Sequence[tuple[int, bytes]]:
-        """Return what this frame's sensors measured, by stream, for the streams that somebody reads."""
+        """Return this frame's measurements by stream, for streams with subscribers."""
         ...
 
 
@@ -50,15 +50,15 @@ class Context:
     outbox: list[tuple[int, bytes]] = field(default_factory=list)
     """(stream id, message) in the order of sending; the server empties it after every call."""
     caller: int = 0
-    """Number of the connection whose call is being served."""
+    """Number of the connection that sent the current call."""
     traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
     pending_load: PendingLoad | None = None
     """The load that has been answered and has not begun; see ``handlers.session.load_new_episode``."""
     frame_is_due: bool = False
     """Whether asynchronous mode's next frame shall not wait for the clock."""
-    complaints: Complaints = field(default_factory=Complaints)
-    bugs: Complaints = field(default_factory=Complaints)
+    warnings: WarningLog = field(default_factory=WarningLog)
+    bugs: WarningLog = field(default_factory=WarningLog)
 
     def advance(self) -> int:
         """Make one frame, put what it shows into the outbox, and return its number."""
@@ -78,10 +78,10 @@ class Context:
 
     def builds_the_scene(self) -> bool:
         """Whether what sensors look at is being built."""
-        return not self.simulation.seeing.wait(0.0)
+        return not self.simulation.sensor_scene.wait(0.0)
 
     def waits_for_the_scene(self) -> bool:
-        """Whether the next frame has to wait until what sensors look at is built: somebody listens to one of them."""
+        """Return whether the next frame has to wait for the sensor scene, because a subscriber needs it."""
         if not self.builds_the_scene():
             return False
         world = self.simulation
@@ -89,9 +89,9 @@ class Context:
 
     def warn_once(self, sentence: str) -> None:
         """Log what a client cannot be told, such as why an asynchronous call had no effect; the same only once."""
-        self.complaints.say(sentence)
+        self.warnings.say(sentence)
 
-    def own_up(self, sentence: str, error: BaseException | None = None) -> None:
+    def log_bug(self, sentence: str, error: BaseException | None = None) -> None:
         """Log a bug of ours with its traceback; however many warnings clients have called forth, it is seen.
 
         Where memory does not suffice for the traceback, the log has none.
@@ -100,4 +100,4 @@ class Context:
             trace = "" if error is None else " " + "".join(traceback.format_exception(error))
             self.bugs.say(sentence + trace)
         except MemoryError:
-            log.warning("a bug of ours, for whose traceback the memory does not suffice")
+            log.warning("a bug of the server; there is not enough memory for its traceback")

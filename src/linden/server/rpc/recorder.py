@@ -50,13 +50,13 @@ def stop_recorder(context: Context) -> None:
 
 @method("show_recorder_file_info")
 def show_recorder_file_info(context: Context, name: str, show_all: bool) -> Long[str]:  # noqa: FBT001 - the wire's order
-    """Return what is in a recording: who came, went and collided, or with ``show_all`` everything."""
+    """Return the report of a recording: spawns, destructions and collisions, or with ``show_all`` everything."""
     return _report(context, name, lambda recording: file_info(recording, show_all=show_all))
 
 
 @method("show_recorder_collisions")
 def show_recorder_collisions(context: Context, name: str, first_kind: U8, second_kind: U8) -> Long[str]:
-    """Return who ran into whom; kinds are letters, sent as their codes."""
+    """Return the report of collisions; kinds are letters, sent as their codes."""
     first, second = chr(first_kind), chr(second_kind)
     if not {first, second} <= set(ASKED_FOR):
         kinds = ", ".join(f"'{letter}' {meaning}" for letter, meaning in ASKED_FOR.items())
@@ -66,7 +66,7 @@ def show_recorder_collisions(context: Context, name: str, first_kind: U8, second
 
 @method("show_recorder_actors_blocked")
 def show_recorder_actors_blocked(context: Context, name: str, min_time: float, min_distance: float) -> Long[str]:
-    """Return who moved less than ``min_distance`` (cm) for ``min_time`` (s) or longer."""
+    """Return the actors that moved less than ``min_distance`` (cm) for ``min_time`` (s) or longer."""
     return _report(context, name, lambda recording: blocked(recording, min_time, min_distance))
 
 

@@ -56,7 +56,7 @@ class Method:
     encode: Encoder | None
     reply: Reply
     advances: bool
-    """Whether it may make frames, and so has to wait for subscribers who lag behind."""
+    """Whether it may make frames, and so has to wait for slow subscribers."""
 
     def arguments(self, raw: list[Any]) -> list[Any]:
         """Return the typed arguments.
@@ -128,8 +128,8 @@ def advances(call: Call) -> bool:
     return call.method != "apply_batch" or call.args[-1:] != [False]
 
 
-class Unanswered:
-    """A call whose long work is being made in the background; its handler goes on when that is done."""
+class SuspendedCall:
+    """A call with work in the background; its handler continues when the work is done."""
 
     def __init__(self, call: Call, steps: "Generator[Work, Any, Any]", work: Work) -> None:
         self.call = call
@@ -137,7 +137,7 @@ class Unanswered:
         self.made: Future[Any] = in_background(work)
 
 
-def dispatch(context: Context, call: Call) -> bytes | Unanswered:
+def dispatch(context: Context, call: Call) -> bytes | SuspendedCall:
     """Carry out one call and return the bytes of its answer; nothing a client sends makes it raise.
 
     Where the handler asks for long work, what is returned is to be gone on with by :func:`go_on` when it is done.
@@ -146,7 +146,7 @@ def dispatch(context: Context, call: Call) -> bytes | Unanswered:
     if found is None:
         return _missing(context, call)
 
-    def begin() -> bytes | Unanswered:
+    def begin() -> bytes | SuspendedCall:
         result = found.handler(context, *found.arguments(call.args))
         if isinstance(result, Generator):
             return _step(found, call, result, lambda: next(result))
@@ -155,8 +155,8 @@ def dispatch(context: Context, call: Call) -> bytes | Unanswered:
     return _guarded(context, call, found, begin)
 
 
-def go_on(context: Context, unanswered: Unanswered) -> bytes | Unanswered:
-    """Go on with a call whose long work is done; returns as :func:`dispatch` does."""
+def go_on(context: Context, unanswered: SuspendedCall) -> bytes | SuspendedCall:
+    """Continue a call after its long work; returns as :func:`dispatch` does."""
     call, steps, found = unanswered.call, unanswered.steps, METHODS[unanswered.call.method]
 
     def step() -> Work:
@@ -169,13 +169,13 @@ def go_on(context: Context, unanswered: Unanswered) -> bytes | Unanswered:
 
 def _step(
     found: Method, call: Call, steps: "Generator[Work, Any, Any]", step: Callable[[], Work]
-) -> bytes | Unanswered:
+) -> bytes | SuspendedCall:
     """Let a handler go on to its next long work, or to its end."""
     try:
         work = step()
     except StopIteration as end:
         return _answer(found, call, end.value)
-    return Unanswered(call, steps, work)
+    return SuspendedCall(call, steps, work)
 
 
 def _answer(found: Method, call: Call, result: Any) -> bytes:  # noqa: ANN401 - what a handler returns
@@ -184,7 +184,9 @@ def _answer(found: Method, call: Call, result: Any) -> bytes:  # noqa: ANN401 - 
     return rpc.void(call) if found.reply is Reply.VOID else rpc.bare(call, result)
 
 
-def _guarded(context: Context, call: Call, found: Method, act: Callable[[], bytes | Unanswered]) -> bytes | Unanswered:
+def _guarded(
+    context: Context, call: Call, found: Method, act: Callable[[], bytes | SuspendedCall]
+) -> bytes | SuspendedCall:
     """Return what ``act`` returns, or the bytes of a refusal."""
     try:
         return act()
@@ -192,10 +194,10 @@ def _guarded(context: Context, call: Call, found: Method, act: Callable[[], byte
         return _refuse(context, call, told(call.method, refusal), found.reply)
     except MemoryError:
         sentence = f"{call.method} is refused: the server's memory does not suffice for it; ask for less at once"
-        context.own_up(sentence)
+        context.log_bug(sentence)
         return _refuse(context, call, sentence, found.reply)
     except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
-        context.own_up(f"internal error in {call.method}; the call is refused and the server goes on.", error)
+        context.log_bug(f"internal error in {call.method}; the call is refused and the server goes on.", error)
         sentence = (
             f"internal error of linden {__version__} in {call.method}: {type(error).__name__}: {error}; the server "
             f"goes on, its log has the traceback"

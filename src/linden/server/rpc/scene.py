@@ -198,7 +198,7 @@ def set_imui_gravity(context: Context, gravity_mps2: float) -> None:
 
 @method("draw_debug_shape")
 def draw_debug_shape(context: Context, shape: DebugShape) -> None:
-    """Keep a shape for whoever shows the world, for as long as it lives in simulated time."""
+    """Keep a shape for viewers and recordings until its simulated lifetime ends."""
     if not all(0 <= part <= _BRIGHTEST for part in shape.color):
         raise Refusal(f"the colour of a shape has parts from 0 to {_BRIGHTEST}, not {shape.color}")
     episode = context.simulation.episode

@@ -39,7 +39,7 @@ class EpisodeInfo(NamedTuple):
 
 @method("version")
 def version(_context: Context) -> str:
-    """Return the CARLA release whose protocol is spoken; the client compares it with its own."""
+    """Return the CARLA release of the protocol; the client compares it with its own."""
     return CARLA_VERSION
 
 

@@ -86,7 +86,7 @@ def set_ignored_vehicles(context: Context, actor_id: U32, vehicle_ids: list[U32]
 
 
 def _check_sensor(context: Context, actor_id: int) -> None:
-    """Refuse whoever is no sensor.
+    """Refuse actors that are no sensors.
 
     Raises:
         ActorRefusal: there is no such actor, or it is no sensor.

@@ -1,7 +1,5 @@
 """Limits for the log: warnings about failed calls once each, long lines shortened, repeated lines counted.
 
-What the log is told of calls that went wrong: each sentence once, and never so much that nobody can read it.
-
 An asynchronous call that is refused has only the log to say so, and a script may send ten thousand of them, each about
 another actor. So sentences that differ in their figures alone count as one kind, of which the first few are shown.
 
@@ -49,7 +47,7 @@ def kind_of(sentence: str) -> str:
     return _FIGURES.sub("#", sentence[:_KIND_CHARACTERS])
 
 
-class Complaints:
+class WarningLog:
     """What one server has said."""
 
     def __init__(self) -> None:
@@ -82,8 +80,8 @@ CHARACTERS = 100_000
 PERIOD_S = 60.0
 
 
-class Sparing(logging.Filter):
-    """Lets a line pass or leaves it out; whoever wants everything takes the level debug."""
+class LogFilter(logging.Filter):
+    """Lets a line pass or drops it. The level debug lets every line pass."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Claims about driving an agent of the leaderboard: the order of its calls, what it is handed, and whose fault."""
+"""Claims about driving an agent of the leaderboard: the order of its calls, its inputs, and the party at fault."""
 
 import sys
 from collections.abc import Iterator
@@ -49,7 +49,7 @@ class Vehicle:
 
 
 class Told(AutonomousAgent):
-    """Writes down what it is asked."""
+    """Writes down its calls."""
 
     answer: Any = carla.VehicleControl(throttle=0.5, manual_gear_shift=True)
     asked: list[str]

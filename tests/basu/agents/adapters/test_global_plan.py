@@ -114,7 +114,7 @@ def test_a_turn_over_the_seam_of_yaw_is_no_turn_back() -> None:
     assert road_options(yaw_rad, np.array([False, True, True])).tolist() == [FOLLOW, RoadOption.RIGHT, RoadOption.RIGHT]
 
 
-def test_who_begins_in_a_junction_follows_the_lane() -> None:
+def test_an_actor_that_begins_in_a_junction_follows_the_lane() -> None:
     assert crossing(90.0, before=0) == [FOLLOW] * 7
 
 

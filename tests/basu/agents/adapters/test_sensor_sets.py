@@ -93,7 +93,7 @@ def test_every_entry_has_its_whole_pose() -> None:
     assert all(entry.keys() >= POSE.keys() for entry in entries)
 
 
-def test_what_is_told_is_what_the_leaderboards_agents_tell() -> None:
+def test_what_is_reported_is_what_the_leaderboards_agents_tell() -> None:
     entries, _ = theirs(RIG)
     for dialect in Dialect:
         assert len(translated(entries, dialect, "the rig").entries) == len(RIG)

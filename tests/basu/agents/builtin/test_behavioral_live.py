@@ -130,7 +130,7 @@ def test_it_lets_oncoming_cars_past_before_it_goes_round(driven: Driven) -> None
     assert lateral_m[np.abs(s_m - PARKED_S_M) < 2.0].max() < -2.0
 
 
-def test_at_a_stop_sign_those_go_first_who_cross(driven: Driven) -> None:
+def test_at_a_stop_sign_the_ones_go_first_that_cross(driven: Driven) -> None:
     number = "next(k for k, w in enumerate(self.route.waypoints) if w.is_junction)"
     history, result = driven(STOP_SIGN, f"self.send_across({number}, 6.0, 0.0, 8.0, 30.0, 52.0)")
     assert (result["status"], infractions(result)) == ("Completed", [])
@@ -142,7 +142,7 @@ def test_at_a_stop_sign_those_go_first_who_cross(driven: Driven) -> None:
     assert nearest_m(history, frames["tick"][inside]) > 5.0  # from middle to middle; nobody else is on the crossing
 
 
-def test_into_a_roundabout_those_go_first_who_circulate(driven: Driven) -> None:
+def test_into_a_roundabout_the_ones_go_first_that_circulate(driven: Driven) -> None:
     number = "next(k for k, w in enumerate(self.route.waypoints) if w.is_junction)"
     history, result = driven(ROUNDABOUT, f"self.send_across({number}, 6.0, -0.3, 8.0, 30.0, 52.0)")
     assert (result["status"], infractions(result)) == ("Completed", [])
@@ -162,7 +162,7 @@ def test_the_deviating_agent_makes_the_thesiss_row(simulator: RunningServer, tmp
 
 
 def nearest_m(history: History, ticks: np.ndarray) -> float:
-    """The least distance in some ticks to somebody who moves ahead of the vehicle."""
+    """The least distance in some ticks to an actor that moves ahead of the vehicle."""
     least_m = np.inf
     for other in history.others[np.isin(history.others["tick"], ticks)]:
         frame = history.frames[int(other["tick"])]

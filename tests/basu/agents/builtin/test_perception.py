@@ -37,7 +37,7 @@ def test_the_own_speed_is_that_along_the_vehicles_axis() -> None:
     assert ego.gear == 3
 
 
-def test_lights_are_told_by_their_opendrive_id_and_a_missing_one_is_dark() -> None:
+def test_lights_are_known_by_their_opendrive_id_and_a_missing_one_is_dark() -> None:
     states = {"12": carla.TrafficLightState.Red, "13": carla.TrafficLightState.Green, "14": carla.TrafficLightState.Off}
 
     def find(landmark_id: str) -> SimpleNamespace | None:

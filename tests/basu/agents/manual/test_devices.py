@@ -60,7 +60,7 @@ def test_struck_keys_mean_something_once(devices: Devices, name: str, meant: Str
 
 
 class Pad:
-    """A gamepad nobody has: the stick to the left, the right trigger half pressed, both triggers said to be at 0."""
+    """An unknown gamepad: the stick to the left, the right trigger half pressed, both triggers said to be at 0."""
 
     def __init__(self, _number: int) -> None: ...
 
@@ -116,7 +116,7 @@ def test_without_a_display_a_sentence_says_so(monkeypatch: pytest.MonkeyPatch) -
         pygame.display.quit()
 
 
-def test_who_was_refused_a_window_may_have_one_with_another_driver(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_actor_that_was_refused_a_window_may_have_one_with_another_driver(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in ("DISPLAY", "WAYLAND_DISPLAY", "SDL_VIDEODRIVER"):
         monkeypatch.delenv(name, raising=False)
     pygame.display.quit()

@@ -102,7 +102,7 @@ def drives(*done: Input, first: bool, any_input: bool = False) -> list[carla.Veh
     return [person.step(tick, DT_S, AGENTS) for tick in range(len(done))]
 
 
-def test_who_drives_first_drives_until_p() -> None:
+def test_an_actor_that_drives_first_drives_until_p() -> None:
     answers = drives(GAS, P, GAS, P, GAS, first=True)
     assert [answer is not None for answer in answers] == [True, False, False, True, True]
 
@@ -139,7 +139,7 @@ def test_the_wheel_is_taken_over_as_it_stands() -> None:
     assert later.steer == pytest.approx(0.3 - 0.15)
 
 
-def test_q_changes_the_direction_only_for_who_drives() -> None:
+def test_q_changes_the_direction_only_for_one_that_drives() -> None:
     _, first, second, third = drives(Q, Input(strikes=(Strike.AUTOPILOT, Strike.REVERSE)), GAS, Q, first=False)
     assert first is not None
     assert first.reverse

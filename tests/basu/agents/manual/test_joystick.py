@@ -19,7 +19,7 @@ reverse = 4
 ALL = frozenset(range(6))
 
 
-def test_a_gamepad_that_nobody_knows_is_laid_out_as_an_xbox_controller(tmp_path: Path) -> None:
+def test_a_gamepad_that_no_actor_knows_is_laid_out_as_an_xbox_controller(tmp_path: Path) -> None:
     layout = layout_for("Some Pad", tmp_path)
     assert axes(layout, [0.0, 0.0, -1.0, 0.0, 0.0, 1.0], ALL, [False] * 8) == Axes(0.0, 1.0, 0.0)
     assert axes(layout, [-1.0, 0.0, 1.0, 0.0, 0.0, -1.0], ALL, [True] + [False] * 7) == Axes(-1.0, 0.0, 1.0, True)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from basu.agents.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
-from basu.agents.manual.session import Session, Setting, Tape, read_session, write_session
+from basu.agents.manual.session import RecordingSource, Session, Setting, read_session, write_session
 from basu.errors import UserError
 
 SETTING = Setting(town="Linden", route="1", vehicle="vehicle.tesla.model3", step_s=0.05)
@@ -33,7 +33,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @given(inputs=INPUTS)
 def test_what_is_written_is_read(file: Path, inputs: list[Input]) -> None:
-    session = Session(setting=SETTING, inputs=tuple(inputs), by="somebody")
+    session = Session(setting=SETTING, inputs=tuple(inputs), by="a tester")
     write_session(file, session)
     assert read_session(file) == session
 
@@ -55,7 +55,7 @@ def test_after_the_end_nothing_is_pressed() -> None:
 
 def test_a_tape_keeps_what_drives_and_passes_everything_on() -> None:
     done = Input(Held.LEFT, (Strike.HELP, Strike.REVERSE))
-    tape = Tape(Session(setting=SETTING, inputs=(done,)))
+    tape = RecordingSource(Session(setting=SETTING, inputs=(done,)))
     assert tape.read(0) == done
     assert tape.inputs == [Input(Held.LEFT, (Strike.REVERSE,))]
 

@@ -200,7 +200,7 @@ def test_nothing_that_is_seen_hangs_on_an_actors_id() -> None:
     assert seen(2) == seen(103)
 
 
-def test_an_actor_is_asked_about_once() -> None:
+def test_an_actor_is_read_once() -> None:
     world = World(_2="vehicle.tesla.model3", _5="traffic.stop")
     sight = sight_in(world)
     for _ in range(3):
@@ -209,7 +209,7 @@ def test_an_actor_is_asked_about_once() -> None:
     assert world.questions == [[2, 5], [7]]
 
 
-def test_the_weather_is_asked_for_again_now_and_then() -> None:
+def test_the_weather_is_read_again_now_and_then() -> None:
     world = World(_2="vehicle.tesla.model3")
     sight = sight_in(world)
     for _ in range(WEATHER_TICKS + 1):
@@ -244,7 +244,7 @@ def test_a_body_without_a_box_has_some_size_all_the_same() -> None:
     assert met(sight_in(world), actor(4, 110.0, 50.0))[0].half_width_m == SMALLEST_M
 
 
-def test_before_its_first_tick_a_vehicle_sees_nobody() -> None:
+def test_before_its_first_tick_a_vehicle_sees_no_actor() -> None:
     snapshot = Snapshot([])
     snapshot.clear()
     assert sight_in(World()).others(snapshot) == []

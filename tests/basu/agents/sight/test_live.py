@@ -79,7 +79,7 @@ def test_a_body_that_the_servers_rays_reach_is_never_hidden(simulator: RunningSe
             reached = any(is_free(world, sensor, carla.Location(*point)) for point in body)
             assert seen or not reached
             agreed_hidden += not seen
-    assert agreed_hidden >= 5, "houses hide somebody"
+    assert agreed_hidden >= 5, "houses hide actors"
 
 
 def beside(number: int, lane: carla.Transform, right_m: float) -> Other:

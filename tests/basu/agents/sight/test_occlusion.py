@@ -36,7 +36,7 @@ def test_a_child_behind_a_van_is_hidden_and_beside_it_is_not() -> None:
     assert not hides([], child_at(24.0, 3.6))
 
 
-def test_from_the_roof_one_looks_over_a_car_but_not_at_who_is_close_behind_it() -> None:
+def test_from_the_roof_one_looks_over_a_car_but_not_at_an_actor_close_behind_it() -> None:
     assert hides([CAR], child_at(23.0, 3.45))
     assert not hides([CAR], child_at(50.0, 7.5))
 
@@ -109,7 +109,7 @@ class Town:
         return [SimpleNamespace(bounding_box=box) for box in boxes]
 
 
-def test_a_town_is_asked_for_its_boxes_once() -> None:
+def test_a_town_is_read_for_its_boxes_once() -> None:
     town = Town("once", Buildings=[(5.0, 5.0, 2.0)])
     static_boxes(town)
     assert town.questions == len(HIDING_LABELS)

@@ -64,7 +64,7 @@ def test_scraping_along_a_fence_counts_every_three_metres_then_every_five() -> N
 
 
 @pytest.mark.parametrize(("version", "number"), [(V1, 1), (V2, 0)])
-def test_who_stands_and_is_hit_is_at_fault_in_1_0_alone(version: Version, number: int) -> None:
+def test_that_stands_and_is_hit_is_at_fault_in_1_0_alone(version: Version, number: int) -> None:
     assert len(ticks(drive(hit(50, CAR, 7), speed_mps=0.0), version)) == number
 
 
@@ -188,11 +188,11 @@ def among(own_mps: list[float], *traffic: tuple[str, list[float]]) -> History:
 OWN = at(8.0, 25.0)
 
 
-def test_alone_on_the_road_nobody_is_too_slow() -> None:
+def test_alone_on_the_road_no_actor_is_too_slow() -> None:
     assert too_slow(among(OWN)) == ()
 
 
-def test_slower_than_the_traffic_is_told_for_each_quarter_with_the_share() -> None:
+def test_slower_than_the_traffic_is_reported_for_each_quarter_with_the_share() -> None:
     found = too_slow(among(OWN, ("vehicle.audi.tt", at(10.0, 25.0))))
     assert [event.kind for event in found] == [Kind.MIN_SPEED] * 4
     assert {event.percentage for event in found} == {80.0}

@@ -70,5 +70,5 @@ def test_what_ends_a_drive_costs_nothing_more(version: Version) -> None:
     assert penalty(version, ends) == 1.0
 
 
-def test_what_only_scenarios_tell_has_its_price_for_whoever_has_scenarios() -> None:
+def test_what_only_scenarios_tell_has_its_price_for_drives_with_scenarios() -> None:
     assert all(kind in FACTORS and kind in POINTS for kind in SCENARIOS_ONLY)

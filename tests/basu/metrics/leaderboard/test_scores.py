@@ -75,7 +75,7 @@ def test_what_needs_scenarios_is_named_as_not_measured() -> None:
     assert scores[Version.V2_0].not_measured == (Kind.SCENARIO_TIMEOUT, Kind.YIELD_EMERGENCY)
 
 
-def test_keeping_up_with_traffic_is_asked_from_2_0_on() -> None:
+def test_keeping_up_with_traffic_is_required_from_2_0_on() -> None:
     history = driven(at(8.0, 25.0))
     rows = [(tick, 9, 0.0, 0.0, 0.0, 0.0, 10.0, 0.0) for tick in range(500)]
     scores = by_version(replace(history, others=np.array(rows, dtype=OTHER)))

@@ -1,4 +1,4 @@
-"""Claims about vibration: the standard's figures for motions whose weighting is known."""
+"""Claims about vibration: the standard's figures for motions with a known weighting."""
 
 import math
 

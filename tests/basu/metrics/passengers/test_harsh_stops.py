@@ -36,7 +36,7 @@ def control(kind: ControlKind, s_m: float) -> Control:
     return Control(kind=kind, landmark_id="7", s_m=s_m, x_m=s_m, y_m=0.0, z_m=0.0, yaw_rad=0.0)
 
 
-def test_a_hard_stop_is_told_with_its_speed_its_strength_and_its_length() -> None:
+def test_a_hard_stop_is_reported_with_its_speed_its_strength_and_its_length() -> None:
     (stop,) = harsh_stops(sensed(stopped()))
     assert stop.t_s == pytest.approx(AT_S, abs=0.051)
     assert stop.from_mps == pytest.approx(SPEED_MPS)
@@ -112,7 +112,7 @@ def test_a_lower_limit_ahead_is_a_reason() -> None:
 def test_a_limit_that_is_exceeded_already_is_a_reason() -> None:
     found = why(stopped(route=straight_route(limit_mps=2.0)))
     assert found.kind is Kind.LIMIT
-    assert found.detail.startswith("the limit of 2.0 m/s, exceeded already, asked for 0.")
+    assert found.detail.startswith("the limit of 2.0 m/s, exceeded already, demanded 0.")
 
 
 def test_a_bend_too_tight_for_the_speed_is_a_reason() -> None:
@@ -139,7 +139,7 @@ def test_a_contact_explains_the_braking_it_makes_whatever_else_is_there() -> Non
 
 
 @pytest.mark.parametrize(
-    ("who", "kind"),
+    ("actor", "kind"),
     [
         pytest.param(moving(BRAKED_AT_M + 10.0, 0.0, 0.0, 0.0), Kind.ACTOR, id="parked ahead in the lane"),
         pytest.param(moving(BRAKED_AT_M + 10.0, 3.5, 0.0, 0.0), Kind.NOTHING, id="parked beside the lane"),
@@ -150,17 +150,15 @@ def test_a_contact_explains_the_braking_it_makes_whatever_else_is_there() -> Non
         pytest.param(moving(BRAKED_AT_M + 6.0, 2.0, 0.0, 2.0), Kind.NOTHING, id="has crossed"),
     ],
 )
-def test_somebody_is_a_reason_where_the_way_is_theirs(who: object, kind: Kind) -> None:
-    assert why(stopped(others=[(9, who)])).kind is kind
+def test_an_actor_is_a_reason_where_the_way_is_theirs(actor: object, kind: Kind) -> None:
+    assert why(stopped(others=[(9, actor)])).kind is kind
 
 
-def test_of_two_reasons_the_one_that_asks_for_more_is_told() -> None:
+def test_of_two_reasons_the_one_that_asks_for_more_is_reported() -> None:
     line = straight_route(controls=(control(ControlKind.STOP_SIGN, BRAKED_AT_M + 9.0),))
     found = why(stopped(route=line, others=[(9, moving(BRAKED_AT_M + 7.0, 0.0, 0.0, 0.0))]))
     assert found.kind is Kind.ACTOR
-    assert (
-        found.detail == f"vehicle.audi.tt (actor 9) {found.away_m:.1f} m ahead asked for {found.needed_mps2:.2f} m/s²"
-    )
+    assert found.detail == f"vehicle.audi.tt (actor 9) {found.away_m:.1f} m ahead demanded {found.needed_mps2:.2f} m/s²"
 
 
 def test_off_the_route_the_way_is_straight_ahead() -> None:

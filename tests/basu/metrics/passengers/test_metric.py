@@ -16,7 +16,7 @@ def felt(history: History | None) -> list[str]:
     return Passengers().lines(judge(Outcome(Status.SCENARIO_ENDED, "over"), history))
 
 
-def test_a_phantom_stop_is_told_with_its_reason() -> None:
+def test_a_phantom_stop_is_reported_with_its_reason() -> None:
     lines = felt(ride(30.0, eastward(braked(3.17, 5.0, 3.5), 30.0)))
     assert lines[0].startswith("passengers        failed, comfort score 0.")
     assert lines[1].strip().startswith("phantom stop at 5.0 s from 3.17 m/s")
@@ -40,6 +40,6 @@ def test_how_the_timetable_was_kept_is_one_line() -> None:
     assert lines[-1] == "timetable         1 of 2 stops on time, -189 to +0 s"
 
 
-def test_of_a_moment_nothing_is_told() -> None:
+def test_of_a_moment_nothing_is_reported() -> None:
     assert felt(ride(0.1, eastward(lambda _: 1.0, 1.0))) == []
     assert felt(None) == []

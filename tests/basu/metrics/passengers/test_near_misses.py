@@ -23,7 +23,7 @@ def test_braking_hard_for_a_parked_car_the_least_time_to_collision_is_on_the_way
     assert party.detail.endswith(" s, at 6.2 and 0.0 m/s")
 
 
-def test_stopping_gently_behind_somebody_is_no_near_miss() -> None:
+def test_stopping_gently_behind_an_actor_is_no_near_miss() -> None:
     """1 m/s² to rest 2 m behind: at a speed of v there are 2 / v + v / 2 s left, at least 2."""
     parked = moving(10.0 + 18.0 + 2.0 + 2.0 + 2.0, 0.0, 0.0, 0.0)
     (party,) = near_misses(ride(10.0, eastward(braked(6.0, 10.0 / 6.0, 1.0), 10.0), others=[(9, parked)]))
@@ -31,18 +31,18 @@ def test_stopping_gently_behind_somebody_is_no_near_miss() -> None:
     assert not party.is_near_miss
 
 
-def test_passing_somebody_in_the_next_lane_is_nothing() -> None:
+def test_passing_an_actor_in_the_next_lane_is_nothing() -> None:
     assert near_misses(ride(6.0, eastward(lambda _: 10.0, 6.0), others=[(9, moving(60.0, 3.0, -10.0, 0.0))])) == ()
 
 
-def test_in_a_bend_who_stands_straight_ahead_is_in_no_danger() -> None:
+def test_in_a_bend_that_stands_straight_ahead_is_in_no_danger() -> None:
     """The car stands 8 m ahead on the tangent; the vehicle turns away on a radius of 8 m."""
     parked = moving(11.0, -1.0, 0.0, 0.0)
     assert near_misses(ride(1.5, circling(8.0, 5.0), others=[(9, parked)], sizes={9: (0.5, 0.5)})) == ()
 
 
 @pytest.mark.parametrize(("after_s", "near"), [(1.0, True), (2.5, False)])
-def test_who_crosses_behind_one_is_told_of_by_the_post_encroachment_time(after_s: float, near: bool) -> None:  # noqa: FBT001
+def test_an_actor_that_crosses_behind_one_is_reported_by_the_post_encroachment_time(after_s: float, near: bool) -> None:  # noqa: FBT001
     """The vehicle's tail leaves the crossing's strip at x = 20.9 + 2 m; the other's nose is there ``after_s`` later."""
     leaves_s = (20.9 + 2.0) / 10.0
     crossing = moving(20.0, 1.0 + 2.0 + 8.0 * (leaves_s + after_s), 0.0, -8.0)
@@ -57,7 +57,7 @@ def test_following_in_a_lane_has_no_post_encroachment_time() -> None:
     assert near_misses(ride(4.0, eastward(lambda _: 10.0, 5.0), others=[(9, leader)])) == ()
 
 
-def test_who_was_hit_was_not_missed() -> None:
+def test_an_actor_that_was_hit_was_not_missed() -> None:
     history = ride(3.0, eastward(lambda _: 10.0, 4.0), others=[(9, moving(25.0, 0.0, 0.0, 0.0))])
     assert len(near_misses(history)) == 1
     struck = History(
@@ -70,7 +70,7 @@ def test_who_was_hit_was_not_missed() -> None:
     assert near_misses(struck) == ()
 
 
-def test_alone_there_is_nobody_to_miss() -> None:
+def test_alone_there_is_no_actor_to_miss() -> None:
     assert near_misses(ride(1.0, eastward(lambda _: 10.0, 2.0))) == ()
 
 

@@ -1,4 +1,4 @@
-"""Claims about the order of rides, over drawn records: who harms never scores better than who avoids the harm."""
+"""Claims about the order of rides, over drawn records: a ride with harm never scores better than one without."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -74,7 +74,7 @@ def driven(
 
 
 def crossing(at_s: float, walks_mps: float) -> Callable[[float], Row]:
-    """A walker who crosses the road at `MARK_M` from right to left, in its middle at ``at_s``."""
+    """A walker that crosses the road at `MARK_M` from right to left, in its middle at ``at_s``."""
     return lambda t_s: {
         "x_m": MARK_M,
         "y_m": (at_s - t_s) * walks_mps,
@@ -84,7 +84,7 @@ def crossing(at_s: float, walks_mps: float) -> Callable[[float], Row]:
 
 
 def waiting(until_s: float) -> Callable[[float], Row]:
-    """A walker who stands on the road at `MARK_M` and leaves it to the left at 2 m/s from ``until_s`` on."""
+    """A walker that stands on the road at `MARK_M` and leaves it to the left at 2 m/s from ``until_s`` on."""
 
     def state(t_s: float) -> Row:
         gone_s = max(0.0, t_s - until_s)
@@ -215,7 +215,7 @@ def test_to_stand_still_is_worth_nothing() -> None:
     assert comfort(history) == 0.0
 
 
-def test_to_leave_the_road_for_somebody_never_beats_to_brake() -> None:
+def test_to_leave_the_road_for_an_actor_never_beats_to_brake() -> None:
     beside = driven(5.0)
     beside.frames["off_lane_m"][200:260] = 0.8
     assert comfort(beside) < comfort(braked_for_walker(5.0, 2.2, 4.0))

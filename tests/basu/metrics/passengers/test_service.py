@@ -35,7 +35,7 @@ def history(*stops: Stop, timetable: Timetable | None = TIMETABLE) -> History:
     return ride(40.0, eastward(speed, 40.0), route=route)
 
 
-def test_a_stop_is_told_with_its_arrival_dwell_delay_and_headway() -> None:
+def test_a_stop_is_reported_with_its_arrival_dwell_delay_and_headway() -> None:
     (visit,) = service(history(stop("A", 50.0)))
     assert visit.served
     assert visit.arrival_s == pytest.approx(10.0, abs=0.06)

@@ -10,7 +10,8 @@ from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, comfort_
 from basu.metrics.passengers.felt import balance, felt
 from basu.metrics.passengers.metric import passengers_to_json
 from basu.metrics.passengers.verdict import Judged, judge
-from basu.metrics.score import Scoring, score
+from basu.metrics.score import score
+from basu.metrics.scoring import Scoring
 from basu.output.report.documents import RESULT_SCHEMA, read_schema
 from basu.records.history import History
 from fakes.rides import braked, eastward, moving, ride
@@ -47,7 +48,7 @@ def test_the_incident_costs_nothing_in_the_thesis_and_everything_with_the_passen
     assert found.parts["harsh_stops"] == 0.4
 
 
-def test_a_harsh_stop_for_somebody_fails_as_well_and_costs_less() -> None:
+def test_a_harsh_stop_for_an_actor_fails_as_well_and_costs_less() -> None:
     found = judged(hard(others=[(9, moving(26.0, 0.0, 0.0, 0.0))]))
     assert not found.passed
     assert found.reasons[0].startswith("harsh stop at 5.0 s")
@@ -61,7 +62,7 @@ def test_a_near_miss_fails_a_ride() -> None:
     assert found.parts["near_misses"] == 0.6
 
 
-def test_having_to_step_now_and_then_costs_and_fails_nobody() -> None:
+def test_having_to_step_now_and_then_costs_and_fails_no_actor() -> None:
     """1.2 m/s² for 1 s of 21.6 s on the move: half of the share at which nothing is left."""
 
     def speed(t_s: float) -> float:
@@ -85,7 +86,7 @@ def test_weights_are_proportions_and_a_part_that_is_not_there_weighs_nothing() -
     assert comfort_score(measured, ComfortWeights(balance=0.0, vibration=0.0), Harm()) is None
 
 
-def test_passed_stops_are_no_breach_for_passengers_to_whom_service_weighs_nothing() -> None:
+def test_passed_stops_are_no_breach_for_passengers_that_service_weighs_nothing() -> None:
     measured = {"balance": 1.0, "service": 0.0}
     assert comfort_score(measured, ComfortWeights(), Harm(stops_passed=1)) == pytest.approx(0.4 + 0.2 * 0.8)
     assert comfort_score(measured, ComfortWeights(service=0.0), Harm(stops_passed=1)) == 1.0

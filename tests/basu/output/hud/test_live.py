@@ -1,4 +1,4 @@
-"""Claims about whole runs with a window and a person, in a live simulator: SDL's dummy driver shows it to nobody."""
+"""Claims about whole runs with a window and a person, in a live simulator: SDL's dummy driver replaces the display."""
 
 import json
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Claims about what is told while a run lasts."""
+"""Claims about notices during a run."""
 
 from types import SimpleNamespace
 from typing import Any
@@ -36,7 +36,7 @@ def test_notices_fade_and_the_oldest_make_room() -> None:
     assert notices.shown(10.0 + FADE_S) == []
 
 
-def test_each_infraction_is_told_once_with_its_figures() -> None:
+def test_each_infraction_is_reported_once_with_its_figures() -> None:
     notices = Notices()
     judge = Judge(metrics(driven(at(10.0, 5.0), collisions=[hit(50)])), notices)
     judge.refresh(0.0, anyway=True)

@@ -95,6 +95,6 @@ def test_neighbours_take_the_room_there_is() -> None:
     assert few < many == 5
 
 
-def test_the_badge_tells_who_drives() -> None:
+def test_the_badge_tells_one_that_drives() -> None:
     words = [driver_word(SHOWN._replace(manual=m, autopilot=a))[0] for m, a in ((0, 0), (1, 0), (0, 1))]
     assert words == ["AGENT", "MANUAL", "AUTOPILOT"]

@@ -1,4 +1,4 @@
-"""Claims about who sits before the window, and what the command line may ask for."""
+"""Claims about the source of a person's input, and its options on the command line."""
 
 from pathlib import Path
 from types import SimpleNamespace
@@ -8,7 +8,7 @@ import pygame
 import pytest
 
 from basu.agents.manual.inputs import Held, Input
-from basu.agents.manual.session import Played, Session, Setting, Tape, read_session
+from basu.agents.manual.session import Played, RecordingSource, Session, Setting, read_session
 from basu.cli import main
 from basu.errors import SimulatorError, UserError
 from basu.options import RunOptions
@@ -25,7 +25,7 @@ def no_display(monkeypatch: pytest.MonkeyPatch) -> None:
     pygame.display.quit()
 
 
-def test_nobody_sits_before_an_agent_that_is_not_watched() -> None:
+def test_no_actor_sits_before_an_agent_that_is_not_watched() -> None:
     assert person_for(RunOptions(), by_hand=False) is None
 
 
@@ -47,19 +47,19 @@ def test_under_an_agent_a_session_begins_with_the_agent() -> None:
     assert not person.driving
 
 
-def test_recording_needs_somebody_who_does_something() -> None:
+def test_recording_needs_an_actor_one_that_does_something() -> None:
     with pytest.raises(UserError, match="there is no window; add --hud"):
         person_for(RunOptions(record_keys=Path("keys.json")), by_hand=False)
 
 
-def test_a_folder_that_is_not_there_is_told_of_before_anything_starts(tmp_path: Path) -> None:
+def test_a_folder_that_is_not_there_is_reported_before_anything_starts(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"keys\.json cannot be written: there is no folder"):
         person_for(RunOptions(keys=SESSION, record_keys=tmp_path / "no" / "keys.json"), by_hand=True)
 
 
 def test_what_was_driven_is_written_with_where(tmp_path: Path) -> None:
     setting = Setting(town="Linden", route="7", vehicle="vehicle.audi.tt", step_s=0.05)
-    tape = Tape(Played(Session(setting=setting, inputs=(Input(Held.BRAKE),)), None))
+    tape = RecordingSource(Played(Session(setting=setting, inputs=(Input(Held.BRAKE),)), None))
     tape.read(0)
     manager = KeysManager(tape, tmp_path / "keys.json")
     run: Any = SimpleNamespace(
@@ -72,7 +72,7 @@ def test_what_was_driven_is_written_with_where(tmp_path: Path) -> None:
 
 
 def test_a_run_that_was_never_set_up_leaves_no_session(tmp_path: Path) -> None:
-    KeysManager(Tape(Session(setting=None, inputs=())), tmp_path / "keys.json").close()  # type: ignore[arg-type]
+    KeysManager(RecordingSource(Session(setting=None, inputs=())), tmp_path / "keys.json").close()  # type: ignore[arg-type]
     assert not (tmp_path / "keys.json").exists()
 
 

@@ -86,7 +86,7 @@ def test_a_preset_has_its_name_and_other_weather_its_figures() -> None:
     assert weather_words(own) == "sun -6°, fog 10 %"
 
 
-def test_a_sensor_set_is_told_by_kinds() -> None:
+def test_a_sensor_set_is_known_by_kinds() -> None:
     types = {
         "A": "sensor.camera.rgb",
         "B": "sensor.camera.depth",

@@ -16,7 +16,7 @@ TYPES = {"FRONT": "sensor.camera.rgb", "TOP": "sensor.lidar.ray_cast", "GPS": "s
 
 @pytest.fixture
 def canvas(monkeypatch: pytest.MonkeyPatch) -> Canvas:
-    """A window that is shown to nobody."""
+    """A window without a display."""
     pygame.display.quit()
     monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
     return Canvas((640, 400), "test")

@@ -20,7 +20,7 @@ def test_the_table_counts_what_table_5_1_counts() -> None:
     assert bad.cell("passengers") == "failed"
 
 
-def test_one_agent_twice_is_told_apart() -> None:
+def test_one_agent_twice_are_distinguished() -> None:
     assert [row.agent for row in rows([record(crashing()), record(None)])] == ["tester (1)", "tester (2)"]
 
 
@@ -34,18 +34,18 @@ def test_runs_on_one_route_need_no_remark() -> None:
     assert remarks([record(crashing()), record(driven(at(8.0, 25.0)))]) == []
 
 
-def test_runs_on_different_routes_are_told_of() -> None:
+def test_runs_on_different_routes_are_reported_of() -> None:
     other = record(driven(at(8.0, 25.0), route=straight_route(300.0)), route="2")
     (remark,) = remarks([record(crashing()), other])
     assert "different routes (1 of Nowhere, 2 of Nowhere)" in remark
 
 
-def test_routes_of_one_name_that_differ_are_told_of() -> None:
+def test_routes_of_one_name_that_differ_are_reported_of() -> None:
     other = record(driven(at(8.0, 25.0), route=straight_route(300.0)))
     assert remarks([record(crashing()), other])
 
 
-def test_other_rules_are_told_of() -> None:
+def test_other_rules_are_reported_of() -> None:
     other = record(crashing())
     other.result.scoring["penalties"]["speeding"] = 0.5
     (remark,) = remarks([record(crashing()), other])

@@ -59,7 +59,7 @@ def test_a_name_with_odd_characters_stays_inside_the_output_folder(tmp_path: Pat
     assert folder.name == "2026-11-21T12-00-00-evil_name-_"
 
 
-def test_a_draft_is_no_run_for_whoever_looks_for_runs(tmp_path: Path) -> None:
+def test_a_draft_is_no_run_for_an_actor_that_looks_for_runs(tmp_path: Path) -> None:
     draft = make_draft(tmp_path, "a")
     assert draft.name.startswith(".")
     assert list(tmp_path.glob("*/result.json")) == []

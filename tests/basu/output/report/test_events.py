@@ -16,7 +16,7 @@ def test_infractions_are_numbered_in_their_order() -> None:
     assert [event.factor for event in scored] == [0.8, 0.8, 0.65]
 
 
-def test_what_is_not_scored_has_letters_and_is_told_too() -> None:
+def test_what_is_not_scored_has_letters_and_is_reported_too() -> None:
     rest = [event for event in events(record(crashing()).result) if event.factor is None]
     assert [event.label for event in rest] == list("abcdefgh"[: len(rest)])
     assert "harsh_stop" in {event.kind for event in rest}

@@ -89,7 +89,7 @@ def test_a_run_is_shown_whole_and_not_changed_by_it(runs: Runs) -> None:
     assert (runs.seen / "history.parquet").read_bytes() == (runs.unseen / "history.parquet").read_bytes()
     assert "run.rrd in the result folder (kept, as there is no screen here to show it on)" in runs.said
     history, found = read_history(runs.seen), read_rrd(runs.seen / "run.rrd")
-    answered = len(history.frames) - 1  # in its last tick the agent fails, and nobody looks any more
+    answered = len(history.frames) - 1  # in its last tick the agent fails, and no viewer looks any more
     assert len(found["/world/ego"]) == answered == 24
     last = found["/world/ego"][-1].values["Transform3D:translation"][0]
     end = history.frames[answered - 1]

@@ -27,7 +27,7 @@ def _no_screen(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def drive() -> History:
-    """Six seconds east, a pole hit after one, somebody ahead."""
+    """Six seconds east, a pole hit after one, an actor ahead."""
     history = driven(
         [*ramp(0.0, 8.0, 2.0), *at(8.0, 4.0)],
         route=straight_route(controls=(stop_sign(150.0),)),
@@ -120,7 +120,7 @@ def test_a_recorder_file_is_shown_by_itself(tmp_path: Path, monkeypatch: pytest.
     assert "/signals/speed/limit" not in found
 
 
-def test_a_window_that_does_not_open_is_told_and_the_file_is_there(
+def test_a_window_that_does_not_open_is_reported_and_the_file_is_there(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     false = shutil.which("false")

@@ -110,7 +110,7 @@ def test_a_file_cut_anywhere_gives_its_whole_frames_and_says_what_is_missing(tmp
         (made.packet(0, bytes(24)), "packet 0 at byte .* begins a frame inside another"),
     ],
 )  # fmt: skip
-def test_damage_ends_the_reading_before_its_frame_and_is_told(tmp_path: Path, broken: bytes, what: str) -> None:
+def test_damage_ends_the_reading_before_its_frame_and_is_reported(tmp_path: Path, broken: bytes, what: str) -> None:
     log = read(tmp_path, *parts()[:2], made.frame(2, 0.05, broken), made.frame(3, 0.1))
     assert log.frames == 1
     assert log.problem is not None
@@ -137,7 +137,7 @@ def test_what_is_no_recording_is_refused_in_a_sentence(tmp_path: Path, content: 
         read_log(path)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"none\.log cannot be read: No such file or directory"):
         read_log(tmp_path / "none.log")
 

@@ -105,7 +105,7 @@ def test_what_is_known_of_an_actor_is_under_scenario_runners_names(log: MetricsL
     assert log.get_actor_alive_frames(77) == (None, None)
 
 
-def test_boxes_are_in_metres_and_empty_for_who_has_no_size(log: MetricsLog) -> None:
+def test_boxes_are_in_metres_and_empty_for_one_that_has_no_size(log: MetricsLog) -> None:
     box = log.get_actor_bounding_box(HERO)
     assert box is not None
     assert (round(box.location.z, 5), round(box.extent.x, 5), round(box.extent.y, 5)) == (0.75, 2.4, 0.95)
@@ -160,7 +160,7 @@ def test_lights_are_answered(log: MetricsLog) -> None:
     assert log.get_scene_light_state(99, 3) is None
 
 
-def test_contacts_are_told_from_both_sides_once_a_frame(log: MetricsLog) -> None:
+def test_contacts_are_reported_from_both_sides_once_a_frame(log: MetricsLog) -> None:
     assert log.get_actor_collisions("hero") == {2: [OTHER, NO_ACTOR]}
     assert log.get_actor_collisions(OTHER) == {2: [HERO]}
     assert log.get_actor_collisions(WALKER) == {}

@@ -35,7 +35,7 @@ def test_a_recorder_file_stands_for_itself(tmp_path: Path) -> None:
     assert source(log) == (log, None, None)
 
 
-def test_what_is_missing_is_told_with_what_to_do(tmp_path: Path) -> None:
+def test_what_is_missing_is_reported_with_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"has no recording\.log: the run was not recorded; run it with --record"):
         source(tmp_path)
     elsewhere = {"file": "drive.log", "where": "disk of the simulator at far:2000"}
@@ -55,14 +55,14 @@ def test_a_map_is_read_without_a_server() -> None:
 
 
 @pytest.mark.parametrize("content", [b"no map", b"\xff\xfe\x00"])
-def test_what_is_no_map_is_told(tmp_path: Path, content: bytes) -> None:
+def test_what_is_no_map_is_reported(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "bad.xodr"
     path.write_bytes(content)
     with pytest.raises(UserError, match=r"bad\.xodr cannot be read: .*; name an OpenDRIVE file"):
         read_map(path, "bad")
 
 
-def test_a_map_that_is_not_there_says_so_when_it_is_asked() -> None:
+def test_a_map_that_is_not_there_says_so_when_it_is_used() -> None:
     town = AbsentMap("Carla/Maps/Town03")
     with pytest.raises(UserError, match=r"asks for get_waypoint of the map Carla/Maps/Town03.*--map Town03\.xodr"):
         town.get_waypoint(carla.Location())
@@ -78,7 +78,7 @@ def test_criteria_have_the_name_that_scenario_runners_example_asks_for(tmp_path:
 
 
 @pytest.mark.parametrize("text", ["[1]", "{", ""])
-def test_criteria_that_are_none_are_told(tmp_path: Path, text: str) -> None:
+def test_criteria_that_are_none_are_reported(tmp_path: Path, text: str) -> None:
     path = tmp_path / "criteria.json"
     path.write_text(text)
     with pytest.raises(UserError, match="criteria"):

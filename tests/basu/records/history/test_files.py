@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.metrics.score import Scoring, infractions, score
+from basu.metrics.score import infractions, score
+from basu.metrics.scoring import Scoring
 from basu.records.history import FRAME, OTHER, Facts, History, LaneInvasion, Recorder
 from basu.records.history.files import FACTS_FILE, HISTORY_FILE, read_history, write_history
 from basu.routing import Stop

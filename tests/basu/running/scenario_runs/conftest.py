@@ -18,7 +18,7 @@ from basu.scenarios.triggers import EgoNear, EgoPasses
 
 
 class Crosser(Scenario):
-    """Somebody crosses the street."""
+    """A pedestrian crosses the street."""
 
     group = Group.PEDESTRIAN
     parameters = (Number("ahead", 28.0, 5.0, 200.0, "m", "where"), Number("right", 4.0, -60.0, 60.0, "m", "where"))
@@ -60,10 +60,10 @@ class Dozes(Crosser):
 
 
 class Leads(Crosser):
-    """Leads somebody who is not there."""
+    """Leads an actor that is not there."""
 
     def conflict(self):
-        return WalkAlong("nobody", Path.straight(self.start(), 9.0), 1.6)
+        return WalkAlong("absent", Path.straight(self.start(), 9.0), 1.6)
 '''
 AT = '<ego_vehicle x="223.3" y="114.7" z="0.5" yaw="3.2" model="vehicle.easymile.ez10"/>'
 

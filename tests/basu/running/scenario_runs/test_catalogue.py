@@ -78,7 +78,7 @@ def test_the_reference_driver_passes(results: dict[tuple[str, str], dict[str, An
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("scenario", FIRST)
-def test_a_driver_that_perceives_nobody_fails_where_the_conflict_needs_perception(
+def test_a_driver_that_perceives_no_actor_fails_where_the_conflict_needs_perception(
     results: dict[tuple[str, str], dict[str, Any]], scenario: str
 ) -> None:
     """Elsewhere a driver fails that does not steer."""

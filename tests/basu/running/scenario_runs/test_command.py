@@ -1,4 +1,4 @@
-"""``basu scenario run``, whole: what goes well, what goes wrong and whose fault it is, what is left of it."""
+"""``basu scenario run``, whole: successes, failures with the party at fault, and the files."""
 
 import json
 from collections.abc import Callable
@@ -105,7 +105,7 @@ def test_a_case_that_goes_well_leaves_its_verdict_and_a_clean_world(
     [
         ("stumbles", "SETUP_FAULT", 2, "the scenario stumbles raised ZeroDivisionError: stumbled (line "),
         ("dozes", "SETUP_FAULT", 2, "never triggered"),
-        ("leads", "SETUP_FAULT", 2, "leads speaks of 'nobody', and nobody there is called so; there are hero, walker"),
+        ("leads", "SETUP_FAULT", 2, "leads speaks of 'absent', and no actor has this name; there are hero, walker"),
         ("elsewhere", "SETUP_FAULT", 2, "elsewhere is in Town05, which this simulator does not have (it has Linden)"),
         ("indoors", "SETUP_FAULT", 2, "indoors puts 'walker' at (294.2, 136.1), which is inside a house; move it"),
     ],
@@ -129,7 +129,7 @@ def test_an_agent_in_a_file_has_the_sensors_that_it_asks_for(
     assert "felt ['GNSS', 'IMU'], there are ['collision', 'gnss', 'imu', 'lane_invasion']" in said
 
 
-def test_a_driver_who_looks_at_nothing_fails_with_evidence(
+def test_a_driver_that_looks_at_nothing_fails_with_evidence(
     simulator: RunningServer, files: Path, tmp_path: Path
 ) -> None:
     assert run(simulator, tmp_path, "goes_well", "--scenarios", files, "--agent", "forward") == 1
@@ -244,7 +244,7 @@ def test_ctrl_c_ends_the_run_and_what_was_played_is_written(
         (["goes_well", "--sweep", "0"], "a sweep of 0 is none"),
     ],
 )
-def test_what_was_typed_wrongly_is_told_before_anything_starts(
+def test_what_was_typed_wrongly_is_reported_before_anything_starts(
     files: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], sentence: str
 ) -> None:
     assert main(["scenario", "run", *words, "--scenarios", str(files), "--output", str(tmp_path / "out")]) == 2

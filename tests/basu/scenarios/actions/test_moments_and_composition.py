@@ -24,7 +24,7 @@ from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, Door, Pose
 from basu.scenarios.triggers import EgoPasses
 from basu.testing import OfflineStage
-from fakes.paper import play, somebody, stage_with
+from fakes.paper import actor_at, play, stage_with
 
 
 def noted(stage: OfflineStage) -> list[tuple[object, ...]]:
@@ -32,7 +32,7 @@ def noted(stage: OfflineStage) -> list[tuple[object, ...]]:
 
 
 def test_what_is_done_to_the_world_is_done_in_one_frame_and_named() -> None:
-    stage, place = stage_with(somebody(50.0, 5.0)), Pose(3.0, 4.0)
+    stage, place = stage_with(actor_at(50.0, 5.0)), Pose(3.0, 4.0)
     steps = InTurn(
         SetWeather(precipitation=80.0, wetness=90.0),
         SetFriction(place, 20.0, 0.4),
@@ -61,8 +61,8 @@ def test_what_is_done_to_the_world_is_done_in_one_frame_and_named() -> None:
     ]
 
 
-def test_who_is_removed_is_gone_and_who_is_let_go_rolls_out() -> None:
-    stage = stage_with(somebody(50.0, 5.0, speed_mps=6.0))
+def test_an_actor_that_is_removed_is_gone_and_one_that_is_let_go_rolls_out() -> None:
+    stage = stage_with(actor_at(50.0, 5.0, speed_mps=6.0))
     play(LetGo("other"), stage)
     for _ in range(40):
         stage.advance()
@@ -71,9 +71,9 @@ def test_who_is_removed_is_gone_and_who_is_let_go_rolls_out() -> None:
     assert stage.names == (EGO,)
 
 
-def test_an_action_on_nobody_is_refused_with_those_who_are_there() -> None:
+def test_an_action_on_no_actor_is_refused_with_the_actors_that_are_there() -> None:
     with pytest.raises(ScenarioError, match="no actor on the stage is called 'lorry'; there are other, hero"):
-        play(OpenDoor("lorry"), stage_with(somebody(50.0, 5.0)))
+        play(OpenDoor("lorry"), stage_with(actor_at(50.0, 5.0)))
 
 
 def test_in_turn_takes_the_sum_of_times_together_the_longest_and_either_the_shortest() -> None:
@@ -86,12 +86,12 @@ def test_meanwhile_lasts_as_long_as_its_first_whatever_the_others_do() -> None:
     drive = DriveAlong("other", Path.through([(0.0, 9.0), (100.0, 9.0)]), 5.0)
     short = Wait(0.5)
     both = Meanwhile(EgoPasses(50.0), drive, short)
-    assert play(both, stage_with(somebody(0.0, 9.0))) == pytest.approx(5.0, abs=0.06)
+    assert play(both, stage_with(actor_at(0.0, 9.0))) == pytest.approx(5.0, abs=0.06)
     assert (drive.status, short.status) == (Status.INVALID, Status.SUCCESS)
     assert both.name == "until ego passes 50 m"
 
 
-def test_who_waits_again_waits_as_long_again() -> None:
+def test_an_actor_that_waits_again_waits_as_long_again() -> None:
     wait, stage = Wait(1.0), stage_with()
     play(wait, stage)
     assert play(wait, stage) == pytest.approx(2.0)

@@ -1,4 +1,4 @@
-"""Claims about actions in a simulator, whose vehicles have tyres and whose walkers have legs."""
+"""Claims about actions in a simulator, with tyres and walking animations."""
 
 import math
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from py_trees.common import Status
 
-from basu.managers.stage.scenario_actors import Puppets
+from basu.managers.stage.scenario_actors import ActorCommands
 from basu.scenarios.actions import Brake, DriveAlong, LetGo, WalkAlong
 from basu.scenarios.actions.one_frame import Action
 from basu.scenarios.paths import Path, along_lane
@@ -25,7 +25,7 @@ class OneActor:
     step_s, ego_contacts = STEP_S, frozenset()
 
     def __init__(self, client: carla.Client, actor: carla.Actor) -> None:
-        self.actor, self.puppets, self.time_s = actor, Puppets(client), 0.0
+        self.actor, self.puppets, self.time_s = actor, ActorCommands(client), 0.0
         self.member = SimpleNamespace(actor=actor)
         self.seen: list[Body] = []
 
@@ -107,7 +107,7 @@ def way_with_a_turn(town: carla.Map) -> Path:
         ("vehicle.kawasaki.ninja", 8.0, 0.4),
     ],
 )
-def test_a_corner_is_driven_to_a_hands_breadth_with_the_speed_that_was_told(
+def test_a_corner_is_driven_to_a_hands_breadth_with_the_speed_that_was_commanded(
     client: carla.Client, blueprint: str, speed_mps: float, off_m: float
 ) -> None:
     path = way_with_a_turn(client.get_world().get_map())
@@ -127,7 +127,7 @@ def test_a_corner_is_driven_to_a_hands_breadth_with_the_speed_that_was_told(
         stage.actor.destroy()
 
 
-def test_braking_is_as_hard_as_told_and_who_is_let_go_rolls_on(client: carla.Client) -> None:
+def test_braking_is_as_hard_as_commanded_and_one_that_is_let_go_rolls_on(client: carla.Client) -> None:
     path = way_with_a_turn(client.get_world().get_map())
     stage = on_stage(client, "vehicle.lincoln.mkz_2020", path.at(0.0))
     try:

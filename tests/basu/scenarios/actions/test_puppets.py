@@ -1,4 +1,4 @@
-"""Claims about actions that lead a vehicle: the path it keeps, its speeds, whom it brakes for, what it does after."""
+"""Claims about actions that lead a vehicle: its path, its speeds, the actors it brakes for, its end."""
 
 import math
 
@@ -24,7 +24,7 @@ from basu.scenarios.actions import (
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO, ActorSpec, Pose
 from basu.testing import OfflineStage, careful, steady, waiting_at
-from fakes.paper import play, somebody, stage_with
+from fakes.paper import actor_at, play, stage_with
 
 ROAD = Path.through([(0.0, 20.0), (150.0, 20.0)])  # beside the ego's, 20 m to its right
 BEND = Path.through(
@@ -35,12 +35,12 @@ BEND = Path.through(
 
 
 def parked(y_m: float = 20.0, x_m: float = 0.0, speed_mps: float = 0.0) -> ActorSpec:
-    return somebody(x_m, y_m, speed_mps=speed_mps)
+    return actor_at(x_m, y_m, speed_mps=speed_mps)
 
 
 @pytest.mark.parametrize("turn_share", [1.0, 0.5])
 def test_a_bend_is_followed_to_a_hands_breadth_with_the_nose_ahead(turn_share: float) -> None:
-    # a simulated vehicle turns by half of what it is told; the feedback has to make up for it
+    # a simulated vehicle turns by half of its command; the feedback has to make up for it
     stage = stage_with(parked(), turn_share=turn_share)
     off_m, off_rad = [], []
 
@@ -72,7 +72,7 @@ def test_speed_rises_and_falls_within_the_limits_and_it_holds_at_the_end() -> No
     assert "150 m driven" in drive.feedback_message
 
 
-def test_who_is_already_rolling_goes_on_at_its_speed() -> None:
+def test_an_actor_that_is_already_rolling_goes_on_at_its_speed() -> None:
     stage = stage_with(parked(speed_mps=8.0))
     least: list[float] = []
     drive = DriveAlong("other", ROAD, 8.0, at_end="go on")
@@ -135,7 +135,7 @@ def test_one_action_takes_over_from_another_in_the_same_frame() -> None:
     assert np.abs(np.diff(speeds[:400])).max() < 0.01
 
 
-def test_who_is_broken_off_holds_if_that_was_its_end() -> None:
+def test_an_actor_that_is_broken_off_holds_if_that_was_its_end() -> None:
     stage = stage_with(parked(speed_mps=6.0))
     play(Either(DriveAlong("other", ROAD, 6.0), Wait(2.0)), stage)
     for _ in range(30):
@@ -147,7 +147,7 @@ def test_the_considerate_stop_behind_an_ego_that_stands_and_others_ram_it() -> N
     lane = Path.through([(-40.0, 0.0), (150.0, 0.0)])
 
     def behind() -> OfflineStage:
-        return stage_with(somebody(-40.0, speed_mps=8.0), driver=waiting_at(30.0, 20.0, 6.0))
+        return stage_with(actor_at(-40.0, speed_mps=8.0), driver=waiting_at(30.0, 20.0, 6.0))
 
     considerate, ruthless = behind(), behind()
     with pytest.raises(AssertionError, match="not done"):
@@ -164,13 +164,13 @@ def test_the_considerate_stop_behind_an_ego_that_stands_and_others_ram_it() -> N
 
 def test_the_considerate_brake_for_an_ego_across_their_path_and_go_on_behind_it() -> None:
     lane = Path.through([(60.0, 90.0), (60.0, -60.0)])
-    stage = stage_with(somebody(60.0, 90.0, -math.pi / 2.0, speed_mps=8.0), driver=waiting_at(60.0, 4.0, 10.0))
+    stage = stage_with(actor_at(60.0, 90.0, -math.pi / 2.0, speed_mps=8.0), driver=waiting_at(60.0, 4.0, 10.0))
     done_s = play(DriveAlong("other", lane, 8.0, considerate=True, at_end="go on"), stage)
     assert not stage.ego_contacts
     assert done_s > 150.0 / 8.0 + 2.0  # it stood while the ego did
 
 
-def test_whom_it_minds_may_be_somebody_else() -> None:
+def test_a_minded_actor_may_be_another_one() -> None:
     third = ActorSpec("third", "vehicle.audi.a2", Pose(80.0, 20.0))
     stage = stage_with(parked(speed_mps=8.0), third)
     with pytest.raises(AssertionError, match="not done"):
@@ -178,7 +178,7 @@ def test_whom_it_minds_may_be_somebody_else() -> None:
     assert 70.0 < stage.body("other").x_m < 74.5
 
 
-def test_whom_it_minds_may_vanish_before_it() -> None:
+def test_a_minded_actor_may_vanish_before_it() -> None:
     third = ActorSpec("third", "vehicle.audi.a2", Pose(20.0, 20.0), speed_mps=4.0)
     stage = stage_with(parked(speed_mps=4.0), third)
     row = Together(
@@ -188,7 +188,7 @@ def test_whom_it_minds_may_vanish_before_it() -> None:
     assert stage.names == ("other", EGO)
 
 
-def test_who_is_removed_by_others_is_left_alone() -> None:
+def test_an_actor_that_is_removed_by_others_is_left_alone() -> None:
     stage = stage_with(parked(speed_mps=4.0))
     play(Either(DriveAlong("other", ROAD, 4.0), InTurn(Wait(1.0), Remove("other"))), stage)
     assert stage.names == (EGO,)
@@ -212,7 +212,7 @@ def test_braking_in_a_bend_keeps_to_the_bend() -> None:
     assert body.speed_mps == pytest.approx(2.0)
 
 
-def test_who_is_held_stays() -> None:
+def test_an_actor_that_is_held_stays() -> None:
     stage = stage_with(parked())
     assert play(Hold("other", 3.0), stage) == pytest.approx(3.0, abs=0.06)
     assert stage.body("other").x_m == 0.0
@@ -222,14 +222,14 @@ def test_who_is_held_stays() -> None:
 @pytest.mark.parametrize("ego_mps", [4.0, 6.0, 12.0])
 def test_the_meeting_is_met_whatever_the_egos_speed(ego_mps: float, offset_s: float) -> None:
     crossing = Path.through([(170.0, 80.0), (170.0, -60.0)])  # they do not touch
-    stage = stage_with(somebody(170.0, 80.0, -math.pi / 2.0), driver=steady(ego_mps))
+    stage = stage_with(actor_at(170.0, 80.0, -math.pi / 2.0), driver=steady(ego_mps))
     there_s = play(ReachAtEgosArrival("other", crossing, 80.0, 120.0, offset_s, high_mps=15.0), stage)
     assert there_s == pytest.approx(120.0 / ego_mps + offset_s, abs=0.15)
 
 
-def test_who_waits_for_an_ego_that_slows_down_slows_down_too_and_settles_before_the_point() -> None:
+def test_an_actor_that_waits_for_an_ego_that_slows_down_slows_down_too_and_settles_before_the_point() -> None:
     crossing = Path.through([(170.0, 80.0), (170.0, -60.0)])  # they do not touch
-    stage = stage_with(somebody(170.0, 80.0, -math.pi / 2.0), driver=lambda stage: 8.0 if stage.ego_s_m < 80.0 else 4.0)
+    stage = stage_with(actor_at(170.0, 80.0, -math.pi / 2.0), driver=lambda stage: 8.0 if stage.ego_s_m < 80.0 else 4.0)
     last: list[float] = []
     meet = ReachAtEgosArrival("other", crossing, 80.0, 120.0, settled_s=1.0)
     there_s = play(meet, stage, watch=lambda s: last.append(s.body("other").speed_mps))
@@ -240,13 +240,13 @@ def test_who_waits_for_an_ego_that_slows_down_slows_down_too_and_settles_before_
 
 def test_the_low_speed_takes_it_through_before_an_ego_that_never_comes() -> None:
     crossing = Path.through([(120.0, 40.0), (120.0, -60.0)])
-    stage = stage_with(somebody(120.0, 40.0, -math.pi / 2.0), driver=steady(0.0))
+    stage = stage_with(actor_at(120.0, 40.0, -math.pi / 2.0), driver=steady(0.0))
     assert play(ReachAtEgosArrival("other", crossing, 40.0, 120.0, low_mps=2.0), stage) < 21.0
 
 
 def test_a_lane_change_ends_in_the_other_lane_heading_along_it() -> None:
     lane = Path.through([(0.0, 0.0), (150.0, 0.0)])
-    stage = stage_with(somebody(10.0, 3.5, speed_mps=10.0), driver=steady(0.0))
+    stage = stage_with(actor_at(10.0, 3.5, speed_mps=10.0), driver=steady(0.0))
     change = ChangeLane("other", lane, over_m=30.0)
     assert play(change, stage) == pytest.approx(3.0, abs=0.15)
     body = stage.body("other")
@@ -258,14 +258,14 @@ def test_a_lane_change_ends_in_the_other_lane_heading_along_it() -> None:
 
 def test_a_cut_in_may_change_speed_on_the_way() -> None:
     lane = Path.through([(0.0, 0.0), (150.0, 0.0)])
-    stage = stage_with(somebody(10.0, 3.5, speed_mps=10.0), driver=steady(0.0))
+    stage = stage_with(actor_at(10.0, 3.5, speed_mps=10.0), driver=steady(0.0))
     play(ChangeLane("other", lane, over_s=4.0, speed_mps=6.0), stage)
     assert stage.body("other").speed_mps == pytest.approx(6.0)
 
 
-def test_a_drift_goes_sideways_as_slowly_as_told() -> None:
+def test_a_drift_goes_sideways_as_slowly_as_commanded() -> None:
     lane = Path.through([(150.0, -3.5), (0.0, -3.5)])  # towards the ego; the ego's lane is on its left
-    stage = stage_with(somebody(150.0, -3.5, math.pi, speed_mps=8.0), driver=steady(0.0))
+    stage = stage_with(actor_at(150.0, -3.5, math.pi, speed_mps=8.0), driver=steady(0.0))
     y_m: list[float] = []
     done_s = play(Drift("other", lane, -2.0, 0.5), stage, watch=lambda s: y_m.append(s.body("other").y_m))
     assert done_s == pytest.approx(4.0, abs=0.2)
@@ -279,18 +279,18 @@ def test_a_tailgater_keeps_its_gap_and_a_slow_one_runs_into_a_sudden_stop() -> N
     def sudden(stage: OfflineStage) -> float:
         return 7.0 if stage.time_s < 10.0 else 0.0
 
-    attentive = stage_with(somebody(-14.0, speed_mps=7.0), driver=sudden)
+    attentive = stage_with(actor_at(-14.0, speed_mps=7.0), driver=sudden)
     play(FollowEgo("other", lane, 8.0, 9.5), attentive)
     assert attentive.ego.x_m - attentive.body("other").x_m - 4.3 == pytest.approx(8.0, abs=0.3)
-    slow = stage_with(somebody(-9.0, speed_mps=7.0), driver=sudden)
+    slow = stage_with(actor_at(-9.0, speed_mps=7.0), driver=sudden)
     play(FollowEgo("other", lane, 3.0, 15.0, reaction_s=1.0), slow)
     assert slow.ego_contacts == {"other"}
 
 
-def test_a_careful_ego_stops_behind_who_brakes_and_a_steady_one_does_not() -> None:
+def test_a_careful_ego_stops_behind_one_that_brakes_and_a_steady_one_does_not() -> None:
     lane = Path.through([(0.0, 0.0), (150.0, 0.0)])
     for driver, touched in ((careful(7.0), frozenset()), (steady(7.0), frozenset({"other"}))):
-        stage = stage_with(somebody(15.0, speed_mps=7.0), driver=driver)
+        stage = stage_with(actor_at(15.0, speed_mps=7.0), driver=driver)
         play(InTurn(DriveAlong("other", lane, 7.0, to_m=50.0, at_end="go on"), Brake("other"), Wait(6.0)), stage)
         assert stage.ego_contacts == touched
 

@@ -8,14 +8,14 @@ from basu.scenarios.actions import Either, Wait, WalkAlong
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import EGO
 from basu.testing import OfflineStage, steady
-from fakes.paper import play, somebody, stage_with
+from fakes.paper import actor_at, play, stage_with
 
 ACROSS = Path.through([(60.0, 6.0), (60.0, -6.0)])
 CORNER = Path.through([(60.0, 6.0), (60.0, 0.0), (66.0, 0.0)])
 
 
 def stage_with_walker() -> OfflineStage:
-    return stage_with(somebody(60.0, 6.0, kind="walker.pedestrian.0001"), driver=steady(0.0))
+    return stage_with(actor_at(60.0, 6.0, kind="walker.pedestrian.0001"), driver=steady(0.0))
 
 
 def test_a_walk_takes_its_length_over_its_speed_and_then_it_stands() -> None:
@@ -29,7 +29,7 @@ def test_a_walk_takes_its_length_over_its_speed_and_then_it_stands() -> None:
     assert walk.feedback_message.startswith("12.0 m walked") or walk.feedback_message.startswith("11.9 m walked")
 
 
-def test_who_is_fast_runs() -> None:
+def test_an_actor_that_is_fast_runs() -> None:
     assert WalkAlong("dog", ACROSS, 4.0).name == "dog runs 12 m at 4 m/s"
 
 
@@ -44,7 +44,7 @@ def test_a_corner_is_walked_round() -> None:
     assert max(off_m) < 0.4
 
 
-def test_who_pauses_stands_there_for_so_long() -> None:
+def test_an_actor_that_pauses_stands_there_for_so_long() -> None:
     stage, stood = stage_with_walker(), []
 
     def watch(stage: OfflineStage) -> None:
@@ -59,19 +59,19 @@ def test_who_pauses_stands_there_for_so_long() -> None:
     assert stood[0] == pytest.approx(1.5, abs=0.1)
 
 
-def test_who_turns_back_ends_where_it_began() -> None:
+def test_an_actor_that_turns_back_ends_where_it_began() -> None:
     stage = stage_with_walker()
     assert play(WalkAlong("other", ACROSS, 1.5, at_end="turn back"), stage) == pytest.approx(16.0, abs=0.15)
     assert stage.body("other").y_m == pytest.approx(6.0, abs=0.1)
 
 
-def test_who_turns_back_in_the_middle_of_the_road_is_told_by_a_shorter_path() -> None:
+def test_an_actor_that_turns_back_in_the_middle_of_the_road_is_known_by_a_shorter_path() -> None:
     stage = stage_with_walker()
     play(WalkAlong("other", ACROSS.part(0.0, 6.0), 1.5, at_end="turn back"), stage)
     assert stage.time_s == pytest.approx(8.0, abs=0.15)
 
 
-def test_who_goes_on_goes_on_and_who_vanishes_is_gone() -> None:
+def test_an_actor_that_goes_on_goes_on_and_one_that_vanishes_is_gone() -> None:
     stage = stage_with_walker()
     play(WalkAlong("other", ACROSS, 1.5, at_end="go on"), stage)
     for _ in range(20):
@@ -82,15 +82,15 @@ def test_who_goes_on_goes_on_and_who_vanishes_is_gone() -> None:
     assert stage.names == (EGO,)
 
 
-def test_who_is_broken_off_stands() -> None:
+def test_an_actor_that_is_broken_off_stands() -> None:
     stage = stage_with_walker()
     play(Either(WalkAlong("other", ACROSS, 1.5, at_end="vanish"), Wait(2.0)), stage)
     stage.advance()
     assert stage.body("other").speed_mps == 0.0
 
 
-def test_who_is_touched_stands() -> None:
-    stage = stage_with(somebody(60.0, 6.0, kind="walker.pedestrian.0001"), driver=steady(12.0))
+def test_an_actor_that_is_touched_stands() -> None:
+    stage = stage_with(actor_at(60.0, 6.0, kind="walker.pedestrian.0001"), driver=steady(12.0))
     walk = WalkAlong("other", ACROSS, 1.2)
     play(walk, stage)
     assert walk.feedback_message.startswith("touched by the ego after 5.")

@@ -31,7 +31,7 @@ CRITERIA += [LeastDistance(0.5, to="child"), *reported_always()]
 
 
 def driven_case() -> Played:
-    """One with somebody who is touched, a thing, and an end by the clock."""
+    """A case with a touched actor, a thing, and an end by the clock."""
     return played(
         ride(6.0, eastward(braked(8.0, 3.0, 4.0), 7.0), others=[(9, moving(40.0, 9.0, 0.0, -2.0))]),
         outcome=Outcome(Status.SCENARIO_TIMEOUT, "not over after 6 s"),
@@ -95,7 +95,7 @@ def test_arriving_is_to_pass_the_scenarios_own_end() -> None:
 
 
 def test_margins_of_a_part_are_those_of_its_frames() -> None:
-    """The one who stands beside the way at 30 m is passed before, the one at 120 m meanwhile."""
+    """The walker beside the way at 30 m is passed before, the one at 120 m meanwhile."""
     others = [(9, moving(30.0, 2.5, 0.0, 0.0)), (10, moving(120.0, 4.0, 0.0, 0.0))]
     run = ride(25.0, eastward(lambda _: 10.0, 26.0), others=others, route=ROUTE)
     whole, case = played(run), played(part_of(run, 160, 320))

@@ -13,7 +13,7 @@ def stopped(braking_mps2: float) -> object:
     return ride(9.0, eastward(braked(8.0, 3.0, braking_mps2), 10.0))
 
 
-def test_a_gentle_stop_is_told_with_what_was_felt() -> None:
+def test_a_gentle_stop_is_reported_with_what_was_felt() -> None:
     said = Gentle().judge(played(stopped(1.0)))  # type: ignore[arg-type]
     assert said.passed is True
     assert said.measured == pytest.approx(1.0, abs=0.1)

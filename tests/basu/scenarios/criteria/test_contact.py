@@ -1,4 +1,4 @@
-"""Claims about collisions in a scenario: whom, when, how fast, and who stood."""
+"""Claims about collisions in a scenario: parties, times, speeds, and resting vehicles."""
 
 import pytest
 
@@ -8,13 +8,13 @@ from fakes.played import played
 from fakes.rides import eastward, moving, ride
 
 
-def test_touching_nobody_passes() -> None:
+def test_touching_no_actor_passes() -> None:
     said = NoCollision().judge(played(driven(at(5.0, 4.0))))
     assert said.passed is True
     assert said.sentence == "it touched no actor and no thing"
 
 
-def test_a_contact_is_told_by_role_with_both_speeds_and_the_place() -> None:
+def test_a_contact_is_known_by_role_with_both_speeds_and_the_place() -> None:
     history = ride(4.0, eastward(lambda _: 8.0, 5.0), others=[(9, moving(20.0, 3.0, 0.0, -1.5))])
     touched = tuple(hit(tick, "walker.pedestrian.0012", other_id=9) for tick in range(40, 50))
     said = NoCollision().judge(played(history, collisions=touched))
@@ -27,7 +27,7 @@ def test_a_contact_is_told_by_role_with_both_speeds_and_the_place() -> None:
     )
 
 
-def test_messages_of_one_contact_are_one_and_scenery_is_told_by_its_kind() -> None:
+def test_messages_of_one_contact_are_one_and_scenery_is_known_by_its_kind() -> None:
     history = driven(at(5.0, 10.0), collisions=[hit(tick) for tick in [*range(40, 60), 120]])
     said = NoCollision().judge(played(history))
     assert said.other == "static.poles"
@@ -40,7 +40,7 @@ def test_many_contacts_are_counted_after_the_third() -> None:
 
 
 @pytest.mark.parametrize(("counts", "passed"), [(True, False), (False, True)])
-def test_who_stands_and_is_touched_is_told_and_may_be_forgiven(counts: bool, passed: bool) -> None:  # noqa: FBT001
+def test_that_stands_and_is_touched_is_reported_and_may_be_forgiven(counts: bool, passed: bool) -> None:  # noqa: FBT001
     history = driven(at(0.0, 4.0), collisions=[hit(40, "vehicle.audi.tt", 9)])
     said = NoCollision(standing_counts=counts).judge(played(history))
     assert said.passed is passed

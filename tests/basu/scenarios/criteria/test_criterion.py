@@ -49,13 +49,13 @@ def test_a_phase_begins_in_its_frame(phases_s: dict[str, float], phase: str | No
     assert played(driven(at(5.0, 4.0)), phases_s=phases_s).first_tick(phase) == tick
 
 
-def test_the_three_margins_are_told_of_every_case_and_decide_none() -> None:
+def test_the_three_margins_are_reported_of_every_case_and_decide_none() -> None:
     told = reported_always([NoCollision()])
     assert [one.name for one in told] == ["least distance", "least time to collision", "post-encroachment time"]
     assert not any(one.deciding for one in told)
 
 
-def test_what_the_scenario_asks_of_everybody_is_not_told_twice() -> None:
+def test_what_the_scenario_asks_of_all_actors_is_not_reported_twice() -> None:
     told = reported_always([LeastDistance(0.5), LeastTtc(1.0, to="child")])
     assert [one.name for one in told] == ["least time to collision", "post-encroachment time"]
 

@@ -8,7 +8,7 @@ from basu.scenarios.triggers import along_route
 from fakes.drives import at, driven, ramp, straight_route
 from fakes.played import played
 
-COLLIDED = Outcome(Status.COMPLETED, "it touched somebody")
+COLLIDED = Outcome(Status.COMPLETED, "it touched an actor")
 TIMEOUT = Outcome(Status.ROUTE_TIMEOUT, "the time was used up")
 
 
@@ -18,7 +18,7 @@ def test_where_the_run_ends_the_ego_has_arrived() -> None:
     assert along_route.SLACK_MPS >= 0.0
 
 
-def test_who_passes_the_end_has_arrived_and_its_time_is_told() -> None:
+def test_an_ego_that_passes_the_end_has_arrived_and_its_time_is_reported() -> None:
     said = Arrives().judge(played(driven(at(10.0, 12.0), route=straight_route(100.0))))
     assert said.passed is True
     assert said.t_s == pytest.approx(9.8)
@@ -26,7 +26,7 @@ def test_who_passes_the_end_has_arrived_and_its_time_is_told() -> None:
 
 
 @pytest.mark.parametrize(("short_m", "arrived"), [(4.5, True), (6.0, False)])
-def test_who_parks_within_five_metres_of_the_end_has_arrived(short_m: float, arrived: bool) -> None:  # noqa: FBT001
+def test_an_ego_that_parks_within_five_metres_of_the_end_has_arrived(short_m: float, arrived: bool) -> None:  # noqa: FBT001
     speeds = [*at(10.0, 9.0), *at(0.0, 2.0)]
     said = Arrives().judge(played(driven(speeds, route=straight_route(100.0), start_m=10.0 - short_m)))
     assert said.passed is arrived
@@ -37,10 +37,10 @@ def test_creeping_past_five_metres_is_not_parking_there() -> None:
     assert Arrives().judge(played(history)).passed is False
 
 
-def test_who_did_not_arrive_is_told_how_far_it_got_and_why_it_ended() -> None:
+def test_an_ego_that_did_not_arrive_is_reported_how_far_it_got_and_why_it_ended() -> None:
     said = Arrives().judge(played(driven(at(10.0, 4.0)), outcome=COLLIDED))
     assert said.passed is False
-    assert said.sentence == "it got to 39.5 m of 200.0 m: it touched somebody"
+    assert said.sentence == "it got to 39.5 m of 200.0 m: it touched an actor"
     assert said.measured == pytest.approx(39.5)
 
 
@@ -75,10 +75,10 @@ def test_a_scenario_that_is_over_before_the_arrival_is_over_then() -> None:
     assert (said.passed, said.measured) == (True, pytest.approx(6.0))
 
 
-def test_who_is_stopped_by_the_clock_is_late_and_who_is_stopped_by_a_collision_is_neither() -> None:
+def test_an_ego_that_is_stopped_by_the_clock_is_late_and_one_that_is_stopped_by_a_collision_is_neither() -> None:
     history = driven([*at(10.0, 4.0), *ramp(10.0, 0.0, 1.0)])
     assert InTime().judge(played(history, outcome=TIMEOUT)).passed is False
     said = InTime().judge(played(history, outcome=COLLIDED))
     assert said.passed is None
-    assert said.sentence.endswith("before it was over: it touched somebody")
+    assert said.sentence.endswith("before it was over: it touched an actor")
     assert InTime(4.95).judge(played(history, outcome=COLLIDED)).passed is False

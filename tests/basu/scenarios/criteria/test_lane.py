@@ -41,7 +41,7 @@ def test_the_evidence_is_the_worst_frame_and_the_time_outside() -> None:
     )
 
 
-def test_who_passes_an_obstacle_may_leave_the_lane_but_not_the_road() -> None:
+def test_an_ego_that_passes_an_obstacle_may_leave_the_lane_but_not_the_road() -> None:
     assert KeepsLane(passing=True).judge(played(swerved(-3.5))).passed is True
     said = KeepsLane(passing=True).judge(played(swerved(-3.5, off_road_m=0.7)))
     assert (said.passed, said.criterion, said.measured) == (False, "keeps on the road", pytest.approx(0.7))
@@ -98,6 +98,6 @@ def test_without_an_end_of_the_disturbance_there_is_nothing_to_regain() -> None:
     assert Regains().judge(played(disturbed(back_after_s=1.0), phases_s={})).passed is None
 
 
-def test_on_the_road_throughout_the_widest_swerve_is_told() -> None:
+def test_on_the_road_throughout_the_widest_swerve_is_reported() -> None:
     said = KeepsLane(passing=True).judge(played(swerved(-3.5)))
     assert said.sentence.endswith("at most it was 3.50 m to the left of its route's middle at 2.00 s")

@@ -29,7 +29,7 @@ def test_passing_a_parked_box_the_gap_is_between_the_sides() -> None:
     assert "child (vehicle.audi.tt) was 1.10 m away" in said.sentence
 
 
-def test_too_near_fails_and_the_limit_is_told() -> None:
+def test_too_near_fails_and_the_limit_is_reported() -> None:
     said = LeastDistance(1.5, to="child").judge(played(ride(5.0, eastward(lambda _: 10.0, 6.0), others=[CHILD])))
     assert (said.passed, said.criterion, said.limit) == (False, "least distance to child", "at least 1.5 m")
 
@@ -58,7 +58,7 @@ def test_only_the_one_that_is_asked_about_counts() -> None:
     assert LeastDistance().judge(case).other == "car"
 
 
-def test_who_comes_close_to_a_vehicle_at_rest_has_done_so_alone() -> None:
+def test_an_ego_that_comes_close_to_a_vehicle_at_rest_has_done_so_alone() -> None:
     """The ego stands from 2 s on, 8 m before; the other arrives at 5 s."""
     crossing = (9, moving(24.0, 40.0, 0.0, -8.0))
     case = played(ride(6.0, eastward(braked(10.0, 1.0, 10.0), 7.0), others=[crossing]))
@@ -79,7 +79,7 @@ def test_alone_there_is_nothing_to_judge() -> None:
     assert LeastDistance(0.5, since="end").judge(played(driven(at(10.0, 4.0)))).sentence == "'end' never began"
 
 
-def test_a_contact_is_told_with_the_speed_before_it() -> None:
+def test_a_contact_is_reported_with_the_speed_before_it() -> None:
     history = ride(5.0, eastward(braked(10.0, 2.95, 100.0), 6.0), others=[CHILD])
     said = LeastDistance().judge(played(history, collisions=(hit(60, "vehicle.audi.tt", 9),)))
     assert said.sentence == "child (vehicle.audi.tt) was touched at 3.00 s, the ego at 10.00 m/s"
@@ -95,7 +95,7 @@ def test_a_thing_that_was_touched_was_no_distance_away_whatever_its_box() -> Non
     assert (said.measured, said.other, said.t_s) == (0.0, "door", pytest.approx(1.9))
 
 
-def test_towards_somebody_at_rest_it_is_the_gap_over_the_speed() -> None:
+def test_towards_an_actor_at_rest_it_is_the_gap_over_the_speed() -> None:
     """At 8 m/s from 0: after 3 s the front is at 26 m, the other's rear at 38 m."""
     said = LeastTtc(1.0).judge(played(ride(3.05, eastward(lambda _: 8.0, 4.0), others=[(9, moving(40.0, 0.0, 0, 0))])))
     assert said.measured == pytest.approx(12.0 / 8.0, abs=1e-6)
@@ -121,7 +121,7 @@ def test_on_crossing_courses_the_clock_runs_down_to_the_contact() -> None:
     assert said.passed is False
 
 
-def test_braking_in_front_of_somebody_it_is_least_on_the_way() -> None:
+def test_braking_in_front_of_an_actor_it_is_least_on_the_way() -> None:
     """5 m/s² from 10 m/s to rest 4 m short: 4 / v + v / 10 at a speed of v, least at v = sqrt(40)."""
     parked = (9, moving(20.0 + 10.0 + 2.0 + 4.0 + 2.0, 0.0, 0.0, 0.0))
     said = LeastTtc().judge(played(ride(6.0, eastward(braked(10.0, 2.0, 5.0), 6.0), others=[parked])))
@@ -141,7 +141,7 @@ def test_beyond_five_seconds_nothing_is_measured_and_the_limit_is_kept() -> None
     assert LeastTtc().judge(case).passed is None
 
 
-def test_who_was_touched_was_no_time_away() -> None:
+def test_an_ego_that_was_touched_was_no_time_away() -> None:
     history = ride(2.0, eastward(lambda _: 10.0, 3.0), others=[(9, moving(40.0, 6.0, 10.0, 0.0))])
     said = LeastTtc(0.5).judge(played(history, collisions=(hit(30, "vehicle.audi.tt", 9),)))
     assert (said.measured, said.passed, said.t_s) == (0.0, False, pytest.approx(1.5))
@@ -156,12 +156,12 @@ LEAVES_S = (20.9 + 2.0) / 10.0  # when the ego's tail is past the strip that a c
 
 
 def across_at_rest(_: float) -> Row:
-    """Somebody who stands across the road."""
+    """An actor that stands across the road."""
     return {"x_m": 24.0, "yaw_rad": math.pi / 2.0}
 
 
 @pytest.mark.parametrize("after_s", [0.5, 1.2, 3.0, 4.5])
-def test_who_comes_after_the_ego_comes_so_much_later(after_s: float) -> None:
+def test_an_ego_that_comes_after_the_ego_comes_so_much_later(after_s: float) -> None:
     crossing = (9, moving(20.0, 1.0 + 2.0 + 8.0 * (LEAVES_S + after_s), 0.0, -8.0))
     said = Pet(1.0).judge(played(ride(9.0, eastward(lambda _: 10.0, 10.0), others=[crossing])))
     assert said.measured == pytest.approx(after_s, abs=0.06)
@@ -170,14 +170,14 @@ def test_who_comes_after_the_ego_comes_so_much_later(after_s: float) -> None:
     assert said.other == "child"
 
 
-def test_who_goes_before_the_ego_counts_as_well() -> None:
+def test_an_ego_that_goes_before_the_ego_counts_as_well() -> None:
     """Its tail leaves the ego's strip (y = -1) at 1 s; the ego's front comes to its own (x = 19.1) 0.71 s later."""
     crossing = (9, moving(20.0, -1.0 - 2.0 + 8.0, 0.0, -8.0))
     said = Pet().judge(played(ride(4.0, eastward(lambda _: 10.0, 5.0), others=[crossing])))
     assert said.measured == pytest.approx((20.0 - 0.9 - 2.0) / 10.0 - 1.0, abs=0.06)
 
 
-def test_who_follows_in_the_lane_crosses_nobodys_way() -> None:
+def test_an_ego_that_follows_in_the_lane_crosses_nobodys_way() -> None:
     case = played(ride(4.0, eastward(lambda _: 10.0, 5.0), others=[(9, moving(12.0, 0.0, 10.0, 0.0))]))
     assert Pet(1.0).judge(case).measured is None
 
@@ -187,7 +187,7 @@ def test_who_follows_in_the_lane_crosses_nobodys_way() -> None:
     [(moving(24.0, 4.0, 0.0, -4.0), 0.0), (moving(24.0, 4.0, 4.0, 0.0), None), (across_at_rest, None)],
     ids=["across", "ahead", "standing across"],
 )
-def test_who_was_hit_coming_across_the_way_was_no_time_apart(
+def test_an_ego_that_was_hit_coming_across_the_way_was_no_time_apart(
     moves: Callable[[float], Row], measured: float | None
 ) -> None:
     history = ride(1.0, eastward(lambda _: 10.0, 2.0), others=[(9, moves)])
@@ -208,7 +208,7 @@ def test_it_is_the_gap_between_the_bumpers_over_the_egos_speed() -> None:
     [moving(-10.0, 0.0, 10.0, 0.0), moving(20.0, 2.0, 10.0, 0.0), moving(90.0, 0.0, -10.0, 0.0)],
     ids=["behind", "beside", "oncoming"],
 )
-def test_who_is_not_ahead_the_same_way_has_none(other: object) -> None:
+def test_an_ego_that_is_not_ahead_the_same_way_has_none(other: object) -> None:
     case = played(ride(2.0, eastward(lambda _: 10.0, 3.0), others=[(9, other)]))  # type: ignore[list-item]
     assert KeepsHeadway(1.0).judge(case).measured is None
 

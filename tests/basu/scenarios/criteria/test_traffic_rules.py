@@ -17,7 +17,7 @@ def test_stopping_before_the_line_heeds_the_sign() -> None:
     assert said.sentence == "it stopped at stop sign 7, 3.0 m before its line"
 
 
-def test_running_the_sign_is_told_with_speed_time_and_place() -> None:
+def test_running_the_sign_is_reported_with_speed_time_and_place() -> None:
     said = HeedsStopSigns().judge(played(driven(at(9.0, 8.0), route=straight_route(controls=(stop_sign(50.0),)))))
     assert (said.passed, said.other, said.measured) == (False, "stop sign 7", pytest.approx(9.0))
     assert said.sentence.startswith(
@@ -76,7 +76,7 @@ def test_where_no_limit_is_posted_there_is_nothing_to_judge() -> None:
     assert KeepsSpeed().judge(played(driven(FAST, route=route))).passed is None
 
 
-def test_who_creeps_fails_by_its_mean() -> None:
+def test_an_ego_that_creeps_fails_by_its_mean() -> None:
     case = played(driven([*at(4.0, 5.0), *at(1.0, 5.0)]), phases_s={"conflict": 5.0})
     assert MinimumSpeed(2.0).judge(case).measured == pytest.approx(2.5)
     assert MinimumSpeed(2.0).judge(case).passed is True

@@ -14,7 +14,7 @@ from linden.scenery.mesh import Mesh
 from linden.scenery.roadside.yards import paved_yards
 from linden.scenery.scene.south_linden import home
 from linden.scenery.streets.junction_floors import floors
-from linden.scenery.streets.simplified_lanes import laid
+from linden.scenery.streets.simplified_lanes import simplified_lanes
 from linden.scenery.streets.terrain import land
 
 HIGH_M = 1e6
@@ -29,7 +29,7 @@ def linden() -> LoadedMap:
 @pytest.fixture(scope="module")
 def lawn(linden: LoadedMap) -> Ground:
     opendrive = parse(linden.text)
-    made = land(laid(opendrive), linden.maps.ground, floors(road_mesh(opendrive), linden.maps.ground))
+    made = land(simplified_lanes(opendrive), linden.maps.ground, floors(road_mesh(opendrive), linden.maps.ground))
     return Ground.from_triangles(made.vertices_m, made.triangles)
 
 

@@ -7,7 +7,7 @@ from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh
 from linden.scenery.streets.markings import COLOURS, PAINT_HEIGHT_M, WHITE, lines
-from linden.scenery.streets.simplified_lanes import laid
+from linden.scenery.streets.simplified_lanes import simplified_lanes
 from opendrive_texts import lane, line, opendrive, road, street_through_junction
 
 STRIPE_M, GAP_M = 3.05, 9.14
@@ -18,7 +18,11 @@ def of_marks(marks: str, shape: str = "<line/>", length: float = 30.0, elevation
     bare = lane(-1).replace('type="broken"', 'type="none"')
     centre = f'<center><lane id="0" type="none">{marks}</lane></center>'
     section = f'<laneSection s="0">{centre}<right>{bare}</right></laneSection>'
-    return lines(laid(parse(opendrive(road(1, length, line(0, 0, 0, 0, length, shape), section, elevation=elevation)))))
+    return lines(
+        simplified_lanes(
+            parse(opendrive(road(1, length, line(0, 0, 0, 0, length, shape), section, elevation=elevation)))
+        )
+    )
 
 
 def mark(kind: str, width: float = 0.1, colour: str = "white", offset: float = 0.0) -> str:
@@ -31,7 +35,7 @@ def areas_m2(mesh: Mesh) -> np.ndarray:
 
 
 def test_every_stripe_of_a_broken_line_begins_and_ends_where_the_manual_says() -> None:
-    mesh = lines(laid(parse(street_through_junction())))
+    mesh = lines(simplified_lanes(parse(street_through_junction())))
     outer = mesh.vertices_m[np.abs(mesh.vertices_m[:, 1] - 3.5) < 0.1]  # right edge of lane -1, south
     on_first = outer[outer[:, 0] < 50.0]
     starts = np.arange(0.0, 50.0, STRIPE_M + GAP_M)

@@ -6,7 +6,7 @@ import pytest
 from linden.geometry import points_from_opendrive
 from linden.maps.opendrive.evaluate.strips import edges_of, strips_of
 from linden.maps.opendrive.parse import parse
-from linden.scenery.streets.simplified_lanes import ABOVE_M, ASIDE_M, LONGEST_M, Laid, laid
+from linden.scenery.streets.simplified_lanes import ABOVE_M, ASIDE_M, LONGEST_M, SimplifiedLanes, simplified_lanes
 from opendrive_texts import lane, line, opendrive, road
 
 LENGTH_M = 90.0
@@ -19,9 +19,9 @@ def street(shape: str = "<line/>", elevation: str = "") -> str:
     return opendrive(road(1, LENGTH_M, line(0, 0, 0, 0, LENGTH_M, shape), section, elevation=elevation))
 
 
-def away_m(text: str) -> tuple[float, float, Laid]:
+def away_m(text: str) -> tuple[float, float, SimplifiedLanes]:
     """How far, aside and upwards, the sampled edges lie from the pieces that are drawn, at most."""
-    drawn, strips = laid(parse(text)), strips_of(laid(parse(text)).tables)
+    drawn, strips = simplified_lanes(parse(text)), strips_of(simplified_lanes(parse(text)).tables)
     aside, above = 0.0, 0.0
     for kept, sampled in zip((drawn.inner, drawn.outer), edges_of(drawn.tables, strips), strict=True):
         for row in range(len(drawn.tables.lanes)):
@@ -52,13 +52,13 @@ def test_a_straight_street_is_drawn_in_few_pieces_of_bounded_length() -> None:
 
 
 def test_lanes_side_by_side_share_their_places_so_that_no_crack_opens() -> None:
-    drawn = laid(parse(street('<spiral curvStart="0" curvEnd="0.05"/>', HILL)))
+    drawn = simplified_lanes(parse(street('<spiral curvStart="0" curvEnd="0.05"/>', HILL)))
     first, second = (drawn.lane == row for row in (0, 1))
     np.testing.assert_array_equal(drawn.outer[first], drawn.inner[second])
 
 
 def test_a_lane_ends_where_its_road_does() -> None:
-    drawn = laid(parse(street('<arc curvature="0.02"/>')))
+    drawn = simplified_lanes(parse(street('<arc curvature="0.02"/>')))
     for row in (0, 1):
         places = drawn.s_m[drawn.lane == row]
         assert (places[0], places[-1]) == (0.0, LENGTH_M)
@@ -67,5 +67,5 @@ def test_a_lane_ends_where_its_road_does() -> None:
 
 
 def test_a_map_without_roads_has_nothing_to_draw() -> None:
-    drawn = laid(parse(opendrive("")))
+    drawn = simplified_lanes(parse(opendrive("")))
     assert len(drawn.lane) == len(drawn.inner) == len(drawn.samples.s_m) == 0

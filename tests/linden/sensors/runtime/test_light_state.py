@@ -3,14 +3,14 @@
 from linden.maps.library import HOME_MAP, MapLibrary
 from linden.protocol.values.episode import CLEAR_NOON, EpisodeSettings
 from linden.scenery.mesh import LampOf
-from linden.sensors.runtime.light_state import Shining
+from linden.sensors.runtime.light_state import LightStateCache
 from linden.world import World
 
 LIGHTS = 1 << LampOf.TRAFFIC_RED | 1 << LampOf.TRAFFIC_YELLOW | 1 << LampOf.TRAFFIC_GREEN
 
 
 def test_what_shines_is_found_anew_when_something_changes() -> None:
-    episode, shining = World(MapLibrary().load(HOME_MAP), EpisodeSettings()).episode, Shining()
+    episode, shining = World(MapLibrary().load(HOME_MAP), EpisodeSettings()).episode, LightStateCache()
     day = shining.of(episode)
     assert shining.of(episode) is day
     assert not (day.lights | LIGHTS != LIGHTS).any()

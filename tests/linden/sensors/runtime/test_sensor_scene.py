@@ -15,7 +15,7 @@ from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.scenery.mesh import LampOf, Mesh, join
 from linden.sensors.casting.caster import STATIC, Rays
-from linden.sensors.runtime.sensor_scene import Seeing
+from linden.sensors.runtime.sensor_scene import SensorScene
 from linden.sensors.runtime.visible_actors import matrices
 from linden.world import World
 from opendrive_texts import street_through_junction
@@ -29,25 +29,25 @@ def world_map() -> LoadedMap:
 
 
 @pytest.fixture(scope="module")
-def seeing(world_map: LoadedMap) -> Seeing:
+def sensor_scene(world_map: LoadedMap) -> SensorScene:
     """For all episodes: what stands is a floor, and a box for the last box of the scene."""
     last = len(World(world_map).episode.surroundings.scene.boxes) - 1
-    seeing = Seeing(BlueprintLibrary.load())
-    seeing.standing_on = lambda _map, _scene: join(
+    sensor_scene = SensorScene(BlueprintLibrary.load())
+    sensor_scene.standing_on = lambda _map, _scene: join(
         [floor(2000.0), box((1.0, 1.0, 1.0), centre_m=(0.0, 0.0, 500.0), thing=last)]
     )
-    return seeing
+    return sensor_scene
 
 
 @pytest.fixture
-def simulation(world_map: LoadedMap, seeing: Seeing) -> World:
+def simulation(world_map: LoadedMap, sensor_scene: SensorScene) -> World:
     simulation = World(world_map, EpisodeSettings())
-    simulation.seeing = seeing
+    simulation.sensor_scene = sensor_scene
     return simulation
 
 
 def look(simulation: World):
-    return simulation.seeing.look(simulation.episode, simulation.frame)
+    return simulation.sensor_scene.look(simulation.episode, simulation.frame)
 
 
 def test_many_poses_make_the_matrices_that_one_by_one_makes() -> None:
@@ -76,7 +76,7 @@ def test_a_car_is_seen_where_it_is_with_all_its_wheels(simulation: World) -> Non
 def test_before_is_where_a_body_was_a_frame_earlier_if_somebody_looked_then(simulation: World) -> None:
     prop = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 0.0, 50.0)))
     simulation.step(STEP_S)
-    simulation.seeing.follow(simulation.episode, simulation.frame)
+    simulation.sensor_scene.follow(simulation.episode, simulation.frame)
     simulation.episode.place(prop.id, Transform(Vector3D(3.0, 0.0, 50.0)))
     simulation.step(STEP_S)
     moved = look(simulation).instances
@@ -93,7 +93,7 @@ def test_who_comes_while_others_go_brings_nobody_elses_past(simulation: World) -
     first = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 0.0, 50.0)))
     second = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 30.0, 50.0)))
     simulation.step(STEP_S)
-    simulation.seeing.follow(simulation.episode, simulation.frame)
+    simulation.sensor_scene.follow(simulation.episode, simulation.frame)
     simulation.destroy(first.id)
     third = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 60.0, 50.0)))
     simulation.step(STEP_S)
@@ -122,7 +122,7 @@ def test_a_cars_lamps_shine_as_its_light_state_says_and_blinkers_blink(simulatio
     seen_states = set()
     for _ in range(20):
         simulation.step(STEP_S)
-        instances = simulation.seeing.follow(simulation.episode, simulation.frame)
+        instances = simulation.sensor_scene.follow(simulation.episode, simulation.frame)
         seen_states.add(int(instances.lights[instances.actor_id == car.id][0]))
     assert seen_states == {1 << LampOf.TAIL, 1 << LampOf.TAIL | 1 << LampOf.BLINKER_RIGHT}
 
@@ -167,7 +167,7 @@ def test_nothing_is_built_before_a_sensor_that_looks_is_there(world_map: LoadedM
     def never(_map: LoadedMap, _scene: object):
         pytest.fail("nobody looks")
 
-    simulation.seeing.standing_on = never
+    simulation.sensor_scene.standing_on = never
     simulation.spawn(described("sensor.other.gnss"), Transform())
     for _ in range(3):
         simulation.step(STEP_S)
@@ -183,7 +183,7 @@ def test_building_begins_when_a_sensor_that_looks_is_spawned_and_is_waited_for(w
         assert may_go_on.wait(60.0)
         return floor(2000.0)
 
-    simulation.seeing.standing_on = late
+    simulation.sensor_scene.standing_on = late
     lidar = simulation.spawn(described("sensor.lidar.ray_cast"), Transform(Vector3D(0.0, 0.0, 3.0)))
     assert begun.wait(60.0)
     simulation.step(STEP_S)
@@ -194,7 +194,7 @@ def test_building_begins_when_a_sensor_that_looks_is_spawned_and_is_waited_for(w
 def test_a_reading_is_the_same_whoever_listened_before(simulation: World, world_map: LoadedMap) -> None:
     def sixth(listened_from: int) -> bytes:
         running = World(world_map, EpisodeSettings())
-        running.seeing = simulation.seeing
+        running.sensor_scene = simulation.sensor_scene
         chosen = {"rotation_frequency": 7, "noise_stddev": 0.1, "range": 50}
         lidar = running.spawn(described("sensor.lidar.ray_cast", **chosen), Transform(Vector3D(0.0, 0.0, 3.0)))
         for frame in range(6):
@@ -206,20 +206,20 @@ def test_a_reading_is_the_same_whoever_listened_before(simulation: World, world_
 
 
 def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedMap) -> None:
-    seeing, may_build = Seeing(BlueprintLibrary.load()), Event()
-    assert seeing.wait(60.0)  # nobody has asked for anything
+    sensor_scene, may_build = SensorScene(BlueprintLibrary.load()), Event()
+    assert sensor_scene.wait(60.0)  # nobody has asked for anything
 
     def standing_on(*_: object) -> Mesh:
         may_build.wait()
         return floor(9.0)
 
-    seeing.standing_on = standing_on
+    sensor_scene.standing_on = standing_on
     simulation = World(world_map, EpisodeSettings())
-    seeing.prepare(simulation.episode)
-    assert not seeing.wait(0.01)
+    sensor_scene.prepare(simulation.episode)
+    assert not sensor_scene.wait(0.01)
     may_build.set()
-    assert seeing.wait(60.0)
-    simulation.seeing = seeing
+    assert sensor_scene.wait(60.0)
+    simulation.sensor_scene = sensor_scene
     assert len(look(simulation).standing.triangles) == len(floor(9.0).triangles)
 
 
@@ -234,11 +234,28 @@ def test_a_load_of_another_map_gives_up_what_was_being_built(world_map: LoadedMa
         finally:
             ended.set()
 
-    simulation.seeing.standing_on = build_for_ever
+    simulation.sensor_scene.standing_on = build_for_ever
     simulation.spawn(described("sensor.lidar.ray_cast"), Transform())
     assert begun.wait(20)
     simulation.load(world_map, reset_settings=False)
     assert not ended.is_set()  # the same map wants the same
     simulation.load(MapLibrary().from_opendrive(street_through_junction()), reset_settings=False)
     assert ended.wait(20)
-    assert simulation.seeing.wait(0.0)
+    assert simulation.sensor_scene.wait(0.0)
+
+
+def test_a_lidar_does_not_wait_for_the_kernels_of_cameras(world_map: LoadedMap, sensor_scene: SensorScene) -> None:
+    simulation, waited = World(world_map, EpisodeSettings()), list[bool]()
+    own = SensorScene(simulation.library)
+    own.standing_on, own.await_kernels, own.is_compiling = sensor_scene.standing_on, waited.append, lambda: True
+    simulation.sensor_scene = own
+    simulation.spawn(described("sensor.lidar.ray_cast"), Transform())
+    assert own.wait(60.0)
+    look(simulation)
+    assert waited == [False]
+    simulation.spawn(described("sensor.camera.depth"), Transform())
+    assert own.wait(60.0)
+    look(simulation)
+    assert waited == [False, True]
+    look(simulation)
+    assert waited == [False, True]  # the scene with pictures is kept

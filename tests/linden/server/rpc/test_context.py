@@ -4,7 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from fakes.simulation import FakeFrames, FakeMaps, FakeSeeing
+from fakes.simulation import FakeFrames, FakeMaps, FakeSensorScene
+from linden.sensors.runtime.measure import EpisodeSensors
 from linden.server.rpc.context import Context
 
 CAMERA, STREAM = 7, 3
@@ -16,9 +17,11 @@ CAMERA, STREAM = 7, 3
 def test_a_frame_waits_for_the_scene_only_where_somebody_looks_at_it(
     *, is_there: bool, listened: set[int], waits: bool
 ) -> None:
-    episode = SimpleNamespace(actors={CAMERA: SimpleNamespace(stream_id=STREAM)}, eyes={CAMERA: None})
+    episode = SimpleNamespace(actors={CAMERA: SimpleNamespace(stream_id=STREAM)})
+    sensors = EpisodeSensors()
+    sensors.looking[CAMERA] = None
     context = Context(
-        simulation=SimpleNamespace(seeing=FakeSeeing(is_there=is_there), episode=episode),
+        simulation=SimpleNamespace(sensor_scene=FakeSensorScene(is_there=is_there), episode=episode, sensors=sensors),
         maps=FakeMaps(),
         frames=FakeFrames(),
         streams=SimpleNamespace(listened=lambda: listened),

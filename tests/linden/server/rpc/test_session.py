@@ -105,7 +105,7 @@ def test_a_bug_of_ours_is_logged_however_many_kinds_of_warnings_clients_have_cal
         context.warn_once("x" * number)
     context.warn_once("a walker has no wheels")
     assert "a walker has no wheels" not in caplog.messages
-    context.own_up("internal error in tick_cue")
+    context.log_bug("internal error in tick_cue")
     assert caplog.messages[-1] == "internal error in tick_cue"
 
 

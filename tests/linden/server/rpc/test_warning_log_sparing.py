@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from linden.server.rpc.warning_log import CHARACTERS, LINES_OF_A_KIND, LONGEST, PERIOD_S, Sparing
+from linden.server.rpc.warning_log import CHARACTERS, LINES_OF_A_KIND, LONGEST, PERIOD_S, LogFilter
 
 log = logging.getLogger("linden")
 
@@ -20,7 +20,7 @@ class Clock:
 @pytest.fixture
 def clock() -> Iterator[Clock]:
     clock = Clock()
-    sparing = Sparing(clock)
+    sparing = LogFilter(clock)
     before, log.filters[:] = log.filters[:], [sparing]  # a command that ran in this process leaves its own
     yield clock
     log.filters[:] = before

@@ -8,7 +8,8 @@ import numpy as np
 
 from basu.metrics.passengers import felt
 from basu.metrics.passengers.felt import GRIP_MPS2, STEP_MPS2
-from basu.metrics.speeding import TOLERANCE_MPS, limits_mps
+from basu.metrics.scoring import TOLERANCE_MPS
+from basu.metrics.speeding import limits_mps
 from basu.output.report.plots.chart import Line, Mark, Shade, chart
 from basu.output.report.templates import e
 

@@ -160,7 +160,7 @@ def _spiral(curves: Curves, geometry: I64, along: F64) -> F64:
 
 
 def _parametric(curves: Curves, geometry: I64, along: F64) -> F64:
-    """Find the parameter whose arc length is ``along``, as LibCarla does with its table of chords (Geometry.cpp)."""
+    """Find the parameter at the arc length ``along``, as LibCarla does with its table of chords (Geometry.cpp)."""
     u, v = curves.u[geometry], curves.v[geometry]
     table = curves.arc_length_m[geometry]
     step = curves.p_end[geometry] / _PARAMETER_STEPS

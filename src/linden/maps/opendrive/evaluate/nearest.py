@@ -48,7 +48,7 @@ class MiddleLines:
 
 
 def middle_lines(tables: Tables, types: LaneType) -> MiddleLines:
-    """Return the middles of all lanes whose type is among ``types``."""
+    """Return the middles of all lanes of the given ``types``."""
     strips = strips_of(tables, np.flatnonzero(tables.lanes["type_bits"] & int(types)))
     s_m = strips.s_m
     centres = tables.lane_centres(strips.lane, s_m)

@@ -30,7 +30,7 @@ def number(node: Element, attribute: str) -> float:
         value = float(text)
     except ValueError:
         reject(node, attribute, "a number")
-    if not isfinite(value) or "_" in text:  # Python takes 1_000 for a number, nobody else does
+    if not isfinite(value) or "_" in text:  # only Python takes 1_000 for a number
         reject(node, attribute, "a finite number")
     if abs(value) > LARGEST_NUMBER:
         reject(node, attribute, f"between {-LARGEST_NUMBER:g} and {LARGEST_NUMBER:g}")

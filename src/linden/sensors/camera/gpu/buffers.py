@@ -1,10 +1,6 @@
 """Buffers in GPU memory: rays and light of one camera, the state kept between pictures, the inputs of a frame.
 
-Memory on a GPU for the rays of one camera: what they are, what they met, and the light that came along them.
-
-Where the pictures of one view are made on a GPU, beside those of others: memory, and work that was done before.
-
-What a GPU is told for each frame and picture, as arrays that go there together.
+The inputs of a frame and of a picture are packed into one array each, so that each takes one transfer.
 """
 
 from collections.abc import Callable, Hashable, Mapping
@@ -26,12 +22,12 @@ from linden.sensors.camera.picture.surface_points import Places
 from linden.sensors.camera.pixel_rays import directions, pixel_of_ray
 from linden.sensors.camera.spec import CameraSpec, Film
 from linden.sensors.casting.caster import Hits, Rays
-from linden.sensors.casting.gpu_memory import Gpu, Mailbox
-from linden.sensors.casting.warp_caster import Asked, WarpCaster
+from linden.sensors.casting.gpu_memory import Gpu, UploadBuffer
+from linden.sensors.casting.warp_caster import DeviceRays, WarpCaster
 from linden.sensors.view import Look, Seen, first_of_places, id_of_places
 
 
-class Sheet:
+class RayBuffers:
     """Arrays of numba's for up to ``room`` rays; ``asked`` (1,) says how many they are, on the device too."""
 
     def __init__(self, caster: WarpCaster, gpu: Gpu, room: int) -> None:
@@ -49,7 +45,7 @@ class Sheet:
         self.to_sun = Rays(*(gpu.empty((room, 3), np.float32) for _ in range(2)))
         self.light = gpu.empty((room, 3), np.float32)
         count = gpu.view(self.asked)
-        self._questions = [Asked(room, [gpu.view(a) for a in rays], count) for rays in (self.rays, self.to_sun)]
+        self._questions = [DeviceRays(room, [gpu.view(a) for a in rays], count) for rays in (self.rays, self.to_sun)]
         self._hits = [gpu.view(a) for a in self.hits]
         self._masks = [gpu.view(self.facing), gpu.view(self.sunny)]
 
@@ -66,7 +62,7 @@ _EDGES = 6
 """One in so many pixels gets its samples at once; where more are edges, the others follow, lot after lot."""
 
 
-class Shelf:
+class ConstantBuffers:
     """Arrays on a GPU that stay as they are, by what they are for."""
 
     def __init__(self, gpu: Gpu) -> None:
@@ -93,22 +89,22 @@ class Shelf:
         return self.kept(("numbers", enough), lambda: np.arange(enough, dtype=np.int64))
 
 
-class Desk:
+class ViewBuffers:
     """For one view in a frame, and for another one of the same size and lens in the next.
 
     Attributes:
-        gpu: the device, for work that does not wait for that of other desks.
-        sheet: its rays.
+        gpu: the device, for work that does not wait for that of other views.
+        ray_buffers: its rays.
         fine: more rays of some of its pixels.
     """
 
     def __init__(self, caster: WarpCaster, spec: CameraSpec) -> None:
         self.gpu, self._caster = caster.gpu.beside(), caster
         count = len(directions(spec))
-        self.sheet = Sheet(caster, self.gpu, count)
-        self.fine = Sheet(caster, self.gpu, SAMPLES * -(-count // _EDGES))
+        self.ray_buffers = RayBuffers(caster, self.gpu, count)
+        self.fine = RayBuffers(caster, self.gpu, SAMPLES * -(-count // _EDGES))
         self._scratch: dict[str, Any] = {}
-        self._boxes: dict[str, Mailbox] = {}
+        self._boxes: dict[str, UploadBuffer] = {}
         self._captured: dict[Hashable, Any] = {}
         self._captured_for: tuple[int, ...] = ()
 
@@ -118,18 +114,18 @@ class Desk:
             self._scratch[name] = self.gpu.empty(shape, dtype)
         return self._scratch[name]
 
-    def sent(self, box: str, letters: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
+    def sent(self, box: str, inputs: Mapping[str, NDArray[Any]]) -> dict[str, Any]:
         """Return arrays on the GPU, at the same place as those sent before under the name of this box."""
         if box not in self._boxes:
-            self._boxes[box] = Mailbox(self.gpu)
-        return self._boxes[box].send(letters)
+            self._boxes[box] = UploadBuffer(self.gpu)
+        return self._boxes[box].send(inputs)
 
     def run(self, key: Hashable, moves: int, work: Callable[[], None]) -> None:
         """Do ``work``, which only launches kernels on arrays that stay where they are; ``key`` says which work.
 
         The first time it is done as it stands, which compiles and loads what it needs. The second time what it
         launches is captured, and from then on launched by one call: launching from Python takes longer than most
-        kernels run. ``moves`` changes when arrays that are not the desk's lie elsewhere.
+        kernels run. ``moves`` changes when arrays of others lie elsewhere.
         """
         valid_for = (self._caster.trees, moves, *(box.moves for box in self._boxes.values()))
         if valid_for != self._captured_for:
@@ -143,7 +139,7 @@ class Desk:
         self.gpu.replay(self._captured[key])
 
 
-Letters = dict[str, NDArray[Any]]
+Inputs = dict[str, NDArray[Any]]
 Array = Any
 """An array of numba's on the GPU."""
 
@@ -151,7 +147,7 @@ AIR = np.dtype([(name, "f4") if kind is float else (name, "f4", 3) for name, kin
 """``Air`` as the GPU has it."""
 
 
-class Lit(NamedTuple):
+class ViewLights(NamedTuple):
     """What lights a view, as the GPU has it; see ``rgb.Light``."""
 
     places: Places
@@ -164,7 +160,7 @@ class Lit(NamedTuple):
     view: Array  # (3, 4)
 
 
-def of_light(light: Light, film: Film, pose: Transform) -> Letters:
+def of_light(light: Light, film: Film, pose: Transform) -> Inputs:
     """Return what lights a view, and what a film makes of it."""
     air, grid = light.air, light.lamps
     return {
@@ -180,13 +176,15 @@ def of_light(light: Light, film: Film, pose: Transform) -> Letters:
     }
 
 
-def lit(places: Places, sent: dict[str, Array]) -> Lit:
+def lit(places: Places, sent: dict[str, Array]) -> ViewLights:
     """Return what ``of_light`` has become on the GPU."""
     lamps = sent["first"], sent["number"], sent["lamps"]
-    return Lit(places, lamps=lamps, **{name: sent[name] for name in ("sun", "air", "corner", "factor", "rain", "view")})
+    return ViewLights(
+        places, lamps=lamps, **{name: sent[name] for name in ("sun", "air", "corner", "factor", "rain", "view")}
+    )
 
 
-def of_owners(seen: Seen) -> Letters:
+def of_owners(seen: Seen) -> Inputs:
     """Return the first face and the actor of each place, and the id of each object."""
     return {
         "first": first_of_places(seen.faces, seen.instances),
@@ -195,7 +193,7 @@ def of_owners(seen: Seen) -> Letters:
     }
 
 
-def of_motion(look: Look) -> Letters:
+def of_motion(look: Look) -> Inputs:
     """Return where bodies and the camera came from."""
     before, now = motion.eye(look.before), motion.eye(look.pose)
     return {

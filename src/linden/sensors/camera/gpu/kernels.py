@@ -2,7 +2,7 @@
 
 The loops of ``labels``, ``motion`` and ``picture`` go from ``start`` to ``stop``; here they go from one number to the
 next. What stands here besides is what only a GPU wants: stages joined, so that fewer are launched, and what the CPU
-leaves to numpy. ``asked`` (1,) says how many rays of a sheet there are, for the CPU does not know in time.
+leaves to numpy. ``asked`` (1,) says how many rays of a ray_buffers there are, for the CPU does not know in time.
 
 numba renews the kept machine code of a kernel when this file changes, not when one that it calls does: so all kernels
 are made by ``_build``, which closes over a fingerprint of the others.

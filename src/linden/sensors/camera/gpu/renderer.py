@@ -1,6 +1,6 @@
-"""Makes the pictures of cameras on a GPU, by the stages of the CPU's: nothing but the picture comes back.
+"""The renderer on a GPU: it uses the stages of the CPU's renderer, and only the picture comes back.
 
-A picture that is expected is begun: then the pictures of a frame are made side by side, each at a desk of its own.
+Expected pictures are begun first. So the pictures of a frame are made side by side, each with buffers of its own.
 """
 
 from collections import defaultdict
@@ -11,7 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.sensors.camera import optical_flow as motion
-from linden.sensors.camera.gpu.buffers import Array, Desk, Letters, Shelf, lit, of_light, of_motion, of_owners, posed
+from linden.sensors.camera.gpu.buffers import (
+    Array,
+    ConstantBuffers,
+    Inputs,
+    ViewBuffers,
+    lit,
+    of_light,
+    of_motion,
+    of_owners,
+    posed,
+)
 from linden.sensors.camera.gpu.kernels import KERNELS
 from linden.sensors.camera.gpu.shading import Shading
 from linden.sensors.camera.picture.rgb import light_of, looks_of, places_of
@@ -19,7 +29,7 @@ from linden.sensors.camera.picture.smooth_normals import Relief
 from linden.sensors.camera.picture.sun_shadows import shines
 from linden.sensors.camera.picture.surface_points import Places
 from linden.sensors.camera.spec import CameraSpec, Film, Picture
-from linden.sensors.casting.gpu_memory import Mailbox
+from linden.sensors.casting.gpu_memory import UploadBuffer
 from linden.sensors.casting.warp_caster import WarpCaster
 from linden.sensors.view import Faces, Look, Seen
 
@@ -28,14 +38,14 @@ Waiting = Callable[[], Pixels]
 Thing = TypeVar("Thing")
 
 
-class GpuDarkroom:
-    """The GPU's pictures of what one caster sees; see ``linden.sensors.camera.renderer.Darkroom``."""
+class GpuRenderer:
+    """The GPU's pictures of what one caster sees; see ``linden.sensors.camera.renderer.Renderer``."""
 
     def __init__(self, caster: WarpCaster) -> None:
         self._caster, self._gpu = caster, caster.gpu
-        self._shelf = Shelf(caster.gpu)
-        self._boxes: dict[str, Mailbox] = defaultdict(lambda: Mailbox(caster.gpu))
-        self._desks: dict[CameraSpec, list[Desk]] = defaultdict(list)
+        self._constants = ConstantBuffers(caster.gpu)
+        self._boxes: dict[str, UploadBuffer] = defaultdict(lambda: UploadBuffer(caster.gpu))
+        self._buffers_of_views: dict[CameraSpec, list[ViewBuffers]] = defaultdict(list)
         self._taken: dict[CameraSpec, int] = {}
         self._of_frame: dict[Hashable, Any] = {}
         self._frame: dict[Hashable, object] | None = None
@@ -54,78 +64,82 @@ class GpuDarkroom:
         """Return what waits for a picture, once begun in a frame."""
 
         def begin() -> Waiting:
-            desk = self._desk(picture.spec, look)
+            view_buffers = self._view_buffers(picture.spec, look)
             if picture.film is not None:
-                return self._shine(desk, picture.spec, picture.film, look)
-            return self._paint(picture.kind, desk, picture.spec, look)
+                return self._shine(view_buffers, picture.spec, picture.film, look)
+            return self._paint(picture.kind, view_buffers, picture.spec, look)
 
         return self._once((picture, look.pose, look.before), look, begin)
 
-    def _paint(self, kind: str, desk: Desk, spec: CameraSpec, look: Look) -> Waiting:
+    def _paint(self, kind: str, view_buffers: ViewBuffers, spec: CameraSpec, look: Look) -> Waiting:
         """Begin a picture of what was measured."""
-        pixel, image = self._shelf.pixel(spec), self._image(desk, spec, kind)
-        columns = self._columns(kind, desk, spec, look)
-        kernel, count = getattr(KERNELS, kind), desk.sheet.room
-        desk.run(kind, self._moves, lambda: desk.gpu.launch(kernel, count, *columns, pixel, image, count))
-        return desk.gpu.fetching(image)
+        pixel, image = self._constants.pixel(spec), self._image(view_buffers, spec, kind)
+        columns = self._columns(kind, view_buffers, spec, look)
+        kernel, count = getattr(KERNELS, kind), view_buffers.ray_buffers.room
+        view_buffers.run(
+            kind, self._moves, lambda: view_buffers.gpu.launch(kernel, count, *columns, pixel, image, count)
+        )
+        return view_buffers.gpu.fetching(image)
 
-    def _columns(self, kind: str, desk: Desk, spec: CameraSpec, look: Look) -> tuple[Any, ...]:
+    def _columns(self, kind: str, view_buffers: ViewBuffers, spec: CameraSpec, look: Look) -> tuple[Any, ...]:
         """Return what the kernel of a kind is given before the picture."""
-        sheet = desk.sheet
+        ray_buffers = view_buffers.ray_buffers
         if kind == "depth":
-            return sheet.hits.distance_m, self._shelf.directions(spec)
+            return ray_buffers.hits.distance_m, self._constants.directions(spec)
         if kind == "normals":
-            return sheet.hits, desk.sent("view", {"view": posed(look.pose)})["view"]
+            return ray_buffers.hits, view_buffers.sent("view", {"view": posed(look.pose)})["view"]
         if kind == "flow":
-            scale = self._shelf.kept(("scale", spec), lambda: motion.scale(spec))
-            return sheet.rays, sheet.hits, *desk.sent("motion", of_motion(look)).values(), scale
+            scale = self._constants.kept(("scale", spec), lambda: motion.scale(spec))
+            return ray_buffers.rays, ray_buffers.hits, *view_buffers.sent("motion", of_motion(look)).values(), scale
         faces, _ = self._on(look.seen)
-        whose = self._once("owners", look, lambda: self._sent("owners", of_owners(look.seen)))
-        desk.gpu.after(self._gpu)
+        owners = self._once("owners", look, lambda: self._sent("owners", of_owners(look.seen)))
+        view_buffers.gpu.after(self._gpu)
         if kind == "semantic":
-            return sheet.hits, whose["first"], faces.tag
-        return sheet.hits, whose["first"], whose["actor_id"], faces, whose["object_id"]
+            return ray_buffers.hits, owners["first"], faces.tag
+        return ray_buffers.hits, owners["first"], owners["actor_id"], faces, owners["object_id"]
 
-    def _shine(self, desk: Desk, spec: CameraSpec, film: Film, look: Look) -> Waiting:
+    def _shine(self, view_buffers: ViewBuffers, spec: CameraSpec, film: Film, look: Look) -> Waiting:
         """Begin a picture of light."""
         stage = self._on(look.seen)
         places = self._once("places", look, lambda: Places(**self._sent("places", places_of(look.seen)._asdict())))
         here = light_of(look.pose, look.seen, places)
-        desk.gpu.after(self._gpu)
-        light = lit(here.places, desk.sent("light", of_light(here, film, look.pose)))
-        image = self._image(desk, spec, "coloured")
-        shading = Shading(desk, self._shelf, spec, film, *stage, light, image, sunny=shines(here.air))
-        desk.run(("coloured", film, shading.sunny), self._moves, shading.whole)
-        found, made = desk.gpu.fetching(shading.found), desk.gpu.fetching(image)
+        view_buffers.gpu.after(self._gpu)
+        light = lit(here.places, view_buffers.sent("light", of_light(here, film, look.pose)))
+        image = self._image(view_buffers, spec, "coloured")
+        shading = Shading(view_buffers, self._constants, spec, film, *stage, light, image, sunny=shines(here.air))
+        view_buffers.run(("coloured", film, shading.sunny), self._moves, shading.whole)
+        found, made = view_buffers.gpu.fetching(shading.found), view_buffers.gpu.fetching(image)
 
         def picture() -> Pixels:
             many = int(found()[0])
             if many <= shading.edges_at_once:
                 return made()
             shading.rest(many)
-            return desk.gpu.fetching(image)()
+            return view_buffers.gpu.fetching(image)()
 
         return picture
 
-    def _desk(self, spec: CameraSpec, look: Look) -> Desk:
+    def _view_buffers(self, spec: CameraSpec, look: Look) -> ViewBuffers:
         """Return where the pictures of a view are made, its rays cast."""
 
-        def cast() -> Desk:
+        def cast() -> ViewBuffers:
             taken = self._taken.get(spec, 0)
             self._taken[spec] = taken + 1
-            if taken == len(self._desks[spec]):
-                self._desks[spec].append(Desk(self._caster, spec))
-            desk = self._desks[spec][taken]
-            sheet, towards = desk.sheet, self._shelf.directions(spec)
-            desk.gpu.after(self._gpu)
-            view = desk.sent("aim", {"view": posed(look.pose)})["view"]
+            if taken == len(self._buffers_of_views[spec]):
+                self._buffers_of_views[spec].append(ViewBuffers(self._caster, spec))
+            view_buffers = self._buffers_of_views[spec][taken]
+            ray_buffers, towards = view_buffers.ray_buffers, self._constants.directions(spec)
+            view_buffers.gpu.after(self._gpu)
+            view = view_buffers.sent("aim", {"view": posed(look.pose)})["view"]
 
             def work() -> None:
-                desk.gpu.launch(KERNELS.aim, sheet.room, towards, view, sheet.rays, sheet.room)
-                sheet.cast()
+                view_buffers.gpu.launch(
+                    KERNELS.aim, ray_buffers.room, towards, view, ray_buffers.rays, ray_buffers.room
+                )
+                ray_buffers.cast()
 
-            desk.run("view", self._moves, work)
-            return desk
+            view_buffers.run("view", self._moves, work)
+            return view_buffers
 
         return self._once(("view", spec, look.pose), look, cast)
 
@@ -133,15 +147,19 @@ class GpuDarkroom:
         """Return what is made once in a frame, for all its cameras."""
         if self._frame is not look.shared:
             self._frame, self._of_frame, self._taken = look.shared, {}, {}
-            for desk in (desk for desks in self._desks.values() for desk in desks):
-                self._gpu.after(desk.gpu)
+            for view_buffers in (
+                view_buffers
+                for buffers_of_views in self._buffers_of_views.values()
+                for view_buffers in buffers_of_views
+            ):
+                self._gpu.after(view_buffers.gpu)
         if key not in self._of_frame:
             self._of_frame[key] = make()
         found: Thing = self._of_frame[key]
         return found
 
-    def _sent(self, box: str, letters: Letters) -> dict[str, Array]:
-        return self._boxes[box].send(letters)
+    def _sent(self, box: str, inputs: Inputs) -> dict[str, Array]:
+        return self._boxes[box].send(inputs)
 
     @property
     def _moves(self) -> int:
@@ -154,6 +172,6 @@ class GpuDarkroom:
         return self._stage
 
     @staticmethod
-    def _image(desk: Desk, spec: CameraSpec, kind: str) -> Array:
+    def _image(view_buffers: ViewBuffers, spec: CameraSpec, kind: str) -> Array:
         channels, dtype = (2, np.float32) if kind == "flow" else (4, np.uint8)
-        return desk.scratch(kind, (spec.height_px * spec.width_px, channels), dtype)
+        return view_buffers.scratch(kind, (spec.height_px * spec.width_px, channels), dtype)

@@ -63,7 +63,7 @@ def read_losses(description: ActorDescription) -> Losses:
 
 
 class SemanticLidar:
-    """``sensor.lidar.ray_cast_semantic``: nothing lost, and of each point whose it is."""
+    """``sensor.lidar.ray_cast_semantic``: no losses; each point has the actor and the tag of its face."""
 
     def __init__(self, description: ActorDescription) -> None:
         self._fan = read_fan(description)
@@ -84,7 +84,7 @@ class SemanticLidar:
 
 
 def owners_of(seen: Seen) -> Owners:
-    """Return whose each face is; scenery has the id 0, as in CARLA."""
+    """Return the owner of each face; scenery has the id 0, as in CARLA."""
     faces = seen.faces
     first, actor = first_of_places(faces, seen.instances), id_of_places(seen.instances)
     return Owners(first, actor, faces.tag, faces.object, actor_of_objects(seen))

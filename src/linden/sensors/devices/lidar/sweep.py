@@ -104,7 +104,7 @@ class Owners(NamedTuple):
 
 
 def semantic_points_of(fired: Fired, direction: F32, hits: Hits, owners: Owners) -> tuple[U32, NDArray[np.void]]:
-    """Return how many points each channel has, and the points (M,) of SEMANTIC_POINT; all rays are asked for."""
+    """Return how many points each channel has, and the points (M,) of SEMANTIC_POINT; all rays are cast."""
     count, points = np.zeros(len(fired.up), np.uint32), np.empty(len(direction), SEMANTIC_POINT)
     columns = points.view(np.float32).reshape(-1, 6)
     first, actor, tag, thing, actor_of_thing = owners

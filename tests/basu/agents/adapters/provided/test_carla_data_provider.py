@@ -38,13 +38,13 @@ def test_the_hero_is_the_vehicle_under_test() -> None:
     assert dict(CarlaDataProvider.get_actors()) == {7: HERO}
 
 
-def test_who_was_not_registered_is_not_found_by_id() -> None:
+def test_an_actor_that_was_not_registered_is_not_found_by_id() -> None:
     assert CarlaDataProvider.get_actor_by_id(7) is HERO
     assert CarlaDataProvider.get_actor_by_id(8) is None
     assert not CarlaDataProvider.actor_id_exists(8)
 
 
-def test_everybody_is_asked_for_once_a_step(begun: World) -> None:
+def test_all_actors_is_read_once_a_step(begun: World) -> None:
     assert CarlaDataProvider.get_all_actors() == CarlaDataProvider.get_all_actors() == [HERO, OTHER]
     assert begun.asked == 1
     CarlaDataProvider.on_carla_tick()

@@ -18,7 +18,7 @@ from basu.agents.builtin.driving.manner import (
     slowing_distance_m,
 )
 from basu.agents.builtin.driving.planner import FIRM, OVERSPEED_MPS
-from basu.metrics.speeding import TOLERANCE_MPS
+from basu.metrics.scoring import TOLERANCE_MPS
 
 LIMITS = Limits(0.9, 0.8)
 

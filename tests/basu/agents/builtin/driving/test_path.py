@@ -51,7 +51,7 @@ def test_a_closed_loop_begins_at_its_beginning() -> None:
     assert path.find(0.3, 0.0, 0.0).s_m < 1.0
 
 
-def test_the_other_side_of_a_street_driven_both_ways_is_told_by_the_heading() -> None:
+def test_the_other_side_of_a_street_driven_both_ways_is_known_by_the_heading() -> None:
     path = path_of(bends((60.0, 0.0), (4.0 * math.pi, 0.25), (60.0, 0.0)))
     there, back = path.find(30.0, 4.0, 0.0), path.find(30.0, 4.0, math.pi)
     assert there.s_m == pytest.approx(30.0, abs=0.6)

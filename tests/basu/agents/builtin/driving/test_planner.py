@@ -38,7 +38,7 @@ def test_a_mark_is_reached_in_comfort_and_to_the_hand(mark_m: float, limit_mps: 
     assert np.abs(jerk).max() <= 1.6 * COMFORT.jerk_mps3
 
 
-def test_nobody_nods_when_the_vehicle_comes_to_rest() -> None:
+def test_no_actor_nods_when_the_vehicle_comes_to_rest() -> None:
     _, speed_mps, accel = driven(60.0, Urgency.FIRM)
     moving = np.flatnonzero(speed_mps > 0.0)
     assert abs(accel[moving[-1]]) < 0.15

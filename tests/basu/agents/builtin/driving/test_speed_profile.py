@@ -41,7 +41,9 @@ def test_no_speed_is_above_a_limit(pieces: list[tuple[float, float]], posted_mps
 
 
 @given(pieces=PIECES)
-def test_whoever_keeps_to_the_slowdowns_keeps_to_every_limit_on_the_way(pieces: list[tuple[float, float]]) -> None:
+def test_a_driver_that_keeps_to_the_slowdowns_keeps_to_every_limit(
+    pieces: list[tuple[float, float]],
+) -> None:
     path, profile = laid_out(pieces, 11.0, 9.0)
     reachable = reachable_mps(np.array(profile.limit_mps), SPACING_M, BRAKING_MPS2)
     for i, s_m in enumerate(path.s_m):

@@ -30,7 +30,7 @@ def test_it_has_an_extent_and_a_time() -> None:
     assert (block.stood_s, block.patience_factor, block.least_patience_s) == (2.0, 1.0, 0.0)
 
 
-def test_who_moves_is_beside_the_lane_behind_or_on_foot_is_none() -> None:
+def test_an_actor_that_moves_is_beside_the_lane_behind_or_on_foot_is_none() -> None:
     assert seen([car(80.0, speed_mps=1.0)]) is None
     assert seen([car(80.0, y_m=3.0)]) is None
     assert seen([car(40.0)]) is None

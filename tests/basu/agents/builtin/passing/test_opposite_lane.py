@@ -33,7 +33,7 @@ def test_an_empty_street_is_free() -> None:
 
 
 @pytest.mark.parametrize("speed_mps", [3.0, 8.0, 11.0])
-def test_who_comes_must_be_farther_away_than_it_gets_meanwhile(speed_mps: float) -> None:
+def test_an_actor_that_comes_must_be_farther_away_than_it_gets_meanwhile(speed_mps: float) -> None:
     driver = make_behavioral(make_route(line(600.0)))
     path = driver.task.path
     need = Need(make_detour(path, EXTENT, -2.7, NORMAL, 4.5), frozenset(), 0.9, 3.0, 350.0)
@@ -43,11 +43,11 @@ def test_who_comes_must_be_farther_away_than_it_gets_meanwhile(speed_mps: float)
     assert free(car(136.0 + 2.2 + 11.2 * within_s + 5.0, -3.2, speed_mps, 180.0))
 
 
-def test_who_is_past_us_or_on_another_street_or_leads_our_way_does_not_matter() -> None:
+def test_an_actor_that_is_past_us_or_on_another_street_or_leads_our_way_does_not_matter() -> None:
     assert free(car(60.0, -3.2, 8.0, 180.0), car(160.0, -14.0, 8.0, 180.0), car(160.0, 0.0, 8.0, 0.0))
 
 
-def test_who_overtakes_us_goes_first() -> None:
+def test_an_actor_that_overtakes_us_goes_first() -> None:
     assert not free(car(65.0, -3.2, 8.0, 0.0))
 
 
@@ -57,10 +57,10 @@ def test_what_stands_in_the_other_lane_blocks_it_only_there() -> None:
     assert free(body_at(Kind.PROP, 115.0, -5.5, number=8))
 
 
-def test_who_moves_about_the_next_junction_may_turn_in() -> None:
+def test_an_actor_that_moves_about_the_next_junction_may_turn_in() -> None:
     crosser = car(162.0, -12.0, 5.0, 90.0)
     assert not free(crosser, junction_m=155.0)
-    assert free(crosser)  # without a junction it is in somebody's garden
+    assert free(crosser)  # without a junction it is in a garden
 
 
 def test_what_is_not_seen_may_come_at_the_limit() -> None:

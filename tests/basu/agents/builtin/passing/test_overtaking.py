@@ -75,7 +75,7 @@ def test_a_stream_of_oncoming_cars_is_waited_out_where_one_can_still_swing_out()
 
 @pytest.mark.parametrize("turns_up_s", [18.5, 20.0, 23.0])
 @pytest.mark.parametrize("turns_up_m", [150.0, 200.0])
-def test_one_who_turns_up_late_is_never_hit(turns_up_s: float, turns_up_m: float) -> None:
+def test_one_that_turns_up_late_is_never_hit(turns_up_s: float, turns_up_m: float) -> None:
     """It comes out of a drive while the shuttle is on its way round, and brakes at 3 m/s² for who comes towards it."""
 
     class Late:
@@ -123,7 +123,7 @@ def test_a_queue_before_a_stop_sign_is_not_overtaken() -> None:
     assert 1.0 < 124.0 - 2.2 - (log.x_m[-1] + SHUTTLE_BODY.front_m) < 3.0  # closed up
 
 
-def test_nobody_is_overtaken_who_stands_on_foot_in_a_jam_or_in_a_junction() -> None:
+def test_no_actor_is_overtaken_that_stands_on_foot_in_a_jam_or_in_a_junction() -> None:
     walker = body_at(Kind.WALKER, PARKED_AT_M, 0.0)
     jam = [body_at(Kind.VEHICLE, 120.0 + 7.0 * k, 0.0, number=30 + k) for k in range(5)]
     junction = make_route(line(300.0), junctions_s_m=[(126.0, 140.0)])
@@ -140,7 +140,7 @@ def test_without_a_lane_to_the_left_one_stays_behind() -> None:
     assert log.speed_mps[-1] == 0.0
 
 
-def test_what_only_reaches_into_the_lane_is_passed_within_it_whoever_comes() -> None:
+def test_what_only_reaches_into_the_lane_is_passed_within_it_despite_oncoming_traffic() -> None:
     wide = make_route(line(300.0))
     wide = type(wide)(**{**{f: getattr(wide, f) for f in wide.__slots__}, "lane_width_m": np.full(301, 4.4)})
     cone = body_at(Kind.PROP, PARKED_AT_M, 1.6)
@@ -161,7 +161,7 @@ def test_a_leader_that_stops_for_a_moment_is_followed_not_passed() -> None:
     assert log.x_m[-1] > 150.0
 
 
-def test_one_who_sets_off_while_being_passed_is_let_go_first() -> None:
+def test_one_that_sets_off_while_being_passed_is_let_go_first() -> None:
     plant = Plant(0.0, 0.0, 0.0)
     at: list[float] = [PARKED_AT_M, 0.0]
 

@@ -14,7 +14,7 @@ PATH = make_path(POINTS_M, POINTS_M[:, 0])
 
 
 def notices(behind: Other | None, seconds: float, *, tailgating: Tailgating | None = None, from_s: float = 0.0) -> bool:
-    """After that long at 6 m/s with somebody who keeps behind in the same place relative to us."""
+    """After that long at 6 m/s with an actor that keeps its place behind us."""
     tailgating = tailgating or Tailgating(SHUTTLE_BODY, 1.0)
     place = PATH.find(100.0, 0.0, 0.0)
     for k in range(round(seconds / 0.05) + 1):
@@ -28,7 +28,7 @@ def follower(gap_m: float, y_m: float = 0.0, yaw_deg: float = 0.0) -> Other:
     return body_at(Kind.VEHICLE, 100.0 - SHUTTLE_BODY.rear_m - 2.2 - gap_m, y_m, velocity_mps=velocity, yaw_deg=yaw_deg)
 
 
-def test_who_stays_close_is_noticed_after_a_moment_and_forgotten_after_another() -> None:
+def test_an_actor_that_stays_close_is_noticed_after_a_moment_and_forgotten_after_another() -> None:
     tailgating = Tailgating(SHUTTLE_BODY, 1.0)
     assert not notices(follower(4.0), NOTICED_S - 0.1, tailgating=tailgating)
     assert notices(follower(4.0), 0.5, tailgating=tailgating, from_s=NOTICED_S)
@@ -39,7 +39,7 @@ def test_who_stays_close_is_noticed_after_a_moment_and_forgotten_after_another()
 @pytest.mark.parametrize(
     "behind", [follower(6.5), follower(4.0, y_m=-3.2), follower(4.0, yaw_deg=180.0), follower(-30.0)]
 )
-def test_who_keeps_off_drives_elsewhere_comes_towards_us_or_is_ahead_is_not_meant(behind: Other) -> None:
+def test_an_actor_that_keeps_off_drives_elsewhere_comes_towards_us_or_is_ahead_is_not_meant(behind: Other) -> None:
     assert not notices(behind, 5.0)
 
 

@@ -116,7 +116,7 @@ def test_the_aggressive_takes_gaps_that_the_cautious_leaves() -> None:
     assert left_s["aggressive"] < left_s["normal"] <= left_s["cautious"]
 
 
-def test_who_turns_left_lets_those_pass_who_come_towards_it() -> None:
+def test_an_actor_that_turns_left_lets_the_ones_pass_that_come_towards_it() -> None:
     route = make_route(bends((60.0, 0.0), (12.0, -math.pi / 24), (60.0, 0.0)), junctions_s_m=[(58.0, 74.0)])
 
     def cars(time_s: float) -> list[Other]:
@@ -132,7 +132,7 @@ def test_who_turns_left_lets_those_pass_who_come_towards_it() -> None:
     assert log.s_m[-1] > 110.0
 
 
-def test_who_turns_left_before_an_empty_street_does_not_stop() -> None:
+def test_an_actor_that_turns_left_before_an_empty_street_does_not_stop() -> None:
     route = make_route(bends((60.0, 0.0), (12.0, -math.pi / 24), (60.0, 0.0)), junctions_s_m=[(58.0, 74.0)])
     log = drive(make_behavioral(route), Plant(0.0, 0.0, 0.0), 40.0)
     assert log.speed_mps[(log.s_m > 40.0) & (log.s_m < 80.0)].min() > 1.4

@@ -106,7 +106,7 @@ def test_driven_a_leader_that_brakes_to_a_stop_is_stopped_behind(manner: Manner,
     assert log.speed_mps[-1] == 0.0
     assert gaps_m[-1] < 6.0
     if brakes_mps2 <= 1.0:
-        assert -log.accel_mps2.min() < 2.2  # an ordinary stop is an ordinary stop for who follows, too
+        assert -log.accel_mps2.min() < 2.2  # an ordinary stop is an ordinary stop for a follower, too
 
 
 @given(st.floats(0.0, 40.0), st.floats(0.0, 15.0))
@@ -135,7 +135,7 @@ class Leader:
 
 
 def least_gap_m(log: Log, others: Callable[[float], list[Other]]) -> float:
-    """The least distance from the front bumper to who is within the strip that the shuttle sweeps; inf if nobody."""
+    """The least distance from the front bumper to an actor in the strip that the shuttle sweeps; inf without one."""
     gaps = [np.inf]
     for time_s, x_m in zip(log.time_s, log.x_m, strict=True):
         gaps += [
@@ -190,7 +190,7 @@ def test_when_the_leader_goes_on_so_does_the_shuttle() -> None:
 
 @pytest.mark.parametrize("start_s", [6.0, 8.0, 9.0, 10.0, 11.0, 12.0])
 @pytest.mark.parametrize("walks_mps", [0.9, 1.4, 2.5])
-def test_whoever_crosses_on_foot_is_not_touched(start_s: float, walks_mps: float) -> None:
+def test_an_actor_that_crosses_on_foot_is_not_touched(start_s: float, walks_mps: float) -> None:
     def walker(time_s: float) -> list[Other]:
         walking = time_s >= start_s
         y_m = -6.0 + walks_mps * max(0.0, time_s - start_s)
@@ -202,7 +202,7 @@ def test_whoever_crosses_on_foot_is_not_touched(start_s: float, walks_mps: float
 
 
 @pytest.mark.parametrize("ahead_m", [7.0, 8.5, 11.0, 15.0])
-def test_who_steps_out_is_braked_for_as_hard_as_it_takes(ahead_m: float) -> None:
+def test_an_actor_that_steps_out_is_braked_for_as_hard_as_it_takes(ahead_m: float) -> None:
     # 6.7 m/s: within the drive model's limits 7 m are just enough to stop
     driver, plant = make_driver(make_route(line(200.0))), Plant(40.0, 0.0, 0.0, 6.7)
     at_m = 40.0 + FRONT_M + ahead_m
@@ -221,7 +221,7 @@ def test_a_car_in_the_opposite_lane_of_a_bend_is_no_reason_to_brake() -> None:
     assert met.s_m[-1] == pytest.approx(free.s_m[-1], abs=0.5)
 
 
-def test_whoever_is_behind_is_not_looked_at() -> None:
+def test_an_actor_behind_is_not_looked_at() -> None:
     log = drive(
         make_driver(make_route(line(300.0))), Plant(50.0, 0.0, 0.0), 20.0, lambda _: [body_at(Kind.VEHICLE, 44.0, 0.0)]
     )
@@ -229,7 +229,7 @@ def test_whoever_is_behind_is_not_looked_at() -> None:
 
 
 @pytest.mark.parametrize("brakes_at_s", [14.0, 15.0, 16.0])
-def test_who_comes_towards_a_behavioral_driver_in_its_lane_is_given_room_to_stop(brakes_at_s: float) -> None:
+def test_an_actor_that_comes_towards_a_behavioral_driver_in_its_lane_is_given_room_to_stop(brakes_at_s: float) -> None:
     def wrong_way(time_s: float) -> list[Other]:
         braked_s = min(max(0.0, time_s - brakes_at_s), 2.0)
         x_m = 220.0 - 8.0 * min(time_s, brakes_at_s) - 8.0 * braked_s + 2.0 * braked_s**2
@@ -241,7 +241,7 @@ def test_who_comes_towards_a_behavioral_driver_in_its_lane_is_given_room_to_stop
     assert least_gap_m(log, wrong_way) > 1.0
 
 
-def test_who_cuts_the_corner_into_the_other_lane_is_not_braked_for() -> None:
+def test_an_actor_that_cuts_the_corner_into_the_other_lane_is_not_braked_for() -> None:
     cutting = lambda _: [body_at(Kind.VEHICLE, 110.0, -2.2, velocity_mps=(-10.4, -1.7), yaw_deg=189.0)]  # noqa: E731
     log = drive(make_behavioral(make_route(line(300.0))), Plant(70.0, 0.0, 0.0, 6.7), 0.5, cutting)
     assert log.speed_mps.min() > 6.4

@@ -28,7 +28,7 @@ def ask(stop: StopSign, time_s: float, front_s_m: float, speed_mps: float, *othe
     return stop.step(Ego(time_s, front_s_m - FRONT_M, 0.0, 0.0, speed_mps), front_s_m, others) is not None
 
 
-def test_one_rests_at_the_line_and_goes_on_when_nobody_comes() -> None:
+def test_one_rests_at_the_line_and_goes_on_when_no_actor_comes() -> None:
     stop = sign()
     assert ask(stop, 0.0, 30.0, 5.0)
     assert ask(stop, 5.0, AT_LINE_M, 0.0)
@@ -67,33 +67,33 @@ def test_crossing_traffic_goes_first() -> None:
         assert waits == (y_m < 2.5), y_m
 
 
-def test_who_stood_there_first_is_let_go_but_not_for_ever() -> None:
+def test_an_actor_that_stood_there_first_is_let_go_but_not_for_ever() -> None:
     stop, stood = sign(), body_at(Kind.VEHICLE, 56.0, -7.0, yaw_deg=90.0)
     assert ask(stop, 0.0, AT_LINE_M, 0.0, stood)
     assert ask(stop, COURTESY_S - 0.1, AT_LINE_M, 0.0, stood)
     assert not ask(stop, COURTESY_S + 0.1, AT_LINE_M, 0.0, stood)
 
 
-def test_who_sets_off_first_is_waited_for_until_it_is_through() -> None:
+def test_an_actor_that_sets_off_first_is_waited_for_until_it_is_through() -> None:
     stop = sign()
     ask(stop, 0.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, -7.0, yaw_deg=90.0))
     assert ask(stop, 2.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, -5.0, velocity_mps=(0.0, 2.0), yaw_deg=90.0))
     assert not ask(stop, 6.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, 9.0, velocity_mps=(0.0, 4.0), yaw_deg=90.0))
 
 
-def test_who_arrives_later_and_stands_does_not_hold_one_up() -> None:
+def test_an_actor_that_arrives_later_and_stands_does_not_hold_one_up() -> None:
     stop = sign()
     ask(stop, 0.0, AT_LINE_M, 0.0)
     assert not ask(stop, 2.0, AT_LINE_M, 0.0, body_at(Kind.VEHICLE, 56.0, -7.0, yaw_deg=90.0))
 
 
-def test_a_parked_car_along_the_street_is_nobody_to_wait_for() -> None:
+def test_a_parked_car_along_the_street_is_no_actor_to_wait_for() -> None:
     stop, parked = sign(), body_at(Kind.VEHICLE, 57.0, 4.5)
     ask(stop, 0.0, AT_LINE_M, 0.0, parked)
     assert not ask(stop, REST_S + 0.05, AT_LINE_M, 0.0, parked)
 
 
-def test_who_comes_from_behind_and_who_comes_towards_us_in_its_lane_do_not_cross() -> None:
+def test_an_actor_that_comes_from_behind_and_one_that_comes_towards_us_in_its_lane_do_not_cross() -> None:
     stop = sign()
     behind = body_at(Kind.VEHICLE, 35.0, 0.0, velocity_mps=(5.0, 0.0), number=8)
     oncoming = body_at(Kind.VEHICLE, 75.0, -3.2, velocity_mps=(-8.0, 0.0), yaw_deg=180.0, number=9)
@@ -151,7 +151,7 @@ def test_an_empty_roundabout_is_entered_without_stopping() -> None:
     assert not any(ask_yield_sign(yielding, 0.1 * k, 30.0 + 0.25 * k, 2.5) for k in range(90))
 
 
-def test_who_circulates_towards_the_entry_goes_first() -> None:
+def test_an_actor_that_circulates_towards_the_entry_goes_first() -> None:
     assert ask_yield_sign(yield_sign(), 0.0, 45.0, 2.5, circulating(-100.0))
 
 

@@ -68,13 +68,13 @@ def test_what_a_light_asks_for(shows: Light, front_s_m: float, speed_mps: float,
     assert (TrafficLight(LINE_S_M, "1").step(shows, front_s_m, speed_mps) is not None) == asks
 
 
-def test_who_drives_through_yellow_is_not_stopped_by_the_red_that_follows() -> None:
+def test_an_actor_that_drives_through_yellow_is_not_stopped_by_the_red_that_follows() -> None:
     light = TrafficLight(LINE_S_M, "1")
     assert light.step(Light.YELLOW, 94.0, 6.0) is None
     assert light.step(Light.RED, 97.0, 6.0) is None
 
 
-def test_who_has_begun_to_stop_at_yellow_goes_on_stopping() -> None:
+def test_an_actor_that_has_begun_to_stop_at_yellow_goes_on_stopping() -> None:
     light = TrafficLight(LINE_S_M, "1")
     assert light.step(Light.YELLOW, 80.0, 6.0) is not None
     assert light.step(Light.YELLOW, 92.0, 3.5) is not None

@@ -1,4 +1,4 @@
-"""Claims about report.html in a real browser: it asks nobody, opens its evidence, fits on paper and phones."""
+"""Claims about report.html in a real browser: it makes no request, opens its evidence, fits on paper and phones."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_it_asks_nobody_for_anything_and_does_not_complain(context: BrowserContext, file: Path) -> None:
+def test_it_asks_no_actor_for_anything_and_does_not_complain(context: BrowserContext, file: Path) -> None:
     page = context.new_page()
     asked, said = [], []
     page.on("request", lambda request: asked.append(request.url))

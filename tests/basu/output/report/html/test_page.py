@@ -24,7 +24,7 @@ def test_nothing_in_it_points_outside() -> None:
     assert "url(" not in page
 
 
-def test_the_browser_is_told_to_ask_nobody() -> None:
+def test_the_browser_is_reported_to_ask_no_actor() -> None:
     page = report(record(crashing())).decode()
     assert "default-src 'none'" in page
     assert "unsafe-inline'; script-src 'sha256-" in page

@@ -19,7 +19,7 @@ def test_ticks_are_round_and_inside(low: float, high: float, expected: list[floa
     assert ticks(low, high) == pytest.approx(expected)
 
 
-def test_long_times_are_told_in_minutes() -> None:
+def test_long_times_are_reported_in_minutes() -> None:
     assert [clock(t_s, long=True) for t_s in time_ticks(0.0, 1122.0)] == [
         "0:00", "2:00", "4:00", "6:00", "8:00", "10:00", "12:00", "14:00", "16:00", "18:00",
     ]  # fmt: skip

@@ -7,7 +7,7 @@ from basu.output.report.scenarios.junit import MESSAGE_CHARACTERS, MOST_CHARACTE
 from fakes.scenario_documents import case, matrix, matrix_of, told
 
 # What both schemas in use ask for, the one for Apache Ant (windyroad/JUnit-Schema) and that of Jenkins (xunit-plugin),
-# in our own words: whoever is valid by this is valid by both.
+# in our own words: a document that is valid by this is valid by both.
 SCHEMA = """
 <grammar xmlns="http://relaxng.org/ns/structure/1.0" datatypeLibrary="http://www.w3.org/2001/XMLSchema-datatypes">
   <start><element name="testsuites"><zeroOrMore><ref name="suite"/></zeroOrMore></element></start>

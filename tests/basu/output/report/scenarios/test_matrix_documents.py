@@ -73,7 +73,7 @@ def test_a_case_in_which_nothing_was_driven_has_no_record(tmp_path: Path) -> Non
     assert read_case(tmp_path).history is None
 
 
-def test_a_matrix_that_somebody_changed_is_refused_with_the_place(tmp_path: Path) -> None:
+def test_a_matrix_that_an_actor_changed_is_refused_with_the_place(tmp_path: Path) -> None:
     document = matrix()
     document["cases"][3]["results"]["basic"]["verdict"] = "PERHAPS"
     write_json(tmp_path / MATRIX_FILE, document)

@@ -49,7 +49,7 @@ def test_it_is_never_wider_than_a_console(count: int) -> None:
     assert sum(line.count("/15") for line in totals) == count
 
 
-def test_faults_are_told_before_failures_and_many_failures_by_their_number() -> None:
+def test_faults_are_reported_before_failures_and_many_failures_by_their_number() -> None:
     document = matrix(["forward"])
     document["cases"][-1]["results"]["forward"] = told("AGENT_FAULT", "x", "forward", 1.0)
     lines = matrix_text(document).splitlines()

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from basu.output.report.scenarios.drawing.encounter import Point, Story
+    from basu.output.report.scenarios.drawing.encounter import CaseData, Point
 
 Metres = TypeVar("Metres", float, "NDArray[np.float64]")
 WIDTH_PX = 560.0
@@ -69,7 +69,7 @@ def canvas_for(points_m: NDArray[np.float64]) -> Canvas:
     return Canvas(middle_x_m - width_m / 2.0, middle_y_m - height_m / 2.0, scale, height_m * scale)
 
 
-def what_matters(story: Story) -> NDArray[np.float64]:
+def what_matters(story: CaseData) -> NDArray[np.float64]:
     """The points (N, 2) that a picture is to show: the drive and the scenario's actors around the encounter."""
     history, span, met = story.history, story.span, story.met
     frames = history.frames[span.first : span.last + 1]

@@ -196,8 +196,8 @@ def _touch(history: History, collision: Collision) -> Point:
     return _corner_to((own[0] - east * reach_m, own[1] - south * reach_m), own)[1]
 
 
-class Story(NamedTuple):
-    """What of a record a picture tells."""
+class CaseData(NamedTuple):
+    """The data of a case that its picture shows."""
 
     result: dict[str, Any]
     history: History
@@ -220,10 +220,10 @@ class Story(NamedTuple):
         return box
 
 
-def story_of(result: dict[str, Any], history: History) -> Story:
+def story_of(result: dict[str, Any], history: History) -> CaseData:
     """Find in a record what its picture is about."""
     span = span_of(result, history)
-    return Story(
+    return CaseData(
         result,
         history,
         span,

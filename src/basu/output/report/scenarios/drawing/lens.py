@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.scenarios.drawing.encounter import Box, Encounter, Point, Story
+    from basu.output.report.scenarios.drawing.encounter import Box, CaseData, Encounter, Point
     from basu.output.report.streets import Line
 
 LENS_PX, CAPTION_PX = (176.0, 136.0), 16.0
@@ -35,7 +35,7 @@ class Lens(NamedTuple):
     drawn: Element
 
 
-def lens(story: Story, canvas: Canvas, streets: Sequence[Line]) -> Lens | None:
+def lens(story: CaseData, canvas: Canvas, streets: Sequence[Line]) -> Lens | None:
     """The lens in the corner where it hides least; None where the picture is large enough, or no actor was near."""
     met = story.met
     if met is None or met.distance_m > NEAR_M or canvas.pixels_per_m >= LARGE_ENOUGH:
@@ -61,7 +61,7 @@ def _lanes(close: Canvas, streets: Sequence[Line]) -> Element:
     return e("path", d="".join(lines) or None, class_="lane", stroke_width=LANE_M * close.pixels_per_m)
 
 
-def _bodies(story: Story, close: Canvas, met: Encounter) -> list[Element]:
+def _bodies(story: CaseData, close: Canvas, met: Encounter) -> list[Element]:
     """All actors in it, and the distance between the two."""
     t_s = float(story.history.frames["t_s"][met.tick])
     things = [block(box, close, "thing") for _, box in thing_boxes(story.result, t_s) if _is_in(box, close)]
@@ -83,7 +83,7 @@ def _is_in(box: Box, close: Canvas) -> bool:
     return bool(max(across) > 0.0 and min(across) < LENS_PX[0] and max(down) > 0.0 and min(down) < close.height_px)
 
 
-def _corner(story: Story, canvas: Canvas, middle_px: Point) -> Point:
+def _corner(story: CaseData, canvas: Canvas, middle_px: Point) -> Point:
     """Upper left of the corner that hides least of the drive; among equals, the farthest from the encounter."""
     frames = story.history.frames[story.span.first : story.span.last + 1]
     way_m = on_the_map(np.column_stack([frames["x_m"], frames["y_m"]]))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from xml.etree.ElementTree import Element
 
-    from basu.output.report.scenarios.drawing.encounter import Story
+    from basu.output.report.scenarios.drawing.encounter import CaseData
     from basu.output.report.streets import Line
     from basu.records.history import History
 
@@ -68,7 +68,7 @@ def case_drawing(result: dict[str, Any], history: History, streets: Sequence[Lin
     )
 
 
-def _title(story: Story) -> str:
+def _title(story: CaseData) -> str:
     """The picture in a sentence, for screen readers."""
     met, result = story.met, story.result
     what = f"{result['id']} with {result['agent']} from above, north is up"

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
     from basu.output.report.scenarios.drawing.canvas import Canvas
-    from basu.output.report.scenarios.drawing.encounter import Encounter, Story
+    from basu.output.report.scenarios.drawing.encounter import CaseData, Encounter
     from basu.output.report.streets import Line
 
 LANE_M = 3.4  # how wide a lane is drawn
@@ -38,7 +38,7 @@ SMALL_PX, STRONG_PX, ALARM_PX = 11.5, 13.0, 14.0
 class Scene:
     """The picture's contents as they are drawn; ``shown`` names the signs that its legend has to explain."""
 
-    def __init__(self, story: Story, canvas: Canvas) -> None:
+    def __init__(self, story: CaseData, canvas: Canvas) -> None:
         self._story, self._canvas = story, canvas
         self._labels = Labels(canvas)
         self._timed: list[tuple[actors.Dot, str]] = []

@@ -32,7 +32,7 @@ CERTAIN = 1e-3  # a share stays this far from 0 and 1, so that one mistake does 
 
 
 class Pair(NamedTuple):
-    """Two parameters, and how well they foretell."""
+    """Two parameters, and how well they predict verdicts."""
 
     x: Axis
     y: Axis

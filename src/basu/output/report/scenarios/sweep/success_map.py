@@ -175,7 +175,7 @@ def _title(found: Boundary) -> str:
 
 
 def _axes(found: Boundary) -> tuple[Axis, Axis]:
-    """What the map lies between: the pair that foretells best; where only one parameter varied, the least distance."""
+    """What the map lies between: the pair that predicts best; where only one parameter varied, the least distance."""
     if found.pair is not None:
         return found.pair.x, found.pair.y
     distance_m = np.nan_to_num(found.study.distance_m, nan=0.0)

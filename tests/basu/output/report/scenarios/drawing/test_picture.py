@@ -82,7 +82,7 @@ def test_of_a_longer_run_only_the_scenarios_own_time_is_looked_at() -> None:
     assert met.tick <= 120
 
 
-def test_who_met_nobody_has_a_picture_too() -> None:
+def test_one_that_met_no_actor_has_a_picture_too() -> None:
     result = unjudged(actors=[])
     history = crossing()
     alone = replace(history, others=history.others[:0])

@@ -97,7 +97,7 @@ def test_of_very_many_cases_those_have_cards_that_tell_most(monkeypatch: pytest.
 def test_a_page_that_grows_too_large_goes_on_without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "MOST_BYTES", 100_000)
     page = text_of(matrix())
-    pictured = re.findall(r'<article[^>]*data-verdict="(\w+)"[^>]*>(?:(?!</article>).)*case-picture', page)
+    pictured = re.findall(r'<article[^>]*data-verdict="(\w+)"[^>]*>(?:(?!</article>).)*case-picture', page, re.DOTALL)
     assert 5 <= len(pictured) <= 20
     assert set(pictured) == {"FAILURE"}  # which come first
     assert len(page) < 600_000

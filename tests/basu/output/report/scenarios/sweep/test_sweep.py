@@ -22,7 +22,7 @@ def number(values: Any, name: str = "gap") -> Axis:
 
 
 def sampled(verdict_of: Any, count: int = 120, seed: int = 3) -> dict[str, Any]:
-    """Two numbers and a choice, uniformly; ``verdict_of`` says who fails."""
+    """Two numbers and a choice, uniformly; ``verdict_of`` decides the verdict."""
     dice, cases = random.Random(seed), []
     for index in range(count):
         a, b, kind = dice.uniform(0, 10), dice.uniform(0, 10), dice.choice(["car", "bus", "bicycle"])
@@ -73,17 +73,17 @@ def test_noise_has_no_boundary() -> None:
         dice = random.Random(100 + seed)
         told = boundary(sampled(lambda a, b, kind, dice=dice: dice.random() < 0.4, seed=seed))
         made_up += not any("no single parameter" in sentence for sentence in told)
-        made_up += any("foretell" in sentence for sentence in told)
+        made_up += any("predict" in sentence for sentence in told)
     assert made_up <= 4  # 40 tests at 5 % each
 
 
 def test_neither_parameter_alone_but_both_together() -> None:
     told = boundary(sampled(lambda a, b, kind: (a > 5.0) != (b > 5.0)))
     assert "no single parameter tells which" in told[1]
-    assert "of all pairs, a and b foretell best" in told[-1]
+    assert "of all pairs, a and b predict best" in told[-1]
 
 
-def test_who_always_or_never_fails_has_no_boundary_to_tell() -> None:
+def test_one_that_always_or_never_fails_has_no_boundary_to_tell() -> None:
     assert boundary(sampled(lambda a, b, kind: False)) == ["basic in One: passes all 120 cases."]
     assert boundary(sampled(lambda a, b, kind: True)) == ["basic in One: fails all 120 cases."]
 
@@ -120,7 +120,7 @@ def test_the_best_rule_is_that_of_the_obvious_search() -> None:
         assert math.exp(rule.log_chance) == pytest.approx(best, rel=1e-6)
 
 
-def test_a_threshold_is_told_by_the_shortest_number_that_lies_between() -> None:
+def test_a_threshold_is_known_by_the_shortest_number_that_lies_between() -> None:
     assert between(3.08, 3.13) == 3.1
     assert between(2.0, 4.0) == 3.0
     assert between(0.12341, 0.12352) == 0.1235

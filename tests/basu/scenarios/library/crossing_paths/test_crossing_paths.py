@@ -1,4 +1,4 @@
-"""Crossing paths on paper: who drives on is met by the one it should be, who waits before the junction by nobody."""
+"""Crossing paths, offline: an ego that drives on meets its partner, one that waits before the junction meets none."""
 
 import math
 
@@ -28,7 +28,7 @@ BEHIND_A_STOP_SIGN = ("straight_crossing_paths_2", "turn_into_traffic_1", "unsig
 
 
 def unmoved(top_mps: float) -> Driver:
-    """Sets off like the shuttle, and keeps its speed whoever comes."""
+    """Sets off like the shuttle, and keeps its speed despite other traffic."""
 
     def drive(stage: OfflineStage) -> float:
         return min(top_mps, stage.ego.forward_mps + 1.1 * stage.step_s)
@@ -37,7 +37,7 @@ def unmoved(top_mps: float) -> Driver:
 
 
 @pytest.mark.parametrize(("case", "party"), CASES.items())
-def test_who_drives_on_is_hit_by_the_one_whose_way_crosses(laid, case, party):
+def test_an_ego_that_drives_on_is_hit_by_the_one_with_the_way_crosses(laid, case, party):
     scenario = laid(case)
     assert scenario.group is Group.CROSSING_PATHS
     rehearsal = rehearse(scenario, unmoved(6.4), until_s=15.0)
@@ -45,7 +45,7 @@ def test_who_drives_on_is_hit_by_the_one_whose_way_crosses(laid, case, party):
 
 
 def stopping(scenario: Scenario, seconds: float, speed_mps: float) -> Driver:
-    """Comes to rest at its stop sign for so long, and drives off whoever comes."""
+    """Comes to rest at its stop sign for so long, and drives off despite other traffic."""
     line_m = scenario.place.stop_line_m()
     assert line_m is not None
     return waiting_at(scenario.place.trigger_s_m + line_m - 2.0, seconds, speed_mps, brake_mps2=1.0, start_mps2=0.85)
@@ -65,14 +65,14 @@ def test_behind_a_stop_sign_the_others_come_when_the_ego_drives_off_however_slow
 
 @pytest.mark.parametrize("case", BEHIND_A_STOP_SIGN[:2])
 @pytest.mark.parametrize("stands_s", [0.5, 2.0, 3.5, 5.0])
-def test_a_stream_has_no_gap_for_who_drives_off_early_or_late(laid, case, stands_s):
+def test_a_stream_has_no_gap_for_one_that_drives_off_early_or_late(laid, case, stands_s):
     scenario = laid(case)
     rehearsal = rehearse(scenario, stopping(scenario, stands_s, 6.4), until_s=60.0)
     assert {spec.name for spec in scenario.actors()} & rehearsal.contacts_s.keys()
 
 
 @pytest.mark.parametrize("case", BEHIND_A_STOP_SIGN)
-def test_a_stream_ends_and_who_waits_for_that_passes(laid, case):
+def test_a_stream_ends_and_one_that_waits_for_that_passes(laid, case):
     scenario = laid(case)
     rehearsal = rehearse(scenario, stopping(scenario, 16.0, 6.4))
     assert not rehearsal.contacts_s
@@ -80,7 +80,7 @@ def test_a_stream_ends_and_who_waits_for_that_passes(laid, case):
 
 
 @pytest.mark.parametrize("case", list(CASES)[::2])
-def test_who_waits_before_the_junction_is_touched_by_nobody(laid, case):
+def test_an_ego_that_waits_before_the_junction_is_not_touched(laid, case):
     scenario = laid(case)
     before_m = next_junction(scenario.place).from_m - 4.0
     rehearsal = rehearse(scenario, waiting_at(before_m, 14.0, 6.4))
@@ -103,7 +103,7 @@ def test_the_egos_light_is_green_and_all_others_are_red(laid):
     assert sorted(state for _, state in shown) == ["Green", "Red", "Red", "Red"]
 
 
-def test_without_a_light_nobody_can_run_it(laid):
+def test_without_a_light_no_actor_can_run_it(laid):
     scenario = laid("stop_sign_runner_1")
     runner = laid("red_light_runner_1")
     with pytest.raises(ScenarioError, match="no traffic light lies ahead"):
@@ -130,7 +130,7 @@ def test_cars_of_a_stream_stand_one_behind_the_other_with_room_between(laid):
         assert apart_m == pytest.approx(2.2 * 9.0, abs=0.5)
 
 
-def test_the_first_of_those_who_come_turns_left_and_the_others_go_straight_on(laid):
+def test_the_first_of_the_actors_that_come_turns_left_and_the_others_go_straight_on(laid):
     rehearsal = rehearse(laid("ego_turns_left_1", cars="3"), waiting_at(50.0, 12.0, 6.4))
     turned_rad = {}
     for name, trail in rehearsal.trails.items():
@@ -140,7 +140,7 @@ def test_the_first_of_those_who_come_turns_left_and_the_others_go_straight_on(la
     assert max(turned_rad[name] for name in turned_rad if name not in {EGO, "oncoming 1"}) < 0.3
 
 
-def test_who_stands_across_the_junction_drives_on_after_the_ego_has_stopped(laid):
+def test_that_stands_across_the_junction_drives_on_after_the_ego_has_stopped(laid):
     scenario = laid("car_across_junction_3", stands="2")
     before_m = next_junction(scenario.place).from_m - 4.0
     rehearsal = rehearse(scenario, waiting_at(before_m, 12.0, 6.4))

@@ -1,4 +1,4 @@
-"""Lane changes on paper: who does not brake drives into whoever comes over, who does follows it."""
+"""Lane changes, offline: an ego that does not brake hits the vehicle that comes over, one that brakes follows it."""
 
 import math
 
@@ -19,7 +19,7 @@ CASES = {
 
 
 def unmoved(top_mps: float) -> Driver:
-    """Sets off like the shuttle, and keeps its speed whoever comes."""
+    """Sets off like the shuttle, and keeps its speed despite other traffic."""
 
     def drive(stage: OfflineStage) -> float:
         return min(top_mps, stage.ego.forward_mps + 1.1 * stage.step_s)
@@ -28,7 +28,7 @@ def unmoved(top_mps: float) -> Driver:
 
 
 @pytest.mark.parametrize(("case", "party"), CASES.items())
-def test_who_does_not_brake_drives_into_whoever_comes_over(laid, case, party):
+def test_an_ego_that_does_not_brake_drives_into_the_vehicle_that_comes_over(laid, case, party):
     scenario = laid(case)
     assert scenario.group is Group.LANE_CHANGE
     rehearsal = rehearse(scenario, unmoved(6.4), until_s=24.0)
@@ -36,7 +36,7 @@ def test_who_does_not_brake_drives_into_whoever_comes_over(laid, case, party):
 
 
 @pytest.mark.parametrize("case", list(CASES)[1::2])
-def test_who_brakes_moderately_touches_nobody_and_gets_on(laid, case):
+def test_an_ego_that_brakes_moderately_touches_no_actor_and_gets_on(laid, case):
     rehearsal = rehearse(laid(case), careful(6.4, brake_mps2=3.5))
     assert not rehearsal.contacts_s
     assert rehearsal.over
@@ -79,7 +79,7 @@ def test_a_place_without_a_stop_sign_ahead_is_refused(laid):
         type(scenario)(elsewhere.place, scenario.values).trigger()
 
 
-def test_who_hooks_right_ends_in_the_side_street(laid):
+def test_an_ego_that_hooks_right_ends_in_the_side_street(laid):
     rehearsal = rehearse(laid("right_hook_3"), careful(6.4, brake_mps2=3.5))
     yaw = rehearsal.trails["overtaker"][:, 2]
     there = yaw[~np.isnan(yaw)]

@@ -1,4 +1,4 @@
-"""Opposite direction on paper: who keeps up its speed is met in its own lane, who stops in time is passed."""
+"""Opposite direction, offline: an ego that keeps up its speed is met in its own lane, one that stops is passed."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ CASES = [
 
 
 def unmoved(top_mps: float) -> Driver:
-    """Sets off like the shuttle, and keeps its speed whoever comes."""
+    """Sets off like the shuttle, and keeps its speed despite other traffic."""
 
     def drive(stage: OfflineStage) -> float:
         return min(top_mps, stage.ego.forward_mps + 1.1 * stage.step_s)
@@ -26,7 +26,7 @@ def unmoved(top_mps: float) -> Driver:
 
 
 def right_of_route_m(scenario: Scenario, rehearsal: Rehearsal, name: str) -> np.ndarray:
-    """How far to the right of the ego's route somebody was in each frame; nan while not there."""
+    """How far to the right of the ego's route an actor was in each frame; nan while not there."""
     route = scenario.place.route
     found = []
     for x_m, y_m, _, _ in rehearsal.trails[name]:
@@ -40,7 +40,7 @@ def right_of_route_m(scenario: Scenario, rehearsal: Rehearsal, name: str) -> np.
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_who_keeps_up_its_speed_is_met_head_on(laid, case):
+def test_an_ego_that_keeps_up_its_speed_is_met_head_on(laid, case):
     scenario = laid(case)
     assert scenario.group is Group.OPPOSITE_DIRECTION
     rehearsal = rehearse(scenario, unmoved(6.4), until_s=15.0)
@@ -48,7 +48,7 @@ def test_who_keeps_up_its_speed_is_met_head_on(laid, case):
 
 
 @pytest.mark.parametrize("case", CASES[::4])
-def test_who_stops_well_before_is_passed_and_gets_on(laid, case):
+def test_an_ego_that_stops_well_before_is_passed_and_gets_on(laid, case):
     scenario = laid(case)
     assert isinstance(scenario, OutOfLane)
     rehearsal = rehearse(scenario, waiting_at(scenario.back_m - 20.0, 6.0, 6.4))
@@ -68,7 +68,7 @@ def test_the_other_leaves_its_lane_and_comes_back_to_it(laid, case):
     assert there[-1] == pytest.approx(-apart_m, abs=0.3)
 
 
-def test_whoever_is_overtaken_has_been_passed_when_the_overtaker_goes_back(laid):
+def test_an_actor_overtaken_has_been_passed_when_the_overtaker_goes_back(laid):
     scenario = laid("oncoming_overtaker_1")
     rehearsal = rehearse(scenario, waiting_at(scenario.back_m - 20.0, 6.0, 6.4))
     fast, slow = rehearsal.trails["oncoming"][:, :2], rehearsal.trails["slow"][:, :2]

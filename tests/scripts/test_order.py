@@ -1,0 +1,33 @@
+"""The order in which files of tests start, and which tests measure coverage."""
+
+import os
+from pathlib import Path
+
+import coverage
+import pytest
+
+from conftest import LONGEST
+from tracing import untraced
+
+TESTS = Path(__file__).parents[1]
+
+
+@pytest.mark.parametrize("name", LONGEST)
+def test_a_file_that_starts_early_exists(name: str) -> None:
+    assert (TESTS / name).is_file()
+
+
+def test_no_coverage_is_measured_within_the_block_and_it_goes_on_after_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with untraced():  # the run of these tests itself may be measured
+        monkeypatch.setenv("COVERAGE_PROCESS_CONFIG", "all")
+        measured = coverage.Coverage(data_file=tmp_path / "data", config_file=False)
+        measured.start()
+        with untraced():
+            assert coverage.Coverage.current() is None
+            assert "COVERAGE_PROCESS_CONFIG" not in os.environ
+        assert coverage.Coverage.current() is measured
+        assert os.environ["COVERAGE_PROCESS_CONFIG"] == "all"
+        measured.stop()
+        monkeypatch.undo()

@@ -1,0 +1,102 @@
+"""The wheel outside of the checkout: both commands drive a route, without the optional packages.
+
+The wheel is installed into an environment of its own. A .pth file lets it find the packages that the wheel needs among
+those of the tests; optional ones are hidden. What the checkout has compiled is copied beside the installed sources:
+numba accepts it, because they are the same.
+"""
+
+import json
+import os
+import shutil
+import site
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+OPTIONAL = (
+    "rerun",
+    "rerun_bindings",
+    "pygame",
+    "pandas",
+    "gymnasium",
+    "pyproj",
+    "shapely",
+    "IPython",
+    "nbclient",
+    "warp",
+)
+ROUTE = """<routes><route id="piece" town="Linden"><waypoints>{points}</waypoints></route></routes>"""
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the environment that has the wheel."""
+    folder = tmp_path_factory.mktemp("wheel")
+    sources = folder / "sources"
+    shutil.copytree(ROOT / "src", sources / "src", ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+    for name in ("pyproject.toml", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, sources)
+    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
+    subprocess.run([*pip, "wheel", str(sources), "--no-deps", "--wheel-dir", str(folder)], check=True)
+    (wheel,) = folder.glob("linden-*.whl")
+    environment = folder / "environment"
+    venv.create(environment, with_pip=False)
+    python = environment / "bin" / "python"
+    subprocess.run([*pip, "--python", str(python), "install", "--no-deps", str(wheel)], check=True)
+    packages = next(environment.glob("lib/python*/site-packages"))
+    hiding = f"import sys; sys.modules.update(dict.fromkeys({OPTIONAL!r}))"
+    (packages / "others.pth").write_text("\n".join([*site.getsitepackages(), hiding]) + "\n", encoding="utf-8")
+    for code in (ROOT / "src" / "linden").rglob("*.nb[ci]"):
+        target = packages / code.relative_to(ROOT / "src")
+        target.parent.mkdir(exist_ok=True)
+        shutil.copy(code, target)
+    return environment
+
+
+def run(environment: Path, folder: Path, *command: str) -> "subprocess.CompletedProcess[str]":
+    """Run a command of the environment in a folder, without a word of the checkout."""
+    names = {"PATH": os.defpath, "HOME": str(folder), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", "")}
+    program, *options = command
+    return subprocess.run(
+        [str(environment / "bin" / program), *options],
+        cwd=folder,
+        env=names,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_basu_run_drives_with_the_simulator_of_the_wheel(installed: Path, tmp_path: Path) -> None:
+    lines = (ROOT / "src" / "basu" / "routes" / "linden_short.xml").read_text(encoding="utf-8").splitlines()
+    points = [line for line in lines if "<position" in line or "<waypoint " in line][:3]
+    (tmp_path / "piece.xml").write_text(ROUTE.format(points="".join(points)), encoding="utf-8")
+    done = run(installed, tmp_path, "basu", "run", "basic", "--routes", "piece.xml", "--no-scenarios")
+    assert done.returncode == 0, done.stdout + done.stderr
+    result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text(encoding="utf-8"))
+    assert result["scores"]["path_following"] > 0.0
+    assert (tmp_path / "runs" / "latest" / "report.html").stat().st_size > 10_000
+
+
+@pytest.mark.slow
+def test_both_packages_are_those_of_the_wheel(installed: Path, tmp_path: Path) -> None:
+    program = (
+        "import basu, linden, pathlib; print(*(pathlib.Path(each.__file__).parents[1] for each in (basu, linden)))"
+    )
+    places = run(installed, tmp_path, "python", "-c", program).stdout.split()
+    assert places
+    assert all(Path(place).is_relative_to(installed) for place in places)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("command", [["linden", "--version"], ["linden", "map", "--help"], ["basu", "list", "agents"]])
+def test_commands_need_no_optional_package(installed: Path, tmp_path: Path, command: list[str]) -> None:
+    done = run(installed, tmp_path, *command)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout
