@@ -20,6 +20,7 @@ _SET_BACK_M = 0.5
 """How far before a junction the stop line lies where none is painted."""
 _PAINTED_REACH_M = 25.0
 _PAINTED_PAST_M = 0.3
+_INSIDE_M = 1e-3
 
 
 class Device(NamedTuple):
@@ -141,6 +142,7 @@ def _end(tables: Tables, stretch: Stretch, back_m: float) -> tuple[F64, F64, F64
     row = np.array([piece.row])
     road = np.array([stretch.road])
     pose = tables.curves.pose(road, s_m)
+    s_m = np.clip(s_m, piece.start_m + _INSIDE_M, piece.end_m - _INSIDE_M)  # not in the records of what comes next
     inner, outer = tables.lane_sides(row, s_m)
     z_m = float(tables.elevation.value(road, s_m)[0])
     heading = float(pose.heading_rad[0])

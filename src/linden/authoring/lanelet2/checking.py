@@ -12,7 +12,7 @@ from linden.authoring.lanelet2.model import LaneletMap, bounds_of
 from linden.authoring.lanelet2.second_reader import Routes
 from linden.authoring.lanelet2.stretches import DRIVABLE, ROAD
 from linden.maps.opendrive.evaluate.pieces import F64
-from linden.maps.opendrive.evaluate.strips import strips_of
+from linden.maps.opendrive.evaluate.strips import edges_of, strips_of
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.links import lane_links
 from linden.maps.opendrive.model import OpenDrive
@@ -107,9 +107,9 @@ def _covered_km(tables: Tables, types: LaneType, middles: list[F64]) -> tuple[fl
     if not len(rows):
         return 0.0, 0.0
     strips = strips_of(tables, rows)
-    centres = tables.lane_centres(strips.lane, strips.s_m)
-    points = np.stack([centres.x_m, centres.y_m], axis=1)
-    chords = np.flatnonzero(strips.continues & (centres.width_m > 0.0))
+    inner, outer = (edge[:, :2] for edge in edges_of(tables, strips))  # not lane_centres: it looks beyond a jump
+    points = (inner + outer) / 2.0
+    chords = np.flatnonzero(strips.continues & (np.linalg.norm(outer - inner, axis=1) > 0.0))
     start, step = points[chords], points[chords + 1] - points[chords]
     length = np.linalg.norm(step, axis=1)
     count = np.maximum(np.ceil(length / _SPACING_M), 1.0).astype(np.int64)

@@ -18,6 +18,8 @@ _SPACING_M = 1.0
 _MARGIN_M = 0.4
 """Ways meet where their lanes reach into each other by more than this."""
 _LAYER_M = 3.0
+_INSIDE_M = 1e-3
+"""From a lane's ends, where the records of its neighbour may begin."""
 _AHEAD_M = 3.0
 _CROSSING_RAD = math.radians(45.0)
 FREE, YIELD, STOP, LIGHT = "free", "yield", "stop", "light"
@@ -78,7 +80,7 @@ def _middles(tables: Tables, network: Network, numbers: list[int]) -> list[tuple
         for piece in network.stretches[number].pieces:
             steps = max(2, math.ceil((piece.end_m - piece.start_m) / _SPACING_M) + 1)
             rows.append(np.full(steps, piece.row))
-            places.append(np.linspace(piece.start_m, piece.end_m, steps))
+            places.append(np.linspace(piece.start_m + _INSIDE_M, piece.end_m - _INSIDE_M, steps))
             count += steps
         counts.append(count)
     if not numbers:

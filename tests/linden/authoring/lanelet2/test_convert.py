@@ -139,6 +139,15 @@ def _halfway(line):
     return [np.interp(length[-1] / 2.0, length, line[:, axis]) for axis in range(2)]
 
 
+def test_what_begins_at_a_lanes_end_moves_neither_the_lane_nor_its_measure():
+    jump = '<lanes><laneOffset s="0" a="0" b="0" c="0" d="0"/><laneOffset s="40" a="9" b="0" c="0" d="0"/>'
+    opendrive = parse(document(road(1, 0, 40, [(-1, lane(-1))])).replace("<lanes>", jump))
+    converted = convert(opendrive)
+    driving = compare(converted.lanelet_map, opendrive)[0]
+    assert driving.after == driving.before == pytest.approx(0.04)
+    assert max(node.y_m for node in converted.lanelet_map.nodes.values()) < 0.1
+
+
 class TestLinden:
     """The shipped town, as a whole."""
 
