@@ -116,6 +116,8 @@ def assess(
     completed = _aspect(goals, "the drive came to its end")
     if completed.holds is not False and outcome.status.fault is Fault.AGENT:
         completed = Finding(False, outcome.message)
+    if safe.holds is False and exercised.holds is False:
+        exercised = Finding(True, safe.sentence)  # an unsafe drive has met a conflict, whatever led to it
     return Assessment(safe, completed, exercised)
 
 

@@ -45,9 +45,15 @@ def test_a_driver_that_stands_has_met_no_actor() -> None:
 
 
 @pytest.mark.parametrize(("late_s", "met"), [(-4.0, False), (-1.0, True), (0.0, True), (1.0, True), (4.0, False)])
-def test_two_that_take_one_place_within_two_seconds_have_met(late_s: float, met: bool) -> None:  # noqa: FBT001
+def test_an_ego_that_slows_and_an_actor_within_two_seconds_have_met(late_s: float, met: bool) -> None:  # noqa: FBT001
     arrives_s = CROSSES_AT_M / 8.0
-    found = came_about(drive(lambda _: 8.0, crossing(arrives_s + late_s)))
+    found = came_about(drive(lambda t_s: 8.0 if t_s < 2.0 else 6.5, crossing(arrives_s + late_s)))
+    assert found.holds is met
+
+
+@pytest.mark.parametrize(("late_s", "met"), [(-1.0, False), (0.0, True), (1.0, False)])
+def test_an_ego_that_does_not_respond_meets_only_at_the_same_time(late_s: float, met: bool) -> None:  # noqa: FBT001
+    found = came_about(drive(lambda _: 8.0, crossing(CROSSES_AT_M / 8.0 + late_s)))
     assert found.holds is met
 
 
@@ -68,13 +74,14 @@ def test_a_leader_that_is_caught_up_with_is_met_and_one_that_drives_away_is_not(
 
 
 def test_a_side_road_that_empties_while_the_ego_stands_at_its_stop_sign_is_not_met() -> None:
-    """The ego comes to rest at the line at 6 s and sets off at 8 s; cross traffic is gone, or comes then."""
+    """The ego sets off at 10 s, and lets another cross at 14 s; the cross traffic of 6 s is gone by then."""
     route = straight_route(200.0, controls=(stop_sign(30.0),))
-    stops = [*at(7.0, 2.0), *ramp(7.0, 0.0, 4.0), *at(0.0, 2.0), *ramp(0.0, 7.0, 7.0), *at(7.0, 3.0)]
+    stops = [*at(7.0, 2.0), *ramp(7.0, 0.0, 4.0), *at(0.0, 4.0), *ramp(0.0, 4.0, 3.0)]
+    stops += [*ramp(4.0, 0.0, 1.0), *at(0.0, 2.0), *ramp(0.0, 7.0, 7.0), *at(7.0, 3.0)]
     speeds = lambda t_s: stops[min(len(stops) - 1, round(t_s / 0.05))]  # noqa: E731
-    for meets_s, met in ((6.0, False), (11.5, True)):
+    for meets_s, met in ((6.0, False), (14.0, True)):
         other = moving(CROSSES_AT_M, 8.0 * meets_s, 0.0, -8.0)
-        history = ride(16.0, eastward(speeds, 17.0), others=[(9, other)], route=route)
+        history = ride(20.0, eastward(speeds, 21.0), others=[(9, other)], route=route)
         assert came_about(played(history)).holds is met, meets_s
 
 

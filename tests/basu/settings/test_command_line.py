@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from basu.cli import parser
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options import SUMO_DEMAND, SUMO_OFF, SUMO_RANDOM, RunOptions
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import typed, words_of
 from basu.settings.forms import choices
@@ -26,15 +26,19 @@ ANY = st.text(st.characters(exclude_categories=("C",)), min_size=1, max_size=12)
     lambda text: str(Path(text)) == text
 )
 NAMES = st.text(st.characters(exclude_categories=("C",), exclude_characters=",=-"), min_size=1, max_size=12)
-PIXELS = {"hud_size": st.tuples(st.integers(640, 7680), st.integers(480, 4320))}
-PIXELS["hud_camera"] = st.tuples(st.integers(64, 3840), st.integers(48, 2160))
+SPECIAL: dict[str, st.SearchStrategy[Any]] = {
+    "hud_size": st.tuples(st.integers(640, 7680), st.integers(480, 4320)).map(list),
+    "hud_camera": st.tuples(st.integers(64, 3840), st.integers(48, 2160)).map(list),
+    "maps": st.lists(st.sampled_from([str(folder) for folder in Path(__file__).parents[:3]]), max_size=2),
+    "sumo": st.sampled_from((None, SUMO_DEMAND, SUMO_RANDOM, SUMO_OFF)),  # a file would have to be there
+}
 
 
 def values_of(field: Field) -> st.SearchStrategy[Any]:
     """Any value that an option may have, as JSON has it."""
     option, kind = field.option, field.type
-    if field.name in PIXELS:
-        return PIXELS[field.name].map(list)
+    if field.name in SPECIAL:
+        return SPECIAL[field.name]
     if option.style == "pairs":
         return st.lists(st.tuples(NAMES, ANY).map(list), max_size=3)
     if get_origin(kind) is tuple:
@@ -72,6 +76,10 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop("resume", None)
     if given.get("hud") is None:
         given.pop("hud_screenshot", None)
+    if given.get("host") is not None:
+        given.pop("maps", None)  # those of a simulator that basu starts
+    if given.get("sumo") == SUMO_RANDOM:
+        given.pop("traffic_density", None)
     if given.get("in_process"):
         given.pop("agent_memory_gb", None)  # without a process there is no memory to limit
     return resolve(model, [Layer(given)])

@@ -429,7 +429,7 @@ def wait_until(condition: Callable[[], bool]) -> None:
 def test_half_received_calls_of_all_clients_together_have_a_limit(
     running: Live, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr(loop, "UNFINISHED_BYTES_OF_ALL", 20_000_000)
+    monkeypatch.setattr(loop, "HELD_BYTES_OF_ALL", 20_000_000)
     with running.client() as polite, contextlib.ExitStack() as stack:
         hoarders = [stack.enter_context(running.client()) for _ in range(4)]
         for hoarder in hoarders:

@@ -123,16 +123,16 @@ def test_spawned_actors_never_become_boxes_of_the_town(simulator: RunningServer)
     world = client.get_world()
     van = world.get_blueprint_library().find("vehicle.mercedes.sprinter")
     pose = world.get_map().get_spawn_points()[0]
-    occlusion._KEPT.clear()
+    occlusion._BOXES_OF_TOWN.clear()
     before = static_boxes(world).near(place_of(pose), 100.0).centre_m.tolist()
     actor = world.spawn_actor(van, pose)
     try:
         tick_or_wait(world)
-        occlusion._KEPT.clear()
+        occlusion._BOXES_OF_TOWN.clear()
         assert static_boxes(world).near(place_of(pose), 100.0).centre_m.tolist() == before
     finally:
         actor.destroy()
-        occlusion._KEPT.clear()
+        occlusion._BOXES_OF_TOWN.clear()
 
 
 def place_of(pose: carla.Transform) -> np.ndarray:

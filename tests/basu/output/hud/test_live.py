@@ -81,7 +81,7 @@ def run(simulator: RunningServer, tmp_path: Path, route_file: Path, monkeypatch:
 
 def striker(folder: Path, keys: dict[int, list[tuple[str, str]]], *, end: int, human: bool) -> Path:
     """An agent that strikes the window's keys at its steps."""
-    module, base = ("human", "HumanAgent") if human else ("forward", "ForwardAgent")
+    module, base = ("basic", "HumanAgent") if human else ("baselines", "ForwardAgent")
     path = folder / "striker.py"
     path.write_text(STRIKER.format(keys=keys, end=end, module=module, base=base))
     return path
