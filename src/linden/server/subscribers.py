@@ -119,7 +119,7 @@ class Subscribers:
             del self._behind[peer]
 
 
-SUBSCRIPTION_WAIT_S = 3.0
+SUBSCRIPTION_WAIT_S = 1.0
 """How long a frame waits for an expected subscriber. The official client takes a millisecond, and more than half a
 second where ten programs share a processor. A camera without its subscriber in time never answers."""
 MOST_IN_VAIN = 3
