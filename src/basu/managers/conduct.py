@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from basu.errors import AgentCrashedError, UserError
-from basu.managers.world_changes import LightsCheck, OthersCheck, agents_change, is_same_control
+from basu.managers.world_changes import DRIFT_M, JUMP_M, LightsCheck, OthersCheck, agents_change, is_same_control
 from basu.metrics.boxes import touching
 from basu.routing.weather import WEATHER_FIELDS
 
@@ -26,10 +26,8 @@ if TYPE_CHECKING:
 
     from basu.managers.base_manager import Ego, Frame, Run
 
-JUMP_M = 1.0
-"""Way in one step beyond what the velocity explains. In Linden's drives, crashes included, it is below 0.0001 m."""
-DRIFT_M, DRIFT_TICKS = 2.0, 20
-"""Way in so many steps beyond what the velocities explain, for many small jumps; there it is below 0.06 m."""
+DRIFT_TICKS = 20
+"""Steps in which ways beyond what the velocities explain are summed up, for many small jumps."""
 GAIN_MPS2 = 30.0
 """Gain or loss of speed that no vehicle's tyres give: three times the acceleration of gravity."""
 NEAR_M = 3.0  # beyond both boxes: nothing that is farther away has just struck the vehicle
@@ -120,7 +118,7 @@ class Conduct:
         self._check_losses(frame.tick - HEARD_TICKS, self._run)
 
     def after(self, frame: Frame) -> None:
-        """Check that the world still is in this frame, and at random steps what the server must be asked for.
+        """Check that the world is still in this frame. At random steps, check values that need a call to the server.
 
         Raises:
             AgentCrashedError: it went on while the agent was to answer, or was changed.

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 JUMP_M = 1.0
 """Way in one step beyond what the velocity explains. In Linden's drives, crashes included, it is below 0.0001 m."""
 DRIFT_M = 2.0
-"""Such ways summed up, for many small jumps; the sum fades with ``FADING`` a step. Crashes stay below 0.06 m."""
+"""Such ways summed up, for many small jumps; here the sum fades with ``FADING`` a step. Crashes stay below 0.06 m."""
 FADING = 0.95
 BOX_M = 3.0  # from an actor's origin to the middle of its box, at most
 ROUNDING_S = 0.001  # of times in a snapshot, which are single precision

@@ -45,11 +45,8 @@ BESIDE_M = 0.5  # beside a partner's box
 RESPONSE_M = 1.0  # between the ego's real place and that of a continuation: less is no response
 START_S, STEP_S = 0.25, 0.25  # between continuations, and within one
 AHEAD_S, CROSSING_S = 6.0, 4.0  # how far ahead a meeting counts: in line, and where the paths cross
-ACCELERATE_MPS2, BRAKE_MPS2, LATERAL_MPS2 = (
-    1.0,
-    1.5,
-    2.0,
-)  # BASU's own drivers for standing and seated passengers; sources and doubts: docs/decisions/0054-verdicts.md
+ACCELERATE_MPS2, BRAKE_MPS2, LATERAL_MPS2 = 1.0, 1.5, 2.0
+"""Of BASU's own drivers, for standing and seated passengers; sources and doubts: docs/decisions/0054-verdicts.md"""
 DWELL_S = 2.0  # at a stop sign: the stop, and the look to both sides
 MOVING_MPS = 0.5  # below this the ego stands; an actor that comes near a standing ego has done so alone
 EFFECT_MPS = 2.5  # a disturbance of the ego's own driving is felt from this speed on

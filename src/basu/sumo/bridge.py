@@ -77,8 +77,8 @@ class Bridge:
         """
         self.link, self._client, self._world, self._map = link, client, world, carla_map
         self._radius_m, self._who_has_lights = radius_m, lights
-        self._models = Models(world.get_blueprint_library())
         self._library = world.get_blueprint_library()
+        self._models = Models(self._library)
         self._kinds: dict[str, Kind] = {}
         self._actors: dict[str, int] = {}  # CARLA's actor by SUMO's vehicle
         self._lamps: dict[str, int] = {}
@@ -159,7 +159,7 @@ class Bridge:
     # -- CARLA's actors in SUMO
 
     def _mirror(self, snapshot: carla.WorldSnapshot) -> None:
-        """Put CARLA's own vehicles where they are, new ones too, and take away those that are gone."""
+        """Move CARLA's own vehicles in SUMO to their poses, add new vehicles, and remove destroyed vehicles."""
         ids = {actor.id for actor in snapshot}
         fresh = ids - self._known
         if fresh:

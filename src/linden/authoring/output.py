@@ -26,10 +26,17 @@ def write_file(path: Path, data: bytes) -> None:
             os.fsync(stream.fileno())
         part.replace(path)
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise unwritable_file(path, error) from None
     finally:
         with contextlib.suppress(OSError):
             part.unlink(missing_ok=True)
+
+
+def unwritable_file(file: Path, error: OSError) -> UserError:
+    """Return the error for a file that cannot be written."""
+    return UserError(
+        f"cannot write {file}: {error.strerror or error}; name a file in a folder that exists and has room"
+    )
 
 
 def write_folder(path: Path, files: Mapping[str, bytes]) -> None:
@@ -59,7 +66,7 @@ def staged_folder(path: Path, is_ours: Callable[[str], bool]) -> Iterator[Path]:
         yield stage
         _take_place(stage, path)
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise _unwritable_folder(path, error) from None
     finally:
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)
@@ -97,5 +104,5 @@ def _umask() -> int:
     return value
 
 
-def _unwritable(path: Path, error: OSError) -> UserError:
+def _unwritable_folder(path: Path, error: OSError) -> UserError:
     return UserError(f"cannot write {path}: {error.strerror or error}; name a place that can be written and has room")

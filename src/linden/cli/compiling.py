@@ -6,7 +6,6 @@ sensors after the server is ready. The server finds the machine code in numba's 
 """
 
 import argparse
-import os
 import subprocess
 import sys
 import threading
@@ -16,9 +15,11 @@ from itertools import count
 from typing import TYPE_CHECKING
 
 from linden.errors import UserError
+from linden.sensors.casting.thread_pool import processors
 
 if TYPE_CHECKING:
     from linden.maps.cache import MapCache
+    from linden.world import World
 
 NICE = 10
 """Priority of a process that compiles while the server serves."""
@@ -63,14 +64,11 @@ def cameras() -> None:
 def scenery() -> None:
     """Make the meshes that sensors see on the default map."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
-    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
-    from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
     from linden.scenery.actors.actor_meshes_cache import keep_bodies  # noqa: PLC0415 - as in driving
     from linden.scenery.map_mesh_cache import keep_standing  # noqa: PLC0415 - as in driving
-    from linden.world import World  # noqa: PLC0415 - as in driving
 
     cache = MapCache.of_user()
-    simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    simulation = _home_world(cache)
     keep_bodies(simulation.library, cache)
     keep_standing(simulation.episode.map, simulation.episode.surroundings.scene, cache)
 
@@ -78,20 +76,26 @@ def scenery() -> None:
 def world() -> None:
     """Compile what a world needs beside the physics, and derive what is kept of the default map."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
-    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
     from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - as in driving
-    from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
     from linden.protocol.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - as in driving
     from linden.server.rpc import registry  # noqa: PLC0415 - as in driving
     from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - as in driving
-    from linden.world import World  # noqa: PLC0415 - as in driving
 
     registry.load_handlers()
     cache = MapCache.of_user()
-    simulation = World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
+    simulation = _home_world(cache)
     simulation.episode.warm_up()
     warm_batches()
     mesh_file(simulation.episode, MeshLibrary(cache))
+
+
+def _home_world(cache: "MapCache") -> "World":
+    """Return a world on the default map."""
+    from linden.maps.library import HOME_MAP, MapLibrary  # noqa: PLC0415 - as in driving
+    from linden.protocol.values.episode import EpisodeSettings  # noqa: PLC0415 - as in driving
+    from linden.world import World  # noqa: PLC0415 - as in driving
+
+    return World(MapLibrary([], cache.facts_of).load(HOME_MAP), EpisodeSettings())
 
 
 def frame() -> None:
@@ -105,7 +109,7 @@ def frame() -> None:
 
 
 def sensors() -> None:
-    """Note that the kernels of sensors are compiled: those of rays and of cameras are already."""
+    """Note that the kernels of sensors are compiled; ``rays`` and ``cameras`` have compiled them."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
     from linden.sensors.compiling import compile_once  # noqa: PLC0415 - as in driving
 
@@ -115,7 +119,7 @@ def sensors() -> None:
 GROUPS: dict[str, Callable[[], None]] = {
     group.__name__: group for group in (cameras, driving, contacts, world, rays, scenery, frame, sensors)
 }
-"""By name, longest first; those of ``_LAST`` come after all others."""
+"""By name, longest first; ``_LAST`` come after all others."""
 _LAST = ("scenery", "frame", "sensors")
 
 
@@ -226,8 +230,8 @@ class FirstStart:
         self._background = Compiling("rays", "scenery", "cameras", "sensors", background=True)
         return True
 
-    def await_sensors(self, pictures: bool) -> None:  # noqa: FBT001 - as Seeing calls it
-        """Wait until the kernels of rays are compiled, or those of pictures; any thread may call it."""
+    def await_sensors(self, pictures: bool) -> None:  # noqa: FBT001 - as SensorScene calls it
+        """Wait until the kernels of rays, or of pictures, are compiled; any thread may call it."""
         if self._background is not None:
             self._background.wait_for("cameras" if pictures else "rays")
 
@@ -276,9 +280,9 @@ def run(_arguments: argparse.Namespace) -> int:
             print(f"linden: compiled kernels, group {next(numbers)} of {len(GROUPS)}: {name}", flush=True)  # noqa: T201 - as in serve
         return ended
 
-    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as processors:
-        ended = list(processors.map(compiled, together))
-        ended += processors.map(compiled, _LAST)
+    with ThreadPoolExecutor(processors()) as workers:
+        ended = list(workers.map(compiled, together))
+        ended += workers.map(compiled, _LAST)
     failed = [name for name, code in ended if code]
     if failed:
         raise UserError(f"could not compile {', '.join(failed)}; the messages stand above")

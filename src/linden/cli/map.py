@@ -8,6 +8,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from linden.authoring.output import unwritable_file
 from linden.cli import map_convert, map_package, map_pointcloud, map_sumo
 from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
 from linden.errors import UserError
@@ -128,12 +129,9 @@ def show(arguments: argparse.Namespace) -> int:
     """Write a drawing of the map."""
     from linden.authoring.drawing.svg import svg  # noqa: PLC0415 - the server's start does not pay for it
 
-    drawn = map_convert.drawing(arguments)
-    if drawn is not None:
-        _write(arguments.output, drawn.encode())
-        _say(f"{arguments.output}: drawn")
-        return 0
-    _write(arguments.output, svg(opendrive_of(arguments.file)).encode())
+    vector_map = map_convert.drawing(arguments)
+    drawn = svg(opendrive_of(arguments.file)) if vector_map is None else vector_map
+    _write(arguments.output, drawn.encode())
     _say(f"{arguments.output}: drawn")
     return 0
 
@@ -189,9 +187,9 @@ def _streets(path: Path | None) -> dict[str, Any]:
 
 def _write(path: Path, data: bytes) -> None:
     try:
-        path.write_bytes(data)
+        path.write_bytes(data)  # not by way of a neighbour: -o may name a device such as /dev/stdout
     except OSError as error:
-        raise UserError(f"cannot write {path}: {error.strerror}; name a file in a folder that exists") from None
+        raise unwritable_file(path, error) from None
 
 
 def _number(count: int, noun: str) -> str:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from linden.errors import ProtocolError
 from linden.protocol.wire.rpc import Call
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID
-from linden.server.cue import QUESTION, TICK, Cue, bring_question_forward
+from linden.server.cue import QUESTION, TICK, Cue
 from linden.server.driven_vehicles import BATCH, DESTROY, Driven
 from linden.server.load_answers import GATHERING_S, OF_A_LOAD, Handover, Phase
 from linden.server.peers import RpcPeer
@@ -47,12 +47,12 @@ LOADING_S = 0.5
 """How long an answered load waits for its client to ask which episode there is."""
 JOINING_S = 0.05
 """What the official client needs from beginning to listen until it may stop again. It drops its stream when it loads an
-episode, and a busy client that had asked for that stream just before ends its own process with ``bad_weak_ptr``:
+episode, and a busy client that requested that stream just before ends its own process with ``bad_weak_ptr``:
 LibCarla's ``streaming::detail::tcp::Client`` is gone before its first message is sent. CARLA's loads take seconds."""
 
 
 class Calls:
-    """What clients have asked for and not yet got.
+    """Calls of clients that are not answered yet.
 
     Attributes:
         unfinished: the clients with calls that wait for their turn; an ordered set.
@@ -94,7 +94,7 @@ class Calls:
         self._held: dict[RpcPeer, tuple[bytes, float]] = {}  # answers that wait for the scene, and until when
 
     def forget(self, peer: RpcPeer) -> None:
-        """Drop what a client that has gone had asked for."""
+        """Drop the calls of a client that has gone."""
         peer.calls.clear()
         self.unfinished.pop(peer, None)
         self._cues.pop(peer, None)
@@ -158,7 +158,7 @@ class Calls:
             peer.outgoing.send(b"".join(answers))
             answers.clear()
         cue = self._cues.setdefault(peer, Cue())
-        is_question = bring_question_forward(peer) or peer.calls[0].method == QUESTION
+        is_question = peer.bring_forward((QUESTION,)) is not None
         if cue.tick and not is_question:
             answers.append(self._done(peer, cue.finish()))
         elif (answer := self._answer(peer)) is not None:

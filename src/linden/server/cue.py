@@ -82,13 +82,3 @@ class Cue:
                 self.late = 0
         self.answered_s = None
         return answer
-
-
-def bring_question_forward(peer: RpcPeer) -> bool:
-    """Put the Traffic Manager's question before the tick that waits; False where it is not there."""
-    question = next((call for call in peer.calls if call.method == QUESTION), None)
-    if question is None:
-        return False
-    peer.calls.remove(question)
-    peer.calls.appendleft(question)
-    return True

@@ -55,11 +55,7 @@ class Handover:
 
     def bring_forward(self, peer: RpcPeer, now_s: float) -> bool:
         """Put the loading thread's next call before those of the Traffic Managers; False where there is none."""
-        for call in peer.calls:
-            if call.method in OF_A_LOAD:
-                peer.calls.remove(call)
-                peer.calls.appendleft(call)
-                if call.method == OF_A_LOAD[-1]:
-                    self.phase, self.until_s = Phase.SETTLING, now_s + SETTLING_S
-                return True
-        return False
+        method = peer.bring_forward(OF_A_LOAD)
+        if method == OF_A_LOAD[-1]:
+            self.phase, self.until_s = Phase.SETTLING, now_s + SETTLING_S
+        return method is not None

@@ -7,6 +7,7 @@ A client calls on one kind of connection and receives streams on the other. Each
 
 import socket
 from collections import deque
+from collections.abc import Container
 
 from linden.protocol.wire.rpc import Call, RpcConnection
 from linden.protocol.wire.stream import Subscription, size_prefix
@@ -106,7 +107,7 @@ class RpcPeer(Peer):
         self.calls: deque[Call] = deque()
         """Received and not yet carried out, in their order."""
         self._waiting_since = 0, 0
-        """What had come of whole calls, in bytes and arrays, when the first of those that wait came."""
+        """Bytes and arrays of whole calls that had arrived when the first waiting call arrived."""
         self.at_end = False
         """Whether the client sends nothing more."""
 
@@ -120,6 +121,15 @@ class RpcPeer(Peer):
             came = self.connection
             self._waiting_since = came.bytes - came.unfinished_bytes, came.arrays - came.unfinished_arrays
         self.calls.extend(self.connection.receive(data))
+
+    def bring_forward(self, methods: Container[str]) -> str | None:
+        """Put the first call of one of ``methods`` before all others; return its method, None where there is none."""
+        for index, call in enumerate(self.calls):
+            if call.method in methods:
+                del self.calls[index]
+                self.calls.appendleft(call)
+                return call.method
+        return None
 
     def held(self) -> tuple[int, int]:
         """Return how many bytes and arrays have come and are not carried out: whole calls that wait, and half ones."""

@@ -7,13 +7,20 @@ from types import SimpleNamespace
 from fakes.raw_client import RawClient
 from linden.protocol.wire.rpc import Call
 from linden.server.load_answers import ASKING_S, GATHERING_S, SETTLING_S, Handover
+from linden.server.peers import RpcPeer
 from servers import running_server
 
 LOAD = ("load_new_episode", "Linden", True, 0xFFFF)
 
 
-def _peer(*methods: str) -> SimpleNamespace:
-    return SimpleNamespace(calls=deque(Call(n, name, [], False) for n, name in enumerate(methods)))
+class FakePeer(SimpleNamespace):
+    """A client's calls without its connection."""
+
+    bring_forward = RpcPeer.bring_forward
+
+
+def _peer(*methods: str) -> FakePeer:
+    return FakePeer(calls=deque(Call(n, name, [], False) for n, name in enumerate(methods)))
 
 
 def test_a_load_waits_until_each_traffic_managers_thread_stands_in_a_call() -> None:

@@ -6,8 +6,8 @@ from types import TracebackType
 import numpy as np
 from typing_extensions import Self
 
+from linden.authoring.output import unwritable_file
 from linden.authoring.pointcloud.cloud import Cloud
-from linden.errors import UserError
 
 _HEAD = """# .PCD v0.7 - Point Cloud Data file format
 # {remark}
@@ -42,7 +42,7 @@ class PcdWriter:
         try:
             self._stream = self._part.open("wb")
         except OSError as error:
-            raise _unwritable(file, error) from None
+            raise unwritable_file(file, error) from None
 
     def __enter__(self) -> Self:
         self._stream.write(self._head())
@@ -57,7 +57,7 @@ class PcdWriter:
             if kind is None:
                 self._part.replace(self._file)
         except OSError as problem:
-            raise _unwritable(self._file, problem) from error
+            raise unwritable_file(self._file, problem) from error
         finally:
             self._part.unlink(missing_ok=True)
 
@@ -76,7 +76,7 @@ class PcdWriter:
         try:
             rows.tofile(self._stream)
         except OSError as error:
-            raise _unwritable(self._file, error) from None
+            raise unwritable_file(self._file, error) from None
         self.points += len(rows)
 
     def _head(self) -> bytes:
@@ -91,9 +91,3 @@ class PcdWriter:
             points=self.points,
         )
         return whole.encode("ascii")
-
-
-def _unwritable(file: Path, error: OSError) -> UserError:
-    return UserError(
-        f"cannot write {file}: {error.strerror or error}; name a file in a folder that exists and has room"
-    )
