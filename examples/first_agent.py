@@ -18,9 +18,7 @@ class FirstAgent(AutonomousAgent):
         nearest = np.hypot(*(points - (pose.location.x, pose.location.y)).T).argmin()
         x_m, y_m = points[min(nearest + 5, len(points) - 1)]  # 5 m ahead
         bearing_rad = math.atan2(y_m - pose.location.y, x_m - pose.location.x) - math.radians(pose.rotation.yaw)
-        steer = (
-            math.atan(2.0 * math.sin(bearing_rad) * 2.8 / 5.0) / self.most_steer_rad
-        )  # pure pursuit, 2.8 m of wheelbase
+        steer = math.atan(2.0 * math.sin(bearing_rad) * 2.8 / 5.0) / self.most_steer_rad  # pure pursuit, wheelbase 2.8
         throttle = 0.5 * (4.0 - speed_mps)  # 4 m/s; stop signs are scored, and this agent passes them
         return carla.VehicleControl(throttle=min(max(throttle, 0.0), 0.6), steer=min(max(steer, -1.0), 1.0))
 

@@ -45,7 +45,7 @@ def all_parsers() -> Iterator[argparse.ArgumentParser]:
 
 
 def with_commands(program: argparse.ArgumentParser, late: object) -> Iterator[argparse.ArgumentParser]:
-    """Yield a parser and those of its commands; ``late`` names commands whose options exist once they are typed."""
+    """Yield a parser and its commands' parsers; ``late`` names commands whose options exist once they are typed."""
     yield program
     for name, command in commands_of(program).items():
         if name in (late or ()):

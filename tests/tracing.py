@@ -1,4 +1,4 @@
-"""Coverage switched off for a while, in this process and in those that it starts."""
+"""Coverage switched off for a while, in this process and in its child processes."""
 
 import os
 from collections.abc import Iterator

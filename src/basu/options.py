@@ -402,7 +402,7 @@ class RunOptions(Settings):
                 )
 
     def _check_sumo(self) -> None:
-        """Check what was said of SUMO.
+        """Check the options of SUMO.
 
         Raises:
             UserError: the file is no configuration of SUMO, or random trips are to be made for a demand of a density.
@@ -417,7 +417,7 @@ class RunOptions(Settings):
 
 
 def check_agent_process(*, in_process: bool, memory_gb: float | None) -> None:
-    """Check what was said of the agent's process.
+    """Check the options of the agent's process.
 
     Raises:
         UserError: there is to be none, and its memory is to be limited.

@@ -72,7 +72,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         server.end()
 
 
-_early: list[OwnServer] = []  # at most one: a server that has started before anything asked for it
+_early: list[OwnServer] = []  # at most one: a server that started ahead of its run
 
 
 @contextlib.contextmanager
@@ -83,7 +83,7 @@ def started_early(options: RunOptions) -> Iterator[None]:
     try:
         yield
     finally:
-        while _early:  # nothing has asked for it: the run could not begin
+        while _early:  # no run took it over: the run could not begin
             _early.pop().end()
 
 

@@ -109,7 +109,7 @@ class World:
         self.recorder.after_step(self.episode, dt_s)
 
     def look_ahead(self) -> None:
-        """Compute the next frame's physics before it is asked for, where its length is known: an idle server may."""
+        """Compute the next frame's physics ahead of its tick, where its length is known: an idle server may."""
         dt_s = self.settings.fixed_delta_seconds
         if dt_s is not None:
             episode = self.episode

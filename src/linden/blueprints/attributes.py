@@ -1,4 +1,4 @@
-"""Attributes of blueprints: CARLA's text values and types, and the check of those that a client sends.
+"""Attributes of blueprints: CARLA's text values and types, and the check of attributes from clients.
 
 Attributes of blueprints: how the facts in blueprints.json become CARLA's text values and types.
 

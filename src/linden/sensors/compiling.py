@@ -31,7 +31,7 @@ OF_PHYSICS = Kernels(("physics/**/*.py", "maps/ground.py", "compiled.py"), ("lin
 def compile_once(cache: MapCache) -> None:
     """Compile what sensors that look around need, unless it was on this machine and is still there.
 
-    So a start compiles what is not compiled, and does not load what no client has asked for yet.
+    So a start compiles what is not compiled, and loads no kernel before its first use.
     """
     if is_compiled(OF_SENSORS, cache):
         return

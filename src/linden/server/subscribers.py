@@ -5,7 +5,7 @@ every message is sent. Up to :data:`QUEUED_BYTES` wait for each subscriber, and 
 all together. A subscriber with more is congested. No frame is made while a subscriber is congested, and after
 :data:`PATIENCE_S` its connection is closed.
 
-A stream is expected while a client has asked for its token and has not subscribed yet. The official client calls
+A stream is expected from a client's request for its token until that client subscribes. The official client calls
 ``get_sensor_token`` in ``listen()``, subscribes in a thread of its own, and may tick before that thread has connected.
 CARLA's frames take so long that the subscription comes first. Here the frame waits, so that a sensor measures from the
 first tick after ``listen()`` on. The caller passes the time.
@@ -92,7 +92,7 @@ class Subscribers:
         return max(0.0, min(peer.congested_since_s or 0.0 for peer in congested) + PATIENCE_S - now_s)
 
     def congested(self, now_s: float) -> list[StreamPeer]:
-        """Return the subscribers that frames wait for, and close those that were waited for too long."""
+        """Return the subscribers that frames wait for, and close subscribers whose time is over."""
         if not self._behind:
             return []
         for peer in tuple(self._behind):
@@ -132,7 +132,7 @@ class _Wait(NamedTuple):
 
 
 class Expected:
-    """Which streams have been asked for and not been subscribed to yet. All times in s of one steady clock."""
+    """Streams with a requested token and no subscription yet. All times in s of one steady clock."""
 
     def __init__(self) -> None:
         self._waits: dict[int, _Wait] = {}

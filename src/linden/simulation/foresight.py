@@ -1,9 +1,9 @@
-"""A frame of physics computed before it is asked for: kept aside, and used if nothing has changed until then.
+"""A frame of physics computed ahead of its tick: kept aside, and used if nothing has changed until the tick.
 
 Beside a Traffic Manager in synchronous mode the server is idle from the answer to its batch of controls to the next
 tick: half a millisecond, in which the client's threads wake one another. Nearly always nothing moves a body meanwhile.
-Whether that is so is not concluded from the calls that came: the bodies are compared with those that were computed
-from, byte for byte. So the frame is the one that the tick itself would have made.
+The calls in between prove nothing about that. So the bodies are compared, byte for byte, with the bodies that the frame
+was computed from, and the frame equals the one of the tick itself.
 """
 
 from typing import NamedTuple

@@ -40,7 +40,7 @@ def scenery_of(world_map: LoadedMap) -> Scenery:
     """Return the scenery of a map; the last one is kept, for most loads load the same map again.
 
     Of Linden it is known what stands beside its streets; other maps have plainer houses where there is room. What a
-    client sent as OpenDRIVE has none, as in CARLA: lights, signs, and the walls it asked for.
+    client sent as OpenDRIVE has none, as in CARLA: lights, signs, and the walls of its request.
     """
     signals = Signals.of(world_map.signals, world_map.controllers, world_map.give_way)
     standing = [Post(actor.transform, actor.light != NO_LIGHT) for actor in signals.actors]

@@ -1,4 +1,4 @@
-"""Claims about lights both ways, with heads and links that only note what they are told."""
+"""Claims about lights both ways, with heads and links that only record the calls they receive."""
 
 import contextlib
 from types import SimpleNamespace

@@ -11,7 +11,7 @@ from linden.server.peers import RpcPeer
 
 @pytest.fixture
 def peer() -> Iterator[RpcPeer]:
-    """A client's connection, to which nobody writes."""
+    """A client's connection without any traffic."""
     with socket.create_server(("127.0.0.1", 0)) as listener, socket.create_connection(listener.getsockname()) as client:
         accepted, _ = listener.accept()
         with accepted:

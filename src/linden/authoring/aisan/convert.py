@@ -89,7 +89,7 @@ def _way_areas(draft: Draft) -> list[int]:
 
 
 def _node_ids(draft: Draft, course: Course, shared: dict[tuple[int, int], int]) -> list[tuple[int, int]]:
-    """Add the nodes along a course; return (node, point) of each place. Ends are shared with those that touch there."""
+    """Add the nodes along a course; return (node, point) of each place. Touching courses share their end nodes."""
     ends = ((course.bounds.left[0], course.bounds.right[0]), (course.bounds.left[-1], course.bounds.right[-1]))
     found = []
     for at, place in enumerate(course.middle):

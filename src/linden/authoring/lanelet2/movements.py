@@ -99,7 +99,7 @@ def _middles(tables: Tables, network: Network, numbers: list[int]) -> list[tuple
 
 
 def yields(junction: Junction | None, movements: list[Movement], controls: dict[int, str]) -> dict[int, list[int]]:
-    """Return for each way (stretch) those that let it go first; ``controls`` say what stands before each way."""
+    """Return for each way (stretch) the ways that yield to it; ``controls`` name the sign or light before each way."""
     priorities = set(junction.priorities) if junction else set()
     roundabout = junction is not None and "roundabout" in dict(junction.user_data)
     found: dict[int, list[int]] = defaultdict(list)

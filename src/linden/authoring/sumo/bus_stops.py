@@ -43,7 +43,7 @@ def read_stops(path: Path) -> tuple[RouteStop, ...]:
 
 
 def stops_file(net: Net, stops: tuple[RouteStop, ...]) -> tuple[bytes, tuple[RouteStop, ...]]:
-    """SUMO's additional file with a bus stop for each of ``stops``, and those that lie near no lane for cars."""
+    """SUMO's additional file with a bus stop for each of ``stops``, and the stops far from any lane for cars."""
     root = etree.Element("additional")
     lost = []
     for stop in stops:

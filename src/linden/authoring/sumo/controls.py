@@ -15,7 +15,7 @@ MINOR_PRIORITY, MAJOR_PRIORITY = 1, 3
 
 
 class Controls(NamedTuple):
-    """The signals by the edge that they govern; ``lost`` are those that lie on no edge."""
+    """The signals by the edge that they govern; ``lost`` are signals on no edge."""
 
     stops: dict[str, PlacedSignal]
     yields: dict[str, PlacedSignal]
@@ -41,7 +41,7 @@ def controls_of(net: Net, placed: tuple[PlacedSignal, ...], opendrive: OpenDrive
 
 
 def _edges(net: Net, signal: PlacedSignal, opendrive: OpenDrive) -> list[str]:
-    """The edges that a signal's lanes became: of several, those that lead into the junction that it guards."""
+    """The edges made of a signal's lanes: of several, the edges into the junction that the signal controls."""
     found: dict[str, None] = {}
     for lane in signal.lanes:
         origin, junction = _approach(opendrive, lane, signal.junction_id)

@@ -126,7 +126,7 @@ ASKED_FOR = {
     "o": "others",
     "a": "any",
 }
-"""Kinds of actors that can be asked for."""
+"""Kinds of actors, as clients name them in requests for reports."""
 LETTERS: dict[int, str] = {
     ActorKind.OTHER: OTHER,
     ActorKind.VEHICLE: "v",

@@ -1,4 +1,4 @@
-"""Cars that stand: of fewer triangles than those that are driven, for there are a thousand; each fills its box."""
+"""Parked cars: of fewer triangles than driven cars, because there are a thousand; each fills its box."""
 
 from itertools import pairwise
 from typing import NamedTuple

@@ -49,7 +49,7 @@ def lead(context: Context, states: Sequence[tuple[int, Transform, float]]) -> No
 
 @method("set_actor_dead")
 def set_actor_dead(context: Context, actor_id: U32) -> None:
-    """Let a walker fall and lie for ten seconds, then go; the client's crowd says so of those that a vehicle caught."""
+    """Let a walker fall and lie for ten seconds, then remove it. The client's crowd calls this after a collision."""
     episode = context.simulation.episode
     episode.walkers.die(episode, actor_id)
 

@@ -207,7 +207,7 @@ def test_a_reading_is_the_same_whoever_listened_before(simulation: World, world_
 
 def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedMap) -> None:
     sensor_scene, may_build = SensorScene(BlueprintLibrary.load()), Event()
-    assert sensor_scene.wait(60.0)  # nobody has asked for anything
+    assert sensor_scene.wait(60.0)  # without any request
 
     def standing_on(*_: object) -> Mesh:
         may_build.wait()

@@ -52,7 +52,7 @@ class GpuRenderer:
         self._stage: tuple[Faces, Relief] | None = None
 
     def expect(self, picture: Picture, look: Look) -> None:
-        """Begin a picture that will be asked for in this frame."""
+        """Begin a picture that a sensor reads later in this frame."""
         self._begun(picture, look)
 
     def make(self, picture: Picture, look: Look) -> Pixels:
