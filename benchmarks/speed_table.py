@@ -110,14 +110,12 @@ def split(count: int, ticks: int) -> str:
             found = measure(live, count, ticks, physics=True, managed=True)
             per_tick = json.loads(sums.read_text("utf-8"))
     each_ms = 1000.0 / per_tick["frames"]
-    frame_ms, sensors_ms, ahead_ms, cue_ms = (
-        per_tick[name] * each_ms for name in ("frame_s", "sensors_s", "ahead_s", "cue_s")
-    )
+    frame_ms, sensors_ms, cue_ms = (per_tick[name] * each_ms for name in ("frame_s", "sensors_s", "cue_s"))
     tick_ms = 1000.0 / found.ticks_per_s
     rest_ms = max(0.0, tick_ms - found.server_ms - cue_ms)
     return (
         f"{count:8}  {found.ticks_per_s:7.0f}  {tick_ms:6.2f}  {frame_ms - sensors_ms:6.2f}  {sensors_ms:7.2f}  "
-        f"{ahead_ms:5.2f}  {max(0.0, found.server_ms - frame_ms - ahead_ms):11.2f}  {cue_ms:5.2f}  {rest_ms:13.2f}  "
+        f"{max(0.0, found.server_ms - frame_ms):11.2f}  {cue_ms:5.2f}  {rest_ms:13.2f}  "
         f"{1000.0 / found.client_ms:7.0f}  {found.ticks_per_s * found.client_ms / 1000.0:8.0%}"
     )
 
@@ -138,7 +136,7 @@ def main() -> None:
     print(f"{machine()}; other load of the last minute: {os.getloadavg()[0]:.1f}")
     if arguments.split:
         print("                    ms a tick")
-        print("vehicles  ticks/s  whole   frame  sensors  ahead  other calls    cue  client, socket  limit/s  of limit")
+        print("vehicles  ticks/s  whole   frame  sensors  other calls    cue  client, socket  limit/s  of limit")
         for count in arguments.vehicles:
             print(split(count, arguments.ticks), flush=True)
         return

@@ -2,7 +2,7 @@
 
     python benchmarks/split_server.py FILE [options of linden serve]
 
-The file holds sums in s as JSON: frames and what they show, of it sensors, what was computed ahead, and how long
+The file holds sums in s as JSON: frames and what they show, of it sensors, and how long
 answers waited for the cue.
 """
 
@@ -17,12 +17,11 @@ from linden.cli import main as linden
 from linden.server import frames
 from linden.server.cue import Cue
 from linden.server.rpc.context import Context
-from linden.world import World
 
 WRITTEN_EACH = 50
 """Frames."""
 
-sums = {"frames": 0.0, "frame_s": 0.0, "ahead_s": 0.0, "sensors_s": 0.0, "cue_s": 0.0}
+sums = {"frames": 0.0, "frame_s": 0.0, "sensors_s": 0.0, "cue_s": 0.0}
 
 
 def timed(name: str, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -59,7 +58,6 @@ def watch(file: Path) -> None:
         return finish(cue)
 
     Context.advance, Cue.ticked, Cue.finish = advance_and_write, begin, end
-    World.look_ahead = timed("ahead_s", World.look_ahead)
     frames.sensor_payloads = timed("sensors_s", frames.sensor_payloads)
 
 

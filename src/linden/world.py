@@ -8,6 +8,7 @@ from collections.abc import Container
 
 from linden.blueprints.library import BlueprintLibrary
 from linden.maps.library import LoadedMap
+from linden.physics.step import advance
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Transform
@@ -108,14 +109,6 @@ class World:
         self.replayer.after_step(self, dt_s)
         self.recorder.after_step(self.episode, dt_s)
 
-    def look_ahead(self) -> None:
-        """Compute the next frame's physics ahead of its tick, where its length is known: an idle server may."""
-        dt_s = self.settings.fixed_delta_seconds
-        if dt_s is not None:
-            episode = self.episode
-            here = episode.map.ground, episode.statics
-            episode.foresight.look_ahead(episode.bodies, *here, dt_s, self._substeps(dt_s))
-
     def _substeps(self, dt_s: float) -> int:
         """Return into how many parts the physics cuts a step: CARLA's rule for its substepping settings."""
         if not self.settings.substepping:
@@ -165,8 +158,7 @@ def step(episode: Episode, dt_s: float, substeps: int) -> None:
     episode.actors.turn_page()
     episode.traffic.step(dt_s)
     episode.friction.update(episode)
-    here = episode.map.ground, episode.statics
-    episode.contacts = episode.foresight.advance(episode.bodies, *here, dt_s, substeps)
+    episode.contacts = advance(episode.bodies, episode.map.ground, episode.statics, dt_s, substeps)
     episode.elapsed_s += dt_s
     for actor_id in episode.walkers.step(episode, dt_s):
         destroy(episode, actor_id, announce=True)

@@ -98,8 +98,6 @@ class Columns:
         """Scratch of the kernels; nothing in it outlives a step."""
         self.count = 0
         """Slots below this have been given out; kernels look no further."""
-        self.fittings = 0
-        """How often the constants of a vehicle were set."""
 
     def wake(self, slot: int) -> None:
         """Let the next step look at the body again, were it at rest."""

@@ -86,7 +86,6 @@ class Calls:
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of clients with a Traffic Manager
         self._driven: dict[RpcPeer, Driven] = {}  # of those too
-        self._driven_now: RpcPeer | None = None  # whose batch was the last call
         self._shown_frame = context.simulation.frame
         self._working: dict[RpcPeer, SuspendedCall] = {}  # clients with work in the background
         self._handovers: dict[RpcPeer, Handover] = {}  # of loads by clients with a Traffic Manager
@@ -121,7 +120,6 @@ class Calls:
                 unsent_bytes += len(answers[-1]) if answers else 0
             if answers:
                 peer.outgoing.send(b"".join(answers))
-                self._look_ahead(peer)
             if not peer.calls and peer.connection.is_broken:
                 peer.connection.receive(b"")
         except (OSError, ProtocolError) as error:
@@ -135,12 +133,6 @@ class Calls:
             self._close(peer)
             return
         self._watch(peer)
-
-    def _look_ahead(self, peer: RpcPeer) -> None:
-        """Compute the next frame's physics while a Traffic Manager's threads take note of their batch's end."""
-        if self._driven_now is peer and not peer.calls and self.is_synchronous():
-            self._context.simulation.look_ahead()
-        self._driven_now = None
 
     def _keeps_order(self, peer: RpcPeer) -> bool:
         """Return whether a client's next call is a tick that waits, or a tick or question of one that leads traffic."""
@@ -202,10 +194,9 @@ class Calls:
         return answer if not self._traffic_managers(peer) else self._with_driven(peer, call, answer)
 
     def _with_driven(self, peer: RpcPeer, call: Call, answer: bytes) -> bytes | None:
-        """Return what is to be sent for a call of a client that runs Traffic Managers; see ``server.driven``."""
+        """Return what to send for a call of a client that runs Traffic Managers; see ``server.driven_vehicles``."""
         if call.method == BATCH and call.args:
             ready = self._driven.setdefault(peer, Driven()).batch(call.args[0])
-            self._driven_now = peer
             return b"".join((answer, *ready))
         if call.method != DESTROY or peer not in self._driven or call.is_async or not call.args:
             return answer
@@ -230,7 +221,7 @@ class Calls:
     def traffic_wait_s(self, now_s: float) -> float:
         """Return how long asynchronous mode's next frame waits at most for Traffic Managers; 0 where it need not.
 
-        A frame that lacks a car must not come while a Traffic Manager works on the car; see ``server.driven``.
+        A frame that lacks a car must not come while a Traffic Manager works on the car; see ``server.driven_vehicles``.
         """
         if not self._driven:
             return 0.0

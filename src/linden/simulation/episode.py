@@ -14,7 +14,6 @@ from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal
 from linden.simulation.attachments import Sockets
 from linden.simulation.bones import Poses
 from linden.simulation.doors import Doors
-from linden.simulation.foresight import Foresight
 from linden.simulation.friction import RoadFriction
 from linden.simulation.snapshot_rows import MOTION_OFFSET, gather_motion
 from linden.simulation.state import EpisodeState
@@ -38,7 +37,6 @@ class Episode(EpisodeState):
     """Everything that ends with a load.
 
     Attributes:
-        foresight: the bodies of the next frame, where they are known.
         surroundings: what stands there, its lamps, and what clients drew.
         traffic: the lights.
         doors: of the vehicles, which stand open.
@@ -54,7 +52,6 @@ class Episode(EpisodeState):
     def __init__(self, world_map: LoadedMap, *, first_frame: int) -> None:
         super().__init__(world_map, first_frame)
         self.walkers, self.poses = Walkers(), Poses()
-        self.foresight = Foresight()
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)
         self.traffic = Traffic(scenery.signals)

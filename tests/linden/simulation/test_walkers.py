@@ -171,7 +171,7 @@ def test_what_touches_a_corpse_when_it_goes_breaks_no_frame(
 
     simulation.recorder.start(tmp_path / "end.log", episode, "street", lambda: 0.0, additional_data=False)
     episode.walkers.die(episode, victim)
-    monkeypatch.setattr("linden.simulation.foresight.advance", touching)
+    monkeypatch.setattr("linden.world.advance", touching)
     collisions = 0
     while victim in episode.actors:
         simulation.step(DT_S)

@@ -154,7 +154,6 @@ class VehicleApi(Columns):
         under = self._undercarriage[slot]
         com_m = centre_of_mass(control, box, offsets_m, under)
         self.specs[slot] = specification(control, offsets_m, com_m, under)
-        self.fittings += 1
         s["mass_kg"][slot] = control.mass
         s["yaw_inertia_kgm2"][slot] = HULL_INERTIA * yaw_inertia_kgm2(control.mass, box)
         s["centre_of_mass"][slot] = com_m
