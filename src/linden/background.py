@@ -48,14 +48,16 @@ def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) ->
 def end_all(at_most_s: float) -> bool:
     """Give up all work in the background and wait for its threads; return whether all have ended in time.
 
-    To be called once, at the end of a process. Work that begins later is given up at its first checkpoint.
+    To be called at the end of a command. Work that begins meanwhile is given up at its first checkpoint. Where all
+    work has ended in time, later work goes on as ever: a Python program can run several commands.
     """
     _ending.set()
     until_s = time.monotonic() + at_most_s
     while running := [thread for thread in tuple(_threads) if thread.is_alive()]:
         running[0].join(max(0.0, until_s - time.monotonic()))
-        if time.monotonic() >= until_s:
-            return not any(thread.is_alive() for thread in running)
+        if time.monotonic() >= until_s and any(thread.is_alive() for thread in running):
+            return False
+    _ending.clear()
     return True
 
 
