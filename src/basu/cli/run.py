@@ -113,6 +113,10 @@ def run_agent(arguments: argparse.Namespace) -> int:
         from basu.output.viewer.stream import require  # noqa: PLC0415 - the viewer, which needs an extra
 
         require()
+    if options.rosbag is not None:
+        from basu.ros.bag_file import require as require_rosbags  # noqa: PLC0415 - an extra
+
+        require_rosbags()
     scoring = scoring_of(arguments, config.scoring)
     from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
 

@@ -69,7 +69,8 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     started = datetime.now(timezone.utc)
     spec = _spec(session, agents, job)
     recording: list[RecordingManager] = []
-    watched = session.options.hud is not None or session.options.viewer or agents.person is not None
+    options = session.options
+    watched = options.hud is not None or options.viewer or options.rosbag is not None or agents.person is not None
 
     def observers(live: Live) -> Sequence[BaseManager]:
         live = live._replace(agents=agents)
@@ -81,6 +82,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
             *recording,
             *onlookers_for(session.options, live),
             *_viewer(session.options, live),
+            *_bag(session, live),
         ]
 
     episode = Episode(
@@ -160,3 +162,13 @@ def _viewer(options: RunOptions, live: Live) -> list[BaseManager]:
     from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, which is an extra
 
     return [ViewerManager(live, print)]
+
+
+def _bag(session: Session, live: Live) -> list[BaseManager]:
+    """The manager that writes a ROS bag, where ``--rosbag`` is given."""
+    if session.options.rosbag is None:
+        return []
+    from basu.output.ros.bag_manager import BagManager  # noqa: PLC0415 - rosbags, which is an extra
+    from basu.ros.types import Generation  # noqa: PLC0415 - likewise
+
+    return [BagManager(live, Generation(session.options.rosbag), (lambda _: None) if session.quiet else print)]
