@@ -96,12 +96,15 @@ def moved_back(pose: Pose, distance_m: float) -> Pose:
 
 
 def points(measured: NDArray[np.void] | NDArray[np.float32]) -> NDArray[np.void] | NDArray[np.float32]:
-    """Return a copy of (N, K) float32 points, or of (N,) structured ones with a field y, with y turned around."""
+    """Return a copy of (N, K) float32 points, or of (N,) structured ones with a field y, with y turned around.
+
+    By multiplication: `numpy.negative` with a strided column as its own output returns wrong numbers in numpy 2.2.6.
+    """
     turned = measured.copy()
     if turned.dtype.names is None:
-        np.negative(turned[:, 1], out=turned[:, 1])
+        turned[:, 1] *= -1.0
     else:
-        turned["y"] = -turned["y"]
+        turned["y"] *= -1.0
     return turned
 
 
