@@ -14,6 +14,8 @@ from basu.ros.topics import Topic
 from basu.ros.types import Generation, types_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from basu.ros.topics import Message
 
 DOMAINS = 232  # the highest domain: its ports still lie below 65536 (DDSI-RTPS 2.3, 9.6.1.1)
@@ -68,6 +70,7 @@ class Node:
         self.domain = domain_of_environment() if domain is None else domain
         self._writers: dict[str, Any] = {}
         self._readers: dict[str, tuple[Topic, Any]] = {}
+        self._waits: dict[tuple[Topic, ...], Any] = {}
         try:
             if is_local() and self.domain not in _domains:
                 _domains[self.domain] = Domain(self.domain, ONLY_HERE)
@@ -109,16 +112,24 @@ class Node:
 
     def wait(self, topic: Topic, timeout_s: float) -> bool:
         """Wait until something has arrived on a topic; whether it has."""
+        return self.wait_any([topic], timeout_s)
+
+    def wait_any(self, topics: Sequence[Topic], timeout_s: float) -> bool:
+        """Wait until something has arrived on one of the topics; whether it has."""
+        waiting = self._waits.get(tuple(topics))
+        if waiting is None:
+            waiting = self._waits[tuple(topics)] = self._waiting(topics)
+        return bool(waiting.wait(max(1, int(timeout_s * NS_PER_S))))
+
+    def _waiting(self, topics: Sequence[Topic]) -> Any:  # noqa: ANN401 - of cyclonedds
+        """What waits for several readers."""
         from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState, WaitSet  # noqa: PLC0415
 
-        _, reader = self._readers[topic.name]
-        condition = ReadCondition(reader, SampleState.Any | ViewState.Any | InstanceState.Any)
         waiting = WaitSet(self._participant)
-        waiting.attach(condition)
-        try:
-            return bool(waiting.wait(max(1, int(timeout_s * NS_PER_S))))
-        finally:
-            waiting.detach(condition)
+        for topic in topics:
+            reader = self._readers[topic.name][1]
+            waiting.attach(ReadCondition(reader, SampleState.Any | ViewState.Any | InstanceState.Any))
+        return waiting
 
     def writers_of(self, topic: Topic) -> int:
         """Return how many peers publish on a topic that this node listens to."""
@@ -139,7 +150,7 @@ class Node:
 
     def close(self) -> None:
         """Leave the domain."""
-        self._writers, self._readers, self._participant = {}, {}, None
+        self._waits, self._writers, self._readers, self._participant = {}, {}, {}, None
 
     def _writer(self, topic: Topic) -> Any:  # noqa: ANN401 - of cyclonedds
         """The writer of a topic, made at its first use."""

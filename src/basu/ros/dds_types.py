@@ -28,7 +28,8 @@ def dds_type(types: Types, name: str) -> Any:  # noqa: ANN401 - a class of cyclo
         UserError: cyclonedds is not installed.
     """
     made = idl_structure(types, name)
-    made.__init__, made.serialize, made.deserialize = _hold, _held, classmethod(_of_bytes)
+    made.__init__, made.serialize = _hold, _held
+    made.deserialize = made.deserialize_key = classmethod(_of_bytes)  # the second one when a writer has left
     return made
 
 

@@ -6,7 +6,9 @@ import re
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.errors import UserError
+from basu.ros import frames
 from basu.ros import vehicle_messages as of_vehicle
+from basu.ros.frames import Pose
 from basu.ros.sensor_messages import sensor_messages, sensor_types
 
 if TYPE_CHECKING:
@@ -65,6 +67,21 @@ def control_of(role: str) -> Topic:
 def ackermann_of(role: str) -> Topic:
     """Return the topic of Ackermann commands to a vehicle."""
     return Topic(f"/carla/{role}/ackermann_cmd", "ackermann_msgs/msg/AckermannDrive")
+
+
+def path_of(role: str) -> Topic:
+    """Return the topic of the planned route, as CARLA's waypoint publisher has it."""
+    return Topic(f"/carla/{role}/waypoints", "nav_msgs/msg/Path", is_latched=True, depth=1)
+
+
+def path_message(types: Types, role: str, way: list[tuple[float, float, float, float]]) -> Message:
+    """Return a route for its topic; ``way`` gives x, y, z in m and yaw in rad of each point, in CARLA's axes."""
+    header = of_vehicle.header(types, 0.0, of_vehicle.MAP)
+    poses = [
+        types.message("geometry_msgs/msg/PoseStamped", header=header, pose=of_vehicle.pose_message(types, pose))
+        for pose in (Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)) for x, y, z, yaw in way)
+    ]
+    return Message(path_of(role), types.message("nav_msgs/msg/Path", header=header, poses=poses))
 
 
 def vehicle_topics(vehicle: Vehicle) -> list[Topic]:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
+from basu.agents.ros.vehicle_source import control_of
 from basu.errors import UserError
 from basu.managers.base_manager import BaseManager
-from basu.output.ros.live_vehicle import LiveVehicle, control_of
+from basu.output.ros.live_vehicle import LiveVehicle
 from basu.output.ros.record_bag import command_message, event_messages, event_topics
 from basu.ros.bag_file import BagFile
 from basu.ros.topics import control_of as control_topic

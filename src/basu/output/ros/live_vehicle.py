@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from basu.agents.ros.vehicle_source import BRAKED, control_of, mount_of
 from basu.agents.sensor_streams import ON_EVENT
-from basu.ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount, Vehicle
+from basu.ros.moment import Actor, Light, Measurement, Moment, Motion, Vehicle
 
 if TYPE_CHECKING:
-    import carla
-
-    from basu.agents.sensor_file import SensorSpec
     from basu.managers.base_manager import Frame, Run
     from basu.managers.sensors_manager import SensorsManager
-
-BRAKED = Control(brake=1.0)  # what the vehicle has before its first control
 
 
 class LiveVehicle:
@@ -66,22 +61,3 @@ class LiveVehicle:
                 fresh.append(Measurement(mount, data))
         return fresh
 
-
-def mount_of(spec: SensorSpec) -> Mount:
-    """Return a sensor of a set with its place in rad."""
-    turn = (math.radians(angle) for angle in (spec.roll_deg, spec.pitch_deg, spec.yaw_deg))
-    return Mount(spec.id, spec.type_id, spec.x_m, spec.y_m, spec.z_m, *turn, dict(spec.attributes))
-
-
-def control_of(control: carla.VehicleControl | Any) -> Control:  # noqa: ANN401 - anything with its fields
-    """Return a control of the client; the gear is the vehicle's own affair unless it is shifted by hand."""
-    gear = int(control.gear) if control.manual_gear_shift else 0
-    return Control(
-        float(control.throttle),
-        float(control.steer),
-        float(control.brake),
-        bool(control.hand_brake),
-        bool(control.reverse),
-        gear,
-        bool(control.manual_gear_shift),
-    )
