@@ -102,13 +102,13 @@ class Node:
             self._writer(topic).write(_sample(self.types, topic, content))
 
     def received(self, topic: Topic) -> list[Any]:
-        """Return the messages that have arrived since the last call, the oldest first; unreadable ones are left out."""
+        """Return the messages that have arrived since the last call, the oldest first.
+
+        DDS has compared their types with ours before: a peer with another version of a type is no peer.
+        """
         _, reader = self._readers[topic.name]
-        messages = []
-        for sample in reader.take(N=topic.depth):
-            if hasattr(sample, "data"):
-                messages.append(self.types.parsed(sample.data, topic.type))
-        return messages
+        samples = reader.take(N=topic.depth)
+        return [self.types.parsed(sample.data, topic.type) for sample in samples if hasattr(sample, "data")]
 
     def wait(self, topic: Topic, timeout_s: float) -> bool:
         """Wait until something has arrived on a topic; whether it has."""

@@ -18,7 +18,7 @@ from basu.agents.calls import SETUP_LIMIT_S, OverrunError
 from basu.agents.ros.commands import AckermannControl, Wanted, ackermann_command, carla_command
 from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, control_of
 from basu.agents.sensor_file import read_sensors
-from basu.errors import AgentTimedOutError, UserError
+from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
 from basu.files import find
 from basu.ros.dds import Node
 from basu.ros.moment import Vehicle
@@ -26,7 +26,6 @@ from basu.ros.topics import (
     Message,
     Topic,
     ackermann_of,
-    control_of as control_topic,
     first_messages,
     moment_messages,
     objects_of,
@@ -34,6 +33,7 @@ from basu.ros.topics import (
     path_of,
     vehicle_topics,
 )
+from basu.ros.topics import control_of as control_topic
 from basu.ros.vehicle_messages import nanoseconds
 
 if TYPE_CHECKING:
@@ -161,13 +161,12 @@ class RosAgent(AutonomousAgent):
         """Check that one node drives.
 
         Raises:
-            AgentTimedOutError: none is left.
-            UserError: several do; in a step that is the agent's failure.
+            AgentCrashedError: several do.
         """
         writers = {topic.name: self.node.writers_of(topic) for topic in self.commands()}
         if sum(writers.values()) > 1:
             found = ", ".join(f"{count} on {name}" for name, count in writers.items() if count)
-            raise UserError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
+            raise AgentCrashedError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
 
     def _command(self, moment: Moment) -> Wanted | carla.VehicleControl:
         """The command that belongs to a frame.
