@@ -1,7 +1,8 @@
-"""A small driver for `basu run ros` and `basu run autoware`: pure pursuit of the published route, over DDS, without ROS.
+"""A small driver for `basu run ros` and `basu run autoware`: pure pursuit of the route, over DDS and without ROS.
 
-Start it beside the run, in another process: `python examples/ros_follower.py [carla | ackermann | autoware]`. It answers
-each odometry with one command. The law is Coulter's (1992, "Implementation of the pure pursuit path tracking algorithm").
+Start it beside the run, in another process: `python examples/ros_follower.py [carla | ackermann | autoware]`. It
+answers each odometry with one command. The law is Coulter's (1992, "Implementation of the pure pursuit path tracking
+algorithm").
 """
 
 import math

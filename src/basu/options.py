@@ -298,6 +298,14 @@ class RunOptions(Settings):
             advice="an agent is named before --rosbag, as in `basu run basic --rosbag`",
         ),
     ] = None
+    ros2: Annotated[
+        bool,
+        Option(
+            help="publish the run on ROS 2 while it lasts, over DDS, in the domain of ROS_DOMAIN_ID",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
     output: Output = Path("runs")
     series: Annotated[
         str | None,

@@ -45,7 +45,7 @@ def main(domain: int) -> None:
     control = idl_structure(TYPES, "carla_msgs/msg/CarlaEgoVehicleControl")
     commands = DataWriter(participant, Topic(participant, "rt/carla/hero/vehicle_control_cmd", control), volatile)
     tree, place, cloud, entry = (next_of(each) for each in (still, places, clouds, nodes))
-    print(
+    sys.stdout.write(
         json.dumps(
             {
                 "frames": [each.child_frame_id for each in tree.transforms],
@@ -58,9 +58,10 @@ def main(domain: int) -> None:
                 "nodes": [each.node_name for each in entry.node_entities_info_seq],
                 "writers": max(len(each.writer_gid_seq) for each in entry.node_entities_info_seq),
             }
-        ),
-        flush=True,
+        )
+        + "\n"
     )
+    sys.stdout.flush()
     kinds = control.__annotations__
     header = kinds["header"](stamp=idl_structure(TYPES, "builtin_interfaces/msg/Time")(sec=3, nanosec=0), frame_id="")
     command = control(

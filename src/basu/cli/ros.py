@@ -46,7 +46,9 @@ def _add_read(read: argparse.ArgumentParser) -> None:
     read.add_argument("--map", type=Path, metavar="FILE.xodr", help="the map of the drive, for lanes and limits")
     read.add_argument("--routes", type=Path, metavar="FILE.xml", help="a route to hold the drive against, on --map")
     read.add_argument("--route-id", metavar="ID", help="which one of the file (default: the only one)")
-    read.add_argument("--front", type=float, default=front_m, metavar="M", help="middle to front (default: %(default)s)")
+    read.add_argument(
+        "--front", type=float, default=front_m, metavar="M", help="middle to front (default: %(default)s)"
+    )
     read.add_argument("--rear", type=float, default=rear_m, metavar="M", help="middle to rear (default: %(default)s)")
     read.add_argument("--width", type=float, default=width_m, metavar="M", help="of the vehicle (default: %(default)s)")
     read.add_argument(
@@ -116,7 +118,9 @@ def read_bag(arguments: argparse.Namespace) -> int:
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    print(f"record            {folder} ({len(history.frames)} frames of {track.topic}); `basu score {folder}` judges it")
+    print(
+        f"record            {folder} ({len(history.frames)} frames of {track.topic}); `basu score {folder}` judges it"
+    )
     return 0
 
 

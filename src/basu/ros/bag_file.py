@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import shutil
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from basu.errors import UserError
 from basu.ros.types import INSTALL, Generation, types_of
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from basu.ros.topics import Message, Topic
 
-VERSION = 8  # of rosbag2's metadata: QoS as text, which Humble, Iron and Jazzy read
+VERSION: Final = 8  # of rosbag2's metadata: QoS as text, which Humble, Iron and Jazzy read
 FOREVER = (9223372036, 854775807)  # rosbag2's infinite duration, s and ns
 
 

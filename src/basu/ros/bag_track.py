@@ -69,7 +69,9 @@ def _topic(reader: Any, kind: str, wanted: str | None, path: Path, *, required: 
         raise UserError(f"the bag {path} has no topic {wanted} of the type {kind}; it has {has}")
     if wanted is None and len(found) > 1 and required:
         option = "--odometry" if kind == ODOMETRY else "--control"
-        raise UserError(f"the bag {path} has several topics of the type {kind}: {', '.join(found)}; choose with {option}")
+        raise UserError(
+            f"the bag {path} has several topics of the type {kind}: {', '.join(found)}; choose with {option}"
+        )
     if not found and required:
         every = ", ".join(sorted({each.topic for each in reader.connections})) or "no topics"
         raise UserError(f"the bag {path} has no topic of the type {kind}, which a drive is read from; it has {every}")
@@ -77,7 +79,7 @@ def _topic(reader: Any, kind: str, wanted: str | None, path: Path, *, required: 
 
 
 def _rows(reader: Any, topic: str, row_of: Any) -> Iterator[tuple[float, ...]]:  # noqa: ANN401 - of rosbags
-    """A row for each message of a topic: its time and what ``row_of`` reads; the header's time goes before the bag's."""
+    """A row for each message: its time, the header's where it has one, and what ``row_of`` reads."""
     connections = [each for each in reader.connections if each.topic == topic]
     for connection, received_ns, data in reader.messages(connections=connections):
         message = reader.deserialize(data, connection.msgtype)
@@ -113,7 +115,7 @@ def _track(rows: list[tuple[float, ...]], controls: list[tuple[float, ...]], top
     Raises:
         UserError: it is too short, or holds what is no number, or a gap.
     """
-    table = np.array(rows, dtype=np.float64).reshape(-1, 13)
+    table: NDArray[np.float64] = np.array(rows, dtype=np.float64).reshape(-1, 13)
     if not np.isfinite(table).all():
         count = int((~np.isfinite(table).all(axis=1)).sum())
         raise UserError(
@@ -128,7 +130,7 @@ def _track(rows: list[tuple[float, ...]], controls: list[tuple[float, ...]], top
             f"{topic} in the bag {path} has a gap of {gap_s:.1f} s; a record needs one message every "
             f"{LONGEST_GAP_S:g} s at least: cut the bag into its parts"
         )
-    commands = np.array(controls, dtype=np.float64).reshape(-1, 6)
+    commands: NDArray[np.float64] = np.array(controls, dtype=np.float64).reshape(-1, 6)
     commands = commands[np.argsort(commands[:, 0], kind="stable")]
     first_s = table[0, 0]
     pose = table[:, 1:7].copy()

@@ -1,4 +1,4 @@
-"""ROS 2 over DDS without ROS: a node's topics, with ROS 2's names, types and QoS, and its entry in the list of nodes."""
+"""ROS 2 over DDS without ROS: a node with ROS 2's names, types and QoS, and its entry in the list of nodes."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def domain_of_environment() -> int:
 
 
 def is_local() -> bool:
-    """Whether ROS is to stay on this machine: ``ROS_LOCALHOST_ONLY=1``, or ``ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST``."""
+    """Return whether ROS is to stay on this machine, by ``ROS_LOCALHOST_ONLY`` or ``ROS_AUTOMATIC_DISCOVERY_RANGE``."""
     return (
         os.environ.get("ROS_LOCALHOST_ONLY", "").strip() == "1"
         or os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").strip().upper() == "LOCALHOST"

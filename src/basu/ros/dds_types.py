@@ -45,7 +45,7 @@ def _held(self: Any, *_: object, **__: object) -> bytes:  # noqa: ANN401 - a sam
     return bytes(self.data)
 
 
-def _of_bytes(cls: Any, data: bytes, *_: object, **__: object) -> Any:  # noqa: ANN401 - the class, and a sample
+def _of_bytes(cls: Any, /, data: bytes, *_: object, **__: object) -> Any:  # noqa: ANN401 - the class, and a sample
     return cls(data)
 
 
@@ -63,9 +63,11 @@ def idl_structure(types: Types, name: str) -> Any:  # noqa: ANN401 - a class of 
     return idl.make_idl_struct(name.rpartition("/")[2], dds_name(name), fields)
 
 
-def _member(types: Types, kind: Any) -> Any:  # noqa: ANN401 - a description of rosbags in, a type of cyclonedds out
+def _member(known: Types, kind: Any) -> Any:  # noqa: ANN401 - a description of rosbags in, a type of cyclonedds out
     """The type of a field."""
-    from cyclonedds.idl import types as dds  # noqa: PLC0415 - an extra
+    from cyclonedds.idl import types  # noqa: PLC0415 - an extra
+
+    dds: Any = types  # its generics are no generics to the type checker
 
     node, rest = int(kind[0]), kind[1]
     if node == 1:
@@ -74,8 +76,8 @@ def _member(types: Types, kind: Any) -> Any:  # noqa: ANN401 - a description of 
             return dds.bounded_str[bound] if bound else str
         return bool if name == "bool" else getattr(dds, {"char": "uint8", "octet": "byte"}.get(name, name))
     if node == 2:
-        return _inner(types, rest)
-    inner = _member(types, rest[0])
+        return _inner(known, rest)
+    inner = _member(known, rest[0])
     if node == 3:
         return dds.array[inner, rest[1]]
     return dds.sequence[inner, rest[1]] if rest[1] else dds.sequence[inner]
@@ -85,3 +87,15 @@ def _member(types: Types, kind: Any) -> Any:  # noqa: ANN401 - a description of 
 def _inner(types: Types, name: str) -> Any:  # noqa: ANN401 - as above
     """The structure of a message inside of others."""
     return idl_structure(types, name)
+
+
+def require() -> None:
+    """Check that DDS is there.
+
+    Raises:
+        UserError: cyclonedds is not installed.
+    """
+    try:
+        import cyclonedds  # noqa: F401, PLC0415 - an extra
+    except ImportError as error:
+        raise UserError(INSTALL) from error

@@ -10,9 +10,7 @@ and turns it in that of its IMU; REP 103 decides here, for both.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, NamedTuple
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -95,7 +93,7 @@ def moved_back(pose: Pose, distance_m: float) -> Pose:
     return Pose((x, y, z), pose.attitude)
 
 
-def points(measured: NDArray[np.void] | NDArray[np.float32]) -> NDArray[np.void] | NDArray[np.float32]:
+def points(measured: NDArray[Any]) -> NDArray[Any]:
     """Return a copy of (N, K) float32 points, or of (N,) structured ones with a field y, with y turned around.
 
     By multiplication: `numpy.negative` with a strided column as its own output returns wrong numbers in numpy 2.2.6.

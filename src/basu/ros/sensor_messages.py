@@ -135,7 +135,7 @@ def _depth_m(bgra: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 
 def _coloured(bgra: NDArray[np.uint8]) -> NDArray[np.uint32]:
-    """(H, W) packed pixels of a raw semantic picture, its tag in red, in the colours of Cityscapes; a tag beyond the table is black."""
+    """(H, W) packed pixels in the colours of Cityscapes; the raw picture's tag is in red, an unknown tag is black."""
     table = np.zeros((256, 4), dtype=np.uint8)
     table[: len(CITYSCAPES), :3] = CITYSCAPES[:, ::-1]
     table[:, 3] = 255

@@ -1,4 +1,4 @@
-"""The topics of a simulated vehicle: names, types and QoS as CARLA's ros-bridge has them, and each moment's messages."""
+"""The topics of a simulated vehicle, as CARLA's ros-bridge has them, and the messages of each moment."""
 
 from __future__ import annotations
 

@@ -49,13 +49,15 @@ class Types:
         self.store.register(own)
 
     def message(self, name: str, /, **fields: Any) -> Any:  # noqa: ANN401 - a class made of its definition
-        """Return a message of the type ``name`` (``nav_msgs/msg/Odometry``); fields that are not given are zero or empty.
+        """Return a message of a type such as ``nav_msgs/msg/Odometry``; fields that are not given are zero or empty.
 
         Raises:
             TypeError: the type has no such field.
         """
         given = dict(fields)
-        values = {key: given.pop(key) if key in given else self._blank(kind) for key, kind in self.store.fielddefs[name][1]}
+        values = {
+            key: given.pop(key) if key in given else self._blank(kind) for key, kind in self.store.fielddefs[name][1]
+        }
         if given:
             raise TypeError(f"{name} has no field {', '.join(sorted(given))}")
         return self.store.types[name](**values)

@@ -1,4 +1,4 @@
-"""Messages of a vehicle: clock, transforms, odometry, status, other actors, traffic lights; as the ros-bridge has them."""
+"""Messages of a vehicle as the ros-bridge has them: clock, transforms, odometry, status, other actors, lights."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def twist(types: Types, motion: Motion, rear_axle_m: float = 0.0) -> Any:  # noq
 
 
 def odometry(types: Types, vehicle: Vehicle, moment: Moment, child: str) -> Any:  # noqa: ANN401 - a message
-    """Return the pose in the map, and the velocities in the axes of the frame ``child``, on the vehicle's middle line."""
+    """Return the pose in the map, and the velocities in the axes of ``child``: base_link, or the vehicle's frame."""
     behind_m = vehicle.rear_axle_m
     pose = pose_message(types, frames.moved_back(moment.motion.pose, behind_m))
     return types.message(
@@ -116,9 +116,7 @@ def odometry(types: Types, vehicle: Vehicle, moment: Moment, child: str) -> Any:
 
 def control_message(types: Types, control: Control, t_s: float = 0.0) -> Any:  # noqa: ANN401 - a message
     """Return a control as CARLA has it: steer is positive to the right."""
-    return types.message(
-        "carla_msgs/msg/CarlaEgoVehicleControl", header=header(types, t_s, ""), **control._asdict()
-    )
+    return types.message("carla_msgs/msg/CarlaEgoVehicleControl", header=header(types, t_s, ""), **control._asdict())
 
 
 def status(types: Types, moment: Moment) -> Any:  # noqa: ANN401 - a message

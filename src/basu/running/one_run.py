@@ -70,7 +70,8 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     spec = _spec(session, agents, job)
     recording: list[RecordingManager] = []
     options = session.options
-    watched = options.hud is not None or options.viewer or options.rosbag is not None or agents.person is not None
+    shown = options.hud is not None or options.viewer or options.ros2 or options.rosbag is not None
+    watched = shown or agents.person is not None
 
     def observers(live: Live) -> Sequence[BaseManager]:
         live = live._replace(agents=agents)
@@ -82,7 +83,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
             *recording,
             *onlookers_for(session.options, live),
             *_viewer(session.options, live),
-            *_bag(session, live),
+            *_ros(session, live),
         ]
 
     episode = Episode(
@@ -164,11 +165,17 @@ def _viewer(options: RunOptions, live: Live) -> list[BaseManager]:
     return [ViewerManager(live, print)]
 
 
-def _bag(session: Session, live: Live) -> list[BaseManager]:
-    """The manager that writes a ROS bag, where ``--rosbag`` is given."""
-    if session.options.rosbag is None:
-        return []
-    from basu.output.ros.bag_manager import BagManager  # noqa: PLC0415 - rosbags, which is an extra
-    from basu.ros.types import Generation  # noqa: PLC0415 - likewise
+def _ros(session: Session, live: Live) -> list[BaseManager]:
+    """The managers that publish the run on ROS 2 and write it as a bag, where ``--ros2`` and ``--rosbag`` are given."""
+    options, say = session.options, (lambda _: None) if session.quiet else print
+    managers: list[BaseManager] = []
+    if options.ros2:
+        from basu.output.ros.publish_manager import PublishManager  # noqa: PLC0415 - DDS, which is an extra
 
-    return [BagManager(live, Generation(session.options.rosbag), (lambda _: None) if session.quiet else print)]
+        managers.append(PublishManager(live, say))
+    if options.rosbag is not None:
+        from basu.output.ros.bag_manager import BagManager  # noqa: PLC0415 - rosbags, which is an extra
+        from basu.ros.types import Generation  # noqa: PLC0415 - likewise
+
+        managers.append(BagManager(live, Generation(options.rosbag), say))
+    return managers

@@ -81,7 +81,7 @@ def test_the_same_messages_are_the_same_bytes(generation: Generation, tmp_path: 
 def test_nothing_is_overwritten_and_what_is_abandoned_is_gone(generation: Generation, tmp_path: Path) -> None:
     path = tmp_path / "drive"
     bag = BagFile(path, generation)
-    with pytest.raises(UserError, match="drive cannot be written: .*exists"):
+    with pytest.raises(UserError, match=r"drive cannot be written: .*exists"):
         BagFile(path, generation)
     bag.abandon()
     assert not path.exists()

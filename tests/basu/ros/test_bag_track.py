@@ -17,7 +17,9 @@ from basu.ros.vehicle_messages import control_message, header, odometry
 NOBODY = Control()
 
 
-def bag(path: Path, motions: Sequence[tuple[float, Motion]], *topics: str, generation: Generation = Generation.ROS_2) -> Path:
+def bag(
+    path: Path, motions: Sequence[tuple[float, Motion]], *topics: str, generation: Generation = Generation.ROS_2
+) -> Path:
     """A bag with odometry on each of ``topics``, and CARLA's control at twice its rate."""
     file = BagFile(path, generation)
     for t_s, motion in motions:
@@ -51,15 +53,19 @@ def test_what_was_written_is_read_back_in_carla_s_axes(generation: Generation, t
 
 def test_one_of_several_odometries_must_be_named(tmp_path: Path) -> None:
     path = bag(tmp_path / "drive", [(t, uphill(t)) for t in (0.1, 0.2)], "/odom", "/wheels/odom")
-    with pytest.raises(UserError, match="several topics .*: /odom, /wheels/odom; choose with --odometry"):
+    with pytest.raises(UserError, match=r"several topics .*: /odom, /wheels/odom; choose with --odometry"):
         read_track(path)
     assert read_track(path, "/wheels/odom").topic == "/wheels/odom"
-    with pytest.raises(UserError, match="no topic /lidar of the type nav_msgs/msg/Odometry; it has /odom, /wheels/odom"):
+    with pytest.raises(
+        UserError, match="no topic /lidar of the type nav_msgs/msg/Odometry; it has /odom, /wheels/odom"
+    ):
         read_track(path, "/lidar")
 
 
 def test_a_bag_without_odometry_names_what_it_has(tmp_path: Path) -> None:
-    with pytest.raises(UserError, match="no topic of the type nav_msgs/msg/Odometry.*it has /carla/hero/vehicle_control"):
+    with pytest.raises(
+        UserError, match=r"no topic of the type nav_msgs/msg/Odometry.*it has /carla/hero/vehicle_control"
+    ):
         read_track(bag(tmp_path / "drive", [(0.1, uphill(0.1))]))
 
 

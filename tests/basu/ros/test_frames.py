@@ -40,7 +40,7 @@ def test_angles_lead_back(roll: float, pitch: float, yaw: float) -> None:
 
 @pytest.mark.parametrize("axis", range(3))
 def test_an_angular_velocity_turns_points_the_same_way_in_both_frames(axis: int) -> None:
-    """v = w x r in components, in CARLA's axes (as its physics has it) and in ROS's; the mirror image must be the same."""
+    """v = w x r in components, in CARLA's axes and in ROS's: each is the other's mirror image."""
     spin, arm = np.eye(3)[axis], np.array([0.3, -0.7, 0.2])
     moving = np.cross(spin, arm)
     assert np.cross(frames.axial(*spin), frames.vector(*arm)) == pytest.approx(np.array(frames.vector(*moving)))

@@ -37,7 +37,11 @@ def test_a_lidar_has_sixteen_bytes_a_point_with_y_to_the_left() -> None:
     assert (message.is_dense, message.is_bigendian) == (False, False)
     expected = [[1, -2, 3, 0.5], [4, 5, 6, 0.25]]
     assert message.data.view(np.float32).reshape(-1, 4).tolist() == expected
-    assert (message.header.stamp.sec, message.header.stamp.nanosec, message.header.frame_id) == (1, 250_000_000, "hero/S")
+    assert (message.header.stamp.sec, message.header.stamp.nanosec, message.header.frame_id) == (
+        1,
+        250_000_000,
+        "hero/S",
+    )
 
 
 def test_an_empty_lidar_is_an_empty_cloud() -> None:

@@ -1,4 +1,4 @@
-"""Commands of ROS software as CARLA's controls: pedals as they are, Ackermann's speed and tyre angle by a controller."""
+"""Commands of ROS software as CARLA's controls: pedals as they are, speed and tyre angle by a controller."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ def ackermann_command(message: Any) -> Wanted:  # noqa: ANN401 - a message
     """
     speed, angle = finite(message.speed, "speed"), finite(message.steering_angle, "steering_angle")
     acceleration = finite(message.acceleration, "acceleration")
-    return Wanted(speed, angle, math.copysign(abs(acceleration), acceleration) if acceleration else None)
+    return Wanted(speed, angle, acceleration or None)
 
 
 def autoware_command(message: Any) -> Wanted:  # noqa: ANN401 - a message
@@ -101,6 +101,4 @@ class AckermannControl:
         aim_mps = now_mps + rate * self._step_s
         pedals = self._pedals.step(now_mps, max(0.0, aim_mps), rate, holding=holding, gear=gear)
         steer = self._steering.command(-wanted.tyre_angle_rad, speed_mps)
-        return carla.VehicleControl(
-            throttle=pedals.throttle, brake=pedals.brake, steer=steer, reverse=is_back
-        )
+        return carla.VehicleControl(throttle=pedals.throttle, brake=pedals.brake, steer=steer, reverse=is_back)

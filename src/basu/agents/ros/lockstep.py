@@ -212,4 +212,4 @@ def _belongs(message: Any, t_s: float) -> bool:  # noqa: ANN401 - a message
     if stamp is None:
         return True
     stamped_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
-    return stamped_ns == 0 or stamped_ns >= nanoseconds(t_s)
+    return bool(stamped_ns == 0 or stamped_ns >= nanoseconds(t_s))

@@ -1,4 +1,4 @@
-"""What an agent knows of its vehicle in a frame, as the source of ROS messages; values of the client turned into ours."""
+"""Moments of an agent's vehicle, the source of its ROS messages; values of the client turned into ours."""
 
 from __future__ import annotations
 
@@ -69,13 +69,10 @@ def motion_of(own: carla.ActorSnapshot) -> Motion:
     pose = own.get_transform()
     at, turned = pose.location, pose.rotation
     velocity, acceleration, spin = own.get_velocity(), own.get_acceleration(), own.get_angular_velocity()
-    return Motion(
-        at.x, at.y, at.z,
-        *(math.radians(angle) for angle in (turned.roll, turned.pitch, turned.yaw)),
-        velocity.x, velocity.y, velocity.z,
-        acceleration.x, acceleration.y, acceleration.z,
-        *(math.radians(rate) for rate in (spin.x, spin.y, spin.z)),
-    )  # fmt: skip
+    turns = (math.radians(angle) for angle in (turned.roll, turned.pitch, turned.yaw))
+    rates = (math.radians(rate) for rate in (spin.x, spin.y, spin.z))
+    moving = (velocity.x, velocity.y, velocity.z, acceleration.x, acceleration.y, acceleration.z)
+    return Motion._make((at.x, at.y, at.z, *turns, *moving, *rates))
 
 
 def actor_of(other: Other) -> Actor:
@@ -96,8 +93,8 @@ def actor_of(other: Other) -> Actor:
 
 def mount_of(spec: SensorSpec) -> Mount:
     """Return a sensor of a set with its place in rad."""
-    turn = (math.radians(angle) for angle in (spec.roll_deg, spec.pitch_deg, spec.yaw_deg))
-    return Mount(spec.id, spec.type_id, spec.x_m, spec.y_m, spec.z_m, *turn, dict(spec.attributes))
+    roll, pitch, yaw = (math.radians(angle) for angle in (spec.roll_deg, spec.pitch_deg, spec.yaw_deg))
+    return Mount(spec.id, spec.type_id, spec.x_m, spec.y_m, spec.z_m, roll, pitch, yaw, dict(spec.attributes))
 
 
 def control_of(control: carla.VehicleControl) -> Control:

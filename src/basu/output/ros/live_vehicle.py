@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class LiveVehicle:
-    """Makes moments of a run's frames. Events of the agent's sensors are left out: the record has them by their frame."""
+    """Makes moments of a run's frames; the events of the agent's sensors are left out, for the record has them."""
 
     def __init__(self, run: Run, sensors: SensorsManager, *, rear_axle_m: float = 0.0) -> None:
         """Look up sensors and traffic lights of ``run``."""
@@ -48,7 +48,8 @@ class LiveVehicle:
         if near is None:
             return []
         return [
-            Actor(int(row[1]), near.met[int(row[1])], *row[2:], *near.sizes[int(row[1])]) for row in near.near(frame)
+            Actor._make((int(row[1]), near.met[int(row[1])], *row[2:], *near.sizes[int(row[1])]))
+            for row in near.near(frame)
         ]
 
     def _measured(self) -> list[Measurement]:
@@ -60,4 +61,3 @@ class LiveVehicle:
                 self._sent[sensor_id] = made_in
                 fresh.append(Measurement(mount, data))
         return fresh
-

@@ -97,6 +97,5 @@ def _others_by_tick(history: History) -> dict[int, list[Actor]]:
     for row in history.others.tolist():
         tick, actor_id, *motion = row
         kind, sizes = facts.actor_types.get(actor_id, ""), facts.actor_sizes.get(actor_id, (0.0, 0.0))
-        rows.setdefault(tick, []).append(Actor(actor_id, kind, *motion, *sizes))
+        rows.setdefault(tick, []).append(Actor._make((actor_id, kind, *motion, *sizes)))
     return rows
-

@@ -130,7 +130,9 @@ def _rows(
     carla_map: carla.Map | None,
 ) -> NDArray[np.void]:
     """The frames of the record."""
-    finder: Callable[[Ego], tuple[float, ...]] = (lambda _: NO_LANE) if carla_map is None else LaneFinder(carla_map).under
+    finder: Callable[[Ego], tuple[float, ...]] = (
+        (lambda _: NO_LANE) if carla_map is None else LaneFinder(carla_map).under
+    )
     place = Progress.at_start()
     rows = []
     for tick, (time_s, state, control) in enumerate(zip(t_s.tolist(), motion.tolist(), controls.tolist(), strict=True)):

@@ -47,7 +47,7 @@ def run(
     return code, json.loads(result.read_text()) if result.exists() else {}, output / "latest"
 
 
-@pytest.mark.parametrize(("agent", "kind"), [("ros", "carla"), ("ros", "ackermann"), ("autoware", "autoware")])
+@pytest.mark.parametrize(("agent", "kind"), [("ros", "ackermann"), ("autoware", "autoware")])
 def test_a_follower_drives_along_the_route(
     agent: str, kind: str, simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
 ) -> None:
@@ -65,8 +65,7 @@ def test_a_follower_drives_along_the_route(
     [
         ("nan", "AgentInvalidControl", "commands throttle = nan; it must be a finite number"),
         ("dies", "AgentTimedOut", "left the domain"),
-        ("stalls", "AgentTimedOut", "gave no command on /carla/hero/vehicle_control_cmd or"),
-        ("late", "AgentTimedOut", "within the limit of a step; it is still on the domain"),
+        ("stalls", "AgentTimedOut", "within the limit of a step; it is still on the domain"),
     ],
 )
 def test_software_that_fails_is_the_agent_s_failure_and_the_record_is_kept(
