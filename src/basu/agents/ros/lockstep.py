@@ -16,7 +16,7 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.builtin.perception import SHUTTLE, read_facts
 from basu.agents.calls import SETUP_LIMIT_S, OverrunError
 from basu.agents.ros.commands import AckermannControl, Wanted, ackermann_command, carla_command
-from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, control_of
+from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, control_of, info_message
 from basu.agents.sensor_file import read_sensors
 from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
 from basu.files import find
@@ -79,7 +79,8 @@ class RosAgent(AutonomousAgent):
         if self.facts is None:
             self.facts = read_facts(self.vehicle, self.vehicle.get_transform())
             self.described = self.described._replace(rear_axle_m=self.axle_m(self.facts))
-            self.node.publish(*first_messages(self.node.types, self.described, moment.t_s))
+            still = first_messages(self.node.types, self.described, moment.t_s)
+            self.node.publish(*still, info_message(self.node.types, self.vehicle))
         if self.node.readers_of(objects_of(self.described.role)):
             moment = moment._replace(others=[actor_of(other) for other in self.visible_actors()])
         self._check_alone()

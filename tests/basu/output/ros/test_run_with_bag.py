@@ -65,6 +65,12 @@ def test_a_run_with_sensors_is_a_bag_and_the_state_in_it_is_the_record_s(
     children = {each.child_frame_id for each in still.transforms}  # type: ignore[attr-defined]
     assert children == {"odom", "hero", "hero/LIDAR", "hero/IMU", "hero/GNSS"}
 
+    [info] = [each for topic, _, each in found if topic == "/carla/hero/vehicle_info"]
+    assert info.type == "vehicle.easymile.ez10"  # type: ignore[attr-defined]
+    places = [(wheel.position.x, wheel.position.y) for wheel in info.wheels]  # type: ignore[attr-defined]
+    assert [(x > 0, y > 0) for x, y in places] == [(True, True), (True, False), (False, True), (False, False)]
+    assert all(0.3 < abs(y) < 1.2 and 0.8 < abs(x) < 2.0 for x, y in places)
+
     write_record(history, tmp_path / "again", Generation.ROS_2)
     states = ("/carla/hero/odometry", "/carla/hero/vehicle_status", "/carla/hero/vehicle_control_cmd", "/tf", "/clock")
     live, later = (
