@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 APPEARS_S = SETUP_LIMIT_S - 20.0  # wall time for the software to appear on the domain: it may load maps and networks
 SLICE_S = 0.02  # of waiting: in between, the step's time limit can interrupt
+MISSED_S = 12.0  # wall time after which DDS has missed a node that was killed: its lease is 10 s
 NODE = "basu"
 
 
@@ -159,15 +160,25 @@ class RosAgent(AutonomousAgent):
             time.sleep(SLICE_S)  # discovery has no event that this could wait for
 
     def _check_alone(self) -> None:
-        """Check that one node drives.
+        """Check that one node drives. One that was killed stays on the domain until DDS misses it, so this waits.
 
         Raises:
             AgentCrashedError: several do.
         """
+        until_s = time.monotonic() + MISSED_S
+        try:
+            while sum(self.node.writers_of(topic) for topic in self.commands()) > 1:
+                if time.monotonic() > until_s:
+                    raise self._several()
+                time.sleep(SLICE_S)  # DDS has no event for it that could be waited for together with a time limit
+        except OverrunError:
+            raise self._several() from None
+
+    def _several(self) -> AgentCrashedError:
+        """The failure of several drivers."""
         writers = {topic.name: self.node.writers_of(topic) for topic in self.commands()}
-        if sum(writers.values()) > 1:
-            found = ", ".join(f"{count} on {name}" for name, count in writers.items() if count)
-            raise AgentCrashedError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
+        found = ", ".join(f"{count} on {name}" for name, count in writers.items() if count)
+        return AgentCrashedError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
 
     def _command(self, moment: Moment) -> Wanted | carla.VehicleControl:
         """The command that belongs to a frame.
