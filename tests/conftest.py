@@ -12,7 +12,7 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-from tracing import untraced
+from tracing import save, untraced
 
 LONGEST = (
     "basu/running/scenario_runs/test_catalogue.py",
@@ -59,3 +59,9 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
     """Measure no coverage in slow tests: they drive long ways through lines that quick tests reach."""
     with untraced() if item.get_closest_marker("slow") else nullcontext():
         return (yield)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish() -> None:
+    """Write the coverage before the process ends: pytest-xdist kills a worker that takes more than 10 s to end."""
+    save()
