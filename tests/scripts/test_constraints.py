@@ -1,4 +1,4 @@
-"""Claims about constraints.txt: one version of each package for every supported Python, and versions that it can use."""
+"""Claims about constraints.txt: one version of each package for each supported Python, which admits that Python."""
 
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
