@@ -14,7 +14,7 @@ CAMERA, STREAM = 7, 3
 @pytest.mark.parametrize(
     ("is_there", "listened", "waits"), [(False, {STREAM}, True), (False, {1}, False), (True, {STREAM}, False)]
 )
-def test_a_frame_waits_for_the_scene_only_where_somebody_looks_at_it(
+def test_a_frame_waits_for_the_scene_only_where_a_sensor_looks_at_it(
     *, is_there: bool, listened: set[int], waits: bool
 ) -> None:
     episode = SimpleNamespace(actors={CAMERA: SimpleNamespace(stream_id=STREAM)})

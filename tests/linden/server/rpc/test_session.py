@@ -25,14 +25,14 @@ def context() -> Context:
     )
 
 
-def test_a_variable_step_is_asked_of_the_clock_and_a_fixed_one_is_not(context: Context) -> None:
+def test_a_variable_step_comes_from_the_clock_and_a_fixed_one_does_not(context: Context) -> None:
     session.tick_cue(context)
     context.simulation.settings = EpisodeSettings(fixed_delta_seconds=0.05)
     session.tick_cue(context)
     assert context.simulation.steps_s == [0.04, 0.05]
 
 
-def test_a_frame_is_put_into_the_outbox_for_those_who_listen_only(context: Context) -> None:
+def test_a_frame_is_put_into_the_outbox_of_subscribers_only(context: Context) -> None:
     assert session.tick_cue(context) == 1
     assert context.outbox == []
     context.streams.subscribe(1)
@@ -66,7 +66,7 @@ def test_an_opendrive_text_can_be_loaded_once_it_was_sent(context: Context) -> N
     assert session.get_map_info(context).name == "Carla/Maps/OpenDriveMap"
 
 
-def test_a_traffic_manager_port_belongs_to_the_first_who_takes_it(context: Context) -> None:
+def test_a_traffic_manager_port_belongs_to_the_first_client_that_takes_it(context: Context) -> None:
     context.caller = 5
     assert session.add_traffic_manager_running(context, ("10.0.0.1", 8000))
     context.caller = 6
