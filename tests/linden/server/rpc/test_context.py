@@ -21,7 +21,7 @@ def test_a_frame_waits_for_the_scene_only_where_a_sensor_looks_at_it(
     sensors = EpisodeSensors()
     sensors.looking[CAMERA] = None
     context = Context(
-        simulation=SimpleNamespace(sensor_scene=FakeSensorScene(is_there=is_there), episode=episode, sensors=sensors),
+        world=SimpleNamespace(sensor_scene=FakeSensorScene(is_there=is_there), episode=episode, sensors=sensors),
         maps=FakeMaps(),
         frames=FakeFrames(),
         streams=SimpleNamespace(listened=lambda: listened),

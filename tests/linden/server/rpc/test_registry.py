@@ -13,7 +13,7 @@ from linden.server.rpc.registry import METHODS, dispatch, method
 
 def new_context() -> Context:
     return Context(
-        simulation=FakeSimulation(),
+        world=FakeSimulation(),
         maps=FakeMaps(),
         frames=FakeFrames(),
         streams=StreamTable(2001),
