@@ -1,4 +1,4 @@
-"""The cars that a client's Traffic Managers drive, and what waits until their thread lets go of a destroyed one.
+"""Vehicles that a client's Traffic Managers drive; answers to `destroy_actor` that wait until their thread lets go.
 
 When ``destroy_actor`` is answered, LibCarla's ``Simulator::DestroyActor`` cuts the actor off from its episode. A
 Traffic Manager holds the same object, and its thread ends the process where it still works on it: "trying to operate on
