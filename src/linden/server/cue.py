@@ -1,4 +1,4 @@
-"""The cue that a Traffic Manager's thread must not miss: its question comes before its client's tick is answered.
+"""Delay of the answer to a tick until the thread of the client's Traffic Manager has made its next call.
 
 In synchronous mode that thread of the client asks ``get_episode_settings`` once a step, then sleeps until the thread
 that ticks has its new frame and wakes it. LibCarla 0.9.16 gives this signal without the lock: one that falls between

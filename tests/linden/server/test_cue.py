@@ -32,7 +32,7 @@ def test_a_question_behind_a_tick_is_answered_before_it() -> None:
     assert first[1] == second[1] + 1
 
 
-def test_ticks_stop_waiting_where_nobody_asks() -> None:
+def test_ticks_stop_waiting_where_no_client_asks() -> None:
     cue, waited_s = Cue(), []
     for _ in range(MOST_LATE + 3):
         cue.ticked(b"frame", now_s=10.0)
