@@ -287,6 +287,25 @@ class RunOptions(Settings):
         ),
     ] = ()
     record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
+    rosbag: Annotated[
+        Literal["ros2", "ros1"] | None,
+        Option(
+            help="write sensors, state, control and TF as a ROS bag: a folder with MCAP for ros2, a .bag for ros1; "
+            "without a word: ros2",
+            group=FOLDERS,
+            bare="ros2",
+            default_text="write none",
+            advice="an agent is named before --rosbag, as in `basu run basic --rosbag`",
+        ),
+    ] = None
+    ros2: Annotated[
+        bool,
+        Option(
+            help="publish the run on ROS 2 while it lasts, over DDS, in the domain of ROS_DOMAIN_ID",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
     output: Output = Path("runs")
     series: Annotated[
         str | None,

@@ -36,6 +36,7 @@ COMMANDS = {
     "experiment": Command("run", "drive the thesis's test runs again"),
     "metrics": Command("recordings", "run a metric of your own on a recording"),
     "replay": Command("recordings", "play a run again"),
+    "ros": Command("ros", "ROS bags of runs, and runs of ROS bags"),
     "list": Command("results", "show the agents and routes that come with BASU"),
 }
 
