@@ -153,7 +153,7 @@ def test_a_building_over_a_street_is_left_out(built: Built) -> None:
 def test_an_extract_without_streets_is_refused() -> None:
     draw = Drawing()
     draw.way(1, (0.0, 0.0), (50.0, 0.0), highway="footway")
-    with pytest.raises(UserError, match="x.osm holds no street that cars may drive on"):
+    with pytest.raises(UserError, match=r"x\.osm holds no street that cars may drive on"):
         convert(draw.text(), "x.osm")
 
 

@@ -24,7 +24,7 @@ def told(**tags: str) -> dict[str, str]:
         (told(junction="roundabout"), (1, 0), False),
     ],
 )
-def test_lanes(tags: dict[str, str], lanes: tuple[int, int], is_tagged: bool) -> None:
+def test_lanes(tags: dict[str, str], lanes: tuple[int, int], *, is_tagged: bool) -> None:
     found = carriageway(tags, metric=False)
     assert (found.forward, found.backward) == lanes
     assert (dict(found.sources)["lanes_confidence"] == TAGGED) == is_tagged
@@ -60,7 +60,7 @@ def test_lengths(text: str, m: float | None) -> None:
         ({"highway": "construction"}, False),
     ],
 )
-def test_streets_are_what_the_public_drives_on(tags: dict[str, str], is_one: bool) -> None:
+def test_streets_are_what_the_public_drives_on(tags: dict[str, str], *, is_one: bool) -> None:
     assert is_street(tags) == is_one
 
 
