@@ -1,8 +1,7 @@
 """Attributes of blueprints: CARLA's text values and types, and the check of attributes from clients.
 
-Attributes of blueprints: how the facts in blueprints.json become CARLA's text values and types.
-
-What a client asks to spawn, checked against its blueprint and completed with its defaults.
+The facts in ``blueprints.json`` become text values here. A client's description of an actor is checked against its
+blueprint and completed with the defaults.
 """
 
 import math
