@@ -30,6 +30,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
         "--facts", type=Path, metavar="FILE", help="write the streets of an OpenStreetMap extract as GeoJSON too"
     )
     command.add_argument(
+        "--elevation", type=Path, metavar="FILE", help="lay the streets on measured ground: a GeoTIFF, or LAS or LAZ"
+    )
+    command.add_argument(
         "--route",
         action="append",
         default=[],
@@ -43,9 +46,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the OpenDRIVE map of a file of streets, and the route files that are wanted."""
     try:
         from linden.authoring.openstreetmap.convert import convert  # noqa: PLC0415 - an optional part, slow to load
-        from linden.authoring.streets.build import assembled  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.build import assembled, off_ground_m  # noqa: PLC0415 - likewise
         from linden.authoring.streets.routes import xml  # noqa: PLC0415 - likewise
         from linden.authoring.streets.street_facts import read  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.terrain import with_terrain  # noqa: PLC0415 - likewise
         from linden.authoring.streets.writing import text as written  # noqa: PLC0415 - likewise
     except ModuleNotFoundError as error:
         if (error.name or "").startswith("linden"):
@@ -57,7 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
     imported = convert(bytes_of(source), str(source)) if source is not None and source.suffix == ".osm" else None
     if arguments.facts is not None and imported is None:
         raise UserError("--facts writes the streets of an OpenStreetMap extract; name a .osm file, or leave it out")
-    built = assembled(read(_streets(source) if imported is None else imported.streets))
+    facts = read(_streets(source) if imported is None else imported.streets)
+    built = assembled(facts if arguments.elevation is None else with_terrain(facts, arguments.elevation))
     wanted = [_route_and_file(given, built.facts.routes) for given in arguments.route]
     files = [(arguments.output, written(built.document))]
     files += [(file, xml(built, built.facts.routes[name], number)) for number, (name, file) in enumerate(wanted)]
@@ -68,6 +73,9 @@ def run(arguments: argparse.Namespace) -> int:
         _say(f"{file}: {len(data):,} bytes")
     if imported is not None:
         _report(imported)
+    if arguments.elevation is not None:
+        away_m, near_m = off_ground_m(built)
+        _say(f"off the ground: {away_m:.2f} m at most, {near_m:.2f} m where roads come down to level junctions")
     if built.left_out:
         _say(f"left out: {len(built.left_out)} buildings or things that would stand on a street")
     unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]

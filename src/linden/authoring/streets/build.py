@@ -17,6 +17,7 @@ from linden.authoring.streets.document import (
     RoadRecord,
     Signal,
     SignalReference,
+    value,
 )
 from linden.authoring.streets.network import End, Leg, Network, nearest_road
 from linden.authoring.streets.network import build as build_network
@@ -330,6 +331,20 @@ class _Assembly:
         record = roads.street_road(self.road_ids[edge], one.street, one.section, path, heights)
         record = roads.linked(record, self.touches.get(begin), self.touches.get(end))
         return record._replace(signals=tuple(self.signals[edge]), objects=tuple(self.objects[edge]))
+
+
+def off_ground_m(built: Built) -> tuple[float, float]:
+    """Return by how many m roads leave the ground at most: away from junctions, and near them, where they are level."""
+    ground, worst_m = built.facts.ground, [0.0, 0.0]
+    for record in (road for road in built.roads if road is not None):
+        total_m, ramp_m = length(record.path), ground.profile.ramp_m
+        for i in range(int(total_m / 2.0) + 1):
+            s_m = min(2.0 * i, total_m)
+            pose = pose_at(record.path, s_m)
+            apart_m = abs(value(record.elevation, s_m) - ground.height_m(pose.x_m, pose.y_m))
+            is_near = min(s_m, total_m - s_m) < ramp_m
+            worst_m[is_near] = max(worst_m[is_near], apart_m)
+    return worst_m[0], worst_m[1]
 
 
 def _turns(legs: tuple[Leg, ...], centre: Point, *, is_roundabout: bool) -> tuple[junctions.Turn, ...]:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Mapping
 from enum import Enum
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from pyproj import Proj
 
@@ -122,6 +122,18 @@ class Route(NamedTuple):
     timetable: str = ""
 
 
+class Profile(NamedTuple):
+    """How closely roads follow the ground.
+
+    A junction is level; over ``ramp_m`` a road finds back to the ground. ``knot_m`` lies between the points where the
+    height is given. ``steepest`` is the greatest mean rise of a road between level junctions.
+    """
+
+    ramp_m: float
+    knot_m: float
+    steepest: float
+
+
 class Ground(NamedTuple):
     """A plane: height in m at the origin, and its rise per metre north and east."""
 
@@ -129,6 +141,34 @@ class Ground(NamedTuple):
     north: float
     east: float
     confidence: str
+    profile: Profile = Profile(ramp_m=30.0, knot_m=60.0, steepest=0.012)
+
+    def height_m(self, x_m: float, y_m: float) -> float:
+        """Return the height in m at a place."""
+        return self.base_m + self.north * y_m + self.east * x_m
+
+    def rise(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """Return the rise per metre east and north at a place."""
+        del x_m, y_m
+        return self.east, self.north
+
+
+class AnyGround(Protocol):
+    """Ground that roads are laid on: a plane, or measured terrain."""
+
+    @property
+    def confidence(self) -> str:
+        """Where the heights are known from."""
+
+    @property
+    def profile(self) -> Profile:
+        """How closely roads follow the ground."""
+
+    def height_m(self, x_m: float, y_m: float) -> float:
+        """Return the height in m at a place."""
+
+    def rise(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """Return the rise per metre east and north at a place."""
 
 
 class Facts(NamedTuple):
@@ -137,7 +177,7 @@ class Facts(NamedTuple):
     name: str
     longitude_deg: float
     latitude_deg: float
-    ground: Ground
+    ground: AnyGround
     turning_circles: bool
     streets: tuple[Street, ...]
     intersections: tuple[Intersection, ...]
