@@ -19,6 +19,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
         "--for", dest="user", choices=["autoware", "carla"], required=True, help="the program that reads the folder"
     )
     command.add_argument("-o", "--output", type=Path, required=True, help="a new folder, or one written before")
+    command.add_argument(
+        "--ros1", action="store_true", help="for autoware: the content folder of carla-autoware (Autoware.AI, ROS 1)"
+    )
     command.add_argument("--no-usd", action="store_true", help="for carla: leave out USD, which needs usd-core")
     command.add_argument(
         "--pointcloud", type=Path, metavar="PCD", help="take this cloud instead of driving the streets with a lidar"
@@ -42,8 +45,8 @@ def _for_carla(arguments: argparse.Namespace) -> int:
     from linden.scenery.map_mesh import standing  # noqa: PLC0415 - see above
     from linden.simulation.surroundings import scenery_of  # noqa: PLC0415 - see above
 
-    if arguments.pointcloud is not None:
-        raise UserError("--pointcloud is for --for autoware; leave it out")
+    if arguments.pointcloud is not None or arguments.ros1:
+        raise UserError("--pointcloud and --ros1 are for --for autoware; leave them out")
     names = names_of(Path(arguments.file).name.removesuffix(".xodr"))
     world_map = world_map_of(arguments.file)
     scene = scenery_of(world_map).scene
@@ -70,19 +73,24 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
     converted = convert(parse(source))
     lanelet_map = converted.lanelet_map
     vectors = aisan_of(lanelet_map)
-    with broken_off_cleanly(), staged_folder(arguments.output, folder.NAMES.__contains__) as stage:
-        (stage / folder.LANELET2).write_bytes(osm_bytes(lanelet_map))
-        (stage / folder.PROJECTOR).write_bytes(projector_info(lanelet_map))
-        (stage / folder.AISAN).mkdir()
+    town = Path(arguments.file).name.removesuffix(".xodr")
+    layout = folder.ros1_layout(town) if arguments.ros1 else folder.UNIVERSE
+    layout.refuse_other_towns(arguments.output)
+    with broken_off_cleanly(), staged_folder(arguments.output, layout.is_ours) as stage:
+        for path in (layout.lanelet2, layout.point_cloud, f"{layout.aisan}/lane.csv"):
+            (stage / path).parent.mkdir(parents=True, exist_ok=True)
+        (stage / layout.lanelet2).write_bytes(osm_bytes(lanelet_map))
+        if layout.projector is not None:
+            (stage / layout.projector).write_bytes(projector_info(lanelet_map))
         for name, data in vectors.tables.files().items():
-            (stage / folder.AISAN / name).write_bytes(data)
-        _put_cloud(arguments, stage / folder.POINT_CLOUD)
-        (stage / folder.METADATA).write_bytes(folder.point_cloud_metadata(stage / folder.POINT_CLOUD))
+            (stage / layout.aisan / name).write_bytes(data)
+        _put_cloud(arguments, stage / layout.point_cloud)
+        if layout.metadata is not None:
+            (stage / layout.metadata).write_bytes(folder.point_cloud_metadata(stage / layout.point_cloud))
         (stage / folder.MANIFEST).write_bytes(folder.manifest(stage, source, lanelet_map))
-    map_convert.report(arguments.output / folder.LANELET2, converted)
-    for path in sorted(arguments.output.iterdir()):
-        size = path.stat().st_size if path.is_file() else sum(part.stat().st_size for part in path.iterdir())
-        _say(f"{size:12,} bytes {path}")
+    map_convert.report(arguments.output / layout.lanelet2, converted)
+    for path in sorted(path for path in arguments.output.rglob("*") if path.is_file()):
+        _say(f"{path.stat().st_size:12,} bytes {path}")
     return 0
 
 

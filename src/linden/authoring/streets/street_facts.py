@@ -292,9 +292,9 @@ class _Feature:
             raise UserError(f"{self.label}: its geometry is {geometry.get('type')!r}; it must be a {wanted}")
         found = geometry.get("coordinates")
         try:
-            points = {"LineString": found, "Polygon": found and found[0]}.get(wanted, [found])
-            lonlats = [(float(point[0]), float(point[1])) for point in points]  # type: ignore[index, union-attr]  # checked by trying
-        except (TypeError, ValueError, IndexError):
+            points: Any = [found] if wanted == "Point" else found if wanted == "LineString" else found[0]  # type: ignore[index]  # checked by trying
+            lonlats = [(float(point[0]), float(point[1])) for point in points]
+        except (TypeError, ValueError, IndexError, KeyError):
             raise UserError(f"{self.label}: its coordinates are not pairs of longitude and latitude") from None
         if any(not (abs(lon) <= 180 and abs(lat) <= 90) for lon, lat in lonlats):
             raise UserError(f"{self.label}: its coordinates are not degrees of longitude and latitude")
