@@ -275,6 +275,16 @@ class RunOptions(Settings):
             is_file=True,
         ),
     ] = ()
+    upload_map: Annotated[
+        Path | None,
+        Option(
+            help="send this OpenDRIVE map to the simulator at --host; routes of its town are driven there",
+            group=SIMULATOR,
+            metavar="FILE.xodr",
+            is_file=True,
+            repeats=False,
+        ),
+    ] = None
 
     metric_files: Annotated[
         tuple[Path, ...],
@@ -413,6 +423,10 @@ class RunOptions(Settings):
         if self.maps and self.host is not None:
             raise UserError(
                 "--maps is for the simulator that basu starts; give that at --host its own: `linden serve --maps DIR`"
+            )
+        if self.upload_map is not None and self.host is None:
+            raise UserError(
+                "--upload-map sends a map to the simulator at --host; without --host, --maps DIR offers a folder's maps"
             )
         for folder in self.maps:
             if not folder.is_dir():
