@@ -29,6 +29,7 @@ def status(folder: Path) -> str:
         counts[row["agent"], "success"] += bool(row["success"])
         counts[row["agent"], row["fault"]] += 1
     planned = document["planned"]
+    width = max(8, *(len(agent) for agent in document["agents"]))
     lines = [f"campaign  {document['name']}", f"state     {_state(folder, len(rows), planned)}"]
     lines.append(f"drives    {len(rows)} of {planned}")
     for agent in document["agents"]:
@@ -37,7 +38,7 @@ def status(folder: Path) -> str:
         rate = f"{100.0 * known.value:.1f} % success ({100.0 * known.low:.1f} to {100.0 * known.high:.1f})"
         said = rate if counts[agent, "judged"] else "nothing judged yet"
         faults = f", {broken} with a fault that is not the agent's" if broken else ""
-        lines.append(f"{agent:<10}{counts[agent, 'all']} drives, {said}{faults}")
+        lines.append(f"{agent:<{width}}  {counts[agent, 'all']} drives, {said}{faults}")
     return "\n".join(lines)
 
 
