@@ -40,7 +40,7 @@ class Subject(NamedTuple):
     """What is driven: a route of a file, or a case."""
 
     kind: str  # ROUTE or CASE
-    name: str  # the route's id, or the case's without its variation
+    name: str  # the route's file and id, or the case's id without its variation
     identity: str  # the case's id with its variation; the route's id
     file: str  # the route file; "" for a case
     town: str
@@ -242,7 +242,7 @@ def _routes(drives: Drives, source: Path) -> tuple[Subject, ...]:
             raise UserError(f"{source}: {path} has no route '{wanted}'; it has {', '.join(known)}")
     digest = hashlib.sha256(path.read_bytes()).hexdigest()[:ID_DIGITS]
     return tuple(
-        Subject(ROUTE, route.id, route.id, str(path), route.town, {}, digest)
+        Subject(ROUTE, f"{path.stem} {route.id}", route.id, str(path), route.town, {}, digest)
         for route in routes
         if not drives.route_ids or route.id in drives.route_ids
     )

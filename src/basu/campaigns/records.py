@@ -76,9 +76,9 @@ class Records:
         if not row["success"] and row["id"] not in self._failures.get(agent, ()):
             has_room = len(self._failures.get(agent, ())) < self._keep.failures
             return (FAILURE if row["judged"] else FAULT) if has_room else None
-        if is_sampled(row["id"], self._keep.sample):
-            return SAMPLE
-        return NARROWEST if row["success"] and row["severity"] > self.bar(agent) else None
+        if row["success"] and row["severity"] > self.bar(agent):
+            return NARROWEST
+        return SAMPLE if is_sampled(row["id"], self._keep.sample) else None
 
     def _enter(self, kept: Kept) -> None:
         """Count a folder; one that is not among the narrowest any more is removed."""
@@ -91,6 +91,8 @@ class Records:
             heapq.heappush(narrowest, kept)
             if len(narrowest) > self._keep.narrowest:
                 left = heapq.heappop(narrowest)
+                if is_sampled(left.id, self._keep.sample):
+                    return
                 shutil.rmtree(self._folder / left.agent / left.id, ignore_errors=True)
 
     def _unpack(self, kept: Kept, row: dict[str, Any], packed: bytes) -> None:
