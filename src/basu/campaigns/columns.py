@@ -88,7 +88,11 @@ def metric_values(result: Result, own: Sequence[Metric] = ()) -> dict[str, Any]:
     values: dict[str, Any] = {}
     if result.scores is not None:
         scores = result.scores
-        values |= {"driving_score": scores.driving, "infraction_score": scores.infraction, "path_score": scores.path_following}
+        values |= {
+            "driving_score": scores.driving,
+            "infraction_score": scores.infraction,
+            "path_score": scores.path_following,
+        }
         kinds = [found.kind for found in result.infractions]
         values |= {f"infractions_{kind.value}": kinds.count(kind) for kind in Infraction}
         for metric in built_in():

@@ -18,7 +18,6 @@ from basu.campaigns.plan import CampaignPlan, plan_of
 from basu.campaigns.player import DriveDone, PlayerSettings, drive_player
 from basu.campaigns.records import Records
 from basu.campaigns.settings import read_campaign
-from basu.errors import UserError
 from basu.jobs.job import Done, Job, Lost, versions
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes

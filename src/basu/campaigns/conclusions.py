@@ -99,9 +99,7 @@ def pairs(table: pa.Table, agents: Sequence[str]) -> list[Pair]:
         one, other = (np.flatnonzero((names == agent) & judged) for agent in (first, second))
         _, at_one, at_other = np.intersect1d(number[one], number[other], return_indices=True)
         one, other = one[at_one], other[at_other]
-        found.append(
-            Pair(first, second, mcnemar(success[one], success[other]), sign_test(score[one], score[other]))
-        )
+        found.append(Pair(first, second, mcnemar(success[one], success[other]), sign_test(score[one], score[other])))
     return found
 
 

@@ -66,14 +66,22 @@ class Journal:
         end = self._file.tell()
         try:
             line = json.dumps(row).encode() + b"\n"
-            if self._file.write(line) < len(line):
-                raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+            self._write(line)
             if time.monotonic() - self._synced_s > SYNC_S:
                 self.sync()
         except OSError as error:
             os.truncate(self.path, end)
             raise _unwritable(self.path, error) from error
         self.numbers.add(row["number"])
+
+    def _write(self, line: bytes) -> None:
+        """Write a line whole.
+
+        Raises:
+            OSError: only a part of it found room.
+        """
+        if self._file.write(line) < len(line):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     def sync(self) -> None:
         """Bring what was written to the disk."""
@@ -126,7 +134,9 @@ class DriveTable:
     @property
     def number(self) -> int:
         """The number of rows."""
-        return sum(self._size(block) for block in self._complete) + sum(len(each.numbers) for each in self._open.values())
+        return sum(self._size(block) for block in self._complete) + sum(
+            len(each.numbers) for each in self._open.values()
+        )
 
     def pending(self, limit: int) -> Iterator[int]:
         """The numbers below ``limit`` of jobs without a row when they are reached, in their order."""

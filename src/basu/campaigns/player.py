@@ -1,4 +1,4 @@
-"""The player of a campaign's drives: a simulator, its map and the agents' processes, kept from one drive to the next."""
+"""The player of a campaign's drives: a simulator, its map and the agents' processes, kept between drives."""
 
 from __future__ import annotations
 
@@ -177,9 +177,7 @@ class _Player:
         try:
             plan = self._plan(options, job)
             agents = new_agents(plan.loaded, options, job["seed"])
-            session = Session(
-                options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False
-            )
+            session = Session(options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False)
             run = plan.jobs[0]._replace(seed=job["seed"])
             done = run_one(session, agents, run, output=self._scratch, name=job["id"])
         except (UserError, AgentError, SimulatorError) as error:

@@ -114,7 +114,9 @@ def _remarks(folder: Path, document: dict[str, Any], table: pa.Table) -> Iterato
 def _made_with(document: dict[str, Any]) -> str:
     """File and versions."""
     identity = document["identity"]
-    versions = [f"{name.removeprefix('the version of ')} {text}" for name, text in identity.items() if "version" in name]
+    versions = [
+        f"{name.removeprefix('the version of ')} {text}" for name, text in identity.items() if "version" in name
+    ]
     return f"{document['file']}, with {', '.join(versions)}; the settings stand in campaign.json."
 
 

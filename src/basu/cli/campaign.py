@@ -26,7 +26,11 @@ def _add_run(run: argparse.ArgumentParser) -> None:
     """Add the arguments of ``basu campaign run``."""
     run.add_argument("file", type=Path, metavar="FILE", help="campaign.toml; docs/how-to/campaigns.md has every key")
     run.add_argument(
-        "--output", type=Path, default=Path("campaigns"), metavar="DIR", help="parent of the folder (default: %(default)s)"
+        "--output",
+        type=Path,
+        default=Path("campaigns"),
+        metavar="DIR",
+        help="parent of the folder (default: %(default)s)",
     )
     run.add_argument("--resume", action="store_true", help="go on with a campaign that was interrupted or killed")
     run.add_argument("--workers", type=int, metavar="N", help="drives at the same time (default: one a processor)")

@@ -127,7 +127,15 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)
     result = write_run_folder(
-        draft, driven, session.scoring, ground.town.lanes, config, met, own, quiet=session.quiet, pictures=session.pictures
+        draft,
+        driven,
+        session.scoring,
+        ground.town.lanes,
+        config,
+        met,
+        own,
+        quiet=session.quiet,
+        pictures=session.pictures,
     )
     return Finished(driven.outcome, draft, result, driven.bug)
 

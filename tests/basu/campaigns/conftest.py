@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-PLAYER = '''
+PLAYER = """
 import contextlib, io, os, signal, tarfile, time
 from pathlib import Path
 from basu.campaigns.player import DriveDone
@@ -42,7 +42,7 @@ def play(job):
         **{f"version_{name}": text for name, text in versions().items()},
     }
     return Played(DriveDone(row, tar() if not success or share > job["bar"] else None))
-'''
+"""
 
 CAMPAIGN = """
 name = "crossings"

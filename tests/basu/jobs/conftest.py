@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-PLAYER = '''
+PLAYER = """
 import contextlib, os, signal, time
 from pathlib import Path
 from basu.errors import UserError
@@ -35,7 +35,7 @@ def play(data):
     if word == "pid":
         Path(argument).write_text(str(os.getpid()))
     return Played((word, argument, os.getpid()))
-'''
+"""
 
 
 @pytest.fixture

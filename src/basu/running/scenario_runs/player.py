@@ -42,17 +42,13 @@ class CaseDone(NamedTuple):
     folder: str  # below the run's
 
 
-def case_player(
-    options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None = None
-) -> PlayerSpec:
+def case_player(options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None = None) -> PlayerSpec:
     """The player that writes its cases' folders below ``output``; ``given`` are loaded classes, by name."""
     return PlayerSpec(f"{__name__}:open_cases", (options, output, given))
 
 
 @contextlib.contextmanager
-def open_cases(
-    options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None
-) -> Iterator[Play]:
+def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None) -> Iterator[Play]:
     """Start a simulator, and play cases in it.
 
     Raises:
