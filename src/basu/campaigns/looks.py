@@ -1,7 +1,7 @@
 """The stopping rule: after each block in their order, whether every agent's success rate is known well enough.
 
-A look counts the rows of the first so many blocks and no other, so the same campaign stops at the same drive however
-many workers it has. Looking several times makes an interval cover slightly less than it says: Frey 2010, "Fixed-width
+A look counts the rows of the first blocks and no others. So a campaign stops at the same drive with any number of
+workers. Looking several times makes an interval cover slightly less than it says. Source: Frey 2010, "Fixed-width
 sequential confidence intervals for a proportion", The American Statistician 64(3). ``least`` keeps early looks out.
 """
 

@@ -34,7 +34,7 @@ def status(folder: Path) -> str:
     lines.append(f"drives    {len(rows)} of {planned}")
     for agent in document["agents"]:
         known = wilson(counts[agent, "success"], counts[agent, "judged"], document["settings"]["confidence"])
-        broken = counts[agent, "all"] - counts[agent, "nobody"] - counts[agent, "agent"]
+        broken = sum(counts[agent, fault] for fault in ("simulator", "setup", "benchmark"))
         rate = f"{100.0 * known.value:.1f} % success ({100.0 * known.low:.1f} to {100.0 * known.high:.1f})"
         said = rate if counts[agent, "judged"] else "nothing judged yet"
         faults = f", {broken} with a fault that is not the agent's" if broken else ""

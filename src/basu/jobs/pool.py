@@ -177,7 +177,7 @@ class Pool:
 
 
 def _check_versions(ready: Ready) -> None:
-    """Refuse a worker whose programs are of other versions.
+    """Refuse a worker with programs of other versions.
 
     Raises:
         UserError: names the first that differs.

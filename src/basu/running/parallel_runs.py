@@ -51,7 +51,7 @@ class NotBegun(NamedTuple):
 
 @contextlib.contextmanager
 def open_runs(options: RunOptions, scoring: Scoring) -> Iterator[Play]:
-    """Prepare all runs as the command has done, start a simulator, and drive the runs that are asked for.
+    """Prepare all runs as the command has done, start a simulator, and drive the runs that the command sends.
 
     Raises:
         UserError, AgentError: nothing can be started like this.
