@@ -102,7 +102,7 @@ def _player_settings(plan: CampaignPlan, folder: Path, settings: RunSettings) ->
     )
 
 
-def _backend(settings: RunSettings, player: PlayerSpec) -> tuple[Backend, int]:
+def _backend(settings: RunSettings, player: PlayerSpec) -> tuple[Backend[Any], int]:
     """The workers and how many of them.
 
     Raises:
@@ -129,7 +129,7 @@ class _Run:
         self._began_s, self._written_s = time.monotonic(), 0.0
         self._driven = 0  # by this command
 
-    def drive(self, pool: Pool) -> int:
+    def drive(self, pool: Pool[Any]) -> int:
         """Drive what is left; the exit code.
 
         Raises:
@@ -140,12 +140,12 @@ class _Run:
         bar = tqdm(total=self.limit, initial=self.table.number, unit="drive", disable=None, file=sys.stderr)
         try:
             with bar:
-                if self._looks.stopped_after is None:
+                if not self._looks.is_answered():
                     for answer in pool.play(self._jobs()):
                         self._take(answer)
                         bar.update()
                         bar.set_postfix_str(", ".join(f"{name} {n} failed" for name, n in self._failures.items()))
-                        if self._looks.stopped_after is not None:
+                        if self._looks.is_answered():
                             break
         except KeyboardInterrupt:
             interrupted = True

@@ -30,6 +30,10 @@ class Looks:
         self._summed = 0  # blocks in the sum
         self.stopped_after: int | None = None  # blocks; None while the question is open
 
+    def is_answered(self) -> bool:
+        """Whether a look has stopped the campaign."""
+        return self.stopped_after is not None
+
     def count(self, row: Mapping[str, Any]) -> None:
         """Count a row of an open block."""
         if self._until is not None and row["judged"]:
@@ -46,10 +50,11 @@ class Looks:
             self._complete.remove(self._summed)
             self._sum += self._waiting.pop(self._summed, Counter())
             self._summed += 1
-            if self._is_answered():
+            if self._is_known():
                 self.stopped_after = self._summed
 
-    def _is_answered(self) -> bool:
+    def _is_known(self) -> bool:
+        """Whether every interval of the sum is narrow enough."""
         until = self._until
         assert until is not None, "there is no look without a rule"
         for agent in self._agents:

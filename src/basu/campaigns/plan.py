@@ -110,6 +110,7 @@ class CampaignPlan:
     scoring: Scoring
     scenario_files: tuple[Path, ...]
     metric_files: tuple[Path, ...]
+    shared: str  # digest of what decides over every drive: vehicle, scoring, versions
 
     @property
     def conditions(self) -> int:
@@ -134,9 +135,7 @@ class CampaignPlan:
         fixed = {
             **{key: value for key, value in condition.items() if key not in {"file", "parameters"}},
             "agent": [chosen.name, chosen.digest],
-            "vehicle": self.campaign.vehicle,
-            "scoring": scoring_to_json(self.scoring),
-            "versions": versions(),
+            "shared": self.shared,
         }
         condition.pop("digest")
         return {"id": digest_of(fixed)[:ID_DIGITS], "agent": chosen.typed, "agent_name": chosen.name, **condition}
@@ -189,7 +188,8 @@ def plan_of(campaign: Campaign, source: Path) -> CampaignPlan:
     scenario_files = tuple(find(name, "scenario file", source).resolve() for name in campaign.scenario_files)
     metric_files = tuple(find(name, "metric file", source).resolve() for name in campaign.metric_files)
     parts = tuple(_part(drives, campaign, source, scenario_files) for drives in campaign.drives)
-    return CampaignPlan(campaign, agents, parts, scoring, scenario_files, metric_files)
+    shared = digest_of([campaign.vehicle, scoring_to_json(scoring), versions()])
+    return CampaignPlan(campaign, agents, parts, scoring, scenario_files, metric_files, shared)
 
 
 def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:

@@ -8,6 +8,7 @@ is counted once.
 from __future__ import annotations
 
 import contextlib
+import logging
 import socket
 from typing import TYPE_CHECKING, Any
 
@@ -134,7 +135,7 @@ def _connect(address: str) -> None:
         except (OSError, ValueError) as error:
             raise UserError(f"no Ray cluster answers at {address} ({error}); {advice}") from error
     try:
-        ray.init(address=address, log_to_driver=True, logging_level="error")
+        ray.init(address=address, log_to_driver=True, logging_level=logging.ERROR)
     except (ConnectionError, RuntimeError, ValueError, RayError) as error:
         raise UserError(f"no Ray cluster answers at {address} ({_first_line(error)}); {advice}") from error
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 from basu.errors import UserError
 from basu.jobs.job import After, Died, Done, Job, Lost, Played, Ready, Refused, raised, versions
@@ -29,13 +29,16 @@ class Worker(Protocol):
         """End it: at once, or in good order within a limit."""
 
 
-class Backend(Protocol):
+W = TypeVar("W", bound=Worker)
+
+
+class Backend(Protocol[W]):
     """A kind of workers."""
 
-    def start(self) -> Worker:
+    def start(self) -> W:
         """Start a worker, which answers `Ready` as its first."""
 
-    def answers(self, workers: Sequence[Worker], timeout_s: float) -> list[tuple[Worker, Answer]]:
+    def answers(self, workers: Sequence[W], timeout_s: float) -> list[tuple[W, Answer]]:
         """Wait until some of ``workers`` have answered, at most ``timeout_s`` of wall time."""
 
     def close(self) -> None:
@@ -50,22 +53,22 @@ class _Duty:
         self.deadline_s = None if limit_s is None else time.monotonic() + limit_s
 
 
-class Pool:
+class Pool(Generic[W]):
     """The workers of one command. Call ``play`` once, and ``close`` in every case.
 
     Jobs are taken one by one as workers become free, so their number does not matter for the memory.
     """
 
     def __init__(
-        self, backend: Backend, workers: int, *, attempts: int = ATTEMPTS, job_limit_s: float | None = None
+        self, backend: Backend[W], workers: int, *, attempts: int = ATTEMPTS, job_limit_s: float | None = None
     ) -> None:
         """Describe a pool of at most ``workers``; a job that takes longer than ``job_limit_s`` counts as a death."""
         self._backend, self._most, self._attempts, self._limit_s = backend, workers, attempts, job_limit_s
-        self._workers: dict[Worker, _Duty | None] = {}  # None: it starts, or is idle
-        self._idle: list[Worker] = []
+        self._workers: dict[W, _Duty | None] = {}  # None: it starts, or is idle
+        self._idle: list[W] = []
         self._again: deque[tuple[Job, int]] = deque()  # with the number of the next attempt
         self._failed_starts = 0
-        self._ready_once: set[Worker] = set()
+        self._ready_once: set[W] = set()
 
     def play(self, jobs: Iterable[Job]) -> Iterator[Done | Lost]:
         """Play all jobs; what comes of each, in the order in which they end.
@@ -106,11 +109,11 @@ class Pool:
     def _busy(self) -> int:
         return sum(duty is not None for duty in self._workers.values())
 
-    def _give(self, worker: Worker, job: Job, attempt: int) -> None:
+    def _give(self, worker: W, job: Job, attempt: int) -> None:
         self._workers[worker] = _Duty(job, attempt, self._limit_s)
         worker.give(job.data)
 
-    def _take(self, worker: Worker, answer: Answer) -> Iterator[Done | Lost]:
+    def _take(self, worker: W, answer: Answer) -> Iterator[Done | Lost]:
         """Act on an answer.
 
         Raises:
@@ -130,7 +133,7 @@ class Pool:
         else:
             yield from self._played(worker, answer)
 
-    def _played(self, worker: Worker, played: Played) -> Iterator[Done | Lost]:
+    def _played(self, worker: W, played: Played) -> Iterator[Done | Lost]:
         """Pass on what came of a job, or try it again."""
         duty = self._workers[worker]
         assert duty is not None, "only a worker with a job answers so"
@@ -146,7 +149,7 @@ class Pool:
         if played.after is After.INTERRUPTED:
             raise KeyboardInterrupt
 
-    def _buried(self, worker: Worker, sentence: str) -> Iterator[Done | Lost]:
+    def _buried(self, worker: W, sentence: str) -> Iterator[Done | Lost]:
         """Remove a worker that has died; its job is tried again, or lost."""
         duty = self._workers[worker]
         if worker not in self._ready_once:
@@ -168,7 +171,7 @@ class Pool:
         for worker in late:
             yield from self._buried(worker, f"it was ended after {self._limit_s:g} s over one job")
 
-    def _remove(self, worker: Worker, *, at_once: bool) -> None:
+    def _remove(self, worker: W, *, at_once: bool) -> None:
         del self._workers[worker]
         self._ready_once.discard(worker)
         if worker in self._idle:

@@ -1,5 +1,7 @@
 """Claims about workers on a Ray cluster: a lost node costs no job, and a cluster that is not there is named."""
 
+import logging
+
 import pytest
 
 from basu.errors import UserError
@@ -17,7 +19,7 @@ def test_a_node_that_is_removed_loses_no_job_and_counts_none_twice(player: str) 
     cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "object_store_memory": 80_000_000})
     try:
         node = cluster.add_node(num_cpus=1, object_store_memory=80_000_000)
-        ray.init(address=cluster.address, logging_level="error", log_to_driver=False)
+        ray.init(address=cluster.address, logging_level=logging.ERROR, log_to_driver=False)
         backend = RayBackend(PlayerSpec(player, ()), "auto")
         assert backend.processors() == 2
         pool = Pool(backend, 2)
