@@ -101,7 +101,7 @@ def _half_m(seen: View) -> float:
 def _building(building: Building, roads: _Roads) -> tuple[int, Object] | None:
     ground = Polygon(building.ring)
     if not ground.is_valid:
-        ground = ground.buffer(0.0)  # type: ignore[assignment]  # a bow tie becomes its larger half below
+        ground = ground.buffer(0.0)
     free = roads.clear_of(ground)
     if free is None:
         return None
