@@ -12,6 +12,9 @@ WITHIN = {
     "leaderboard": "leaderboard",
     "scenic": "scenic",
     "sumo": "sumo",
+    "kitti": "kitti_carla_simulator",
+    "boxes": "CARLA-2DBBox",
+    "gym": "gym-carla",
 }
 """Where the programs of a family lie below the folder of all of them; README.md says how they get there."""
 

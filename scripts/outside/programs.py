@@ -30,6 +30,8 @@ class Program(NamedTuple):
     """What stands in its output when it failed without an exit status."""
     keys: str = ""
     """What is typed into its window, a key each ``PACE_S``; see ``watched/sitecustomize.py``."""
+    keeps_recordings: bool = False
+    """Whether it records into a folder below its own, which the server's ``--recordings`` must then name."""
 
 
 def all_programs(folders: Folders) -> list[Program]:
@@ -44,6 +46,7 @@ def all_programs(folders: Folders) -> list[Program]:
         _leaderboard(folders, "npc_agent", "SENSORS"),
         *SCENIC,
         *SUMO,
+        *USERS,
     ]
 
 
@@ -241,3 +244,10 @@ SUMO = (
     _sumo("Town01", "--tls-manager", "carla", "--sync-vehicle-all"),
     _sumo("Town05"),
 )
+
+USERS = (
+    Program("kitti", ("KITTI_data_generator.py",), "Town01", limit_s=240.0, is_endless=True, keeps_recordings=True),
+    Program("boxes", ("collectData.py", "-n", "30"), "Town01", limit_s=120.0, is_endless=True),
+    Program("gym", ("test.py",), "Town03", limit_s=90.0, is_endless=True),
+)
+"""Programs of single users: data sets and an environment for learning."""

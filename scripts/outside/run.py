@@ -127,7 +127,8 @@ def _wait(process: "subprocess.Popen[bytes]", limit_s: float) -> str:
 def _server(program: Program, folders: Folders, log: Path) -> Iterator[None]:
     """A server on the port on which an outside program expects it."""
     command = [sys.executable, "-m", "linden.cli", "serve", "--map", program.town, "--maps", str(folders.towns)]
-    command += ["--port", str(program.port), "--recordings", str(folders.out / "recordings")]
+    recordings = folders.of(program.family) if program.keeps_recordings else folders.out / "recordings"
+    command += ["--port", str(program.port), "--recordings", str(recordings)]
     with log.open("w", encoding="utf-8") as file:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=file, text=True)
     try:

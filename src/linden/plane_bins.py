@@ -1,8 +1,6 @@
 """Spatial index of the plane: bins of things around a point, and near neighbours of many points.
 
-Bins of the plane: which things lie around a point, as arrays that kernels walk.
-
-Which places have something near them: many places and many things at once.
+The bins are arrays that kernels can walk.
 """
 
 import math

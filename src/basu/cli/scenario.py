@@ -122,8 +122,6 @@ def run_command(arguments: argparse.Namespace) -> int:
     from basu.running.scenario_runs.options import ScenarioOptions  # noqa: PLC0415 - numpy, not for other commands
 
     config = config_of(arguments, "scenario run", ScenarioOptions)
-    if arguments.config is None and "what" not in typed(ScenarioOptions, arguments):
-        raise UserError("name what is to be played: all, a group, a scenario, a case's id, or FILE.xml")
     options = _options(arguments, config.options)
     from basu.running.scenario_runs.command import run_scenarios  # noqa: PLC0415 - brings in the client and the plots
 

@@ -1,8 +1,7 @@
 """Attributes of blueprints: CARLA's text values and types, and the check of attributes from clients.
 
-Attributes of blueprints: how the facts in blueprints.json become CARLA's text values and types.
-
-What a client asks to spawn, checked against its blueprint and completed with its defaults.
+The facts in ``blueprints.json`` become text values here. A client's description of an actor is checked against its
+blueprint and completed with the defaults.
 """
 
 import math
@@ -186,8 +185,8 @@ def _wanted(kind: AttributeType, value: str) -> str | None:
     if kind is AttributeType.BOOL:
         return None if value.strip().lower() in {"true", "false"} else "true or false"
     if kind is AttributeType.INT:
-        whole, _, rest = value.partition(".")
-        return None if _is_integer(whole) and not rest.strip("0 ") else "a whole number"
+        whole, _, fraction = value.strip().partition(".")  # CARLA's Atoi reads a number up to its point
+        return None if _is_integer(whole) and (not fraction or _is_integer(f"0{fraction[:9]}")) else "a whole number"
     if kind is AttributeType.FLOAT:
         return None if _is_finite(value) else "a finite number"
     if kind is AttributeType.RGB_COLOR:

@@ -1,11 +1,4 @@
-"""The messages of one frame: the world snapshot and the measurements of the sensors, as bytes.
-
-How what cameras measured goes over the wire.
-
-How what a looking sensor measured goes over the wire: its kind, and the bytes behind the header, by its type.
-
-What one frame looks like on the wire: the world's snapshot, and what its sensors measured.
-"""
+"""The messages of one frame: the world snapshot and the measurements of the sensors, as bytes."""
 
 from collections.abc import Callable
 from typing import Any

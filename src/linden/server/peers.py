@@ -1,8 +1,7 @@
 """Connections: the send queue, connections that call, connections that subscribe.
 
-Bytes on their way to a peer that may read slowly or never: a queue before a socket that does not block.
-
-A client calls on one kind of connection and receives streams on the other. Each owns its socket.
+A client calls on one kind of connection and receives streams on the other. Each owns its socket. A queue before the
+non-blocking socket holds the bytes for a peer that reads slowly or never.
 """
 
 import socket

@@ -1,11 +1,8 @@
 """Attached actors: spring arms, and the sockets of a parent that a child follows.
 
-Spring arms: where something hangs that is attached to its parent by one. Source: ActorAttacher.cpp.
-
-Its place says how long the arm is and where to; it looks back along the arm, and its own rotation adds to that. These
-arms are stiff: they take part in their parent's pitch and roll, turn without lag, and go through what is in the way.
-
-Actors attached to a bone or socket of their parent: every frame they go where it goes.
+The pose of a child on a spring arm gives the arm's length and direction. The child looks back along the arm, and its
+own rotation adds to that (ActorAttacher.cpp). These arms are stiff: they take part in their parent's pitch and roll,
+turn without lag, and pass through obstacles. A child on a bone or socket follows it in every frame.
 """
 
 import math

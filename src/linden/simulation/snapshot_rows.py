@@ -1,10 +1,7 @@
 """The rows of the world snapshot: kernels that write the motion of all actors and the state of vehicles.
 
-Where every actor is and how it moves, as the 15 numbers that each row of the snapshot carries.
-
-What a snapshot row says of a vehicle beside its motion, written into the packed bytes by one compiled pass.
-
-Rows are 119 bytes, so their numbers lie unaligned: they are written byte by byte. Offsets: values.snapshot.VEHICLE_ROW.
+The motion is 15 numbers a row. One compiled pass writes a vehicle's state. Rows are 119 bytes, so their numbers lie
+unaligned and are written byte by byte. Offsets: values.snapshot.VEHICLE_ROW.
 """
 
 import math

@@ -196,9 +196,12 @@ def test_pythons_true_is_taken_for_true() -> None:
     assert complete.attribute("sticky_control") == "false"
 
 
-def test_a_whole_number_may_be_written_with_a_point() -> None:
-    complete = LIBRARY.validate(described("sensor.lidar.ray_cast", channels="64.0"))
-    assert complete.attribute("channels") == "64"
+@pytest.mark.parametrize(
+    ("value", "read"), [("64.0", "64"), ("64.", "64"), ("1388888.888888889", "1388888"), ("800.5", "800")]
+)
+def test_a_whole_number_is_read_up_to_its_point(value: str, read: str) -> None:
+    complete = LIBRARY.validate(described("sensor.lidar.ray_cast", points_per_second=value))
+    assert complete.attribute("points_per_second") == read
 
 
 def _reads(definition: ActorDefinition, name: str) -> str | None:
@@ -222,7 +225,7 @@ def test_a_walker_without_a_wheelchair_may_be_asked_to_use_one() -> None:
         ("vehicle.tesla.model3", {"number_of_wheels": "3"}, "it is '4' and can only be read"),
         ("vehicle.tesla.model3", {"sticky_control": "perhaps"}, "expected true or false"),
         ("sensor.camera.rgb", {"exposure_mode": "auto"}, "allowed are histogram, manual"),
-        ("sensor.camera.rgb", {"image_size_x": "800.5"}, "expected a whole number, such as '800'"),
+        ("sensor.camera.rgb", {"image_size_x": "800.x"}, "expected a whole number, such as '800'"),
         ("sensor.camera.rgb", {"image_size_x": "0"}, "expected at least 1"),
         ("sensor.camera.depth", {"fov": "1e300"}, "expected at most 1000000000"),
         ("sensor.camera.dvs", {"positive_threshold": "1e-300"}, "expected at least 0.01"),

@@ -1,23 +1,18 @@
 """The filters of felt accelerations: a low-pass for thresholds, the frequency weightings of ISO 2631-1 for vibration.
 
-The filter that lets through what a standing body answers: the low-pass half of the horizontal weighting Wd.
+**The low-pass** is the low-pass half of the horizontal weighting Wd. ISO 2631-1 weighs horizontal acceleration evenly
+up to 2 Hz and less and less above, because the body does not follow a quick rattle. Its weighting Wd also cuts what is
+slower than 0.4 Hz, and with it the push of a long braking, against which a standing passenger has to lean. Here the a-v
+transition of Wd stands alone (ISO 8041-1, table of parameters: f3 = f4 = 2 Hz, Q4 = 0.63), turned into a digital filter
+by the bilinear transform, exact at 2 Hz. A recorded step of 0.05 s can show nothing above 10 Hz. The digital filter
+passes 102 % at 1 Hz, 89 % at 2 Hz, 46 % at 4 Hz (the analogue one 51 %), 11 % at 8 Hz (25 %), nothing at 10 Hz. It
+answers a sudden push of 1 with 1.06 at most.
 
-ISO 2631-1 weighs horizontal acceleration evenly up to 2 Hz and less and less above, for the body follows a quick rattle
-no longer. Its weighting Wd also cuts what is slower than 0.4 Hz, and with it the push of a long braking, which is just
-what a standing passenger has to lean against. Here the a-v transition of Wd stands alone (ISO 8041-1, table of
-parameters: f3 = f4 = 2 Hz, Q4 = 0.63), turned into a digital filter by the bilinear transform, exact at 2 Hz.
-
-A recorded step of 0.05 s can show nothing above 10 Hz. The digital filter passes 102 % at 1 Hz, 89 % at 2 Hz, 46 % at
-4 Hz (the analogue one 51 %), 11 % at 8 Hz (25 %), nothing at 10 Hz; a sudden push of 1 is answered with 1.06 at most.
-
-The frequency weightings of ISO 2631-1:1997 for whole-body vibration: Wd (horizontal), Wk (vertical), Wf (sickness).
-
-The standard defines them by analogue transfer functions (its annex A; the same with unrounded parameters in ISO 8041).
-They are applied here as they stand, in the frequency domain. A digital filter by the bilinear transform would have to
-squeeze the axis of frequencies below the 10 Hz that a step of 0.05 s can show, and Wd would weigh 6.3 Hz by 0.22, not
-by 0.32; the tests hold these weightings against the standard's table, and against such filters at forty times the rate.
-
-What is above 10 Hz (Wk runs to 80 Hz and counts most from 4 to 8 Hz) is not in a record of 20 Hz and cannot be judged.
+**The weightings** Wd (horizontal), Wk (vertical) and Wf (sickness) are defined by analogue transfer functions (annex A
+of ISO 2631-1:1997; unrounded parameters in ISO 8041). They are applied in the frequency domain. A digital filter by the
+bilinear transform would squeeze the frequencies below 10 Hz: Wd would weigh 6.3 Hz by 0.22, not by 0.32. The tests hold
+these weightings against the standard's table, and against such filters at forty times the rate. A record of 20 Hz has
+nothing above 10 Hz (Wk runs to 80 Hz and counts most from 4 to 8 Hz).
 """
 
 from __future__ import annotations

@@ -1,11 +1,7 @@
-"""The drive with a lidar: measuring places along the lanes, and the scans made there.
+"""The drive with a lidar: measuring places along the driving lanes, and the scans made there.
 
-Where a lidar is taken along the streets of a map: places in the driving lanes, none too near to another.
-
-The drive: a map's standing scene measured by the server's own lidar, place after place.
-
-In the same process, not through a client: it takes the lidar's rays and the caster as a server's sensor does, but no
-time passes between two places, so that nothing moves and nothing is smeared, and no clouds go over a socket.
+No two places are nearer to each other than a given distance. The drive runs in one process, without a client. It uses
+the lidar's rays and the ray caster as a server's sensor does. No time passes within a scan, so nothing is smeared.
 """
 
 import math

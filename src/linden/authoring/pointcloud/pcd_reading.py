@@ -1,16 +1,9 @@
-"""PCD files read in pieces: ascii, binary, binary_compressed.
+"""PCD files read in pieces: ascii, binary, binary_compressed. The fields x, y, z and label are kept.
 
-The head of a PCD file (Point Cloud Library, version 0.7): what its points have and how they are written.
-
-Source: PCL's documentation, "The PCD (Point Cloud Data) file format".
-
-LZF, the packing inside of binary_compressed PCD files: the unpacking half.
-
-Source of the format: Marc Lehmann's LibLZF, the comment over lzf_decompress. A byte below 32 goes before that many
-literal bytes and one; any other has a length in its upper three bits (7: go on in the next byte) and, with the byte
-after, how far back the copy begins.
-
-PCD files read a stretch of points at a time: ascii, binary, binary_compressed; x, y, z and label are kept.
+Sources: the Point Cloud Library's documentation, "The PCD (Point Cloud Data) file format", version 0.7; for the
+compression of binary_compressed, Marc Lehmann's LibLZF, the comment over ``lzf_decompress``. In LZF a byte below 32
+stands before that many literal bytes and one. Any other byte holds a length in its upper three bits (7: the length
+continues in the next byte) and, with the byte after it, the distance back to the start of the copy.
 """
 
 from collections.abc import Iterator

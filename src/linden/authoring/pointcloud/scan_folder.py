@@ -1,12 +1,8 @@
-"""Scans from a folder of PCD files, with or without a file of poses.
+"""Scans from PCD files, with or without a file of poses in the map's frame.
 
-Where scans were made: a text file of one pose a line, in the map's frame.
-
-Two forms are read: eight columns "name x y z qx qy qz qw", the name being that of the scan's file without ".pcd" (TUM's
-trajectories, where files are named by their stamps), and twelve, the rows of a 3 x 4 matrix (KITTI's), a line for each
-file in the order of their names. Lines that begin with # are remarks.
-
-Scans that are there already: PCD files of a folder, or one file, with or without poses.
+A file of poses has one pose a line, in one of two forms. Eight columns are "name x y z qx qy qz qw", where the name is
+that of the scan's file without ".pcd" (TUM's trajectories). Twelve columns are the rows of a 3 x 4 matrix (KITTI's), a
+line for each file in the order of their names. Lines that begin with # are comments.
 """
 
 import math

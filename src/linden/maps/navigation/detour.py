@@ -1,11 +1,8 @@
 """Tiles of a walking mesh, and the Detour file that CARLA's client loads.
 
-A walking mesh as frozen values: square tiles of convex polygons, each of one area. Frame: CARLA's, metres.
-
-The file of a walking mesh: a tiled set of Detour, as CARLA's client loads it (``carla/nav/Navigation.cpp``).
-
-Layouts: Recast Navigation, ``DetourNavMesh.h``, mesh version 7, references of 32 bits, and its demo's tile set.
-Detour's x is CARLA's x, its y (up) is z, and its z is y.
+A walking mesh consists of square tiles of convex polygons, each of one area. Frame: CARLA's, metres. The client reads
+the file in ``carla/nav/Navigation.cpp``. Layout: Recast Navigation, ``DetourNavMesh.h``, mesh version 7, references of
+32 bits, and its demo's tile set. Detour's x is CARLA's x, its y (up) is z, and its z is y.
 """
 
 import struct

@@ -1,10 +1,7 @@
 """Limits and errors of OpenDRIVE files.
 
-What a map file can get wrong, told with the line where it stands.
-
-How much a map may ask for: one bound for each count and size, far above real maps, and the sentence beyond it.
-
-A text of some megabytes comes from a client. Without bounds it could ask for any amount of memory and time.
+An error names the line of the file. A limit is one bound for each count and size, far above real maps: a client can
+send a text of some megabytes, which could ask for any amount of memory and time without bounds.
 """
 
 from linden.errors import UserError

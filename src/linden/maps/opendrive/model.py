@@ -1,11 +1,8 @@
 """An OpenDRIVE map as frozen values. Frame: x east, y north, z up; headings counter-clockwise in rad.
 
-An OpenDRIVE map as frozen values, in its own frame: x east, y north, z up, headings counter-clockwise in rad.
-
-``s_m`` runs along a road's reference line, ``t_m`` to its left. Lane ids are positive on the left.
-Source of names and meaning: ASAM OpenDRIVE 1.4 to 1.7. Superelevation and crossfall are left out, as LibCarla does.
-
-Values derived from a map are computed once and kept as long as the map, since many modules use them.
+``s_m`` runs along a road's reference line, ``t_m`` to its left. Lane ids are positive on the left. Source of names and
+meaning: ASAM OpenDRIVE 1.4 to 1.7. Superelevation and crossfall are left out, as LibCarla does. Values derived from a
+map are computed once and kept as long as the map, since many modules use them.
 """
 
 from collections.abc import Callable, Iterator

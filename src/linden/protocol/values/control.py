@@ -1,8 +1,6 @@
 """Values that clients send to vehicles and walkers and read from vehicles.
 
-What a client says to and asks of a vehicle. Source: ``carla/rpc/Vehicle*.h``, units as in the reference.
-
-What a client says to a walker. Source: ``carla/rpc/WalkerControl.h``.
+Source: ``carla/rpc/Vehicle*.h`` and ``carla/rpc/WalkerControl.h``; units as in CARLA's Python API reference.
 """
 
 from typing import NamedTuple

@@ -1,9 +1,4 @@
-"""Values of a whole episode: settings, weather, map.
-
-What holds for a whole episode: settings, weather, map. Source: ``carla/rpc``, 0.9.16.
-
-The weather that an episode begins with.
-"""
+"""Values of a whole episode: settings, weather, map. Source: ``carla/rpc``, 0.9.16."""
 
 from typing import NamedTuple
 

@@ -1,18 +1,9 @@
 """Sensor measurements as bytes: the header of a message, images, points.
 
-The packed structs that stand before every stream payload, and the numbers of the sensor types.
-
-Source: LibCarla 0.9.16, ``carla/sensor/s11n/SensorHeaderSerializer.h``, ``EpisodeStateSerializer.h`` and
-``SensorRegistry.h``.
-
-Pictures as bytes: what stands between the sensor's header and the pixels, and events of an event camera.
-
-Source: LibCarla 0.9.16, ``carla/sensor/s11n/ImageSerializer.h``, ``DVSEventArraySerializer.h``.
-
-What lidars and radars send behind the header.
-
-Source: LibCarla 0.9.16, ``carla/sensor/s11n/LidarSerializer.h``, ``sensor/data/SemanticLidarData.h``, ``LidarData.h``
-and ``RadarData.h``.
+The packed header stands before every stream payload; the number of the sensor type is in it. Sources, in LibCarla
+0.9.16: ``carla/sensor/s11n/SensorHeaderSerializer.h``, ``EpisodeStateSerializer.h``, ``ImageSerializer.h``,
+``DVSEventArraySerializer.h``, ``LidarSerializer.h``; ``carla/sensor/SensorRegistry.h``;
+``carla/sensor/data/SemanticLidarData.h``, ``LidarData.h``, ``RadarData.h``.
 """
 
 import struct

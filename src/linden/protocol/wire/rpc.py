@@ -1,14 +1,11 @@
 """msgpack-RPC of CARLA 0.9.16: bytes in, calls out; results in, bytes out. No socket, no thread.
 
-msgpack-RPC as CARLA 0.9.16 speaks it: bytes in, calls out; answers in, bytes out. No socket, no thread.
-
 A request is ``[0, id, method, [[is_async], *arguments]]``, an answer ``[1, id, error, result]``; neither has a length
-before it. The result of a function with a value is ``[[1, value]]`` or ``[[0, [message]]]``, that of one without
-``[[false]]`` or ``[[true, [message]]]`` (LibCarla, ``carla/rpc/Response.h``).
+before it. The result of a function with a value is ``[[1, value]]`` or ``[[0, [message]]]``. The result of a function
+without a value is ``[[false]]`` or ``[[true, [message]]]`` (LibCarla, ``carla/rpc/Response.h``).
 
-From typed values to what msgpack packs. Nearly everything packs as it lies; only an optional is wrapped.
-
-An encoder is built once from the annotation of a result. None means that values of that type need no encoding.
+An encoder turns typed values into what msgpack packs. It is built once from the annotation of a result. None means
+that values of that type need no encoding; only optional values are wrapped.
 """
 
 import types

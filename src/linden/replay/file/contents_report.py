@@ -1,8 +1,6 @@
-"""The report about the contents of a recording, frame by frame.
+"""The report about the contents of a recording, frame by frame: ``show_recorder_file_info``.
 
-The blocks of text that the contents of a frame become, one function a packet. Source: ``CarlaRecorderQuery.cpp``.
-
-``show_recorder_file_info``: what is in a recording, frame after frame. Source: ``CarlaRecorderQuery.cpp``.
+One function writes the block of text of each packet. Source: ``CarlaRecorderQuery.cpp``.
 """
 
 from collections.abc import Callable, Iterable, Iterator

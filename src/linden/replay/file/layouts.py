@@ -1,14 +1,11 @@
 """Packed records of a recording: their layouts, and their lengths in centimetres.
 
-The packets of a recording and the records of fixed size in them, packed little-endian as they lie in the file.
+The packets and their records of fixed size are packed little-endian. Source: CARLA's
+``Carla/Recorder/CarlaRecorder*.h``, for order and sizes; checked against real recordings. The file holds cm and
+degrees; rotations are roll, pitch, yaw.
 
-Source: CARLA's ``Carla/Recorder/CarlaRecorder*.h``, read for their order and sizes; checked against real recordings.
-The file holds cm and degrees; rotations stand as roll, pitch, yaw.
-
-Locations between the metres of the world and the centimetres of the file, without losing a bit.
-
-A recording holds cm as 32-bit floats, which are coarser than the same number of m by up to 28 %. So the writer adds, in
-a packet that CARLA skips, by how many last bits the m that come of the cm are off.
+A recording holds cm as 32-bit floats, which are coarser than the same number of m by up to 28 %. So the writer adds a
+packet that CARLA skips. It says by how many last bits the m computed from the cm are off, and no bit is lost.
 """
 
 from enum import IntEnum

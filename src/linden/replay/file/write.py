@@ -1,8 +1,7 @@
 """Writing a recording: packets as bytes, and frames as they are made.
 
-Packets to bytes, as CARLA 0.9.16 writes them.
-
-A recording being written: each frame goes to the file at once and whole, so that a killed server leaves it.
+The bytes are those of CARLA 0.9.16. Each frame goes to the file at once and whole, so that a killed server leaves a
+readable file.
 """
 
 import contextlib

@@ -1,9 +1,4 @@
-"""Meshes of all actors of a blueprint library, and the bone or wheel that each part follows.
-
-Which vehicle is built how.
-
-The meshes of actors: which parts an actor of a blueprint has, and what each part follows.
-"""
+"""Meshes of all actors of a blueprint library, and the bone or wheel that each part follows."""
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,8 +1,7 @@
 """Meshes of cars, vans and the EasyMile EZ10 shuttle.
 
-Cars and vans: a hull, what is mounted on it, and four wheels.
-
-The EasyMile EZ10: a box on small wheels, alike in front and behind, a double glass door on either side.
+A car is a hull with mounted parts and four wheels. The EZ10 is a box on small wheels, alike in front and behind, with a
+double glass door on either side.
 """
 
 from linden.blueprints.library import Blueprint

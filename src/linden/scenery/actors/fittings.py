@@ -1,8 +1,6 @@
 """Wheels, lamps, grilles, bumpers and other parts mounted on a vehicle's body.
 
 The rims of wheels have spokes, so that their turning is visible.
-
-What is mounted on a car's body: lamps, grille, bumpers, plates, mirrors, handles, and bars of lights.
 """
 
 import math

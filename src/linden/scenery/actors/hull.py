@@ -1,8 +1,7 @@
 """The body of a car as a closed solid, from the silhouette of its blueprint.
 
-The shapes of vehicles' bodies as shares of their boxes: the facts in data/silhouettes.json.
-
-A car's body as one closed solid: rings across it from the rear to the front, with wheel arches and window panes.
+The silhouettes are shares of the vehicles' boxes, in ``data/silhouettes.json``. The solid consists of rings across the
+car from the rear to the front, with wheel arches and window panes.
 """
 
 import json

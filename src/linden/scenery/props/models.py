@@ -1,9 +1,4 @@
-"""Meshes of props by blueprint, each stretched to the blueprint's box.
-
-Which prop is built how.
-
-Things that can be spawned, each filling its blueprint's box.
-"""
+"""Meshes of props by blueprint, each stretched to the blueprint's box."""
 
 from collections.abc import Callable
 

@@ -1,8 +1,7 @@
 """Meshes of posts: traffic lights, signs with letters, street lamps.
 
-Letters are flat strokes: a skeleton for each letter on a field 4 wide and 6 tall, with a width for its lines.
-
-The faces of lights and signs look along y of their things, against the traffic they are meant for.
+A letter is a skeleton of flat strokes on a field 4 wide and 6 tall, with a width for its lines. The faces of lights and
+signs look along y of their objects, against the traffic that they control.
 """
 
 import numpy as np

@@ -1,10 +1,7 @@
 """Meshes of trees, near the streets and far from them.
 
-Trees: a trunk, and a crown of a few clumps of leaves, turned and stretched for each tree; some are conifers.
-
-Trees along the streets have more clumps than those of the open land behind.
-
-Trees far from any street, by the dozen: what closes the view where the streets end. Nothing runs into them.
+A tree is a trunk and a crown of a few clumps of leaves, turned and stretched for each tree; some are conifers. Trees
+along the streets have more clumps. Trees far from any street close the view where the streets end, and have no contact.
 """
 
 from functools import cache

@@ -1,11 +1,7 @@
 """Posts of traffic lights and signs, and walls beside roads, as boxes of the scene.
 
-The posts of traffic lights and signs, with what hangs on them.
-
 Sizes are those of the Manual on Uniform Traffic Control Devices (FHWA, 2009): a sign's plate hangs at least 7 feet
 above the pavement (section 2A.18), a signal's face at least 8 feet (section 4D.15), and has three lenses of 12 inches.
-
-Walls beside roads, piece by piece.
 """
 
 from collections.abc import Sequence

@@ -1,12 +1,9 @@
 """Attributes of a sensor as numbers, and the times at which it measures.
 
-A sensor's attributes, which are text, as the numbers its measurements need.
-
-When a sensor measures: its ``sensor_tick`` as Unreal's tick interval has it.
-
-The first frame is due, and from there on the first frame in every interval. So where frames do not fall on due times,
-the overrun is credited to the next (as TickTaskManager.cpp does) and the mean rate is right. There is at most one
-measurement a frame, and what was missed in a long one is not made up for.
+``sensor_tick`` acts as Unreal's tick interval does: the first frame is due, and from there on the first frame in every
+interval. Where frames do not fall on due times, the overrun is credited to the next interval (as in
+TickTaskManager.cpp), so the mean rate is right. A frame has at most one measurement. Intervals missed in a long frame
+are not made up for.
 """
 
 import math

@@ -1,10 +1,6 @@
 """Functions of a whole session: version, maps, episodes, settings, ticks, streams, files, Traffic Managers.
 
-What belongs to a whole session: version, maps, episodes, settings, ticks, streams, files, Traffic Managers.
-
 Source of names and meanings: LibCarla 0.9.16 and ``CarlaServer.cpp``.
-
-Files that the client fetches and keeps: the walking mesh. Source: LibCarla 0.9.16 and ``CarlaServer.cpp``.
 """
 
 import logging

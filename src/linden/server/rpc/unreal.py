@@ -1,10 +1,6 @@
-"""Functions that CARLA can offer only because of Unreal; they are refused with a reason.
-
-What CARLA can do only because of Unreal or of what is compiled into its server, refused with what it would need.
+"""Functions that CARLA can offer only because of Unreal or its build; they are refused with a reason.
 
 Source of names and meanings: LibCarla 0.9.16 and ``CarlaServer.cpp``.
-
-Physics engines that CARLA can put in place of its own, and what it shows of its own. Source: LibCarla 0.9.16.
 """
 
 from linden.errors import Refusal

@@ -1,12 +1,7 @@
-"""Functions of vehicles: control, physics, lamps, doors, wheels.
+"""Functions of vehicles: control, physics, lamps, doors, wheels. Source of names: LibCarla 0.9.16.
 
-Vehicles: how they are driven, what they are made of, their lamps. Source of names: LibCarla 0.9.16.
-
-Doors of vehicles. Source of names: LibCarla 0.9.16.
-
-The wheels as they are seen: which way they point, how far they have rolled. Source of names: LibCarla 0.9.16.
-
-As in CARLA they can be set only while the vehicle's physics is off, for otherwise the physics moves them.
+As in CARLA, a wheel's steering and pitch angles can be set only while the vehicle's physics is off, for otherwise the
+physics moves the wheels.
 """
 
 from linden.errors import Refusal

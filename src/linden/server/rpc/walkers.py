@@ -1,8 +1,6 @@
 """Functions of walkers, and of the bones, sockets and components of all actors.
 
-Walkers: how they go. Source of names: LibCarla 0.9.16.
-
-Bones, sockets and components, and the poses of walkers. Source of names: LibCarla 0.9.16, ``CarlaServer.cpp``.
+Source of names: LibCarla 0.9.16, ``CarlaServer.cpp``.
 """
 
 from collections.abc import Sequence

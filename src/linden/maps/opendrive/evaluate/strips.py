@@ -1,8 +1,7 @@
 """Lanes as strips: sample places along every lane section, and the edges of the lanes at these places.
 
-Where along every lane section to look, so that straight lines between the places follow the road closely enough.
-
-Every lane laid along the sampled places of its section: what the mesh, the look-ups and the drawings are made of.
+The places are so dense that straight lines between them follow the road closely. Mesh, look-ups and drawings use the
+strips.
 """
 
 from typing import NamedTuple

@@ -1,8 +1,7 @@
 """Readers of <junction> and <road>.
 
-Reads <junction>: connections, lane links, controllers and priorities.
-
-Reads <road>: its links, types, reference line and elevation; lanes and furniture have files of their own.
+A junction has connections, lane links, controllers and priorities. A road has links, types, a reference line and an
+elevation. Lanes and objects have readers in files of their own.
 """
 
 from lxml.etree import _Element as Element
