@@ -8,7 +8,7 @@ from collections.abc import Callable
 from linden.errors import ProtocolError
 from linden.protocol.wire.rpc import Call
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID
-from linden.server.cue import QUESTION, TICK, Cue, Load
+from linden.server.cue import QUESTION, TICK, Cue
 from linden.server.driven_vehicles import BATCH, DESTROY, DrivenVehicles
 from linden.server.load_answers import GATHERING_S, OF_A_LOAD, LoadAnswers, Phase
 from linden.server.peers import RpcPeer
@@ -85,7 +85,6 @@ class Calls:
         self.joined_s = -math.inf
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of clients with a Traffic Manager
-        self._load = Load()
         self._driven: dict[RpcPeer, DrivenVehicles] = {}  # of those too
         self._shown_frame = context.world.frame
         self._working: dict[RpcPeer, SuspendedCall] = {}  # clients with work in the background
@@ -157,8 +156,7 @@ class Calls:
         elif (answer := self._answer(peer)) is not None:
             if is_question:
                 peer.outgoing.send(answer)
-                now_s = self._clock()
-                cue.answered(now_s, self._load.settling_s(now_s))
+                cue.answered(self._clock())
             else:
                 answers.append(answer)
 

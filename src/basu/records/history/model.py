@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from numpy.typing import NDArray
 
+    from basu.records.history.sumo import SumoRecord
     from basu.routing import Route
 
 # One row a tick. World quantities in CARLA's frame (x east, y south, z up), angles in rad, yaw clockwise from above.
@@ -137,6 +138,7 @@ class History:
     others: NDArray[np.void]  # (M,) of OTHER, ticks ascending
     collisions: tuple[Collision, ...]  # ticks ascending
     lane_invasions: tuple[LaneInvasion, ...]  # ticks ascending
+    sumo: SumoRecord | None = None  # None for a run without SUMO
 
     def to_arrow(self) -> pa.Table:
         """The record as an Arrow table, one row a tick, with the unit of each column in its field's metadata."""
