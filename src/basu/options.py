@@ -298,6 +298,16 @@ class RunOptions(Settings):
     host: Host = None
     port: Port = 2000
     timeout_s: Timeout = 20.0
+    workers: Annotated[
+        int,
+        Option(
+            help="runs that are driven at the same time, each in a simulator of its own",
+            group=SIMULATOR,
+            metavar="N",
+            least=1,
+            repeats=False,
+        ),
+    ] = 1
     maps: Annotated[
         tuple[Path, ...],
         Option(

@@ -94,7 +94,7 @@ _early: list[OwnServer] = []  # at most one: a server that started ahead of its 
 @contextlib.contextmanager
 def started_early(options: RunOptions) -> Iterator[None]:
     """Start our own server, if the run needs one, while this process still imports; ``simulator_for`` takes it over."""
-    if options.host is None:
+    if options.host is None and options.workers == 1:
         _early.append(own_server(options))
     try:
         yield

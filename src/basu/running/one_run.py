@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
+    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
     from basu.options import RunOptions
     from basu.outcome import Outcome
@@ -48,6 +49,7 @@ class Session:
     simulator: Simulator
     towns: Towns
     quiet: bool = False  # no progress bar and no table
+    pictures: bool = True  # whether each run gets its picture and its report
 
 
 class Finished(NamedTuple):
@@ -55,8 +57,13 @@ class Finished(NamedTuple):
 
     outcome: Outcome
     draft: Path  # its folder, not yet under its name
-    document: dict[str, Any]  # its result
+    result: Result
     bug: Exception | None  # an error of our own, to be raised once all is in its place
+
+    @property
+    def document(self) -> dict[str, Any]:
+        """``result.json``."""
+        return self.result.document()
 
 
 def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str) -> Finished:
@@ -122,10 +129,18 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     )
     met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)
-    document = write_run_folder(
-        draft, driven, session.scoring, ground.town.lanes, config, met, own, quiet=session.quiet
+    result = write_run_folder(
+        draft,
+        driven,
+        session.scoring,
+        ground.town.lanes,
+        config,
+        met,
+        own,
+        quiet=session.quiet,
+        pictures=session.pictures,
     )
-    return Finished(driven.outcome, draft, document, driven.bug)
+    return Finished(driven.outcome, draft, result, driven.bug)
 
 
 def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
