@@ -1,7 +1,7 @@
 """``basu run ros``: ROS 2 software on CARLA's topics drives; simulated time waits for its command in each step.
 
-An agent publishes the frame and the clock, and waits for a command that belongs to it: one whose time is that of the
-frame, or none at all. What its software does not do in time is the agent's time-out.
+An agent publishes the frame and the clock, and waits for a command that belongs to it. The time of the command is
+the time of the frame, or none at all. What its software does not do in time is the agent's time-out.
 """
 
 from __future__ import annotations

@@ -61,7 +61,7 @@ class _Roads:
         self._paved = STRtree([*_along_roads(network, self._roads, lines), *_in_junctions(network)])
 
     def place(self, point: Point) -> tuple[int, Path, float]:
-        """Return the edge whose road passes nearest to a point, the road, and how far along it."""
+        """Return the edge with the road nearest to a point, the road, and how far along it."""
         row = int(self._lines.nearest(point))
         edge, road = self._roads[row]
         return edge, road, min(float(self._lines.geometries[row].project(point)), length(road))
