@@ -91,10 +91,12 @@ def main() -> None:
     files = list(folder.glob("drives/*/*.parquet"))
     size = sum(path.stat().st_size for path in files)
     workers_s = resource.getrusage(resource.RUSAGE_CHILDREN)
-    print(f"{done} rows in {wall_s:.0f} s ({done / wall_s:.0f}/s); processor of the driver {1e6 * cpu_s / done:.0f} us a row, "
-          f"of the workers {1e6 * (workers_s.ru_utime + workers_s.ru_stime) / done:.0f} us")  # fmt: skip
+    workers_us = 1e6 * (workers_s.ru_utime + workers_s.ru_stime) / done
+    print(f"{done} rows in {wall_s:.0f} s ({done / wall_s:.0f}/s)")
+    print(f"processor time a row: {1e6 * cpu_s / done:.0f} us of the driver, {workers_us:.0f} us of the workers")
     print(f"{len(files)} files, {size / 1e6:.1f} MB, {size / done:.0f} bytes a row")
-    print(f"memory of the driver: first {memory[0]:.0f} MB, middle {memory[len(memory) // 2]:.0f} MB, last {memory[-1]:.0f} MB")
+    middle_mb = memory[len(memory) // 2]
+    print(f"memory of the driver: first {memory[0]:.0f} MB, middle {middle_mb:.0f} MB, last {memory[-1]:.0f} MB")
     if arguments.folder is None:
         shutil.rmtree(folder)
 

@@ -1,6 +1,6 @@
-"""SUMO's traffic in a run: its load, what it lost in time, and whom the vehicle under test met; reported, not scored.
+"""SUMO's traffic in a run: its load, its time loss, and actors that the vehicle under test met; reported, not scored.
 
-Delay is SUMO's time loss: the time that driving below the allowed speed has cost (SUMO's documentation, "Simulation
+Delay is SUMO's time loss, which is the cost of driving below the allowed speed (SUMO's documentation, "Simulation
 Output: TripInfo", ``timeLoss``), here of all vehicles for each kilometre that they drove together.
 """
 

@@ -128,7 +128,7 @@ def users_scenarios(path: Path) -> list[type[Scenario]]:
 
 
 def _scenarios_in(module: ModuleType) -> list[type[Scenario]]:
-    """Those that a module defines itself, without what is there to be derived from only."""
+    """Scenario classes that a module defines itself, without what is there to be derived from only."""
     return [
         value
         for value in vars(module).values()

@@ -1,7 +1,7 @@
 """Vehicles that a client's Traffic Managers drive; answers to `destroy_actor` that wait until their thread lets go.
 
 When ``destroy_actor`` is answered, LibCarla's ``Simulator::DestroyActor`` cuts the actor off from its episode. A
-Traffic Manager holds the same object, and its thread ends the process where it still works on it: "trying to operate on
+Traffic Manager holds the same object. Its thread ends the process where it still works on it: "trying to operate on
 a destroyed actor". It drops a car at the beginning of a step with a snapshot that lacks it. A batch without the car
 shows that. In CARLA the answer comes between two frames, and a race remains. Here the answer waits for that batch, or,
 where no frame comes by itself, until the thread is idle.

@@ -1,7 +1,7 @@
 """The times of frames in asynchronous mode, and the length of variable steps. The caller passes the time.
 
 With a fixed step the frames keep real time, one step each. (The original runs as fast as it can, which is too fast for
-driving by hand.) With a variable step there are :data:`VARIABLE_HZ` frames a second, and a step is as long as the time
+driving by hand.) With a variable step there are :data:`VARIABLE_HZ` frames a second. A step is as long as the time
 since the last one, at most :data:`LONGEST_STEP_S`. A server that cannot keep up makes frames one after the other and
 lets simulated time fall behind; it never makes up for them in a burst.
 """

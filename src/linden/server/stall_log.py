@@ -1,7 +1,7 @@
 """Log lines about stalls: the peer that holds up the frames, once when a stall lasts, and once when it ends.
 
-The caller passes the time. Two things can hold up the frames of synchronous mode: a subscriber that does not
-read what it is sent, and a client that does not tick.
+The caller passes the time. Two things can hold up the frames of synchronous mode. A subscriber does not read its
+messages, or a client does not tick.
 """
 
 import logging

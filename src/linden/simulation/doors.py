@@ -36,7 +36,7 @@ class Doors:
 
     @property
     def open(self) -> Mapping[int, frozenset[Door]]:
-        """Open doors by actor id, of those that have any."""
+        """Open doors by actor id, of vehicles with open doors."""
         return MappingProxyType(self._open)
 
     def swing(self, vehicle: ActorRecord, door: int, *, opens: bool) -> None:

@@ -90,13 +90,15 @@ def doing(folder: Path, deed: str, sensors: str | None = None) -> Path:
     return path
 
 
-def test_the_thesis_sample_runs_and_leaves_a_scored_folder(
+def test_the_thesis_sample_leaves_a_scored_folder_and_scoring_it_again_gives_the_same_judgement(
     run: Runner, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     _, result = run(SAMPLE)
     folder = tmp_path / "runs" / "latest"
     assert folder.is_symlink()
-    assert {path.name for path in folder.iterdir()} == RESULT_FILES
+    assert {path.name for path in folder.iterdir()} == RESULT_FILES | {"sumo.json"}, (
+        "the record of SUMO, amid which it drives"
+    )
     assert set(result["scores"]) == {"driving", "infraction", "path_following"}
     assert all(0.0 <= value <= 1.0 for value in result["scores"].values())
     assert isinstance(result["infractions"], list)
@@ -106,14 +108,7 @@ def test_the_thesis_sample_runs_and_leaves_a_scored_folder(
     assert "warning" not in capsys.readouterr().err
     assert result["meta"]["traffic"]["vehicles"] > 5, "it names a SUMO folder, so it drives amid SUMO's traffic"
     assert (folder / "path.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_scoring_the_folder_again_gives_the_same_judgement(
-    run: Runner, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    _, result = run(SAMPLE)
-    capsys.readouterr()
-    assert main(["score", str(tmp_path / "runs" / "latest"), "--json"]) == 0
+    assert main(["score", str(folder), "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
     assert again == {key: result[key] for key in again}
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet import BOX, FLAT, NOTHING, OFFSETS, at, one, run, sedan, seeds, slick, slope, wall
+from fleet import BOX, FLAT, NOTHING, OFFSETS, at, one, run, sedan, seeds, slick, slope, slow_uncompiled, wall
 from linden.physics.bodies import Bodies
 from linden.physics.contact.boxes import overlap
 from linden.physics.contact.pairs import find_pairs
@@ -149,6 +149,7 @@ def test_a_wall_stops_a_car_and_says_with_what_impulse() -> None:
     assert -1696.0 * 10.0 * 1.35 < impulse[0] < -1696.0 * 10.0 * 0.95
 
 
+@slow_uncompiled
 def test_a_car_pressed_against_a_wall_stays_outside_it() -> None:
     bodies, car = one()
     bodies.set_control(car, VehicleControl(throttle=1.0))
@@ -190,6 +191,7 @@ def test_wheels_roll_over_what_is_lower_than_the_clearance() -> None:
     assert bodies.velocity[car, 0] > 9.0
 
 
+@slow_uncompiled
 def test_wheels_roll_over_low_things_on_a_hill_too() -> None:
     rise = 0.1
     bodies, slot = one(pose=at(pitch=math.degrees(math.atan(rise))))

@@ -49,6 +49,7 @@ def launched(v_mps: float, control: VehicleControl = NEUTRAL, **changes: object)
     return bodies, car
 
 
+@slow_uncompiled
 def test_coasting_slows_by_drag() -> None:
     bodies, car = launched(30.0, drag_coefficient=0.3)
     run(bodies, 20.0)
@@ -175,6 +176,7 @@ def test_brakes_hold_a_car_on_a_slope_without_creeping(rise: float, yaw: float) 
     assert not bodies.velocity[car].any()
 
 
+@slow_uncompiled
 def test_without_brakes_a_car_rolls_down_by_gravity() -> None:
     ground = slope(-0.1)
     bodies, car = one(slick(), at(z=0.0))
@@ -243,6 +245,7 @@ def test_manual_gears_and_reverse_engage_at_once() -> None:
     assert bodies.velocity[car, 0] < -1.0
 
 
+@slow_uncompiled
 def test_engine_braking_slows_more_in_a_low_gear() -> None:
     slowed = []
     for gear in (2, 5):

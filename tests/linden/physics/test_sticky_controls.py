@@ -45,6 +45,7 @@ def test_a_control_that_sticks_is_one_that_comes_every_frame() -> None:
     assert drive(nothing, sticky=True) == drive(again, sticky=True) == drive(again, sticky=False) > 10.0
 
 
+@slow_uncompiled
 def test_a_control_that_does_not_stick_is_one_that_is_taken_back_in_the_next_frame() -> None:
     assert drive(nothing, sticky=False) == drive(let_go, sticky=True) == drive(let_go, sticky=False) < 1.0
 

@@ -104,6 +104,7 @@ def test_a_steady_push_at_the_roof_tips_a_vehicle_once_it_exceeds_its_weight_s_m
         assert (most > 45.0) is falls
 
 
+@slow_uncompiled
 def test_a_push_to_the_side_throws_a_vehicle_over_only_where_its_tyres_catch() -> None:
     over = []
     for friction in (0.3, 3.5):
@@ -131,6 +132,7 @@ def test_the_tripping_speed_lifts_the_centre_of_mass_over_the_caught_wheels() ->
     assert 0.5 * inertia * spin**2 == pytest.approx(G * (math.hypot(height, arm) - height))
 
 
+@slow_uncompiled
 def test_cornering_alone_never_lifts_a_vehicle_off_its_wheels() -> None:
     bodies, car = standing()
     for speed_mps in (10.0, 25.0, 40.0):
@@ -141,6 +143,7 @@ def test_cornering_alone_never_lifts_a_vehicle_off_its_wheels() -> None:
             assert not bodies.tumbling[car]
 
 
+@slow_uncompiled
 def test_a_vehicle_sliding_on_its_roof_stops_by_friction() -> None:
     bodies, car = one(pose=put(180.0, ROOF_M))
     run(bodies, 1.0)

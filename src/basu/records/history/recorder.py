@@ -22,8 +22,8 @@ class Recorder:
     """Grows a history. Rows are kept as doubles: every column's values are exact in them."""
 
     def __init__(self) -> None:
-        self._frames = array("d")  # those that are not packed yet
-        self._packed = np.zeros(0, dtype=FRAME)  # those that are, and room for more
+        self._frames = array("d")  # frames that are not packed yet
+        self._packed = np.zeros(0, dtype=FRAME)  # packed frames, and room for more
         self._packed_ticks = 0
         self._others = array("d")
         self._collisions: list[Collision] = []

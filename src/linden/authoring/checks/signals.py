@@ -71,7 +71,7 @@ def _wrong(road: Road, signal: Signal, placed: PlacedSignal) -> list[tuple[Sever
 
 
 def _moved_signals(opendrive: OpenDrive, index_of: dict[int, int]) -> list[Finding]:
-    """Find signals far from any lane of their road, and those that LibCarla moves because they stand in a lane."""
+    """Find signals far from any lane of their road, and signals that LibCarla moves because they stand in a lane."""
     tables = tables_of(opendrive)
     found = []
     written, moved = unmoved_transforms(opendrive), landmark_transforms(opendrive)
@@ -99,7 +99,7 @@ def _half_width_m(road: Road, s_m: float) -> float:
 
 
 def controllers(opendrive: OpenDrive) -> list[Finding]:
-    """Find controllers of signals that do not exist, and those that no junction has."""
+    """Find controllers of signals that do not exist, and controllers that no junction has."""
     known = {signal.id for _, signal in opendrive.signals()}
     in_junctions = {name for junction in opendrive.junctions for name in junction.controllers}
     declared = {controller.id for controller in opendrive.controllers}

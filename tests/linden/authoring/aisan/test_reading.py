@@ -56,7 +56,7 @@ def test_each_rule_of_the_nodes_is_checked(folder, name, row, column, value, sen
         ("NID,PID\n2147483648,1\n", "line 2: the id 2147483648 is none from 1"),
     ],
 )
-def test_lines_that_end_the_loader_are_told(folder, text, sentence):
+def test_lines_that_end_the_loader_are_reported(folder, text, sentence):
     (folder / "node.csv").write_text(text)
     with pytest.raises(UserError, match=f"node.csv, {sentence}"):
         read_folder(folder)

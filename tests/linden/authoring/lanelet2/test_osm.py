@@ -95,7 +95,7 @@ def test_no_georeference_is_local_at_zero():
         ),
     ],
 )
-def test_broken_files_are_told_with_file_and_line(text, sentence):
+def test_broken_files_get_a_sentence_with_file_and_line(text, sentence):
     with pytest.raises(UserError, match=sentence):
         read_osm(text, "m.osm")
 

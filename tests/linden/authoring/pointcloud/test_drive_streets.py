@@ -39,6 +39,6 @@ def test_both_frames_of_a_place_are_the_same_place() -> None:
     np.testing.assert_allclose(place.map_from_sensor[:, 3], [place.x_m, place.y_m, place.z_m])
 
 
-def test_lanes_that_nobody_drives_on_are_left_out() -> None:
+def test_lanes_without_traffic_are_left_out() -> None:
     town = opendrive(road(1, 40.0, line(0, 0, 0, 0, 40), section(right=lane(-1, "sidewalk"))))
     assert places_along(parse(town), 5.0, 2.0) == []

@@ -47,7 +47,7 @@ def test_any_number_may_be_a_coordinate(data: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("data", FORMS)
-def test_a_cut_file_is_told(data: str, tmp_path: Path) -> None:
+def test_a_cut_file_gets_a_sentence(data: str, tmp_path: Path) -> None:
     file = pcd(tmp_path / "a.pcd", XYZ, data)
     file.write_bytes(file.read_bytes()[:-13])
     with pytest.raises(UserError, match=r"a\.pcd is broken"):
@@ -66,7 +66,7 @@ def test_a_cut_file_is_told(data: str, tmp_path: Path) -> None:
         ("POINTS 3", "POINTS three", "head is wrong about"),
     ],
 )
-def test_a_head_that_cannot_be_meant_is_told(before: str, after: str, told: str, tmp_path: Path) -> None:
+def test_an_impossible_head_gets_a_sentence(before: str, after: str, told: str, tmp_path: Path) -> None:
     file = pcd(tmp_path / "a.pcd", XYZ, "ascii")
     text = file.read_text()
     assert before in text
@@ -75,13 +75,13 @@ def test_a_head_that_cannot_be_meant_is_told(before: str, after: str, told: str,
         header_of(file)
 
 
-def test_words_that_are_no_numbers_are_told(tmp_path: Path) -> None:
+def test_words_that_are_no_numbers_get_a_sentence(tmp_path: Path) -> None:
     file = pcd(tmp_path / "a.pcd", XYZ, "ascii")
     file.write_text(file.read_text().replace("250.5", "high"))
     with pytest.raises(UserError, match="broken after point 0: could not convert"):
         read(file)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_gets_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"cannot read .*none\.pcd: No such file"):
         header_of(tmp_path / "none.pcd")

@@ -37,5 +37,5 @@ def test_what_was_packed_comes_back(parts: list[bytes]) -> None:
         (b"\x00a\x20\x00", 2),  # a copy beyond the end
     ],
 )
-def test_what_is_no_packing_of_so_many_bytes_is_told(packed: bytes, size: int) -> None:
+def test_a_packing_of_another_length_gets_a_sentence(packed: bytes, size: int) -> None:
     assert bytes_of(packed, size) is None

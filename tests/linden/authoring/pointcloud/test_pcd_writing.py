@@ -53,7 +53,7 @@ def test_a_file_without_a_point_is_a_file(tmp_path: Path) -> None:
     assert header_of(tmp_path / "a.pcd").points == 0
 
 
-def test_who_breaks_off_leaves_what_was_there_before(tmp_path: Path) -> None:
+def test_a_writer_that_breaks_off_leaves_what_was_there_before(tmp_path: Path) -> None:
     file = tmp_path / "a.pcd"
     file.write_bytes(b"old")
 
@@ -68,13 +68,13 @@ def test_who_breaks_off_leaves_what_was_there_before(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_place_that_cannot_be_written_is_told_before_anything_is_done(tmp_path: Path) -> None:
+def test_a_place_that_cannot_be_written_gets_a_sentence_before_any_work(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"cannot write .*: No such file or directory; name a file in a folder"):
         PcdWriter(tmp_path / "none" / "a.pcd", "")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is always full")
-def test_a_full_disk_is_told(tmp_path: Path) -> None:
+def test_a_full_disk_gets_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "a.pcd.part").symlink_to("/dev/full")
     with (
         pytest.raises(UserError, match=r"cannot write .*No space left on device; name a file in a folder"),

@@ -49,7 +49,7 @@ def test_labels_are_kept_where_every_file_has_them(tmp_path: Path) -> None:
     assert [scan.cloud.label for scan in found.scans()] == [None, None]
 
 
-def test_a_folder_without_scans_is_told(tmp_path: Path) -> None:
+def test_a_folder_without_scans_gets_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"holds no \.pcd file"):
         recorded(tmp_path)
 
@@ -64,7 +64,7 @@ def test_kept_scans_come_back_where_they_were(tmp_path: Path) -> None:
         assert again.cloud.label.tolist() == scan.cloud.label.tolist()
 
 
-def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_made_gets_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(UserError, match=r"cannot write to .*file/scans: Not a directory"):
         next(kept_scans([], tmp_path / "file" / "scans"))

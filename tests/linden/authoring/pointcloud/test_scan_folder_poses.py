@@ -35,7 +35,7 @@ def test_twelve_numbers_are_a_matrix_for_each_file_in_turn(tmp_path: Path) -> No
     np.testing.assert_allclose(second @ [1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0])
 
 
-def test_a_file_that_cannot_be_read_or_written_is_told(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_or_written_gets_a_sentence(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"cannot read .*none\.txt"):
         read_poses(tmp_path / "none.txt", [])
     with pytest.raises(UserError, match=r"cannot write .*poses\.txt: No such file"):
@@ -55,7 +55,7 @@ def test_a_file_that_cannot_be_read_or_written_is_told(tmp_path: Path) -> None:
         ("1 0 0 5 0 1 0 6 0 0 1 7\n", "holds 1 poses for 2 scans"),
     ],
 )
-def test_what_is_missing_or_wrong_is_told(text: str, told: str, tmp_path: Path) -> None:
+def test_missing_and_wrong_poses_get_a_sentence(text: str, told: str, tmp_path: Path) -> None:
     file = tmp_path / "poses.txt"
     file.write_text(text)
     with pytest.raises(UserError, match=told):

@@ -107,7 +107,7 @@ def test_a_cell_keeps_the_label_that_came_first(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("far", [1e30, -1e30, 3e8])
-def test_a_point_without_a_cell_is_told(far: float, tmp_path: Path) -> None:
+def test_a_point_without_a_cell_gets_a_sentence(far: float, tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"too far away for cells of 0\.2 m"):
         VoxelGrid(0.2, tmp_path).add(Cloud(np.array([[0.0, 0.0, 0.0], [0.0, far, 0.0]])))
 

@@ -50,7 +50,7 @@ def test_a_one_way_drive_has_its_lane_and_shoulder_on_the_right_and_a_bare_kerb_
     assert (seen.kerb_m(right=True), seen.kerb_m(right=False)) == pytest.approx((-3.25, 3.25))
 
 
-def test_who_drives_against_a_road_sees_its_sides_swapped(street: Street) -> None:
+def test_a_driver_against_a_road_sees_its_sides_swapped(street: Street) -> None:
     section = of_street(street)
     ahead, against = view(section, along=True), view(section, along=False)
     assert against.right == ahead.left

@@ -70,7 +70,7 @@ def test_no_lane_is_left_without_a_way_on_or_a_way_in(facts_of: Any, sketch: Any
     assert {pair[2:] for pair in pairs} == {(i, n) for i, leg in enumerate(legs) for n in leg.view.driving(right=False)}
 
 
-def test_nobody_turns_into_a_one_way_street_against_it(facts_of: Any, sketch: Any) -> None:
+def test_no_turn_leads_into_a_one_way_street_against_it(facts_of: Any, sketch: Any) -> None:
     features = sketch.crossing()
     features[1]["properties"].update(oneway="forward", lanes=1)
     legs = legs_of(features, facts_of)

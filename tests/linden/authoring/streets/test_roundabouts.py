@@ -79,7 +79,7 @@ def test_entries_yield_and_the_island_stands_in_the_middle(built_of: Any, sketch
     assert dict(built.document.junctions[0].notes)["roundabout"] == "mini"
 
 
-def test_who_comes_to_the_end_of_a_street_turns_round_a_circle(sketch: Any) -> None:
+def test_a_driver_at_the_end_of_a_street_turns_round_a_circle(sketch: Any) -> None:
     features = [sketch.street("main", (0.0, 0.0), (200.0, 0.0), lanes=4, width_m=13.4, parking="none")]
     built = assembled(read(sketch.collection(features, turning_circles=True)))
     assert [junction.name for junction in built.document.junctions] == ["main Street"] * 2
@@ -95,7 +95,7 @@ def test_who_comes_to_the_end_of_a_street_turns_round_a_circle(sketch: Any) -> N
     assert length(road.path) == pytest.approx(200.0 - 2 * ROUNDABOUT_SETBACK_M, abs=0.2)
 
 
-def test_streets_end_openly_where_no_circles_are_asked_for(built_of: Any, sketch: Any) -> None:
+def test_streets_end_openly_where_circles_are_switched_off(built_of: Any, sketch: Any) -> None:
     built = built_of([sketch.street("main", (0.0, 0.0), (200.0, 0.0))])
     assert built.document.junctions == ()
 

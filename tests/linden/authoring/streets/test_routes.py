@@ -91,6 +91,6 @@ def test_a_stop_on_the_other_side_of_the_street_is_refused(built_of: Any, sketch
         drive(built, route_through(built, ("east", False), ("north", True), stops=("S1",)))
 
 
-def test_a_stop_that_nobody_knows_is_refused(cross: Built) -> None:
+def test_an_unknown_stop_is_refused(cross: Built) -> None:
     with pytest.raises(UserError, match="route way: no shuttle stop has the id 'S7'"):
         drive(cross, route_through(cross, ("east", False), ("north", True), stops=("S7",)))

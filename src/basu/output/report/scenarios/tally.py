@@ -33,7 +33,7 @@ CONTACT_M = 0.005  # less than that between two boxes is written as a contact
 
 
 class Tally(NamedTuple):
-    """Some results of one agent, counted; margins are the least of those that were passed."""
+    """Some results of one agent, counted; margins are the least of the passed cases."""
 
     passed: int
     judged: int  # with failures and the agent's own faults
@@ -103,7 +103,7 @@ def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
 
 
 def _least(results: Sequence[dict[str, Any]], margin: str) -> float | None:
-    """The least of a margin, over those that have one."""
+    """The least of a margin, over results with one."""
     found = [result["margins"].get(margin) for result in results]
     return min((value for value in found if value is not None), default=None)
 
