@@ -153,6 +153,8 @@ def run(
     wanted = resolve(RunOptions, [Layer(values)])
     if wanted.series is not None or wanted.resume:
         raise UserError("run() keeps no series; give repetitions=N, or use `basu run --series`")
+    if wanted.workers > 1:
+        raise UserError("run() drives one run after the other; use `basu run --workers`, or a campaign")
     prepared = prepare(wanted, given)
     if isinstance(agent, AutonomousAgent) and len(prepared.jobs) > 1:
         raise UserError(f"an instance drives one run, and these are {len(prepared.jobs)}; give the class itself")

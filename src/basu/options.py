@@ -298,6 +298,16 @@ class RunOptions(Settings):
     host: Host = None
     port: Port = 2000
     timeout_s: Timeout = 20.0
+    workers: Annotated[
+        int,
+        Option(
+            help="runs that are driven at the same time, each in a simulator of its own",
+            group=SIMULATOR,
+            metavar="N",
+            least=1,
+            repeats=False,
+        ),
+    ] = 1
     maps: Annotated[
         tuple[Path, ...],
         Option(
@@ -307,6 +317,16 @@ class RunOptions(Settings):
             is_file=True,
         ),
     ] = ()
+    upload_map: Annotated[
+        Path | None,
+        Option(
+            help="send this OpenDRIVE map to the simulator at --host; routes of its town are driven there",
+            group=SIMULATOR,
+            metavar="FILE.xodr",
+            is_file=True,
+            repeats=False,
+        ),
+    ] = None
 
     metric_files: Annotated[
         tuple[Path, ...],
@@ -319,6 +339,25 @@ class RunOptions(Settings):
         ),
     ] = ()
     record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
+    rosbag: Annotated[
+        Literal["ros2", "ros1"] | None,
+        Option(
+            help="write sensors, state, control and TF as a ROS bag: a folder with MCAP for ros2, a .bag for ros1; "
+            "without a word: ros2",
+            group=FOLDERS,
+            bare="ros2",
+            default_text="write none",
+            advice="an agent is named before --rosbag, as in `basu run basic --rosbag`",
+        ),
+    ] = None
+    ros2: Annotated[
+        bool,
+        Option(
+            help="publish the run on ROS 2 while it lasts, over DDS, in the domain of ROS_DOMAIN_ID",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
     output: Output = Path("runs")
     series: Annotated[
         str | None,
@@ -430,6 +469,10 @@ class RunOptions(Settings):
         if self.maps and self.host is not None:
             raise UserError(
                 "--maps is for the simulator that basu starts; give that at --host its own: `linden serve --maps DIR`"
+            )
+        if self.upload_map is not None and self.host is None:
+            raise UserError(
+                "--upload-map sends a map to the simulator at --host; without --host, --maps DIR offers a folder's maps"
             )
         for folder in self.maps:
             if not folder.is_dir():

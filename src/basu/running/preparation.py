@@ -25,7 +25,6 @@ from basu.sumo.link import INSTALL
 
 if TYPE_CHECKING:
     from basu.agents.autonomous_agent import AgentConfig
-    from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.options import RunOptions
@@ -60,8 +59,8 @@ class Plan:
     jobs: tuple[Job, ...]
 
 
-def prepare(options: RunOptions, given: LoadedAgent | None = None) -> Plan:
-    """Read everything that can be wrong before anything is started; ``given`` is an agent's class that is loaded.
+def prepare(options: RunOptions, given: FoundAgent | None = None) -> Plan:
+    """Read everything that can be wrong before anything is started; ``given`` is an agent that is loaded.
 
     Raises:
         UserError, AgentError: nothing can be started like this.

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.metrics.registry import Metric
+    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
@@ -146,10 +147,12 @@ def write_run_folder(
     own: Sequence[Metric] = (),
     *,
     quiet: bool = False,
-) -> dict[str, Any]:
-    """Write the folder of a run, print its table unless ``quiet``, and return the document of its result.
+    pictures: bool = True,
+) -> Result:
+    """Write the folder of a run, print its table unless ``quiet``, and return its result.
 
-    ``scenarios`` are those on the route, ``own`` are users' metrics.
+    ``scenarios`` are those on the route, ``own`` are users' metrics. Without ``pictures`` the folder gets neither
+    picture nor report; `basu report` makes them from the folder later.
     """
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
@@ -180,13 +183,16 @@ def write_run_folder(
     if history is not None:
         write_history(folder, history)
         title = f"{_heading(config)}: {document['status']}"
-        path_picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
+        if pictures:
+            path_picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
     streets = [] if history is None else around(lanes_m, history)
     write_streets(folder, streets)
-    write_report(folder, RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets))
+    if pictures:
+        run = RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets)
+        write_report(folder, run)
     if config["recording"] is not None and not quiet:
         print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
-    return document
+    return result
 
 
 def _heading(config: dict[str, Any]) -> str:

@@ -12,6 +12,7 @@ from basu.errors import UserError
 from basu.outcome import Status
 from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
 from basu.running.one_run import Session, run_one
+from basu.running.parallel_runs import check_parallel, run_in_parallel
 from basu.running.preparation import new_agents, prepare
 from basu.running.series import conditions, open_series
 from basu.simulator import simulator_for
@@ -36,13 +37,16 @@ def run(options: RunOptions, scoring: Scoring) -> int:
         UserError, AgentError: nothing can be started like this.
         SimulatorError: there is no simulator to run in.
     """
+    if options.workers > 1:
+        check_parallel(options)
     prepared = prepare(options)
     series = _series(options, scoring, prepared)
     jobs = [job for job in prepared.jobs if series is None or job.number not in series.done]
     worst = 0 if series is None else series.worst()
     try:
         if jobs:
-            worst = max(worst, _run_all(options, scoring, prepared, series, jobs))
+            play = run_in_parallel if options.workers > 1 and len(jobs) > 1 else _run_all
+            worst = max(worst, play(options, scoring, prepared, series, jobs))
     finally:
         if series is not None:
             print(series.table())

@@ -18,8 +18,9 @@ import pyarrow.parquet as pq
 
 from basu.errors import UserError
 from basu.files import write_bytes
-from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle, to_arrow
+from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle
 from basu.records.history.sumo import read_sumo, write_sumo
+from basu.records.history.tables import to_arrow
 from basu.routing import Control, ControlKind, Route, Stop
 from basu.routing.timetable import timetable_from_json, timetable_to_json
 
@@ -144,7 +145,7 @@ def facts_from_json(text: str) -> Facts:
 
 
 def _history(table: pa.Table, facts: Facts) -> History:
-    """The record in a table of :func:`to_arrow`."""
+    """The record in a table of :func:`~basu.records.history.tables.to_arrow`."""
     frames = np.zeros(table.num_rows, dtype=FRAME)
     for name in FRAME.names or ():
         kept = name if name in table.column_names else name.removeprefix("applied_")

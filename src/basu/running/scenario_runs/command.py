@@ -14,6 +14,10 @@ from tqdm import tqdm
 from basu.agents.process.remote_agent import find_agent
 from basu.errors import UserError
 from basu.files import write_bytes
+from basu.jobs.in_process import play_here
+from basu.jobs.job import Job, Lost
+from basu.jobs.pool import Pool
+from basu.jobs.processes import Processes
 from basu.outcome import Fault
 from basu.output.report.documents import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.junit import junit_xml
@@ -23,7 +27,7 @@ from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, write_matri
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.running.scenario_runs.case_documents import lost, matrix_of, run_config
-from basu.running.scenario_runs.worker_pool import Job, Lost, WorkerPool, play
+from basu.running.scenario_runs.player import CaseJob, case_player
 from basu.scenarios.cases import cases_of, varied
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.playable import having
@@ -35,8 +39,8 @@ if TYPE_CHECKING:
 
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
+    from basu.jobs.job import Done
     from basu.running.scenario_runs.options import ScenarioOptions
-    from basu.running.scenario_runs.worker_pool import Done
     from basu.scenarios.playable import Playable
 
 TEXT_FILE, JUNIT_FILE = "matrix.txt", "junit.xml"
@@ -96,7 +100,7 @@ def play_matrix(
     folder = _folder(options, began)
     write_json(folder / CONFIG_FILE, run_config(options, agents))
     jobs = [
-        Job(number, agent, playable.case.name)
+        Job(number, CaseJob(agent, playable.case.name))
         for number, (playable, agent) in enumerate((each, agent) for each in playables for agent in options.agents)
     ]
     documents: dict[int, tuple[dict[str, Any], str]] = {}
@@ -107,7 +111,7 @@ def play_matrix(
                 playable, agent = playables[answer.number // len(agents)], agents[answer.number % len(agents)]
                 documents[answer.number] = (lost(playable, agent, answer.sentence, options), "")
             else:
-                documents[answer.number] = (answer.document, answer.folder)
+                documents[answer.number] = (answer.value.document, answer.value.folder)
     except KeyboardInterrupt:
         interrupted = True
     finally:
@@ -198,19 +202,17 @@ def _played(
     quiet: bool,
 ) -> Iterator[Done | Lost]:
     """What came of each job, as they end. Classes that are given stay in this process: no other one has them."""
+    player = case_player(options, folder, given)
     with tqdm(total=len(jobs), unit="case", disable=quiet or None, file=sys.stderr) as bar:
         if options.workers > 1 and options.host is None and len(jobs) > 1 and given is None:
-            pool = WorkerPool(options, folder, jobs)
+            pool = Pool(Processes(player), min(options.workers, len(jobs)))
             try:
-                for answer in pool.play():
+                for answer in pool.play(jobs):
                     bar.update()
                     yield answer
             finally:
-                pool.end()
+                pool.close()
             return
-        done = 0
-        while done < len(jobs):
-            for answer in play(options, folder, jobs[done:], given):
-                done += 1
-                bar.update()
-                yield answer
+        for done in play_here(player, jobs):
+            bar.update()
+            yield done

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.episode import Episode, case_spec
 from basu.episode.spec import description_of
-from basu.episode.world import asking, towns_of, world_of
+from basu.episode.world import asking, towns_of, weather_called, world_of
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
 from basu.managers.placed_scenario import call_scenario, place_scenario
@@ -56,6 +56,8 @@ class CaseSession:
     options: ScenarioOptions
     simulator: Simulator
     towns: Towns
+    pictures: bool = True  # whether each case gets its picture
+    weather: str | None = None  # one of CARLA's presets in place of the case's own
 
 
 def check_town(case: Case, names: frozenset[str]) -> None:
@@ -78,6 +80,7 @@ class PlayedCase(NamedTuple):
     document: dict[str, Any]
     folder: Path
     outcome: Outcome
+    history: History | None  # None where nothing was driven
 
 
 class _Attempt(NamedTuple):
@@ -107,11 +110,12 @@ def play_case(session: CaseSession, loaded: FoundAgent, playable: Playable, outp
             write_history(draft, history)
             streets = around(attempt.streets_m, history)
             write_streets(draft, streets)
-            write_bytes(draft / PICTURE_FILE, case_picture(document, history, streets).encode())
+            if session.pictures:
+                write_bytes(draft / PICTURE_FILE, case_picture(document, history, streets).encode())
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    return PlayedCase(document, publish(draft, plain(case.name)), attempt.outcome)
+    return PlayedCase(document, publish(draft, plain(case.name)), attempt.outcome, history)
 
 
 def _judged(attempt: _Attempt, history: History | None) -> Judged:
@@ -129,6 +133,8 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
         sensors = _sensors(agents, loaded)
         check_town(playable.case, session.towns.names)
         spec = case_spec(playable, vehicle=options.vehicle, timeout_s=options.timeout_s)
+        if session.weather is not None:
+            spec = replace(spec, weather=weather_called(session.weather))
         agents.config = replace(agents.config, vehicle=spec.config.vehicle)
         episode = Episode(
             session.simulator,
@@ -179,8 +185,8 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
     with simulator_for(options.run_options("basic")) as simulator, asking(f"loading {case.town}"):
-        check_town(case, towns_of(simulator.client))
-        carla_map = world_of(simulator.client, case.town).get_map()
+        check_town(case, towns_of(simulator))
+        carla_map = world_of(simulator, case.town).get_map()
         route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))
         placed = place_scenario(playable, route, carla_map, own=True)
         return call_scenario(case.name, partial(draw, placed.scenario, form))

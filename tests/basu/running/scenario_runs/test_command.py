@@ -212,7 +212,7 @@ def test_a_process_that_dies_costs_its_own_case_only(
     results = matrix(tmp_path)["cases"][0]["results"]
     assert results["basic"]["verdict"] == "SUCCESS"
     assert results["bad"]["verdict"] == "BENCHMARK_FAULT"
-    assert "died 2 times" in results["bad"]["message"]
+    assert "died 3 times" in results["bad"]["message"]
 
 
 def test_ctrl_c_ends_the_run_and_what_was_played_is_written(

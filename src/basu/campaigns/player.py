@@ -1,0 +1,269 @@
+"""The player of a campaign's drives: a simulator, its map and the agents' processes, kept between drives."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import os
+import platform
+import shutil
+import tarfile
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.agents.process.remote_agent import find_agent
+from basu.campaigns.columns import metric_values
+from basu.campaigns.cost import cost_of
+from basu.campaigns.plan import ROUTE
+from basu.campaigns.settings import AS_GIVEN
+from basu.episode import Towns
+from basu.episode.failures import STATUS_OF
+from basu.errors import AgentError, SimulatorError, UserError
+from basu.jobs.job import After, Played, PlayerSpec, versions
+from basu.metrics.registry import user_metrics
+from basu.metrics.result import judge
+from basu.options import STEP_S, RunOptions
+from basu.outcome import Fault, Outcome, Status
+from basu.running.one_run import Session, run_one
+from basu.running.preparation import new_agents, prepare
+from basu.running.scenario_runs.one_case import CaseSession, play_case
+from basu.running.scenario_runs.options import ScenarioOptions
+from basu.scenarios.cases import open_library
+from basu.scenarios.verdict import Verdict
+from basu.simulator import simulator_for
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from basu.agents.process.remote_agent import FoundAgent
+    from basu.jobs.job import Play
+    from basu.metrics.registry import Metric
+    from basu.metrics.scoring import Scoring
+    from basu.running.preparation import Plan
+    from basu.scenarios.cases import Library
+    from basu.simulator import Simulator
+
+JUDGED = frozenset({Fault.NOBODY, Fault.AGENT})  # what ended otherwise says nothing of the agent
+AGAIN = frozenset({Status.SIMULATOR_FAILED})  # tried again elsewhere
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlayerSettings:
+    """What all drives of a campaign share; plain values that any node understands."""
+
+    agents: tuple[str, ...]  # as the plan has them
+    scoring: Scoring
+    vehicle: str | None
+    step_limit_s: float
+    agent_memory_gb: float | None
+    scenario_files: tuple[Path, ...]
+    metric_files: tuple[Path, ...]
+    sample: float  # share of drives that leave a record in any case
+    scratch: Path | None  # for folders of drives in work; None: the system's
+
+
+class DriveDone(NamedTuple):
+    """What came of a drive."""
+
+    row: dict[str, Any]  # of the table, without what the driver knows itself
+    records: bytes | None  # its folder as a tar file, where it is worth keeping
+
+
+class _Driven(NamedTuple):
+    """A drive before its costs are known."""
+
+    outcome: Outcome
+    row: dict[str, Any]
+    folder: Path | None
+
+
+def drive_player(settings: PlayerSettings) -> PlayerSpec:
+    """The player as a value that any process can open."""
+    return PlayerSpec(f"{__name__}:open_player", (settings,))
+
+
+@contextlib.contextmanager
+def open_player(settings: PlayerSettings) -> Iterator[Play]:
+    """Load the agents, start a simulator, and drive jobs in it.
+
+    Raises:
+        UserError: an agent, a scenario's or a metric's file cannot be used here.
+        SimulatorError: there is no simulator.
+    """
+    agents = {typed: find_agent(typed, memory_gb=settings.agent_memory_gb) for typed in settings.agents}
+    library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
+    with (
+        simulator_for(RunOptions()) as simulator,
+        tempfile.TemporaryDirectory(dir=settings.scratch, prefix="drives-", ignore_cleanup_errors=True) as scratch,
+    ):
+        driver = _Player(settings, agents, library, own, simulator, Path(scratch))
+        yield driver.play
+
+
+class _Player:
+    """Drives jobs in one simulator."""
+
+    def __init__(
+        self,
+        settings: PlayerSettings,
+        agents: dict[str, FoundAgent],
+        library: Library,
+        own: Sequence[Metric],
+        simulator: Simulator,
+        scratch: Path,
+    ) -> None:
+        self._settings, self._agents, self._library, self._own = settings, agents, library, own
+        self._simulator, self._towns, self._scratch = simulator, Towns(simulator), scratch
+        self._plans: dict[tuple[str, str, str, bool], Plan] = {}
+
+    def play(self, job: dict[str, Any]) -> Played:
+        """Drive one job; whatever goes wrong becomes its row."""
+        began_s, before = time.perf_counter(), cost_of()
+        driven = self._route(job) if job["kind"] == ROUTE else self._case(job)
+        status, row = driven.outcome.status, driven.row
+        row |= {
+            "status": status.value,
+            "fault": row.get("fault", status.fault.name.lower()),
+            "message": row.get("message", driven.outcome.message),
+            **{f"version_{name}": text for name, text in versions().items()},
+        }
+        records = self._records(job, row, driven.folder)
+        after = cost_of()
+        row |= {
+            "wall_s": round(time.perf_counter() - began_s, 3),
+            "cpu_s": round(max(0.0, after.cpu_s - before.cpu_s), 3),
+            "memory_mb": round(after.memory_mb, 1),
+            "host": platform.node(),
+            "worker": os.getpid(),
+        }
+        ends = After.AGAIN if status in AGAIN else After.FRESH if status is Status.BENCHMARK_FAILED else After.GO_ON
+        return Played(DriveDone(row, records), ends)
+
+    def _records(self, job: dict[str, Any], row: dict[str, Any], folder: Path | None) -> bytes | None:
+        """The folder as a tar file where it is a failure's, one of the sample, or worse than the driver has seen."""
+        if folder is None:
+            return None
+        row["records_bytes"] = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file())
+        wanted = row["success"] is False or row["severity"] > job["bar"] or is_sampled(job["id"], self._settings.sample)
+        packed = _tar(folder) if wanted or not row["judged"] else None
+        shutil.rmtree(folder)
+        return packed
+
+    def _route(self, job: dict[str, Any]) -> _Driven:
+        """Drive a route.
+
+        Every failure before the drive is an outcome as well.
+        """
+        settings, others = self._settings, job["density_per_km"]
+        options = RunOptions(
+            agent=job["agent"],
+            routes=job["file"],
+            route_id=job["identity"],
+            seed=job["seed"],
+            weather=None if job["weather"] == AS_GIVEN else job["weather"],
+            vehicles=job["vehicles"],
+            walkers=job["walkers"],
+            traffic_density=others,
+            vehicle=settings.vehicle,
+            with_scenarios=job["scenarios"],
+            scenario_files=settings.scenario_files,
+            metric_files=settings.metric_files,
+            step_limit_s=settings.step_limit_s,
+            agent_memory_gb=settings.agent_memory_gb,
+        )
+        try:
+            plan = self._plan(options, job)
+            agents = new_agents(plan.loaded, options, job["seed"])
+            session = Session(options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False)
+            run = plan.jobs[0]._replace(seed=job["seed"])
+            done = run_one(session, agents, run, output=self._scratch, name=job["id"])
+        except (UserError, AgentError, SimulatorError) as error:
+            return self._not_begun(error)
+        result = done.result
+        success = None
+        if done.outcome.status.fault in JUDGED:
+            contacts = result.metrics.get("collisions") or {"at_fault": 0}
+            success = done.outcome.status is Status.COMPLETED and contacts["at_fault"] == 0
+        row = {
+            **_verdict(success, 1.0 if result.scores is None else 1.0 - result.scores.driving),
+            **metric_values(result, self._own),
+            "simulated_s": float(result.meta["simulated_s"]),
+        }
+        return _Driven(done.outcome, row, done.draft)
+
+    def _plan(self, options: RunOptions, job: dict[str, Any]) -> Plan:
+        """The plan of an agent on a route; made once."""
+        key = (job["agent"], job["file"], job["identity"], job["scenarios"])
+        if key not in self._plans:
+            self._plans[key] = prepare(options, self._agents[job["agent"]])
+        return self._plans[key]
+
+    def _case(self, job: dict[str, Any]) -> _Driven:
+        """Play a case."""
+        settings = self._settings
+        options = ScenarioOptions(
+            what=(job["identity"],),
+            agents=(job["agent"],),
+            files=settings.scenario_files,
+            seed=job["seed"],
+            vehicle=settings.vehicle,
+            step_limit_s=settings.step_limit_s,
+            agent_memory_gb=settings.agent_memory_gb,
+        )
+        weather = None if job["weather"] == AS_GIVEN else job["weather"]
+        session = CaseSession(options, self._simulator, self._towns, pictures=False, weather=weather)
+        (playable,) = self._library.of_id(job["identity"])
+        done = play_case(session, self._agents[job["agent"]], playable, self._scratch)
+        document = done.document
+        verdict = Verdict(document["verdict"])
+        success = verdict is Verdict.SUCCESS if verdict.counts else None
+        result = judge(done.outcome, done.history, settings.scoring, own=self._own)
+        ticks = 0 if done.history is None else len(done.history.frames)
+        row = {
+            **_verdict(success, _narrowness(document["margins"])),
+            **metric_values(result, self._own),
+            "fault": document["fault"],
+            "message": document["message"],
+            **{f"margin_{name}": value for name, value in document["margins"].items()},
+            "simulated_s": round(ticks * STEP_S, 3),
+        }
+        return _Driven(done.outcome, row, done.folder)
+
+    def _not_begun(self, error: UserError | AgentError | SimulatorError) -> _Driven:
+        """The outcome of a drive that could not begin."""
+        gone = self._simulator.why_gone() if not isinstance(error, UserError) else None
+        if isinstance(error, UserError):
+            outcome = Outcome(Status.SETUP_FAILED, str(error))
+        elif isinstance(error, SimulatorError) or gone is not None:
+            outcome = Outcome(Status.SIMULATOR_FAILED, gone or str(error))
+        else:
+            outcome = Outcome(STATUS_OF[type(error)], str(error))
+        success = False if outcome.status.fault is Fault.AGENT else None
+        return _Driven(outcome, {**_verdict(success, 1.0), "simulated_s": 0.0}, None)
+
+
+def _verdict(success: bool | None, severity: float) -> dict[str, Any]:  # noqa: FBT001 - a value, not a switch
+    return {"judged": success is not None, "success": success, "severity": 1.0 if success is False else severity}
+
+
+def _narrowness(margins: dict[str, float | None]) -> float:
+    """How narrow a drive was, 0 to 1: 1/(1 + margin), the margin in s or m, of the narrowest."""
+    known = [value for value in margins.values() if value is not None]
+    return max((1.0 / (1.0 + max(0.0, value)) for value in known), default=0.0)
+
+
+def is_sampled(identity: str, share: float) -> bool:
+    """Whether a job with this id belongs to the sample that leaves its records."""
+    return int(identity[:8], 16) < share * 16**8
+
+
+def _tar(folder: Path) -> bytes:
+    """A folder's files as a tar file."""
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w") as tar:
+        for path in sorted(folder.iterdir()):
+            tar.add(path, arcname=path.name)
+    return buffer.getvalue()

@@ -1,0 +1,182 @@
+"""The settings of a campaign: ``campaign.toml``, checked whole before anything is started."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from basu.errors import UserError
+from basu.settings.option import suggestion
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+AS_GIVEN = "as given"  # the weather of the route, the agent or the case
+NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"  # a folder is called so
+
+
+class Table(BaseModel):
+    """A table of the file; unknown keys are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class OtherTraffic(Table):
+    """Road users beside the vehicle under test, on routes."""
+
+    vehicles: Annotated[int, Field(ge=0)] = 0
+    walkers: Annotated[int, Field(ge=0)] = 0
+    density_per_km: Annotated[float | None, Field(ge=0.0)] = None  # vehicles on a km of lane, in place of ``vehicles``
+
+
+class Seeds(Table):
+    """Consecutive seeds."""
+
+    first: Annotated[int, Field(ge=0)] = 0
+    number: Annotated[int, Field(ge=1)] = 1
+
+
+Weathers = Annotated[tuple[str, ...], Field(min_length=1)]
+Traffics = Annotated[tuple[OtherTraffic, ...], Field(min_length=1)]
+
+
+class Drives(Table):
+    """A set of drives: routes of a file, or cases of scenarios with their parameters."""
+
+    routes: str | None = None  # a route file
+    route_ids: tuple[str, ...] = ()  # only these of it
+    scenarios: bool = True  # whether the scenarios on a route's way are played
+    cases: tuple[str, ...] = ()  # words of `basu scenario run`: all, a group, a scenario, a case's id, FILE.xml
+    fixed: Annotated[dict[str, str | float], Field(alias="set")] = {}
+    sweep: Annotated[int | None, Field(ge=1)] = None  # samples of each case, a Latin hypercube
+    sweep_seed: Annotated[int, Field(ge=0)] = 0
+    grid: Annotated[int | None, Field(ge=2)] = None  # values of every number
+    vary: tuple[str, ...] = ()  # the parameters to sample; empty: all
+    weather: Weathers | None = None  # None: that of the campaign
+    traffic: Traffics | None = None
+    seeds: Seeds | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> Drives:
+        if (self.routes is None) == (not self.cases):
+            raise ValueError("name either routes = FILE or cases = [...]")
+        if self.cases and (self.route_ids or self.traffic is not None):
+            raise ValueError("route_ids and traffic are for routes; a case has its own place and road users")
+        if self.routes and (self.fixed or self.sweep or self.grid or self.vary):
+            raise ValueError("set, sweep, grid and vary are for cases; a route has no parameters")
+        if self.sweep is not None and self.grid is not None:
+            raise ValueError("sweep and grid are two designs; choose one")
+        return self
+
+
+class Until(Table):
+    """When the question is answered: every agent's interval is narrow enough."""
+
+    width: Annotated[float, Field(gt=0.0, lt=1.0)]  # of the interval of the success rate
+    least: Annotated[int, Field(ge=1)] = 100  # judged drives of each agent before the first look
+    every: Annotated[int, Field(ge=1)] = 100  # drives from one look to the next
+
+
+class Keep(Table):
+    """Which drives leave a folder with their record, for each agent."""
+
+    failures: Annotated[int, Field(ge=0)] = 100  # as many at most
+    narrowest: Annotated[int, Field(ge=0)] = 20  # of the successes
+    sample: Annotated[float, Field(ge=0.0, le=1.0)] = 0.01  # share of all drives, chosen by their ids
+
+
+class Work(Table):
+    """How drives are worked off; nothing of it changes a result."""
+
+    block: Annotated[int, Field(ge=1, le=1_000_000)] = 1_000  # drives in one file of the table, of all agents
+    attempts: Annotated[int, Field(ge=1, le=10)] = 3  # at a drive whose worker dies
+    drive_limit_s: Annotated[float, Field(gt=0.0)] = 3_600.0  # wall time of one drive; longer counts as a death
+
+
+class Campaign(Table):
+    """The whole file."""
+
+    name: Annotated[str, Field(pattern=NAME, max_length=80)]
+    agents: Annotated[tuple[str, ...], Field(min_length=1)]
+    drives: Annotated[tuple[Drives, ...], Field(min_length=1)]
+    weather: Weathers = (AS_GIVEN,)
+    traffic: Traffics = (OtherTraffic(),)
+    seeds: Seeds = Seeds()
+    order: Literal["given", "shuffled"] = "given"
+    shuffle_seed: Annotated[int, Field(ge=0)] = 0
+    vehicle: str | None = None
+    step_limit_s: Annotated[float, Field(gt=0.0)] = 10.0
+    agent_memory_gb: Annotated[float | None, Field(gt=0.0)] = None
+    scenario_files: tuple[str, ...] = ()
+    metric_files: tuple[str, ...] = ()
+    scoring: dict[str, Any] = {}
+    confidence: Annotated[float, Field(gt=0.5, lt=1.0)] = 0.95
+    until: Until | None = None
+    keep: Keep = Keep()
+    work: Work = Work()
+
+    @property
+    def block(self) -> int:
+        """Drives in a block: from one look to the next, where there are looks."""
+        return self.work.block if self.until is None else self.until.every
+
+
+def read_campaign(path: Path) -> Campaign:
+    """The campaign in a file.
+
+    Raises:
+        UserError: it cannot be read, is no TOML, or has a key or value that means nothing; names the first mistake.
+    """
+    try:
+        document = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UserError(f"the campaign {path} cannot be read: {error.strerror}; name a campaign.toml") from error
+    except ValueError as error:
+        raise UserError(f"the campaign {path} is no TOML: {error}") from error
+    return checked(document, str(path))
+
+
+def checked(document: dict[str, Any], source: str) -> Campaign:
+    """The campaign of a document that was read from ``source``.
+
+    Raises:
+        UserError: see ``read_campaign``.
+    """
+    try:
+        return Campaign.model_validate(document)
+    except ValidationError as error:
+        raise UserError(f"{source}: {_sentence(error.errors()[0])}") from None
+
+
+def _sentence(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
+    """The first mistake: its place and what it must be."""
+    place = ".".join(str(part) for part in mistake["loc"])
+    kind = mistake["type"]
+    if kind == "extra_forbidden":
+        table = next((model for name, model in _TABLES.items() if name in mistake["loc"][:-1]), Campaign)
+        known = [field.alias or name for name, field in table.model_fields.items()]
+        return f"{place} means nothing here; {suggestion(str(mistake['loc'][-1]), known)}"
+    if kind == "missing":
+        return f"{place} is missing; every campaign has name, agents and [[drives]]"
+    if kind == "too_short":
+        return f"{place} is empty, so there is nothing to drive; name at least one"
+    if kind == "value_error":
+        return f"{place}: {mistake['ctx']['error']}"
+    return f"{place} is {mistake['input']!r}; {mistake['msg'][0].lower()}{mistake['msg'][1:]}"
+
+
+_TABLES: dict[str, type[Table]] = {
+    "until": Until,
+    "keep": Keep,
+    "work": Work,
+    "seeds": Seeds,
+    "traffic": OtherTraffic,
+    "drives": Drives,
+}

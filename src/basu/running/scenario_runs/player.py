@@ -1,0 +1,77 @@
+"""The player of cases: a simulator, its towns and the agents, kept from one case to the next."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from basu.agents.process.remote_agent import find_agent
+from basu.episode import Towns
+from basu.jobs.job import After, Played, PlayerSpec
+from basu.outcome import Status
+from basu.output.report.documents import plain
+from basu.running.scenario_runs.one_case import CaseSession, play_case
+from basu.scenarios.cases import open_library
+from basu.simulator import simulator_for
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+    from pathlib import Path
+
+    from basu.agents.loader import LoadedAgent
+    from basu.agents.process.remote_agent import FoundAgent
+    from basu.jobs.job import Play
+    from basu.running.scenario_runs.options import ScenarioOptions
+
+ENDING = frozenset({Status.SIMULATOR_FAILED, Status.BENCHMARK_FAILED})
+"""After these a worker ends: its simulator is gone, or the benchmark has a bug."""
+ENDING_IN_PROCESS = ENDING | {Status.AGENT_TIMED_OUT}  # the agent's code may still run in it
+
+
+class CaseJob(NamedTuple):
+    """A case for an agent."""
+
+    agent: str  # as it was typed
+    case: str  # its id
+
+
+class CaseDone(NamedTuple):
+    """What came of a case: its folder holds the rest."""
+
+    document: dict[str, Any]
+    folder: str  # below the run's
+
+
+def case_player(options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None = None) -> PlayerSpec:
+    """The player that writes its cases' folders below ``output``; ``given`` are loaded classes, by name."""
+    return PlayerSpec(f"{__name__}:open_cases", (options, output, given))
+
+
+@contextlib.contextmanager
+def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None) -> Iterator[Play]:
+    """Start a simulator, and play cases in it.
+
+    Raises:
+        UserError: an agent or a case cannot be had.
+        SimulatorError: there is no simulator to play in.
+    """
+    library = open_library(options.all_files)
+    agents: Mapping[str, FoundAgent] = given or {
+        agent: find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb)
+        for agent in options.agents
+    }
+    ending = ENDING_IN_PROCESS if options.in_process or given else ENDING
+    with simulator_for(options.run_options(options.agents[0])) as simulator:
+        session = CaseSession(options, simulator, Towns(simulator))
+
+        def play(job: CaseJob) -> Played:
+            (playable,) = library.of_id(job.case)
+            loaded = agents[job.agent]
+            played = play_case(session, loaded, playable, output / plain(loaded.name))
+            done = CaseDone(played.document, str(played.folder.relative_to(output)))
+            status = played.outcome.status
+            if status is Status.INTERRUPTED:
+                return Played(done, After.INTERRUPTED)
+            return Played(done, After.FRESH if status in ending else After.GO_ON)
+
+        yield play

@@ -1,0 +1,91 @@
+"""Fixtures: a campaign of cases, and a player that computes rows from jobs instead of driving."""
+
+import os
+import textwrap
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+PLAYER = """
+import contextlib, io, os, signal, tarfile, time
+from pathlib import Path
+from basu.campaigns.player import DriveDone
+from basu.jobs.job import Played, PlayerSpec, versions
+
+def spec(settings):
+    return PlayerSpec(f"{__name__}:open_player", (settings,))
+
+@contextlib.contextmanager
+def open_player(settings):
+    yield play
+
+def tar():
+    buffer = io.BytesIO()
+    with tarfile.open(fileobj=buffer, mode="w") as packed:
+        info = tarfile.TarInfo("result.json")
+        info.size = 2
+        packed.addfile(info, io.BytesIO(b"{}"))
+    return buffer.getvalue()
+
+def play(job):
+    share = int(job["id"][:8], 16) / 16**8
+    if os.environ.get("DEADLY", "none") in job["identity"]:
+        os.kill(os.getpid(), signal.SIGKILL)
+    time.sleep(float(os.environ.get("DRIVE_S", "0")))
+    success = share > (0.5 if job["agent_name"] == "blind" else 0.1)
+    row = {
+        "status": "ScenarioEnded", "fault": "nobody", "message": "computed", "judged": True, "success": success,
+        "severity": 1.0 if not success else share, "driving_score": share, "passengers_comfort_score": share / 2.0,
+        "margin_distance_m": 10.0 * share, "simulated_s": 20.0, "wall_s": time.perf_counter(), "cpu_s": 1.0,
+        "memory_mb": 500.0, "records_bytes": 1000, "host": "here", "worker": os.getpid(),
+        **{f"version_{name}": text for name, text in versions().items()},
+    }
+    return Played(DriveDone(row, tar() if not success or share > job["bar"] else None))
+"""
+
+CAMPAIGN = """
+name = "crossings"
+agents = ["basic", "blind"]
+seeds = {number = 3}
+
+[[drives]]
+cases = ["pedestrian_crossing_1"]
+sweep = 10
+vary = ["ahead", "speed"]
+
+[keep]
+failures = 3
+narrowest = 2
+sample = 0.0
+
+[work]
+block = 8
+"""
+
+
+@pytest.fixture
+def modules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The name of a module with the player, which this process and others can import."""
+    folder, name = tmp_path / "modules", f"fake_drives_{tmp_path.name}"
+    folder.mkdir()
+    (folder / f"{name}.py").write_text(PLAYER, encoding="utf-8")
+    monkeypatch.syspath_prepend(str(folder))
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(folder), os.environ.get("PYTHONPATH", "")]))
+    return name
+
+
+@pytest.fixture
+def campaign(tmp_path: Path) -> Callable[..., Path]:
+    """A function that writes a campaign's file: the usual one, with replaced text."""
+
+    def write(*replaced: tuple[str, str], more: str = "") -> Path:
+        text = CAMPAIGN
+        for before, after in replaced:
+            assert before in text
+            text = text.replace(before, after)
+        path = tmp_path / "campaign.toml"
+        path.write_text(textwrap.dedent(text) + more, encoding="utf-8")
+        return path
+
+    return write

@@ -1,0 +1,95 @@
+"""Claims about a campaign's file: it becomes jobs with stable ids, and a mistake in it is one sentence."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from basu.campaigns.plan import plan_of
+from basu.campaigns.settings import read_campaign
+from basu.campaigns.shuffle import Shuffle
+from basu.errors import UserError
+
+Write = Callable[..., Path]
+
+
+def test_jobs_are_the_product_with_agents_changing_fastest(campaign: Write) -> None:
+    file = campaign()
+    plan = plan_of(read_campaign(file), file)
+    jobs = [plan.job(number) for number in range(plan.size)]
+    assert plan.size == len(jobs) == 2 * 10 * 3
+    assert [job["agent_name"] for job in jobs[:4]] == ["basic", "blind"] * 2
+    assert len({job["identity"] for job in jobs[:20]}) == 10
+    assert [job["seed"] for job in jobs[::20]] == [0, 1, 2]
+    assert len({job["id"] for job in jobs}) == len(jobs)
+    assert set(jobs[0]["parameters"]) == set(plan.parameters())
+
+
+def test_a_job_has_the_same_id_in_another_campaign(campaign: Write) -> None:
+    file = campaign()
+    before = plan_of(read_campaign(file), file).job(0)
+    file = campaign(("crossings", "others"), ("number = 3", "number = 1"), ("block = 8", "block = 5"))
+    assert plan_of(read_campaign(file), file).job(0) == before
+    file = campaign(more="\n[scoring]\ninfraction_weight = 0.5\n")
+    assert plan_of(read_campaign(file), file).job(0)["id"] != before["id"]
+
+
+def test_routes_weather_and_traffic_are_dimensions_too(campaign: Write) -> None:
+    file = campaign(
+        more='\n[[drives]]\nroutes = "routes/linden_short.xml"\nweather = ["ClearNoon", "HardRainNoon"]\n'
+        "traffic = [{}, {vehicles = 20, walkers = 5}]\nseeds = {first = 7}\n"
+    )
+    plan = plan_of(read_campaign(file), file)
+    routes = [plan.job(number) for number in range(60, plan.size)]
+    found = {(job["weather"], job["vehicles"], job["walkers"], job["seed"]) for job in routes}
+    assert found == {(weather, *others, 7) for weather in ("ClearNoon", "HardRainNoon") for others in ((0, 0), (20, 5))}
+    assert {job["kind"] for job in routes} == {"route"}
+
+
+def test_a_shuffled_campaign_has_the_same_jobs_in_another_order(campaign: Write) -> None:
+    file = campaign()
+    given = plan_of(read_campaign(file), file)
+    file = campaign(('name = "crossings"', 'name = "crossings"\norder = "shuffled"'))
+    shuffled = plan_of(read_campaign(file), file)
+    ids = [[plan.job(number)["id"] for number in range(plan.size)] for plan in (given, shuffled)]
+    assert ids[0] != ids[1]
+    assert sorted(ids[0]) == sorted(ids[1])
+
+
+@pytest.mark.parametrize("size", [1, 2, 3, 17, 256, 1000])
+def test_a_shuffle_is_a_permutation(size: int) -> None:
+    places = [Shuffle(size, 5)(place) for place in range(size)]
+    assert sorted(places) == list(range(size))
+    assert size < 10 or places != [Shuffle(size, 6)(place) for place in range(size)]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "sentence"),
+    [
+        pytest.param('"blind"', '"blnd"', "blnd", id="unknown agent"),
+        pytest.param('"blind"', '"mine.py"', "there is no agent's file mine.py", id="no such file"),
+        pytest.param('"blind"', '"human"', "a person drives", id="a person"),
+        pytest.param('["basic", "blind"]', "[]", "agents is empty, so there is nothing to drive", id="empty product"),
+        pytest.param("number = 3", "number = 0", "seeds.number is 0; .*greater than or equal to 1", id="no seeds"),
+        pytest.param("sweep = 10", "sweep = 10\nset = {early = 99}", "'early' is '99.0'; it must be a number from",
+                     id="parameter out of range"),
+        pytest.param('"speed"', '"spede"', "has no such parameter; did you mean 'speed'", id="unknown parameter"),
+        pytest.param('"pedestrian_crossing_1"', '"nothing_1"', "there is no scenario 'nothing_1'", id="unknown case"),
+        pytest.param("sweep = 10", "swep = 10", "drives.0.swep means nothing here; did you mean 'sweep'", id="key"),
+        pytest.param("sweep = 10", "grid = 3\nsweep = 10", "two designs; choose one", id="two designs"),
+        pytest.param("block = 8", 'block = "many"', "work.block is 'many'", id="type"),
+        pytest.param('name = "crossings"', "", "name is missing", id="no name"),
+        pytest.param('name = "crossings"', 'name = "a/b"', "name is 'a/b'", id="name of no folder"),
+        pytest.param('name = "crossings"', 'name = "a', "is no TOML", id="no TOML"),
+        pytest.param("number = 3}", 'number = 3}\nweather = ["Sunny"]', "no weather called 'Sunny'", id="weather"),
+        pytest.param('cases = ["pedestrian_crossing_1"]\nsweep = 10\nvary = ["ahead", "speed"]',
+                     'routes = "none.xml"', "route file 'none.xml' was not found", id="no route file"),
+        pytest.param('cases = ["pedestrian_crossing_1"]\nsweep = 10\nvary = ["ahead", "speed"]',
+                     'routes = "routes/linden_short.xml"\nroute_ids = ["99"]', "has no route '99'", id="no route"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_one_sentence(campaign: Write, before: str, after: str, sentence: str) -> None:
+    file = campaign((before, after))
+    with pytest.raises(UserError, match=sentence) as raised:
+        plan_of(read_campaign(file), file)
+    assert "\n" not in str(raised.value)

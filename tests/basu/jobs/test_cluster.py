@@ -1,0 +1,49 @@
+"""Claims about workers on a Ray cluster: a lost node costs no job, and a cluster that is not there is named."""
+
+import logging
+
+import pytest
+
+from basu.errors import UserError
+from basu.jobs.job import Done, Job, PlayerSpec
+from basu.jobs.pool import Pool
+
+ray = pytest.importorskip("ray")
+
+from basu.jobs.cluster import RayBackend  # noqa: E402 - behind the check for Ray
+from ray.cluster_utils import Cluster  # noqa: E402 - likewise
+
+
+@pytest.mark.slow
+def test_a_node_that_is_removed_loses_no_job_and_counts_none_twice(player: str) -> None:
+    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "object_store_memory": 80_000_000})
+    try:
+        node = cluster.add_node(num_cpus=1, object_store_memory=80_000_000)
+        ray.init(address=cluster.address, logging_level=logging.ERROR, log_to_driver=False)
+        backend = RayBackend(PlayerSpec(player, ()), "auto")
+        assert backend.processors() == 2
+        pool = Pool(backend, 2)
+        answers = []
+        for answer in pool.play(Job(number, ("ok", "")) for number in range(60)):
+            answers.append(answer)
+            if len({each.value[2] for each in answers}) == 2 and node is not None:  # both nodes have played
+                cluster.remove_node(node, allow_graceful=False)
+                node = None
+        pool.close()
+        assert node is None
+        assert sorted(answer.number for answer in answers) == list(range(60))
+        assert all(isinstance(answer, Done) for answer in answers)
+    finally:
+        ray.shutdown()
+        cluster.shutdown()
+
+
+def test_a_cluster_that_is_not_there_is_one_sentence() -> None:
+    with pytest.raises(UserError, match=r"no Ray cluster answers at 127\.0\.0\.1:1 .*; start one with `ray start --head`"):
+        RayBackend(PlayerSpec("none:none", ()), "127.0.0.1:1")
+
+
+def test_without_a_cluster_on_this_machine_auto_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("RAY_ADDRESS", raising=False)
+    with pytest.raises(UserError, match="no Ray cluster answers at auto"):
+        RayBackend(PlayerSpec("none:none", ()), "auto")
