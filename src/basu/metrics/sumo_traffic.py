@@ -1,7 +1,7 @@
-"""SUMO's traffic in a run: its load, what it lost in time, and whom the vehicle under test met; reported, not scored.
+"""SUMO's traffic in a run: load, delay, and the actors that the vehicle under test met; reported, not scored.
 
-Delay is SUMO's time loss: the time that driving below the allowed speed has cost (SUMO's documentation, "Simulation
-Output: TripInfo", ``timeLoss``), here of all vehicles for each kilometre that they drove together.
+Delay is SUMO's time loss, ``timeLoss`` in its documentation of the trip information. It is the time that driving below
+the allowed speed has cost. Here it is that of all vehicles for each kilometre that they drove together.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ class Outputs:
     """The files in a run's folder; without a folder there are none."""
 
     def __init__(self, run_folder: Path | None, watched: str) -> None:
-        """Make their folder. ``watched`` is the vehicle whose safety measures are taken.
+        """Make their folder. ``watched`` is the vehicle that safety measures are taken of.
 
         Raises:
             UserError: the folder cannot be made.

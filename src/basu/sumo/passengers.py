@@ -58,7 +58,7 @@ class Passengers:
                 self._serve(served, t_s)
 
     def _look(self, stop_id: str, t_s: float) -> None:
-        """Note who has come to a stop since the last tick."""
+        """Note the persons that have come to a stop since the last tick."""
         for name in sorted(self._link.api.busstop.getPersonIDs(stop_id)):
             if name in self._number:
                 continue
