@@ -65,9 +65,10 @@ def values_of(field: Field) -> st.SearchStrategy[Any]:
 def refused_by_sumo(given: dict[str, Any]) -> tuple[str, ...]:
     """The options that do not go together with what SUMO is to do."""
     demand = ("sumo_hour", "sumo_scale")
+    density = ("traffic_density",) if given.get("sumo") == SUMO_RANDOM else ()
     if given.get("sumo_port") is not None:  # that SUMO has its own options
-        return (*demand, "sumo_sublane", "sumo_output", *(["traffic_density"] if given["sumo"] == SUMO_RANDOM else []))
-    return ("traffic_density", *demand) if given.get("sumo") == SUMO_RANDOM else ()
+        return (*demand, *density, "sumo_sublane", "sumo_output")
+    return (*demand, *density) if density else ()
 
 
 @st.composite
