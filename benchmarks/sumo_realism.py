@@ -48,11 +48,11 @@ def ways(trips: RandomTrips, link: Link, length_m: float) -> Iterator[list[str]]
         driven_m = 0.0
         while driven_m < length_m:
             part = trips._route()  # noqa: SLF001 - the same draw as in a run
-            if way and way[-1] != part[0]:
+            if way:
                 joined = link.api.simulation.findRoute(way[-1], part[0], "DEFAULT_VEHTYPE").edges
                 if not joined:
                     continue
-                part = [*joined[1:-1], *part]
+                part = [*joined[1:], *part[1:]]
             for edge in part:
                 if edge not in lengths:
                     lengths[edge] = link.api.lane.getLength(f"{edge}_0")

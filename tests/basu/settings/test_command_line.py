@@ -62,6 +62,15 @@ def values_of(field: Field) -> st.SearchStrategy[Any]:
     return found | st.none() if type(None) in kinds else found
 
 
+def refused_by_sumo(given: dict[str, Any]) -> tuple[str, ...]:
+    """The options that do not go together with what SUMO is to do."""
+    demand = ("sumo_hour", "sumo_scale")
+    density = ("traffic_density",) if given.get("sumo") == SUMO_RANDOM else ()
+    if given.get("sumo_port") is not None:  # that SUMO has its own options
+        return (*demand, *density, "sumo_sublane", "sumo_output")
+    return (*demand, *density) if density else ()
+
+
 @st.composite
 def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
     """A model with random values that do not contradict each other."""
@@ -78,8 +87,8 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop("hud_screenshot", None)
     if given.get("host") is not None:
         given.pop("maps", None)  # those of a simulator that basu starts
-    if given.get("sumo") == SUMO_RANDOM:
-        given.pop("traffic_density", None)
+    for name in refused_by_sumo(given):
+        given.pop(name, None)
     if given.get("in_process"):
         given.pop("agent_memory_gb", None)  # without a process there is no memory to limit
     return resolve(model, [Layer(given)])

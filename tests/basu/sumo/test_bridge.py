@@ -76,7 +76,7 @@ def test_a_vehicle_is_shown_where_sumo_has_it_and_leaves_with_it(client: carla.C
     bridge.close()
 
 
-def test_a_vehicle_whose_place_is_taken_waits_and_is_shown_later(client: carla.Client, folder: Path) -> None:
+def test_a_vehicle_without_room_waits_and_is_shown_later(client: carla.Client, folder: Path) -> None:
     world = client.get_world()
     bridge = bridge_to(client, folder)
     bridge.link.step()

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from basu.cli import main
+from basu.errors import UserError
 from servers import RunningServer
 
 
@@ -60,3 +61,17 @@ def test_a_sumo_that_dies_in_the_middle_is_the_simulator_s_failure_and_the_run_i
     assert (result["status"], result["fault"]) == ("SimulatorFailed", "simulator")
     assert "SUMO failed at making a step (step 40): connection closed by SUMO" in result["message"]
     assert (folder / "history.parquet").exists()
+
+
+def test_a_type_that_no_blueprint_shows_is_the_set_up_s_fault(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def unknown(*_: object) -> str:
+        raise UserError("SUMO's vehicle type 'ferry' is of the class 'ship', which no blueprint shows")
+
+    monkeypatch.setattr("basu.sumo.models.Models.of", unknown)
+    options = ("--sumo", "random", "--vehicles", "5", "--seed", "3")
+    code, result, _ = run(simulator, route_file, tmp_path / "runs", *options)
+    assert code != 0
+    assert (result["status"], result["fault"]) == ("SetupFailed", "setup")
+    assert result["message"].startswith("SUMO's vehicle type 'ferry' is of the class 'ship'")

@@ -246,7 +246,7 @@ def places_of(folder: Path, seed: int) -> list[dict[str, tuple[float, float]]]:
     return seen
 
 
-def test_random_trips_follow_their_seed_and_replace_who_has_arrived(
+def test_random_trips_follow_their_seed_and_replace_arrived_vehicles(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("basu.sumo.random_trips.LEAST_EDGES", 2)

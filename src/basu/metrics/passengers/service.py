@@ -42,7 +42,7 @@ class Visit(NamedTuple):
     boarded: int | None = None
     left_behind: int | None = None
     alighted: int | None = None
-    mean_wait_s: float | None = None  # of those that boarded
+    mean_wait_s: float | None = None  # of the passengers that boarded
 
 
 def service(history: History) -> tuple[Visit, ...]:
