@@ -89,7 +89,9 @@ def check_parallel(options: RunOptions) -> None:
     if options.host is not None:
         raise UserError("--workers starts a simulator for each worker; leave out --host, or --workers")
     if options.hud is not None or options.viewer or options.keys is not None or options.record_keys is not None:
-        raise UserError("--workers drives several runs at once, which no window and no keys follow; leave out --workers")
+        raise UserError(
+            "--workers drives several runs at once, which no window and no keys follow; leave out --workers"
+        )
 
 
 def run_in_parallel(

@@ -10,8 +10,9 @@ from basu.jobs.pool import Pool
 
 ray = pytest.importorskip("ray")
 
-from basu.jobs.cluster import RayBackend  # noqa: E402 - behind the check for Ray
 from ray.cluster_utils import Cluster  # noqa: E402 - likewise
+
+from basu.jobs.cluster import RayBackend  # noqa: E402 - behind the check for Ray
 
 
 @pytest.mark.slow
@@ -39,7 +40,9 @@ def test_a_node_that_is_removed_loses_no_job_and_counts_none_twice(player: str) 
 
 
 def test_a_cluster_that_is_not_there_is_one_sentence() -> None:
-    with pytest.raises(UserError, match=r"no Ray cluster answers at 127\.0\.0\.1:1 .*; start one with `ray start --head`"):
+    with pytest.raises(
+        UserError, match=r"no Ray cluster answers at 127\.0\.0\.1:1 .*; start one with `ray start --head`"
+    ):
         RayBackend(PlayerSpec("none:none", ()), "127.0.0.1:1")
 
 
