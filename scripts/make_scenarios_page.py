@@ -24,7 +24,7 @@ EXAMPLE = ROOT / "examples" / "scenarios" / "bin_lorry.xml"
 BASES = {
     "Trigger",
     "Action",
-    "Puppet",
+    "PathFollower",
     "Aspect",
     "Criterion",
     "Judgement",

@@ -12,7 +12,7 @@ from pathlib import Path
 import hypothesis
 import pytest
 
-from tracing import untraced
+from tracing import save, untraced
 
 LONGEST = (
     "basu/running/scenario_runs/test_catalogue.py",
@@ -39,6 +39,7 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell that starts us 
 
 hypothesis.settings.register_profile("repeatable", deadline=None, derandomize=True, print_blob=True)
 hypothesis.settings.register_profile("explore", deadline=None, print_blob=True, max_examples=1000)
+hypothesis.settings.register_profile("uncompiled", hypothesis.settings.get_profile("repeatable"), max_examples=10)
 hypothesis.settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "repeatable"))
 
 
@@ -59,3 +60,9 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
     """Measure no coverage in slow tests: they drive long ways through lines that quick tests reach."""
     with untraced() if item.get_closest_marker("slow") else nullcontext():
         return (yield)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish() -> None:
+    """Write the coverage before the process ends: pytest-xdist kills a worker that takes more than 10 s to end."""
+    save()

@@ -16,6 +16,12 @@ from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vecto
 slow_uncompiled = pytest.mark.slow if numba.config.DISABLE_JIT else pytest.mark.filterwarnings()
 """Marks what takes seconds where kernels run as plain Python (NUMBA_DISABLE_JIT=1, to measure coverage), only there."""
 
+
+def seeds(count: int) -> list[Any]:
+    """The numbers below ``count``; where kernels run as plain Python the first alone, which takes the same lines."""
+    return [0, *(pytest.param(number, marks=slow_uncompiled) for number in range(1, count))]
+
+
 FLAT = Ground.flat()
 NOTHING = Statics.none()
 G = 9.81

@@ -1,4 +1,4 @@
-"""Coverage switched off for a while, in this process and in its child processes."""
+"""Coverage of processes of tests: switched off for a while, and written before the process ends."""
 
 import os
 from collections.abc import Iterator
@@ -23,3 +23,10 @@ def untraced() -> Iterator[None]:
         os.environ.update(kept)
         if measured is not None:
             measured.start()
+
+
+def save() -> None:
+    """Write what this process has measured; threads of the official client may end it before it would do so itself."""
+    measured = coverage.Coverage.current()
+    if measured is not None:
+        measured.save()

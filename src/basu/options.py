@@ -99,6 +99,10 @@ class Sumo(NamedTuple):
     port: int | None = None  # of a SUMO that runs
     folder: str | None = None  # that the agent's config() names
     beside: Path | None = None  # the agent's file, for relative names
+    hour: float | None = None  # of the day, for a demand that is made; None: the hour that the route stands for
+    scale: float | None = None  # of the traffic; None: as it is
+    is_sublane: bool = False  # vehicles beside each other in a lane
+    has_output: bool = False  # SUMO's own outputs in the run's folder
 
 
 SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM = "none", "demand", "random"
@@ -262,6 +266,34 @@ class RunOptions(Settings):
             default_text="SUMO in this process",
         ),
     ] = None
+    sumo_hour: Annotated[
+        float | None,
+        Option(
+            help="hour of the day of the demand that is made, such as 17.5",
+            group=CONDITIONS,
+            metavar="H",
+            least=0.0,
+            most=23.99,
+            default_text="the hour that the route stands for",
+        ),
+    ] = None
+    sumo_scale: Annotated[
+        float | None,
+        Option(
+            help="so many times the demand",
+            group=CONDITIONS,
+            metavar="X",
+            least=0.0,
+            default_text="the demand as it is",
+        ),
+    ] = None
+    sumo_sublane: Annotated[
+        bool, Option(help="SUMO's sub-lane model: vehicles pass each other within a lane", group=CONDITIONS)
+    ] = False
+    sumo_output: Annotated[
+        bool,
+        Option(help="keep SUMO's own outputs in the run's folder: trip information, safety measures", group=CONDITIONS),
+    ] = False
 
     host: Host = None
     port: Port = 2000
@@ -285,6 +317,16 @@ class RunOptions(Settings):
             is_file=True,
         ),
     ] = ()
+    upload_map: Annotated[
+        Path | None,
+        Option(
+            help="send this OpenDRIVE map to the simulator at --host; routes of its town are driven there",
+            group=SIMULATOR,
+            metavar="FILE.xodr",
+            is_file=True,
+            repeats=False,
+        ),
+    ] = None
 
     metric_files: Annotated[
         tuple[Path, ...],
@@ -297,6 +339,25 @@ class RunOptions(Settings):
         ),
     ] = ()
     record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
+    rosbag: Annotated[
+        Literal["ros2", "ros1"] | None,
+        Option(
+            help="write sensors, state, control and TF as a ROS bag: a folder with MCAP for ros2, a .bag for ros1; "
+            "without a word: ros2",
+            group=FOLDERS,
+            bare="ros2",
+            default_text="write none",
+            advice="an agent is named before --rosbag, as in `basu run basic --rosbag`",
+        ),
+    ] = None
+    ros2: Annotated[
+        bool,
+        Option(
+            help="publish the run on ROS 2 while it lasts, over DDS, in the domain of ROS_DOMAIN_ID",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
     output: Output = Path("runs")
     series: Annotated[
         str | None,
@@ -377,6 +438,10 @@ class RunOptions(Settings):
             port=self.sumo_port,
             folder=folder,
             beside=beside,
+            hour=self.sumo_hour,
+            scale=self.sumo_scale,
+            is_sublane=self.sumo_sublane,
+            has_output=self.sumo_output,
         )
 
     def check(self) -> None:
@@ -405,6 +470,10 @@ class RunOptions(Settings):
             raise UserError(
                 "--maps is for the simulator that basu starts; give that at --host its own: `linden serve --maps DIR`"
             )
+        if self.upload_map is not None and self.host is None:
+            raise UserError(
+                "--upload-map sends a map to the simulator at --host; without --host, --maps DIR offers a folder's maps"
+            )
         for folder in self.maps:
             if not folder.is_dir():
                 raise UserError(
@@ -424,6 +493,27 @@ class RunOptions(Settings):
             raise UserError(f"--sumo {self.sumo}: there is no such file; write one with `linden map sumo TOWN -o DIR`")
         if self.sumo == SUMO_RANDOM and self.traffic_density is not None:
             raise UserError("--sumo random keeps --vehicles N on the road; --traffic-density goes without it")
+        self._check_demand_of_sumo(is_file=self.sumo not in words)
+
+    def _check_demand_of_sumo(self, *, is_file: bool) -> None:
+        """Check what is said of SUMO's demand, and of a SUMO that runs.
+
+        Raises:
+            UserError: there is no demand to which it applies.
+        """
+        said = {
+            "--sumo-hour": self.sumo_hour is not None,
+            "--sumo-scale": self.sumo_scale is not None,
+            "--sumo-sublane": self.sumo_sublane,
+            "--sumo-output": self.sumo_output,
+        }
+        named = [flag for flag, given in said.items() if given]
+        if named and self.sumo_port is not None:
+            raise UserError(f"{named[0]} is for a SUMO that basu starts; give yours at --sumo-port its own options")
+        if self.sumo == SUMO_RANDOM and (self.sumo_hour is not None or self.sumo_scale is not None):
+            raise UserError(f"{named[0]} is for a demand; --sumo random keeps --vehicles N on the road")
+        if is_file and self.sumo_hour is not None:
+            raise UserError(f"--sumo-hour is for a demand that basu makes; {self.sumo} has its own")
 
 
 def check_agent_process(*, in_process: bool, memory_gb: float | None) -> None:

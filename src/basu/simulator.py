@@ -35,6 +35,9 @@ START_LIMIT_S = 600.0  # a first start compiles kernels, on a machine that may b
 END_LIMIT_S = 10.0
 LAST_WORDS_S = 2.0  # for the pipes of an ended server to run empty
 LAST_LINES = 20  # of a server's log, kept to explain its end
+UPLOADED_NAME = "OpenDriveMap"  # CARLA's name of a map that a client sent
+UPLOAD_LIMIT_S = 300.0  # Unreal meshes a town's roads in minutes
+UPLOAD_VERTEX_M, UPLOAD_PIECE_M, UPLOAD_BESIDE_M = 2.0, 50.0, 0.6  # CARLA's own defaults, PythonAPI/util/config.py
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
 
 
@@ -47,6 +50,11 @@ class Simulator:
     own: bool
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
     ended: Callable[[], bool]  # whether its process is seen to have ended; asks it nothing
+    uploaded: str | None = None  # the town whose map BASU sent; the simulator calls it by UPLOADED_NAME
+
+    def map_name(self, town: str) -> str:
+        """The name by which the simulator knows a town."""
+        return UPLOADED_NAME if town == self.uploaded else town
 
 
 @contextlib.contextmanager
@@ -61,7 +69,15 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         print(f"basu: connecting to the simulator at {options.host}:{options.port}", file=sys.stderr, flush=True)
         client = connect(options.host, options.port, options.timeout_s)
         address = (options.host, options.port)
-        yield Simulator(client, address, own=False, why_gone=lambda: _silence(client, options), ended=lambda: False)
+        town = None if options.upload_map is None else upload(client, options.upload_map, options.timeout_s)
+        yield Simulator(
+            client,
+            address,
+            own=False,
+            why_gone=lambda: _silence(client, options),
+            ended=lambda: False,
+            uploaded=town,
+        )
         return
     server = _early.pop() if _early else own_server(options)
     try:
@@ -201,6 +217,40 @@ class OwnServer:
                     print(text, file=sys.stderr, flush=True)  # a first start says what it is doing
             self._spoke.set()
         self._spoke.set()
+
+
+def upload(client: carla.Client, file: Path, timeout_s: float) -> str:
+    """Send an OpenDRIVE map, let the simulator make a world of it, and return the town: the file's name.
+
+    The world has roads without walls beside them, no houses, and the lights and signs of the map.
+
+    Raises:
+        UserError: the file cannot be read, or is no OpenDRIVE.
+        SimulatorError: the simulator makes no world of it.
+    """
+    try:
+        text = file.read_text("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise UserError(f"--upload-map {file} cannot be read: {error}; name an OpenDRIVE file") from None
+    if "<OpenDRIVE" not in text:
+        raise UserError(f"--upload-map {file} is no OpenDRIVE; `linden map build -o Linden.xodr` writes Linden's")
+    print(f"basu: sending {file} to the simulator", file=sys.stderr, flush=True)
+    shape = carla.OpendriveGenerationParameters(
+        vertex_distance=UPLOAD_VERTEX_M,
+        max_road_length=UPLOAD_PIECE_M,
+        wall_height=0.0,
+        additional_width=UPLOAD_BESIDE_M,
+        smooth_junctions=True,
+        enable_mesh_visibility=True,
+    )
+    client.set_timeout(max(timeout_s, UPLOAD_LIMIT_S))
+    try:
+        client.generate_opendrive_world(text, shape)
+    except RuntimeError as error:
+        raise SimulatorError(f"the simulator made no world of {file}: {error}") from error
+    finally:
+        client.set_timeout(timeout_s)
+    return file.stem
 
 
 def linden_command() -> list[str]:

@@ -4,12 +4,13 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 import pytest
 
 from basu.agents.adapters.replacement_modules import step_back
+from basu.agents.process import agent_process
 from servers import RunningServer, running_server
 from tracing import untraced
 
@@ -21,6 +22,18 @@ def _no_stand_ins() -> Iterator[None]:
     """Forget the modules that an agent's file brought with it: other tests' files find their own."""
     yield
     step_back()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _agents_write_their_coverage() -> Iterator[None]:
+    """End the processes of agents by SIGTERM, at which they write their coverage; the benchmark would kill them."""
+    yield
+    processes = [running._process for running in agent_process._running]
+    for process in processes:
+        process.terminate()
+    for process in processes:
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(10.0)
 
 
 KILLER = """

@@ -21,7 +21,7 @@ def test_a_server_that_ends_at_once_is_reported_with_its_last_words(monkeypatch:
         OwnServer()
 
 
-def test_a_server_that_was_killed_is_told_with_the_signal(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_killed_server_is_reported_with_the_signal(monkeypatch: pytest.MonkeyPatch) -> None:
     commanded(monkeypatch, "import os, signal; os.kill(os.getpid(), signal.SIGKILL)")
     with pytest.raises(SimulatorError, match=r"was ended by the signal SIGKILL \(as the system does when memory"):
         OwnServer()

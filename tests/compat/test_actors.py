@@ -165,7 +165,7 @@ def test_a_function_for_vehicles_refuses_a_walker(client, world, blueprints, poi
     )
 
 
-def test_a_walker_walks_where_it_is_told(world, blueprints, point) -> None:
+def test_a_walker_walks_in_the_direction_of_its_control(world, blueprints, point) -> None:
     walker = world.spawn_actor(blueprints.find("walker.pedestrian.0001"), point)
     for _ in range(20):
         world.tick()
@@ -211,7 +211,7 @@ def test_a_push_from_the_side_moves_a_vehicle_sideways(world, car) -> None:
     assert car.get_velocity().dot(begin.get_right_vector()) > 0.5
 
 
-def test_the_box_of_somebody_gone_is_empty_and_no_error(server, world, car) -> None:
+def test_the_box_of_a_destroyed_actor_is_empty_and_no_error(server, world, car) -> None:
     # another client's Traffic Manager may ask so, in a thread where an error ends its program
     with RawClient(server.port) as other:
         there = other.call("get_actor_bounding_box", car.id)

@@ -86,7 +86,7 @@ def test_sensors_that_come_and_go_take_no_memory_and_no_files(server: RunningSer
     assert psutil.Process(server.process.pid).num_fds() <= before_files + 2
 
 
-def test_a_hundred_silent_connections_keep_nobody_out(server: RunningServer, raw: RawClient) -> None:
+def test_a_hundred_silent_connections_keep_no_client_out(server: RunningServer, raw: RawClient) -> None:
     silent = [RawClient(server.port) for _ in range(100)]
     with RawClient(server.port) as newcomer:
         assert newcomer.call("tick_cue") > 0

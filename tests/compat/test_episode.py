@@ -50,7 +50,7 @@ def test_a_map_that_is_not_there_is_refused_in_carlas_words(client: carla.Client
     assert client.get_world().get_map().name == "Carla/Maps/Linden"
 
 
-def test_a_reload_begins_an_episode_without_those_who_were_spawned(client: carla.Client, world: carla.World) -> None:
+def test_a_reload_begins_an_episode_without_the_spawned_actors(client: carla.Client, world: carla.World) -> None:
     blueprint = world.get_blueprint_library().filter("vehicle.*")[0]
     world.spawn_actor(blueprint, world.get_map().get_spawn_points()[0])
     frame = world.tick()

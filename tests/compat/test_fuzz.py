@@ -27,7 +27,7 @@ def send(port: int, packets: list[bytes]) -> None:
 
 
 @pytest.mark.slow
-def test_ten_thousand_bad_packets_hinder_nobody(server: RunningServer, world: carla.World) -> None:
+def test_ten_thousand_bad_packets_hinder_no_other_client(server: RunningServer, world: carla.World) -> None:
     blueprint = world.get_blueprint_library().filter("vehicle.*")[0]
     vehicle = world.spawn_actor(blueprint, world.get_map().get_spawn_points()[0])
     frame, sent, next_tick = world.tick(), 0, PACKETS_A_TICK

@@ -50,7 +50,7 @@ def context() -> Context:
     registry.load_handlers()
     maps = MapLibrary((), MapCache.of_user().facts_of)
     return Context(
-        simulation=World(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)),
+        world=World(maps.load(HOME_MAP), EpisodeSettings(synchronous_mode=True, fixed_delta_seconds=0.05)),
         maps=maps,
         frames=frames,
         streams=StreamTable(2001),
@@ -106,10 +106,10 @@ def test_a_damaged_session_is_answered_refused_or_broken_off_and_time_goes_on(
             at += step
     except ProtocolError:
         pass
-    frame = context.simulation.frame
+    frame = context.world.frame
     assert context.advance() == frame + 1
     context.outbox.clear()
-    actors = context.simulation.episode.actors
+    actors = context.world.episode.actors
     shown = actors.rows[: len(actors)]
     assert all(np.isfinite(shown[name]).all() for name in ("location", "rotation", "velocity"))
     assert "internal error" not in caplog.text

@@ -55,7 +55,7 @@ def test_every_landmark_of_a_light_finds_it(world, lights) -> None:
     assert sorted({light.id for light in found}) == [light.id for light in lights]
 
 
-def test_the_lights_of_a_junction_are_those_that_take_turns_there(world, lights) -> None:
+def test_the_lights_of_a_junction_take_turns_there(world, lights) -> None:
     for light in lights:
         ahead = light.get_stop_waypoints()[0].next(12.0)[0]
         assert ahead.is_junction
@@ -86,7 +86,7 @@ def test_one_stops_before_the_line_on_the_lanes_that_the_light_is_for(world, lig
         assert all(2.0 < abs(place.s - landmark.s) < 4.0 for place in stops)
 
 
-def test_who_looks_ahead_finds_the_light_that_he_is_coming_to(world, lights) -> None:
+def test_a_vehicle_that_looks_ahead_finds_its_next_light(world, lights) -> None:
     for light in lights:
         for place in light.get_stop_waypoints():
             assert [each.id for each in world.get_traffic_lights_from_waypoint(place, 30.0)] == [light.id]
@@ -113,7 +113,7 @@ def test_times_and_colours_can_be_set(world, lights) -> None:
     assert light.state == Colour.Green
 
 
-def test_the_times_that_are_set_are_those_that_pass(world, lights) -> None:
+def test_the_times_that_are_set_pass(world, lights) -> None:
     group = lights[0].get_group_traffic_lights()
     for light in group:
         light.set_green_time(3.0)
@@ -219,7 +219,7 @@ def test_a_stop_sign_is_a_red_light_without_a_light_for_two_seconds(world) -> No
     car.destroy()
 
 
-def test_a_yield_sign_is_green_where_nobody_comes(world) -> None:
+def test_a_yield_sign_is_green_where_no_vehicle_comes(world) -> None:
     world.tick()
     car = world.spawn_actor(world.get_blueprint_library().find("vehicle.tesla.model3"), at_sign(world, "traffic.yield"))
     tick(world, 0.5)

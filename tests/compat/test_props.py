@@ -76,7 +76,7 @@ def test_a_hit_beside_its_middle_turns_a_prop(world, point) -> None:
     assert abs(math.remainder(box.get_transform().rotation.yaw - yaw, 360.0)) > 5.0
 
 
-def test_a_mesh_has_the_mass_and_scale_that_are_asked_for(world, point) -> None:
+def test_a_mesh_has_the_mass_and_scale_of_its_attributes(world, point) -> None:
     pushed_m = []
     for mass_kg in (20.0, 2000.0):
         mesh = prop(world, "mesh", point, 15.0, mass=mass_kg, scale=0.8)
@@ -116,7 +116,7 @@ def test_without_collisions_a_cone_is_driven_through(world, point) -> None:
     assert rammed(world, point, cone) == 0.0
 
 
-def test_a_car_that_hits_a_cone_is_told_so(world, point) -> None:
+def test_a_car_that_hits_a_cone_gets_a_collision_event(world, point) -> None:
     cone = prop(world, "trafficcone01", point, 15.0)
     library = world.get_blueprint_library()
     car = world.spawn_actor(library.find("vehicle.tesla.model3"), point)

@@ -113,7 +113,7 @@ def test_reports_tell_what_happened(client: carla.Client, world: carla.World) ->
         client.show_recorder_collisions("told.log", "x", "v")
 
 
-def test_what_is_not_there_is_told_in_carlas_words(client: carla.Client, folder: Path) -> None:
+def test_a_missing_recording_is_refused_in_carlas_words(client: carla.Client, folder: Path) -> None:
     (folder / "notes.txt").write_text("no recording at all")
     missing = f"File {folder / 'missing.log'} not found on server\n"
     assert client.show_recorder_file_info("missing.log", False) == missing

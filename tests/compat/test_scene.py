@@ -139,7 +139,7 @@ def test_what_is_disabled_is_not_met_not_in_the_way_and_comes_back(world, house)
     assert world.try_spawn_actor(blueprint, inside) is None
 
 
-def test_an_id_that_nobody_has_is_told_in_the_log(world, server: RunningServer) -> None:
+def test_an_unknown_id_is_named_in_the_log(world, server: RunningServer) -> None:
     world.enable_environment_objects({12345}, False)
     world.tick()
     assert "no object has the id 12345" in server.log()

@@ -111,7 +111,7 @@ def before(world: carla.World, kind: str, distance_m: float) -> tuple[carla.Acto
         pytest.param(lambda manager, car: manager.set_desired_speed(car, 20.0), None, id="a speed of its own"),
     ],
 )
-def test_a_car_drives_as_fast_as_it_is_told(world, manager, wish, share) -> None:
+def test_a_car_drives_at_its_desired_speed(world, manager, wish, share) -> None:
     car = put(world, street(world))
     world.tick()
     car.set_autopilot(True, manager.get_port())
@@ -126,7 +126,7 @@ def test_a_car_drives_as_fast_as_it_is_told(world, manager, wish, share) -> None
 
 
 @pytest.mark.parametrize(("ignored_percent", "passes"), [(0.0, False), (100.0, True)])
-def test_a_red_light_holds_who_does_not_ignore_it(world, manager, ignored_percent, passes) -> None:
+def test_a_red_light_holds_a_car_that_does_not_ignore_it(world, manager, ignored_percent, passes) -> None:
     light, place = before(world, "traffic.traffic_light", 40.0)
     light.set_state(carla.TrafficLightState.Red)
     light.freeze(True)
@@ -142,7 +142,7 @@ def test_a_red_light_holds_who_does_not_ignore_it(world, manager, ignored_percen
 
 
 @pytest.mark.parametrize(("ignored_percent", "stops"), [(0.0, True), (100.0, False)])
-def test_who_does_not_ignore_signs_stands_at_a_stop_sign_and_drives_on(world, manager, ignored_percent, stops) -> None:
+def test_a_car_that_heeds_signs_stands_at_a_stop_sign_and_drives_on(world, manager, ignored_percent, stops) -> None:
     _, place = before(world, "traffic.stop", 40.0)
     car = put(world, place)
     world.tick()
@@ -187,7 +187,7 @@ def stopped_behind_another(world: carla.World, manager: carla.TrafficManager, ga
     return gap_to(car, other), [car, other]
 
 
-def test_a_car_keeps_the_more_distance_the_more_it_is_told(world, manager) -> None:
+def test_a_car_keeps_more_distance_where_the_setting_is_larger(world, manager) -> None:
     small_m, cars = stopped_behind_another(world, manager, 2.0)
     for car in cars:
         car.destroy()
@@ -197,7 +197,7 @@ def test_a_car_keeps_the_more_distance_the_more_it_is_told(world, manager) -> No
     assert large_m > small_m + 3.0
 
 
-def test_who_ignores_vehicles_runs_into_one(world, manager) -> None:
+def test_a_car_that_ignores_vehicles_runs_into_one(world, manager) -> None:
     car, other = driven_and_standing(world, manager, 50.0)
     manager.ignore_vehicles_percentage(car, 100.0)
     stood = other.get_location()
@@ -206,7 +206,7 @@ def test_who_ignores_vehicles_runs_into_one(world, manager) -> None:
 
 
 @pytest.mark.parametrize(("ignored_percent", "stops"), [(0.0, True), (100.0, False)])
-def test_who_does_not_ignore_walkers_stops_for_one(world, manager, ignored_percent, stops) -> None:
+def test_a_car_that_heeds_walkers_stops_for_one(world, manager, ignored_percent, stops) -> None:
     place = street(world)
     car = put(world, place)
     walker = put(world, place.next(45.0)[0], "walker.pedestrian.0001", up_m=1.0)
@@ -221,7 +221,7 @@ def test_who_does_not_ignore_walkers_stops_for_one(world, manager, ignored_perce
     assert (min(gaps) > 0.5) == stops
 
 
-def test_cars_that_are_told_not_to_see_each_other_touch(world, manager) -> None:
+def test_cars_without_collision_detection_touch(world, manager) -> None:
     car, other = driven_and_standing(world, manager, 50.0)
     manager.collision_detection(car, other, False)
     gaps: list[float] = []
@@ -268,7 +268,7 @@ def test_a_slow_car_ahead_is_overtaken_where_lane_changes_are_allowed(world, man
     assert seen == lanes
 
 
-def test_who_keeps_right_leaves_the_inner_lane(world, manager) -> None:
+def test_a_car_that_keeps_right_leaves_the_inner_lane(world, manager) -> None:
     car = put(world, street(world))
     world.tick()
     car.set_autopilot(True, manager.get_port())

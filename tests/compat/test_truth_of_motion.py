@@ -96,7 +96,7 @@ def test_a_flow_is_how_far_each_pixels_place_has_moved_in_the_picture(
         assert np.abs(told_px - moved_px)[part].max() < 0.05
 
 
-def test_who_is_seen_fills_the_projected_box_and_has_the_tag_the_client_knows(
+def test_a_visible_actor_fills_the_projected_box_and_has_the_tag_the_client_knows(
     world: carla.World, start: carla.Transform, others: dict[str, carla.Actor]
 ) -> None:
     eyes = {"instances": made(world, "sensor.camera.instance_segmentation", at(start, 0, 0, 2, 0), chosen=PICTURE)}

@@ -97,7 +97,7 @@ def heard(world: carla.World, name: str, car: carla.Vehicle, note: Callable[[Any
     world.tick()
 
 
-def test_a_collision_is_told_with_its_partner(world, car) -> None:
+def test_a_collision_event_names_the_other_actor(world, car) -> None:
     ahead = car.get_transform()
     ahead.location += ahead.get_forward_vector() * 10.0
     ahead.location.z += 0.5

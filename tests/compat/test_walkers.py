@@ -81,7 +81,7 @@ def test_a_crowd_walks_and_stands_on_the_ground(world) -> None:
     world.tick()
 
 
-def test_nobody_who_may_not_cross_roads_leaves_the_crosswalk(generated) -> None:
+def test_walkers_that_may_not_cross_roads_stay_on_the_crosswalk(generated) -> None:
     street = generated(street_through_junction(objects=CROSSWALK))  # two pavements, one crosswalk at x = 30 m
     street.set_pedestrians_cross_factor(0.0)
     walker, controller = spawn(street, carla.Location(5.0, 4.3, 0.15))

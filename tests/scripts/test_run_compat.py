@@ -34,7 +34,7 @@ def runner() -> ModuleType:
         ("import time; time.sleep(60)", "stuck"),
     ],
 )  # fmt: skip
-def test_how_a_process_ended_is_told(runner: ModuleType, program: str, expected: str) -> None:
+def test_a_sentence_says_how_a_process_ended(runner: ModuleType, program: str, expected: str) -> None:
     runner.LAST_WORDS_S = 0.3
     code, _said = runner.run([sys.executable, "-c", program], silent_s=1.5)
     assert code == (runner.STUCK if expected == "stuck" else int(expected))

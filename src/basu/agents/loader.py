@@ -21,6 +21,7 @@ from basu.errors import UserError
 from basu.files import module_of
 
 BUILT_IN = {
+    "autoware": "basu.agents.ros.autoware:AutowareAgent",
     "basic": "basu.agents.builtin.basic:BasicAgent",
     "behavioral": "basu.agents.builtin.behavioral:BehavioralAgent",
     "behavioral-cautious": "basu.agents.builtin.behavioral:CautiousAgent",
@@ -32,6 +33,7 @@ BUILT_IN = {
     "forward": "basu.agents.builtin.baselines:ForwardAgent",
     "human": "basu.agents.builtin.basic:HumanAgent",
     "incident": "basu.agents.builtin.incident",
+    "ros": "basu.agents.ros.lockstep:RosAgent",
 }
 
 LOAD_LIMIT_S = 120.0  # of wall time: what an agent imports may be large

@@ -113,6 +113,14 @@ def run_agent(arguments: argparse.Namespace) -> int:
         from basu.output.viewer.stream import require  # noqa: PLC0415 - the viewer, which needs an extra
 
         require()
+    if options.ros2:
+        from basu.ros.dds_types import require as require_dds  # noqa: PLC0415 - an extra
+
+        require_dds()
+    if options.rosbag is not None or options.ros2:
+        from basu.ros.bag_file import require as require_rosbags  # noqa: PLC0415 - an extra
+
+        require_rosbags()
     scoring = scoring_of(arguments, config.scoring)
     from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -210,7 +211,7 @@ class Episode:
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
         sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)
-        sumo = None if self._spec.sumo is None else SumoManager(self._spec.sumo, linden_command())
+        sumo = None if self._spec.sumo is None else SumoManager(self._spec.sumo, linden_command(), routes)
         observers = tuple(self._new_observers(Live(self._driver, sensors, routes, metrics)))
         self._managers = _Managers(routes, metrics, traffic, sumo, sensors, observers)
         # participants before sensors: another program's agent says only once it is set up what it wants to sense
@@ -307,7 +308,8 @@ class Episode:
                 with contextlib.suppress(RuntimeError):  # the simulator is gone, and sends no more events
                     self._run.world.tick(self._run.timeout_s)
                     time.sleep(LATE_EVENTS_S)
-                self.history = self._managers.metrics.history()
+                sumo = None if self._managers.sumo is None else self._managers.sumo.record()
+                self.history = replace(self._managers.metrics.history(), sumo=sumo)
         self.close()
 
     def close(self) -> None:
@@ -321,7 +323,7 @@ class Episode:
         if self._managers is not None:
             self.traffic, self.first_frame = dict(self._managers.traffic.count), self._managers.metrics.first_frame
             if self._managers.sumo is not None:
-                self.traffic["vehicles"] += self._managers.sumo.count
+                self.traffic = {kind: n + self._managers.sumo.count[kind] for kind, n in self.traffic.items()}
         self._managers = self._run = self._unrecorded = None
         self._prepared = self._laid = False
         self._resources.close()

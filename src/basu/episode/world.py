@@ -62,7 +62,7 @@ class Towns:
         """
         self._simulator = simulator
         with asking("naming its towns"):
-            self.names = towns_of(simulator.client)
+            self.names = towns_of(simulator)
         self._read: dict[str, Town] = {}
         self._loaded: str | None = None  # the town that we have loaded last
         self._lanes: dict[str, tuple[LaneGraph, list[NDArray[np.float64]]]] = {}  # by OpenDRIVE text
@@ -82,7 +82,7 @@ class Towns:
             if again:
                 client.reload_world(reset_settings=False)
             known = self._loaded == name and (own or again)
-            world = client.get_world() if known else world_of(client, name)
+            world = client.get_world() if known else world_of(self._simulator, name)
             self._loaded = name
             if not known or name not in self._read:
                 self._read[name] = self._town(world.get_map())
@@ -112,15 +112,18 @@ def check_towns(names: frozenset[str], wanted: Iterable[str]) -> None:
         )
 
 
-def towns_of(client: carla.Client) -> frozenset[str]:
-    """The towns that a simulator has, the loaded one among them."""
-    return frozenset({_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())})
+def towns_of(simulator: Simulator) -> frozenset[str]:
+    """The towns that a simulator has, the loaded one and the one that BASU sent among them."""
+    client = simulator.client
+    names = {_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())}
+    return frozenset(names if simulator.uploaded is None else names | {simulator.uploaded})
 
 
-def world_of(client: carla.Client, town: str) -> carla.World:
+def world_of(simulator: Simulator, town: str) -> carla.World:
     """The world with ``town`` in it, loaded where another one is."""
+    client, name = simulator.client, simulator.map_name(town)
     world = client.get_world()
-    return world if _short(world.get_map().name) == town else client.load_world(town, reset_settings=False)
+    return world if _short(world.get_map().name) == name else client.load_world(name, reset_settings=False)
 
 
 def _short(map_name: str) -> str:

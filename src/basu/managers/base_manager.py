@@ -1,4 +1,4 @@
-"""The base of all managers: each holds one concern of a run through its three moments."""
+"""The base class of all managers, and the values that they share: the run, the ego vehicle, a frame, the driver."""
 
 from __future__ import annotations
 

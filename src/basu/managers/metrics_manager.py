@@ -1,4 +1,4 @@
-"""What is measured: every frame and event of the run goes into its record, and the scores come out of that."""
+"""Recording of a run for its metrics: frames and events go into the record, and scores so far come from it."""
 
 from __future__ import annotations
 

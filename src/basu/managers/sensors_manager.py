@@ -56,6 +56,11 @@ class SensorsManager(BaseManager):
         self.data: dict[str, tuple[int, Any]] = {}
 
     @property
+    def specs(self) -> tuple[SensorSpec, ...]:
+        """The set, complete after ``setup``."""
+        return self._specs
+
+    @property
     def types(self) -> dict[str, str]:
         """The blueprint id of each sensor, by the id it has in the set."""
         return {spec.id: spec.type_id for spec in self._specs}

@@ -2,36 +2,44 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from basu.errors import SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
+from basu.metrics.path_following import serves
+from basu.records.history.sumo import SumoRecord
 from basu.sumo.bridge import Bridge
 from basu.sumo.link import Link, connected, in_process
+from basu.sumo.load import Load
+from basu.sumo.outputs import Outputs
+from basu.sumo.passengers import Passengers
 from basu.sumo.random_trips import RandomTrips
-from basu.sumo.scenario import config_in, made_of, named_folder
+from basu.sumo.road_users import MIRROR
+from basu.sumo.scenario import DEFAULT_HOUR, RouteStop, Wanted, config_in, made_of, named_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
     from basu.managers.base_manager import Frame, Run, WorldChanges
+    from basu.managers.routes_manager import RoutesManager
     from basu.options import Sumo
 
 MISFIT_M = 4.0  # from the route to the middle of SUMO's lanes: a lane's width, which is the next lane's
 PLACES = 20  # of the route, that a network is tried on
+SUBLANE_M = "0.8"  # of SUMO's documentation, "Simulation/SublaneModel": several of them make a lane
+S_PER_HOUR = 3600.0
 
 
 class SumoManager(BaseManager):
-    """SUMO beside the world. ``count`` says how many of its vehicles were shown."""
+    """SUMO beside the world. ``count`` says how many of its vehicles and people there were."""
 
-    def __init__(self, sumo: Sumo, linden: Sequence[str]) -> None:
+    def __init__(self, sumo: Sumo, linden: Sequence[str], routes: RoutesManager) -> None:
         """Note what is to be run; ``linden`` is the command that makes a network of a map."""
-        self._sumo, self._linden = sumo, linden
+        self._sumo, self._linden, self._routes = sumo, linden, routes
         self._bridge: Bridge | None = None
-        self._trips: RandomTrips | None = None
-        self._changes: WorldChanges | None = None
-        self.count = 0
+        self._outputs = Outputs(None, "")
+        self.count = {"vehicles": 0, "walkers": 0}
 
     def setup(self, run: Run) -> None:
         """Start SUMO, check that its network is the town's, and show its first vehicles.
@@ -51,28 +59,55 @@ class SumoManager(BaseManager):
             raise
         self._bridge = bridge
         self._check(bridge, run)
+        self._step_s, self._stops = run.step_s, run.route.stops
         if self._sumo.is_random:
-            self._trips = RandomTrips(link, self._sumo.vehicles, run.seed)
-            self._trips.fill()
-        self._changes = run.changes
+            bridge.before_step = RandomTrips(link, self._sumo.vehicles, run.seed).fill
+        self._load, self._passengers = Load(link, run.step_s), Passengers(link, [stop.id for stop in self._stops])
+        self._changes: WorldChanges = run.changes
         bridge.step(run.world.get_snapshot())
 
     def _start(self, run: Run) -> Link:
         """A SUMO that has loaded the scenario of this run."""
         if self._sumo.port is not None:
             return connected("127.0.0.1", self._sumo.port, step_s=run.step_s)
-        return in_process(self._config(run), step_s=run.step_s, seed=run.seed)
+        config = self._config(run)
+        self._outputs = Outputs(run.folder if self._sumo.has_output else None, f"{MIRROR}{run.vehicle.id}")
+        more = [*self._outputs.options]
+        if self._sumo.is_sublane:
+            more += ["--lateral-resolution", SUBLANE_M]
+        if self._sumo.scale is not None and self._sumo.file is not None:
+            more += ["--scale", f"{self._sumo.scale:g}"]
+        return in_process(config, step_s=run.step_s, seed=run.seed, more=more)
 
     def _config(self, run: Run) -> Path:
-        """The .sumocfg that was named, or that of the agent's folder, or that of the town."""
+        """The .sumocfg that was named, or that of the agent's folder, or that of the town.
+
+        Raises:
+            UserError: there is none, or it has a demand of its own beside a wish for another one.
+        """
         if self._sumo.file is not None:
             return self._sumo.file
         folder = None
         if self._sumo.folder is not None:
             folder = named_folder(self._sumo.folder, run.route.town, self._sumo.beside)
         if folder is None:
-            folder = made_of(run.carla_map.to_opendrive(), run.route.town, run.seed, self._linden)
+            folder = made_of(run.carla_map.to_opendrive(), run.route.town, run.seed, self._linden, self._wanted(run))
+        elif self._sumo.hour is not None or self._sumo.scale is not None:
+            raise UserError(
+                f"the agent's SUMO folder {folder} has a demand of its own hour and scale; leave out --sumo-hour and "
+                "--sumo-scale, or write another folder with `linden map sumo`"
+            )
         return config_in(folder, is_random=self._sumo.is_random)
+
+    def _wanted(self, run: Run) -> Wanted:
+        """The demand of this run: that of the hour that it stands for, with the route's stops."""
+        timetable = run.route.timetable
+        hour = DEFAULT_HOUR if timetable is None else timetable.run_departure_s / S_PER_HOUR
+        return Wanted(
+            hour=hour if self._sumo.hour is None else self._sumo.hour,
+            scale=1.0 if self._sumo.scale is None else self._sumo.scale,
+            stops=tuple(RouteStop(stop.id, stop.name, stop.x_m, stop.y_m) for stop in run.route.stops),
+        )
 
     def _check(self, bridge: Bridge, run: Run) -> None:
         """Check that the network is that of the town.
@@ -96,20 +131,45 @@ class SumoManager(BaseManager):
         Raises:
             SimulatorError: SUMO failed or died.
         """
-        if self._bridge is not None:
-            if self._trips is not None:
-                self._trips.fill()
-            before = set(self._bridge.actor_ids.values())
-            self._bridge.step(frame.snapshot)
-            now = set(self._bridge.actor_ids.values())
-            if self._changes is not None:  # what SUMO moves and takes away is not the agent's doing
-                self._changes.placed |= now | before
-                self._changes.removed |= before - now
-                self._changes.lights += self._sumo.lights == "sumo"
+        bridge = self._bridge
+        if bridge is None:
+            return
+        t_s = frame.tick * self._step_s
+        self._passengers.tick(t_s, self._served(frame))
+        before = set(bridge.display.actors.values())
+        bridge.step(frame.snapshot)
+        self._load.tick(t_s + self._step_s, bridge.people.present)
+        now = set(bridge.display.actors.values())
+        self._changes.placed |= now | before  # what SUMO moves and takes away is not the agent's doing
+        self._changes.removed |= before - now
+        self._changes.lights += self._sumo.lights == "sumo"
+
+    def _served(self, frame: Frame) -> str | None:
+        """The stop that the vehicle under test serves in this frame."""
+        s_m, speed_mps = self._routes.progress.s_m, frame.ego.speed_mps
+        return next((stop.id for stop in self._stops if serves(stop.s_m - s_m, speed_mps)), None)
+
+    def record(self) -> SumoRecord | None:
+        """SUMO's part of the record until now; None where it has not begun."""
+        if self._bridge is None:
+            return None
+        counts = self._bridge.counts
+        return SumoRecord(
+            departed=counts.departed,
+            arrived=self._load.arrived,
+            delayed=self._load.delayed,
+            hidden=counts.waiting,
+            people=counts.people,
+            contacts=self._load.contacts,
+            seconds=tuple(self._load.seconds),
+            passengers=tuple(self._passengers.found),
+        )
 
     def close(self) -> None:
         """Take SUMO's vehicles away and end SUMO."""
         if self._bridge is not None:
-            self.count = self._bridge.counts.shown
+            counts = self._bridge.counts
+            self.count = {"vehicles": counts.departed, "walkers": counts.people}
             self._bridge.close()
-        self._bridge = self._trips = None
+            self._outputs.finish()
+        self._bridge = None

@@ -76,7 +76,9 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     started = datetime.now(timezone.utc)
     spec = _spec(session, agents, job)
     recording: list[RecordingManager] = []
-    watched = session.options.hud is not None or session.options.viewer or agents.person is not None
+    options = session.options
+    shown = options.hud is not None or options.viewer or options.ros2 or options.rosbag is not None
+    watched = shown or agents.person is not None
 
     def observers(live: Live) -> Sequence[BaseManager]:
         live = live._replace(agents=agents)
@@ -88,6 +90,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
             *recording,
             *onlookers_for(session.options, live),
             *_viewer(session.options, live),
+            *_ros(session, live),
         ]
 
     episode = Episode(
@@ -175,3 +178,19 @@ def _viewer(options: RunOptions, live: Live) -> list[BaseManager]:
     from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, which is an extra
 
     return [ViewerManager(live, print)]
+
+
+def _ros(session: Session, live: Live) -> list[BaseManager]:
+    """The managers that publish the run on ROS 2 and write it as a bag, where ``--ros2`` and ``--rosbag`` are given."""
+    options, say = session.options, (lambda _: None) if session.quiet else print
+    managers: list[BaseManager] = []
+    if options.ros2:
+        from basu.output.ros.publish_manager import PublishManager  # noqa: PLC0415 - DDS, which is an extra
+
+        managers.append(PublishManager(live, say))
+    if options.rosbag is not None:
+        from basu.output.ros.bag_manager import BagManager  # noqa: PLC0415 - rosbags, which is an extra
+        from basu.ros.types import Generation  # noqa: PLC0415 - likewise
+
+        managers.append(BagManager(live, Generation(options.rosbag), say))
+    return managers

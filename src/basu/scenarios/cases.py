@@ -1,4 +1,4 @@
-"""All scenarios and cases there are: BASU's own and a user's files, by type, group and id.
+"""The library of scenarios and cases: BASU's own and those of user files, found by type, group and id.
 
 Two files of one stem belong together: FILE.xml has the cases of the classes in FILE.py beside it.
 """

@@ -1,4 +1,4 @@
-"""Whether the conflict of a scenario came about, from the record alone.
+"""The check that the conflict of a scenario came about, from the record alone.
 
 A conflict partner is an actor or object of the scenario that the ego must avoid. The conflict came about where one of
 these holds after the phase "conflict" began:

@@ -1,4 +1,4 @@
-"""What there is to play as text and as JSON: by group, with parameters and places."""
+"""The list of scenarios and cases as text and as JSON: by group, with parameters and places."""
 
 from __future__ import annotations
 

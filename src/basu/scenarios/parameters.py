@@ -1,4 +1,4 @@
-"""What of a scenario may vary: numbers with units and ranges, and choices; declared by the class, set by a case."""
+"""Parameters of a scenario: numbers with units and ranges, and choices; declared by the class, set by a case."""
 
 from __future__ import annotations
 

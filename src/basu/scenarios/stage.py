@@ -1,4 +1,4 @@
-"""What a scenario's tree sees of a frame and may do in it: a ``Stage``, played live or offline (``basu.testing``).
+"""The interface between a scenario's tree and its world: bodies of a frame, commands; live or in ``basu.testing``.
 
 World coordinates are CARLA's: x east, y south, z up, yaw clockwise from above; m, s, rad.
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import re
 import xml.etree.ElementTree as ET  # the network is the user's own file
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,14 +17,18 @@ if TYPE_CHECKING:
 INSTALL = "SUMO is not installed; install it with: pip install 'linden[sumo]'"
 QUIET = ("--no-step-log", "--no-warnings", "--duration-log.disable")
 VERSION = (1, 20)  # the oldest with all functions used here
+NEEDED = f"at least {VERSION[0]}.{VERSION[1]} is needed"
 
 
 class Link:
-    """A SUMO that has loaded its network. ``api`` has the functions of libsumo and TraCI, by their domains."""
+    """A SUMO that has loaded its network.
+
+    ``api`` has the functions of libsumo and TraCI, by their domains. ``errors`` are what they raise.
+    """
 
     def __init__(self, api: Any, errors: tuple[type[Exception], ...], end: Callable[[], None]) -> None:  # noqa: ANN401
-        """Take over a started SUMO. ``errors`` are what its functions raise, ``end`` ends it."""
-        self.api, self._errors, self._end = api, errors, end
+        """Take over a started SUMO; ``end`` ends it."""
+        self.api, self.errors, self._end = api, errors, end
         self.offset_m = (0.0, 0.0)
         self.steps = 0
         try:
@@ -42,7 +47,7 @@ class Link:
         """
         try:
             yield
-        except self._errors as error:
+        except self.errors as error:
             raise SimulatorError(f"SUMO failed at {what} (step {self.steps}): {_text(error)}") from error
 
     def step(self) -> None:
@@ -58,7 +63,7 @@ class Link:
     def close(self) -> None:
         """End SUMO; it may be gone already."""
         end, self._end = self._end, lambda: None
-        with contextlib.suppress(*self._errors):
+        with contextlib.suppress(*self.errors):
             end()
 
 
@@ -87,6 +92,10 @@ def in_process(config: Path, *, step_s: float, seed: int, more: Sequence[str] = 
         with contextlib.suppress(*errors):
             libsumo.close()
         raise UserError(f"SUMO refuses {config}: {_reason(error, config)}") from None
+    version = str(libsumo.simulation.getVersion()[1])
+    if _is_too_old(version):
+        libsumo.close()
+        raise UserError(f"the libsumo that is installed is {version}; {NEEDED}: pip install --upgrade 'linden[sumo]'")
     return Link(libsumo, errors, libsumo.close)
 
 
@@ -109,10 +118,9 @@ def connected(host: str, port: int, *, step_s: float) -> Link:
         raise UserError(
             f"no SUMO answers at {host}:{port}: {_text(error)}; start one with --remote-port {port}"
         ) from None
-    said = tuple(int(part) for part in version.split()[-1].removeprefix("v").split("_")[0].split(".")[:2])
-    if said < VERSION:
+    if _is_too_old(version):
         api.close()
-        raise UserError(f"the SUMO at {host}:{port} is {version}; at least {VERSION[0]}.{VERSION[1]} is needed")
+        raise UserError(f"the SUMO at {host}:{port} is {version}; {NEEDED}")
     if abs(its_step_s - step_s) > 1e-6:
         api.close()
         raise UserError(
@@ -120,6 +128,12 @@ def connected(host: str, port: int, *, step_s: float) -> Link:
             f"start it with --step-length {step_s:g}"
         )
     return Link(api, errors, api.close)
+
+
+def _is_too_old(version: str) -> bool:
+    """Whether a version of SUMO, such as "SUMO v1_28_0+12" or "SUMO 1.19.0", lacks functions that are used here."""
+    numbers = re.findall(r"\d+", version.replace("_", "."))
+    return tuple(int(number) for number in numbers[:2]) < VERSION
 
 
 def _offset_m(network: Path) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Which of CARLA's blueprints shows a SUMO vehicle type, and which type a CARLA actor has in SUMO."""
+"""Which of CARLA's blueprints shows a SUMO vehicle type or person, and which type a CARLA actor has in SUMO."""
 
 from __future__ import annotations
 
@@ -31,6 +31,8 @@ LENGTHS_M = {
 }  # fmt: skip
 """The lengths of stand-ins: a client learns a blueprint's length once it is spawned."""
 
+WALKER_STRIDE = 7  # CARLA numbers its walkers by looks: consecutive ones are alike
+
 
 class Model(NamedTuple):
     """How a type is shown. ``is_exact`` where the blueprint bears the type's name."""
@@ -48,7 +50,10 @@ class Models:
             str(model.id): model.get_attribute("base_type").as_str() if model.has_attribute("base_type") else "car"
             for model in library.filter("vehicle.*")
         }
+        self._library = library
+        self._walkers = sorted(str(model.id) for model in library.filter("walker.pedestrian.*"))
         self._known: dict[str, Model] = {}
+        self._colours: dict[str, tuple[str, ...]] = {}
 
     def of(self, kind: str, vehicle_class: str, length_m: float) -> Model:
         """The blueprint of a type: of its name, else the stand-in of its class that is most alike in length.
@@ -59,6 +64,24 @@ class Models:
         if kind not in self._known:
             self._known[kind] = self._find(kind, vehicle_class, length_m)
         return self._known[kind]
+
+    def walker(self, number: int) -> str:
+        """The blueprint of the person of a number; neighbours in number look different.
+
+        Raises:
+            UserError: the simulator has no walkers.
+        """
+        if not self._walkers:
+            raise UserError("this simulator has no blueprints of walkers; take the persons out of SUMO's demand")
+        return self._walkers[number * WALKER_STRIDE % len(self._walkers)]
+
+    def colours_of(self, blueprint: str) -> tuple[str, ...]:
+        """The colours that are recommended for a blueprint; none for one without colours."""
+        if blueprint not in self._colours:
+            found = self._library.find(blueprint)
+            has_any = found.has_attribute("color")
+            self._colours[blueprint] = tuple(found.get_attribute("color").recommended_values) if has_any else ()
+        return self._colours[blueprint]
 
     def _find(self, kind: str, vehicle_class: str, length_m: float) -> Model:
         name = kind.split("@", maxsplit=1)[0]  # SUMO numbers the copies of a type

@@ -7,17 +7,40 @@ import os
 import shutil
 import subprocess
 import tempfile
+import xml.etree.ElementTree as ET  # it writes only
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+import basu
 from basu.errors import UserError
 from basu.files import places
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-DEMAND, RANDOM, NONE = "demand", "random", "none"
+DEFAULT_HOUR = 9.5  # of a demand for a route without a timetable
 LIMIT_S = 600.0  # a network of Linden takes 5 s
+FORMAT = 2  # of the folders that `linden map sumo` writes: an older one that is kept is made again
+
+
+class RouteStop(NamedTuple):
+    """A stop of the route, CARLA's frame."""
+
+    id: str
+    name: str
+    x_m: float
+    y_m: float
+
+
+class Wanted(NamedTuple):
+    """The demand that is to be made."""
+
+    hour: float = DEFAULT_HOUR
+    scale: float = 1.0
+    stops: tuple[RouteStop, ...] = ()
+
+
+ANY = Wanted()
 
 
 def named_folder(folder: str, town: str, beside: Path | None) -> Path | None:
@@ -54,7 +77,7 @@ def config_in(folder: Path, *, is_random: bool) -> Path:
     return chosen[0]
 
 
-def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str]) -> Path:
+def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str], wanted: Wanted = ANY) -> Path:
     """The folder with a network and a demand of a town's map, made by ``linden map sumo`` where it is not kept yet.
 
     ``linden`` is the command that starts it.
@@ -62,18 +85,22 @@ def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str]) -> Path
     Raises:
         UserError: it cannot be made.
     """
-    key = hashlib.sha256(f"{seed}\n{town}\n{opendrive}".encode()).hexdigest()[:16]
+    said = f"{basu.__version__} {FORMAT}\n{seed}\n{town}\n{wanted!r}\n{opendrive}"
+    key = hashlib.sha256(said.encode()).hexdigest()[:16]
     folder = _cache() / f"{town}-{key}"
     if folder.is_dir():
         return folder
     folder.parent.mkdir(parents=True, exist_ok=True)
     draft = Path(tempfile.mkdtemp(prefix=f".{town}-", dir=folder.parent))
     try:
-        map_file = draft / f"{town}.xodr"
+        map_file, made = draft / f"{town}.xodr", draft / "made"
         map_file.write_text(opendrive, encoding="utf-8")
-        _make(map_file, draft, seed, linden)
-        map_file.unlink()
-        draft.rename(folder)
+        options = ["--seed", str(seed), "--hour", f"{wanted.hour!r}", "--scale", f"{wanted.scale!r}"]
+        if wanted.stops:
+            (draft / "stops.xml").write_bytes(_stops_xml(wanted.stops))
+            options += ["--stops", str(draft / "stops.xml")]
+        _make(map_file, made, options, linden)
+        made.rename(folder)
     except OSError as error:
         if not folder.is_dir():  # another run has made it meanwhile
             raise UserError(
@@ -84,8 +111,17 @@ def made_of(opendrive: str, town: str, seed: int, linden: Sequence[str]) -> Path
     return folder
 
 
-def _make(map_file: Path, folder: Path, seed: int, linden: Sequence[str]) -> None:
-    command = [*linden, "map", "sumo", str(map_file), "-o", str(folder), "--seed", str(seed)]
+def _stops_xml(stops: Sequence[RouteStop]) -> bytes:
+    """The stops as a route file has them."""
+    root = ET.Element("routes")
+    for stop in stops:
+        ET.SubElement(root, "stop", {"id": stop.id, "name": stop.name, "x": f"{stop.x_m!r}", "y": f"{stop.y_m!r}"})
+    text: bytes = ET.tostring(root, encoding="utf-8")
+    return text
+
+
+def _make(map_file: Path, folder: Path, options: Sequence[str], linden: Sequence[str]) -> None:
+    command = [*linden, "map", "sumo", str(map_file), "-o", str(folder), *options]
     done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT_S, check=False)  # noqa: S603 - ours
     if not list(folder.glob("*.sumocfg")):  # an exit status of 1 may say that the network fits but for a lane
         said = (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from py_trees.common import Status
 
-from basu.scenarios.actions.puppet import gap_ahead
+from basu.scenarios.actions.path_follower import gap_ahead
 from basu.scenarios.paths import Path
 from basu.scenarios.scenario import compose, set_on
 from basu.scenarios.stage import EGO

@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,8 +17,51 @@ from linden.errors import UserError
 LANELET2, PROJECTOR = "lanelet2_map.osm", "map_projector_info.yaml"
 POINT_CLOUD, METADATA = "pointcloud_map.pcd", "pointcloud_map_metadata.yaml"
 AISAN, MANIFEST = "aisan", "manifest.json"
-NAMES = frozenset({LANELET2, PROJECTOR, POINT_CLOUD, METADATA, AISAN, MANIFEST})
-"""What the folder holds: names of map_loader's default settings."""
+_ROS1 = "maps"
+
+
+class Layout(NamedTuple):
+    """Where the files of a town lie in a folder; None for a file that the reader of the folder does not know."""
+
+    lanelet2: str
+    point_cloud: str
+    aisan: str
+    projector: str | None
+    metadata: str | None
+
+    def is_ours(self, name: str) -> bool:
+        """Return whether the folder itself holds a file or folder of that name."""
+        paths = [self.lanelet2, self.point_cloud, self.aisan, self.projector, self.metadata, MANIFEST]
+        return name in {path.split("/")[0] for path in paths if path is not None}
+
+    def refuse_other_towns(self, folder: Path) -> None:
+        """Check that a folder holds no files below its own folders that this town's would take the place of.
+
+        Raises:
+            UserError: it holds another town; says which file.
+        """
+        known = {self.lanelet2, self.point_cloud, self.projector, self.metadata, MANIFEST}
+        for path in sorted(folder.rglob("*")):
+            name = path.relative_to(folder).as_posix()
+            if "/" in name and path.is_file() and name not in known and not name.startswith(f"{self.aisan}/"):
+                raise UserError(f"{folder} holds {name}, which is no part of this town; name a folder of its own")
+
+
+UNIVERSE = Layout(LANELET2, POINT_CLOUD, AISAN, PROJECTOR, METADATA)
+"""Names of map_loader's default settings."""
+
+
+def ros1_layout(town: str) -> Layout:
+    """Return the places below CARLA_AUTOWARE_CONTENTS that the launch files of carla-autoware read for a town.
+
+    Source: carla-simulator/carla-autoware, carla_autoware_agent's launch files; ``asian`` is its spelling.
+    """
+    vectors = f"{_ROS1}/vector_maps"
+    return Layout(
+        f"{vectors}/lanelet2/{town}.osm", f"{_ROS1}/point_cloud_maps/{town}.pcd", f"{vectors}/asian/{town}", None, None
+    )
+
+
 _CELL_M = 20.0
 """Corners of the cloud's one cell lie at multiples of this, as Autoware's own divider puts them."""
 

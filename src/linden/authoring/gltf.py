@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from linden.scenery.mesh import Material, Mesh
 
 _MAGIC, _VERSION, _JSON, _BIN = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
-_FLOAT, _UNSIGNED_INT, _UNSIGNED_SHORT = 5126, 5125, 5123
-_ARRAY, _ELEMENTS = 34962, 34963
+FLOAT, UNSIGNED_INT, _UNSIGNED_SHORT = 5126, 5125, 5123
+ARRAY, ELEMENTS = 34962, 34963
 _ROUGHNESS = {Material.GLASS: 0.1, Material.CAR_PAINT: 0.3, Material.METAL: 0.4, Material.LAMP: 0.5}
 _ROUGH = 0.9
 _AXES = [0, 2, 1]  # of ours that are x, y, z of the file
@@ -24,7 +24,7 @@ _METALLIC = {Material.METAL: 0.8}
 
 def glb(mesh: Mesh, name: str) -> bytes:
     """Return the bytes of a .glb file of one mesh, which has a triangle at least."""
-    buffer = _Buffer()
+    buffer = Buffer()
     origin = mesh.vertices_m.astype(np.float64).mean(axis=0).round()
     kinds = [Material(kind) for kind in np.unique(mesh.faces["material"]).tolist()]
     primitives = [_primitive(mesh, kind, number, origin, buffer) for number, kind in enumerate(kinds)]
@@ -34,15 +34,15 @@ def glb(mesh: Mesh, name: str) -> bytes:
         "scenes": [{"nodes": [0], "name": name}],
         "nodes": [{"mesh": 0, "name": name, "translation": [float(origin[axis]) for axis in _AXES]}],
         "meshes": [{"primitives": primitives, "name": name}],
-        "materials": [_material(kind) for kind in kinds],
+        "materials": [material_of(kind) for kind in kinds],
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": buffer.size}],
     }
-    return _file(document, b"".join(buffer.parts))
+    return file_of(document, b"".join(buffer.parts))
 
 
-class _Buffer:
+class Buffer:
     """What goes into the binary part, and how the document describes it."""
 
     def __init__(self) -> None:
@@ -70,7 +70,7 @@ class _Buffer:
         return len(self.accessors) - 1
 
 
-def _primitive(mesh: Mesh, kind: Material, number: int, origin: NDArray[np.float64], buffer: _Buffer) -> dict[str, Any]:
+def _primitive(mesh: Mesh, kind: Material, number: int, origin: NDArray[np.float64], buffer: Buffer) -> dict[str, Any]:
     """Return the part of the mesh that is made of one material."""
     rows = np.flatnonzero(mesh.faces["material"] == kind)
     used, numbers = np.unique(mesh.triangles[rows], return_inverse=True)
@@ -83,16 +83,17 @@ def _primitive(mesh: Mesh, kind: Material, number: int, origin: NDArray[np.float
     bounds = {"min": places.min(axis=0).tolist(), "max": places.max(axis=0).tolist()}
     return {
         "attributes": {
-            "POSITION": buffer.add(places, _FLOAT, "VEC3", _ARRAY, **bounds),
-            "COLOR_0": buffer.add(coded, _UNSIGNED_SHORT, "VEC4", _ARRAY, normalized=True),
+            "POSITION": buffer.add(places, FLOAT, "VEC3", ARRAY, **bounds),
+            "COLOR_0": buffer.add(coded, _UNSIGNED_SHORT, "VEC4", ARRAY, normalized=True),
         },
         # two axes have changed places, so what was wound one way is wound the other
-        "indices": buffer.add(corners[:, [0, 2, 1]].astype(np.uint32).reshape(-1), _UNSIGNED_INT, "SCALAR", _ELEMENTS),
+        "indices": buffer.add(corners[:, [0, 2, 1]].astype(np.uint32).reshape(-1), UNSIGNED_INT, "SCALAR", ELEMENTS),
         "material": number,
     }
 
 
-def _material(kind: Material) -> dict[str, Any]:
+def material_of(kind: Material) -> dict[str, Any]:
+    """Return the document's entry for a material."""
     return {
         "name": kind.name.lower(),
         "doubleSided": True,
@@ -103,7 +104,7 @@ def _material(kind: Material) -> dict[str, Any]:
     }
 
 
-def _file(document: dict[str, Any], binary: bytes) -> bytes:
+def file_of(document: dict[str, Any], binary: bytes) -> bytes:
     """Return header, document and binary part, each padded to four bytes (section 4.4 of the specification)."""
     text = json.dumps(document, separators=(",", ":")).encode()
     text += b" " * (-len(text) % 4)

@@ -32,6 +32,21 @@ def write_file(path: Path, data: bytes) -> None:
             part.unlink(missing_ok=True)
 
 
+def write_output(path: Path, data: bytes) -> None:
+    """Write what a command's ``-o`` names: a file as :func:`write_file` does, or a device such as /dev/stdout.
+
+    Raises:
+        UserError: it cannot be written.
+    """
+    if not path.exists() or path.is_file() or path.is_dir():
+        write_file(path, data)
+        return
+    try:
+        path.write_bytes(data)
+    except OSError as error:
+        raise unwritable_file(path, error) from None
+
+
 def unwritable_file(file: Path, error: OSError) -> UserError:
     """Return the error for a file that cannot be written."""
     return UserError(

@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.links import is_forward, lane_links
@@ -33,6 +34,9 @@ class Counts(NamedTuple):
     road_km: float
     driving_lane_km: float
     sidewalk_km: float
+    lowest_m: float
+    highest_m: float
+    steepest_percent: float
 
 
 def _is_paired_with_its_end(tables: Tables, row: int) -> bool:
@@ -73,4 +77,23 @@ def count(opendrive: OpenDrive) -> Counts:
         road_km=float(sum(road.length_m for road in opendrive.roads if not road.is_in_junction)) / 1000.0,
         driving_lane_km=float(length_m[driving].sum()) / 1000.0,
         sidewalk_km=float(length_m[kinds == int(LaneType.SIDEWALK)].sum()) / 1000.0,
+        **_profile(opendrive),
     )
+
+
+def _profile(opendrive: OpenDrive) -> dict[str, float]:
+    """Return the least and greatest height of the roads' reference lines, and the steepest grade, every metre."""
+    heights: list[NDArray[np.float64]] = []
+    grades = [0.0]
+    for road in (road for road in opendrive.roads if road.elevations):
+        begins = [cubic.start_m for cubic in road.elevations]
+        for cubic, end_m in zip(road.elevations, [*begins[1:], road.length_m], strict=True):
+            along = np.linspace(0.0, max(end_m - cubic.start_m, 0.0), max(2, int(end_m - cubic.start_m) + 2))
+            heights.append(cubic.a + along * (cubic.b + along * (cubic.c + along * cubic.d)))
+            grades.append(float(np.abs(cubic.b + along * (2.0 * cubic.c + 3.0 * along * cubic.d)).max()))
+    known = np.concatenate(heights) if heights else np.zeros(1)
+    return {
+        "lowest_m": float(known.min()),
+        "highest_m": float(known.max()),
+        "steepest_percent": 100.0 * float(max(grades)),
+    }

@@ -1,19 +1,12 @@
 """``linden map``: build OpenDRIVE from streets, check, draw and count it, export what is seen, measure it by lidar."""
 
 import argparse
-import difflib
-import json
-from collections.abc import Callable, Collection
-from importlib import resources
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-from linden.authoring.output import unwritable_file
-from linden.cli import map_convert, map_package, map_pointcloud, map_sumo
-from linden.cli.map_source import bytes_of, opendrive_of, world_map_of
-from linden.errors import UserError
-
-_HOME_STREETS = "linden.geojson"
+from linden.authoring.output import write_output
+from linden.cli import map_build, map_convert, map_package, map_pointcloud, map_sumo
+from linden.cli.map_source import opendrive_of, world_map_of
 
 
 def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -21,17 +14,7 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     maps = commands.add_parser("map", help="build, check, show and count maps", description=__doc__)
     actions = maps.add_subparsers(title="commands", required=True, metavar="COMMAND")
 
-    build_parser = _add(actions, "build", build, "turn streets (GeoJSON) into OpenDRIVE")
-    build_parser.add_argument("streets", nargs="?", type=Path, help="GeoJSON file (default: the streets of Linden)")
-    build_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .xodr file")
-    build_parser.add_argument(
-        "--route",
-        action="append",
-        default=[],
-        metavar="NAME=FILE",
-        help="write the route feature NAME of the streets as a route file, for `basu run --routes`; may be given "
-        "several times",
-    )
+    map_build.add_arguments(_add(actions, "build", map_build.run, map_build.HELP))
 
     check_parser = _add(actions, "check", check, "report what a careful reader finds wrong; exit 1 if anything is")
     _add_file(check_parser)
@@ -65,46 +48,6 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     map_sumo.add_arguments(_add(actions, "sumo", map_sumo.run, map_sumo.HELP))
 
 
-def build(arguments: argparse.Namespace) -> int:
-    """Write the OpenDRIVE map of a file of streets, and the route files that are wanted."""
-    try:
-        from linden.authoring.streets.build import assembled  # noqa: PLC0415 - an optional part, and slow to load
-        from linden.authoring.streets.routes import xml  # noqa: PLC0415 - likewise
-        from linden.authoring.streets.street_facts import read  # noqa: PLC0415 - likewise
-        from linden.authoring.streets.writing import text as written  # noqa: PLC0415 - likewise
-    except ModuleNotFoundError as error:
-        if (error.name or "").startswith("linden"):
-            raise
-        raise UserError(
-            f"building maps needs the package {error.name}; install it with: pip install 'linden[maps]'"
-        ) from None
-    built = assembled(read(_streets(arguments.streets)))
-    wanted = [_route_and_file(given, built.facts.routes) for given in arguments.route]
-    routes = [(file, xml(built, built.facts.routes[name], number)) for number, (name, file) in enumerate(wanted)]
-    text = written(built.document)
-    _write(arguments.output, text)
-    _say(f"{arguments.output}: {len(text):,} bytes")
-    for file, route in routes:
-        _write(file, route)
-        _say(f"{file}: {len(route):,} bytes")
-    unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]
-    if unwritten and arguments.streets is not None:
-        _say(f"not written: {', '.join(unwritten)}; `--route {unwritten[0]}=FILE.xml` writes a route feature")
-    return 0
-
-
-def _route_and_file(given: str, known: Collection[str]) -> tuple[str, Path]:
-    """The route feature and the file of ``NAME=FILE``."""
-    name, sign, file = given.partition("=")
-    if not (name and sign and file):
-        raise UserError(f"--route {given}: give the name of a route feature and a file, such as --route loop=loop.xml")
-    if name not in known:
-        close = difflib.get_close_matches(name, known, 1)
-        there = f"it has {', '.join(known)}" if known else "it has none"
-        raise UserError(f"the streets have no route '{name}'; {f'did you mean {close[0]!r}?' if close else there}")
-    return name, Path(file)
-
-
 def check(arguments: argparse.Namespace) -> int:
     """Print the findings, one a line, and a summary; return 1 if there are any."""
     if Path(arguments.file).suffix == ".osm":
@@ -131,7 +74,7 @@ def show(arguments: argparse.Namespace) -> int:
 
     vector_map = map_convert.drawing(arguments)
     drawn = svg(opendrive_of(arguments.file)) if vector_map is None else vector_map
-    _write(arguments.output, drawn.encode())
+    write_output(arguments.output, drawn.encode())
     _say(f"{arguments.output}: drawn")
     return 0
 
@@ -145,7 +88,7 @@ def export(arguments: argparse.Namespace) -> int:
 
     world_map = world_map_of(arguments.file)
     mesh = standing(parse(world_map.text), world_map, scenery_of(world_map).scene)
-    _write(arguments.output, glb(mesh, world_map.name))
+    write_output(arguments.output, glb(mesh, world_map.name))
     _say(f"{arguments.output}: {len(mesh.triangles):,} triangles, {arguments.output.stat().st_size:,} bytes")
     return 0
 
@@ -172,24 +115,6 @@ def _add(
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", help="an OpenDRIVE file, or the name of a built-in map such as Linden")
-
-
-def _streets(path: Path | None) -> dict[str, Any]:
-    data = (resources.files("linden") / "data" / _HOME_STREETS).read_bytes() if path is None else bytes_of(path)
-    try:
-        streets = json.loads(data)
-    except ValueError as error:
-        raise UserError(f"{path} is no GeoJSON: {error}") from None
-    if not isinstance(streets, dict):
-        raise UserError(f"{path} is no GeoJSON: it should be an object of type FeatureCollection")
-    return streets
-
-
-def _write(path: Path, data: bytes) -> None:
-    try:
-        path.write_bytes(data)  # not by way of a neighbour: -o may name a device such as /dev/stdout
-    except OSError as error:
-        raise unwritable_file(path, error) from None
 
 
 def _number(count: int, noun: str) -> str:

@@ -18,7 +18,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scale", type=float, default=1.0, help="the demand against the usual one (default: 1)")
     parser.add_argument("--seed", type=int, default=0, help="of the demand and of SUMO's drivers (default: 0)")
     parser.add_argument("--stops", type=Path, metavar="FILE", help="a route file; its stops become bus stops")
-    parser.add_argument("--no-people", action="store_true", help="without crossings and walking areas")
+    parser.add_argument(
+        "--places", type=Path, metavar="FILE", help="GeoJSON points with a kind (school, transit) (default: Linden's)"
+    )
+    parser.add_argument("--no-people", action="store_true", help="without people, crossings and walking areas")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -32,7 +35,13 @@ def run(arguments: argparse.Namespace) -> int:
     demand = Demand(arguments.hour, arguments.duration, arguments.scale, arguments.seed)
     name = Path(arguments.file).name.removesuffix(".xodr")
     written = write_folder(
-        content_of(arguments.file), name, arguments.output, demand, stops, people=not arguments.no_people
+        content_of(arguments.file),
+        name,
+        arguments.output,
+        demand,
+        stops,
+        people=not arguments.no_people,
+        places=arguments.places,
     )
     compared = compare(written.converted)
     _say(f"{'':38} {'map':>8} {'network':>8}")
@@ -41,7 +50,10 @@ def run(arguments: argparse.Namespace) -> int:
     lost = [f"stop {stop.id} ({stop.name}): no lane for cars is near" for stop in written.lost_stops]
     for sentence in (*compared.misfits, *lost):
         _say(f"does not fit: {sentence}")
-    _say(f"{written.config}: {written.trips} trips; {len(compared.misfits) + len(lost)} misfits")
+    _say(
+        f"{written.config}: {written.trips} trips, {written.walks} walks, {written.riders} riders; "
+        f"{len(compared.misfits) + len(lost)} misfits"
+    )
     return 1 if compared.misfits or lost else 0
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from linden.maps.facts import MapFacts
 from linden.maps.ground import Ground
 from linden.maps.opendrive.roadside import Controller
-from linden.maps.records import GIVE_WAY, LANES, LOTS, PlacedSignal
+from linden.maps.records import GIVE_WAY, LANES, LOTS, PlacedSignal, Standing
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 
 Arrays = Mapping[str, NDArray[Any]]
@@ -26,6 +26,7 @@ _RECORDS = {
     "signals": tuple[PlacedSignal, ...],
     "controllers": tuple[Controller, ...],
     "geo_origin_deg": tuple[float, float],
+    "standing": tuple[Standing, ...],
 }
 """Fields of the facts that are kept as JSON."""
 

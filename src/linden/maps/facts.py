@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from linden.maps.ground import Ground
 from linden.maps.opendrive.roadside import Controller
-from linden.maps.records import PlacedSignal
+from linden.maps.records import PlacedSignal, Standing
 from linden.protocol.values.space import Transform
 
 
@@ -25,6 +25,7 @@ class MapFacts:
         controllers: what switches lights together, in the order of the map.
         geo_origin_deg: latitude and longitude of the map's origin.
         lots: (N,) of ``map_lots.LOTS``: where beside the streets something may stand.
+        standing: the buildings and the furniture that the map itself has.
     """
 
     ground: Ground
@@ -36,6 +37,7 @@ class MapFacts:
     controllers: tuple[Controller, ...]
     geo_origin_deg: tuple[float, float]
     lots: NDArray[np.void]
+    standing: tuple[Standing, ...]
 
 
 def derive(text: str) -> MapFacts:
@@ -51,6 +53,7 @@ def derive(text: str) -> MapFacts:
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
     from linden.maps.opendrive.signals import place  # noqa: PLC0415 - see above
     from linden.maps.opendrive.spawn_points import spawn_points  # noqa: PLC0415 - see above
+    from linden.maps.standing import standing_on  # noqa: PLC0415 - see above
 
     opendrive = parse(text)
     mesh = road_mesh(opendrive)
@@ -66,4 +69,5 @@ def derive(text: str) -> MapFacts:
         controllers=opendrive.controllers,
         geo_origin_deg=opendrive.geo_origin,
         lots=cut_lots(opendrive, ground),
+        standing=standing_on(opendrive, ground),
     )

@@ -1,4 +1,4 @@
-"""Records derived from a map: lanes of the road mesh, placed signals, lots. Values only.
+"""Records derived from a map: lanes of the road mesh, placed signals, lots, things beside roads. Values only.
 
 A module of its own, so that readers of the records need not import the code that derives them. Lots are the pieces of
 land along a street on which houses may stand (:mod:`linden.maps.lot_cutting`).
@@ -27,6 +27,33 @@ class AffectedLane(NamedTuple):
     road_id: int
     lane_id: int
     s_m: float
+
+
+class StandingBox(NamedTuple):
+    """An upright box in CARLA's frame: its middle and half its sizes in m, and its yaw."""
+
+    x_m: float
+    y_m: float
+    z_m: float
+    half_x_m: float
+    half_y_m: float
+    half_z_m: float
+    yaw_rad: float
+
+
+class Standing(NamedTuple):
+    """A thing that the map says stands beside a road: a building (named, where the map names it), or furniture.
+
+    ``kind`` is building, bench, bin or mailbox. The place is that of its foot, in CARLA's frame.
+    """
+
+    kind: str
+    name: str
+    x_m: float
+    y_m: float
+    z_m: float
+    yaw_rad: float
+    boxes: tuple[StandingBox, ...]
 
 
 class PlacedSignal(NamedTuple):

@@ -11,6 +11,7 @@ from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
 from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes
+from linden.scenery.roadside.buildings import buildings, furniture
 from linden.scenery.roadside.houses import houses, plans
 from linden.scenery.roadside.parked_cars import parked_cars
 from linden.scenery.roadside.signal_posts import signs, street_lamps, traffic_lights
@@ -93,6 +94,8 @@ class _Of:
         self.frames = Frames(self.things["base"], self.things["yaw_rad"])
         self._first = np.searchsorted(scene.boxes["thing"], rows).astype(np.int32)
         self._boxes = scene.boxes
+        self.every_box = np.flatnonzero(np.isin(scene.boxes["thing"], rows)).astype(np.int32)
+        self.boxes = scene.boxes[self.every_box]
         kind = int(self.things["kind"][0])
         self.draw = np.random.default_rng([_SEED, kind]).random((len(rows), 8))
 
@@ -165,6 +168,23 @@ def _shelters(of: _Of) -> Mesh:
     return shelters(of.frames, of.box(0))
 
 
+def _buildings(of: _Of) -> Mesh:
+    feet = of.boxes["centre"] - of.boxes["half"] * (0.0, 0.0, 1.0)
+    return buildings(Frames(feet, of.boxes["yaw_rad"]), of.boxes["half"], of.boxes["thing"], of.every_box)
+
+
+def _benches(of: _Of) -> Mesh:
+    return furniture("bench", of.frames, of.half_m(0), of.box(0))
+
+
+def _bins(of: _Of) -> Mesh:
+    return furniture("bin", of.frames, of.half_m(0), of.box(0))
+
+
+def _mailboxes(of: _Of) -> Mesh:
+    return furniture("mailbox", of.frames, of.half_m(0), of.box(0))
+
+
 _MAKERS = {
     Kind.TRAFFIC_LIGHT: _lights,
     Kind.TRAFFIC_SIGN: _signs,
@@ -178,4 +198,8 @@ _MAKERS = {
     Kind.PARKED_CAR: _parked,
     Kind.UTILITY_POLE: _poles,
     Kind.SHELTER: _shelters,
+    Kind.BUILDING: _buildings,
+    Kind.BENCH: _benches,
+    Kind.BIN: _bins,
+    Kind.MAILBOX: _mailboxes,
 }

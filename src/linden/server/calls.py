@@ -8,9 +8,9 @@ from collections.abc import Callable
 from linden.errors import ProtocolError
 from linden.protocol.wire.rpc import Call
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID
-from linden.server.cue import QUESTION, TICK, Cue, Load
-from linden.server.driven_vehicles import BATCH, DESTROY, Driven
-from linden.server.load_answers import GATHERING_S, OF_A_LOAD, Handover, Phase
+from linden.server.cue import QUESTION, TICK, Cue
+from linden.server.driven_vehicles import BATCH, DESTROY, DrivenVehicles
+from linden.server.load_answers import GATHERING_S, OF_A_LOAD, LoadAnswers, Phase
 from linden.server.peers import RpcPeer
 from linden.server.rpc import registry
 from linden.server.rpc.context import Context
@@ -85,11 +85,10 @@ class Calls:
         self.joined_s = -math.inf
         self.expected = Expected()
         self._cues: dict[RpcPeer, Cue] = {}  # of clients with a Traffic Manager
-        self._load = Load()
-        self._driven: dict[RpcPeer, Driven] = {}  # of those too
-        self._shown_frame = context.simulation.frame
+        self._driven: dict[RpcPeer, DrivenVehicles] = {}  # of those too
+        self._shown_frame = context.world.frame
         self._working: dict[RpcPeer, SuspendedCall] = {}  # clients with work in the background
-        self._handovers: dict[RpcPeer, Handover] = {}  # of loads by clients with a Traffic Manager
+        self._load_answers: dict[RpcPeer, LoadAnswers] = {}  # of loads by clients with a Traffic Manager
         self._load_until_s = math.inf  # when a pending load begins in any case
         self._held: dict[RpcPeer, tuple[bytes, float]] = {}  # answers that wait for the scene, and until when
 
@@ -101,7 +100,7 @@ class Calls:
         self._driven.pop(peer, None)
         self._working.pop(peer, None)  # its result is made and dropped
         self._held.pop(peer, None)
-        self._handovers.pop(peer, None)
+        self._load_answers.pop(peer, None)
         self.expected.forget(peer.number)
 
     def carry_out(self, peer: RpcPeer) -> None:
@@ -157,8 +156,7 @@ class Calls:
         elif (answer := self._answer(peer)) is not None:
             if is_question:
                 peer.outgoing.send(answer)
-                now_s = self._clock()
-                cue.answered(now_s, self._load.settling_s(now_s))
+                cue.answered(self._clock())
             else:
                 answers.append(answer)
 
@@ -174,16 +172,16 @@ class Calls:
         """
         if peer in self._held:
             return self._done(peer, self._held.pop(peer)[0])
-        if peer in self._handovers and (load := self._hand_over(peer)) is not None:
+        if peer in self._load_answers and (load := self._hand_over(peer)) is not None:
             return load
         self._context.caller = peer.number
-        frame, call = self._context.simulation.frame, peer.calls[0]
+        frame, call = self._context.world.frame, peer.calls[0]
         if peer in self._working:
             answer = registry.go_on(self._context, self._working.pop(peer))
         else:
             self._prepare(peer, call)
             answer = registry.dispatch(self._context, call)
-        if self._context.simulation.frame != frame:
+        if self._context.world.frame != frame:
             self.last_ticker = peer
         self.publish()
         if isinstance(answer, SuspendedCall):
@@ -198,7 +196,7 @@ class Calls:
     def _with_driven(self, peer: RpcPeer, call: Call, answer: bytes) -> bytes | None:
         """Return what to send for a call of a client that runs Traffic Managers; see ``server.driven_vehicles``."""
         if call.method == BATCH and call.args:
-            ready = self._driven.setdefault(peer, Driven()).batch(call.args[0])
+            ready = self._driven.setdefault(peer, DrivenVehicles()).batch(call.args[0])
             return b"".join((answer, *ready))
         if call.method != DESTROY or peer not in self._driven or call.is_async or not call.args:
             return answer
@@ -227,7 +225,7 @@ class Calls:
         """
         if not self._driven:
             return 0.0
-        actors = self._context.simulation.episode.actors
+        actors = self._context.world.episode.actors
         return max(one.frame_wait_s(now_s, actors.__contains__) for one in self._driven.values())
 
     def _keep(self, peer: RpcPeer, call: Call, answer: bytes) -> bool:
@@ -236,7 +234,7 @@ class Calls:
         if call.method == TICK and self._keeps_order(peer):
             self._cues[peer].ticked(answer, now_s)
         elif call.method == LOAD and (threads := self._traffic_managers(peer)):
-            self._handovers[peer] = Handover(answer, threads, now_s + GATHERING_S)
+            self._load_answers[peer] = LoadAnswers(answer, threads, now_s + GATHERING_S)
         elif self._leads_to_a_picture(peer, call) and self._context.builds_the_scene():
             self._held[peer] = answer, now_s + SCENE_S
         else:
@@ -284,11 +282,11 @@ class Calls:
 
     def _hand_over(self, peer: RpcPeer) -> bytes | None:
         """Return the answer to a load that is due, None where the client's next call has to be carried out."""
-        handover = self._handovers[peer]
-        if handover.phase is Phase.GATHERING:
-            return self._done(peer, handover.answered(self._clock()))
-        if handover.phase is Phase.SETTLING or not handover.bring_forward(peer, self._clock()):
-            del self._handovers[peer]
+        answers = self._load_answers[peer]
+        if answers.phase is Phase.GATHERING:
+            return self._done(peer, answers.answered(self._clock()))
+        if answers.phase is Phase.SETTLING or not answers.bring_forward(peer, self._clock()):
+            del self._load_answers[peer]
         return None
 
     def _traffic_managers(self, peer: RpcPeer) -> int:
@@ -296,14 +294,14 @@ class Calls:
 
     def hears(self, peer: RpcPeer) -> bool:
         """Return whether to read on from a client although calls of its wait, since what they wait for is a call."""
-        waits = peer in self._handovers or self._waiting_tick(peer) is not None
+        waits = peer in self._load_answers or self._waiting_tick(peer) is not None
         return waits and len(peer.calls) < CALLS_PER_TURN
 
     def _is_stream(self, stream_id: object) -> bool:
         """Whether that is the number of a stream on which something will come."""
         if type(stream_id) is not int:
             return False
-        return stream_id == WORLD_OBSERVER_ID or self._context.simulation.has_stream(stream_id)
+        return stream_id == WORLD_OBSERVER_ID or self._context.world.has_stream(stream_id)
 
     def _done(self, peer: RpcPeer, answer: bytes) -> bytes:
         peer.calls.popleft()
@@ -315,8 +313,8 @@ class Calls:
             return not self._working[peer].made.done()
         if peer in self._held:
             return self._context.builds_the_scene() and self._clock() < self._held[peer][1]
-        if peer in self._handovers:
-            return self._handovers[peer].waits(peer, self._clock())
+        if peer in self._load_answers:
+            return self._load_answers[peer].waits(peer, self._clock())
         if (cue := self._waiting_tick(peer)) is not None:
             return cue.waits(peer, self._clock())
         return (
@@ -336,7 +334,7 @@ class Calls:
     def held_s(self, now_s: float) -> float | None:
         """Return how long the first of the answers that wait for the scene or a load waits at most; None for none."""
         until_s = [until_s for _, until_s in self._held.values()]
-        until_s += [handover.until_s for handover in self._handovers.values()]
+        until_s += [answers.until_s for answers in self._load_answers.values()]
         until_s += [one.until_s for driven in self._driven.values() for one in driven.waiting]
         until_s += [cue.deadline_s for cue in self._cues.values() if cue.tick]
         return max(0.0, min(until_s) - now_s) if until_s else None
@@ -357,12 +355,12 @@ class Calls:
 
     def is_synchronous(self) -> bool:
         """Whether frames are made by calls alone."""
-        return self._context.simulation.settings.synchronous_mode
+        return self._context.world.settings.synchronous_mode
 
     def publish(self) -> None:
         """Send what the last call or frame left in the outbox."""
-        if self._context.simulation.frame != self._shown_frame:
-            self._shown_frame = self._context.simulation.frame
+        if self._context.world.frame != self._shown_frame:
+            self._shown_frame = self._context.world.frame
             for driven in self._driven.values():
                 driven.shown()
         if not self._context.outbox:

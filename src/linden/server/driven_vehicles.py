@@ -1,4 +1,4 @@
-"""The cars that a client's Traffic Managers drive, and what waits until their thread lets go of a destroyed one.
+"""Vehicles that a client's Traffic Managers drive; answers to `destroy_actor` that wait until their thread lets go.
 
 When ``destroy_actor`` is answered, LibCarla's ``Simulator::DestroyActor`` cuts the actor off from its episode. A
 Traffic Manager holds the same object, and its thread ends the process where it still works on it: "trying to operate on
@@ -31,7 +31,7 @@ _OF_PROGRAMS = {COMMANDS.index(SpawnActor), COMMANDS.index(DestroyActor)}
 """Commands that no batch of a Traffic Manager has."""
 
 
-class Waiting(NamedTuple):
+class HeldAnswer(NamedTuple):
     """The answer to a destruction that has to wait."""
 
     actor_id: int
@@ -42,14 +42,14 @@ class Waiting(NamedTuple):
 
 
 @dataclass(slots=True)
-class Driven:
+class DrivenVehicles:
     """What one client's Traffic Managers are known to drive. All times in s of one steady clock."""
 
     actor_ids: frozenset[int] = frozenset()
     """Those in the last batch."""
     steps: int = 0
     """Batches until the thread is idle: a step on the last frame, and one before it that may have begun earlier."""
-    waiting: list[Waiting] = field(default_factory=list)
+    waiting: list[HeldAnswer] = field(default_factory=list)
     """In the order in which the cars were destroyed."""
     _until_s: float | None = None  # how long the next frame waits at most
 
@@ -76,7 +76,7 @@ class Driven:
             return False
         is_last = self.actor_ids <= {actor_id, *(one.actor_id for one in self.waiting)}
         patience_s = PATIENCE_S if is_last else LONG_PATIENCE_S
-        self.waiting.append(Waiting(actor_id, answer, now_s + patience_s, frames_come))
+        self.waiting.append(HeldAnswer(actor_id, answer, now_s + patience_s, frames_come))
         return True
 
     def frame_wait_s(self, now_s: float, is_there: Callable[[int], bool]) -> float:
@@ -94,7 +94,7 @@ class Driven:
         """Return the answers that have waited long enough."""
         return self._release([one for one in self.waiting if now_s >= one.until_s])
 
-    def _release(self, ready: list[Waiting]) -> list[bytes]:
+    def _release(self, ready: list[HeldAnswer]) -> list[bytes]:
         for one in ready:
             self.waiting.remove(one)
         return [one.answer for one in ready]

@@ -32,7 +32,7 @@ class Phase(enum.Enum):
 
 
 @dataclass(slots=True)
-class Handover:
+class LoadAnswers:
     """The load of one client. All times in s of one steady clock."""
 
     answer: bytes

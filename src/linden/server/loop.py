@@ -57,7 +57,7 @@ class Server:
         self._clock = time.monotonic
         self._pace = FrameClock(self._clock())
         self.context = Context(
-            simulation=simulation,
+            world=simulation,
             maps=maps,
             frames=frames,
             streams=StreamTable(port_of(ports.streaming)),
@@ -143,7 +143,7 @@ class Server:
             self._acceptor.wait_s(now_s),
             self._stall_log.untold_s(now_s),
         ]
-        settings = self.context.simulation.settings
+        settings = self.context.world.settings
         if not settings.synchronous_mode:
             pace_s = self._pace.wait_s(now_s, settings.fixed_delta_seconds)
             waits.append(pace_s or self._calls.traffic_wait_s(now_s))
@@ -159,7 +159,7 @@ class Server:
         self._stall_log.for_subscribers(now_s, self._subscribers.congested(now_s) if held_up else ())
         stands_still = self._calls.is_synchronous() and not held_up
         self._stall_log.for_a_tick(
-            now_s, self.context.simulation.frame, tuple(self._clients) if stands_still else (), self._calls.last_ticker
+            now_s, self.context.world.frame, tuple(self._clients) if stands_still else (), self._calls.last_ticker
         )
 
     # -- connections ---------------------------------------------------------------------------------------------
@@ -235,7 +235,7 @@ class Server:
             self._calls.joined_s = self._clock()
             self._calls.expected.came(peer.subscription.stream_id)
             if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # also between two ticks
-                payload = self.context.frames.world_payload(self.context.simulation)
+                payload = self.context.frames.world_payload(self.context.world)
                 self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.is_synchronous())
 
     # -- calls and frames ----------------------------------------------------------------------------------------
@@ -267,7 +267,7 @@ class Server:
 
     def _make_due_frame(self) -> None:
         """Make a frame by the clock, or because something new is to be shown; in asynchronous mode only."""
-        settings = self.context.simulation.settings
+        settings = self.context.world.settings
         now_s = self._clock()
         waits = not self.context.frame_is_due and self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0
         if not settings.synchronous_mode and not waits and self._calls.traffic_wait_s(now_s) > 0.0:

@@ -1,4 +1,4 @@
-"""Which doors of which vehicles stand open.
+"""Open doors of vehicles.
 
 CARLA swings a collider of its own out for each open door. Here an open door takes no space: the body is one box, and
 widened over its whole length it would hit what no door reaches. What can be told is kept: which doors are open.

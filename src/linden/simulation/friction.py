@@ -1,4 +1,4 @@
-"""What the road gives the tyres: the weather's share of their friction, and friction triggers.
+"""Friction between road and tyres: the factor of the weather, and friction triggers.
 
 CARLA's weather is for the eye alone ("neither affect the actor's physics"). Here a wet road is a wet road: the tyres'
 friction is multiplied by :func:`road_friction`, which is 1 where both ``wetness`` and ``precipitation_deposits`` are 0.

@@ -1,4 +1,4 @@
-"""What an episode answers about its surroundings: the boxes of everything, and what a ray meets."""
+"""Queries of clients about the surroundings: boxes of objects, actors and lights, and what a ray meets."""
 
 import math
 from typing import NamedTuple

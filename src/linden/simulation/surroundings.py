@@ -17,7 +17,7 @@ from linden.protocol.values.enums import MapLayer
 from linden.protocol.values.episode import LightState
 from linden.scenery.scene.debug_shapes import DebugShapes
 from linden.scenery.scene.lamp_states import Lamps
-from linden.scenery.scene.neighbourhood import furnish
+from linden.scenery.scene.mapped import mapped, plain
 from linden.scenery.scene.objects import Kind, Scene, join
 from linden.scenery.scene.posts import Post, posts, walls
 from linden.scenery.scene.south_linden import home
@@ -50,7 +50,9 @@ def scenery_of(world_map: LoadedMap) -> Scenery:
     if world_map.name == HOME_MAP:
         scene = join([scene, home(world_map)])
     elif world_map.name != GENERATED_MAP:
-        scene = join([scene, furnish(world_map.lots, world_map.ground)])
+        scene = join([scene, plain(world_map)])
+    if world_map.standing and world_map.name not in {HOME_MAP, GENERATED_MAP}:
+        scene = join([scene, mapped(world_map.standing)])
     return Scenery(signals, scene, solid(scene, np.ones(len(scene.boxes), bool)))
 
 

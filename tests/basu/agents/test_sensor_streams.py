@@ -57,7 +57,7 @@ class Arrays(AutonomousAgent):
 
 
 @pytest.mark.parametrize("mode", [[], ["--in-process"]], ids=["own process", "in process"])
-def test_arrays_are_those_that_the_adapter_feeds(
+def test_arrays_equal_the_arrays_of_the_adapter(
     simulator: RunningServer, route_file: Path, tmp_path: Path, mode: list[str]
 ) -> None:
     agent, told = tmp_path / "arrays.py", tmp_path / "told.json"

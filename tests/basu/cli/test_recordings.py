@@ -73,7 +73,9 @@ def test_a_run_folder_brings_map_and_criteria(recording: Path, capsys: pytest.Ca
     assert capsys.readouterr().out == "Linden 20 SUCCESS\n"
 
 
-def test_a_cut_recording_is_asked_as_far_as_it_is_whole(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_cut_recording_answers_up_to_its_last_whole_frame(
+    recording: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     recording.write_bytes(recording.read_bytes()[:-10])
     assert main(["metrics", str(recording), "--metric", str(EXAMPLES / "collisions.py")]) == 0
     said = capsys.readouterr()

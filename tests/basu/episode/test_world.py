@@ -16,6 +16,12 @@ def test_a_weather_is_one_of_carlas_presets() -> None:
 
 
 class OneTown:
+    uploaded = None
+
+    @property
+    def client(self) -> "OneTown":
+        return self
+
     """A client of a simulator with a map of its own and one town."""
 
     def get_world(self) -> SimpleNamespace:

@@ -143,7 +143,7 @@ def test_theirs_are_read_with_our_classes(tmp_path: Path) -> None:
     assert found.unread == ("distance",)  # their class reads it, ours does not: the result says so
 
 
-def test_scenarios_can_be_left_away(tmp_path: Path) -> None:
+def test_scenarios_can_be_skipped(tmp_path: Path) -> None:
     path = route_file(tmp_path, at("crossing_1", "PedestrianCrossing", 20.0))
     (with_them,) = prepare(RunOptions(routes=str(path))).jobs
     (without,) = prepare(RunOptions(routes=str(path), with_scenarios=False)).jobs
@@ -161,7 +161,7 @@ def test_a_series_knows_its_scenarios(tmp_path: Path) -> None:
     assert differs == ["the scenarios of the routes"]
 
 
-def test_an_unknown_type_names_those_that_there_are(tmp_path: Path) -> None:
+def test_an_unknown_type_names_the_known_types(tmp_path: Path) -> None:
     path = route_file(tmp_path, at("x_1", "PedestrianCrosing", 20.0))
     (description,) = read_routes(path)
     with pytest.raises(

@@ -50,7 +50,7 @@ def steps(simulator: RunningServer, tmp_path: Path, route_file: Path) -> list[tu
     return [(now, frames) for now, frames in json.loads((tmp_path / "steps.json").read_text())]
 
 
-def test_every_measurement_is_of_the_frame_in_which_the_agent_is_asked(
+def test_every_measurement_is_of_the_frame_of_the_agents_step(
     steps: list[tuple[int, dict[str, int]]],
 ) -> None:
     numbers = [now for now, _ in steps]

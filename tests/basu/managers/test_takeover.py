@@ -51,7 +51,7 @@ def ticked(manager: AgentsManager, tick: int) -> tuple[bool, float]:
     return manager.manual, round(manager.control.throttle, 3)
 
 
-def test_the_persons_control_counts_while_they_drive_and_the_agent_is_asked_all_the_while() -> None:
+def test_the_persons_control_counts_while_they_drive_and_the_agent_still_steps() -> None:
     manager = managed(Input(Held.THROTTLE), P, Input(Held.THROTTLE), P, Input())
     assert [ticked(manager, tick) for tick in range(5)] == [
         (False, 0.5),

@@ -195,7 +195,7 @@ def test_the_log_of_another_users_simulator_lies_with_them(
     Path(recording["file"]).unlink()
 
 
-def test_the_weather_of_a_route_holds_unless_another_is_asked_for(
+def test_the_weather_of_a_route_holds_unless_an_option_names_another(
     simulator: RunningServer, tmp_path: Path, route_file: Path
 ) -> None:
     text = route_file.read_text()

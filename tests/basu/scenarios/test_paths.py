@@ -176,7 +176,7 @@ def test_of_all_ways_through_a_junction_only_those_are_given_that_meet_the_egos(
     assert ("opposite", "right") not in ways
 
 
-def test_a_way_that_is_not_there_is_refused_with_those_that_are(westward: Place) -> None:
+def test_a_way_that_is_not_there_is_refused_with_the_ways_that_are(westward: Place) -> None:
     with pytest.raises(ScenarioError, match=r"no path comes from the opposite going straight.*there are: left"):
         crossing(westward, "opposite", "straight")
 

@@ -51,7 +51,7 @@ def test_near_may_be_between_two_others() -> None:
     assert play(Near("other", "third", 10.0), stage) == pytest.approx(8.0, abs=FRAME_S)
 
 
-def test_near_a_place_may_be_asked_of_anybody() -> None:
+def test_near_a_place_works_for_any_actor() -> None:
     assert play(NearPlace(Pose(50.0, 0.0), 10.0), stage_with()) == pytest.approx(4.0, abs=FRAME_S)
     stage = stage_with(actor_at(0.0, 9.0, speed_mps=5.0))
     assert play(NearPlace(Pose(50.0, 9.0), 10.0, actor="other"), stage) == pytest.approx(8.0, abs=FRAME_S)
@@ -161,7 +161,7 @@ def test_an_ego_that_drives_away_is_never_closed_in_on() -> None:
         play(ClosesIn("other", 100.0), stage_with(actor_at(10.0, speed_mps=12.0)), until_s=5.0)
 
 
-def test_a_touch_is_seen_of_the_one_asked_for_and_of_anybody() -> None:
+def test_a_touch_is_seen_of_the_chosen_actor_and_of_any_actor() -> None:
     assert play(EgoTouches(), stage_with(actor_at(54.3))) == pytest.approx(5.0, abs=FRAME_S)
     assert play(EgoTouches("other"), stage_with(actor_at(54.3))) == pytest.approx(5.0, abs=FRAME_S)
     with pytest.raises(AssertionError, match="not done"):

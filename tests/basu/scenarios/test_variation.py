@@ -49,7 +49,7 @@ def test_every_variant_is_made_again_from_its_id_alone(variation: Variation) -> 
         assert variant(CASE, PARAMETERS, case.name) == case
 
 
-def test_a_sweep_changes_all_parameters_but_those_that_are_set() -> None:
+def test_a_sweep_changes_all_parameters_but_the_fixed_ones() -> None:
     made = variants(CASE, PARAMETERS, Variation(fixed=(("speed", "6.0"),), design=Sweep(3, 7)))
     assert [case.name for case in made] == [f"leader_1:speed=6:sweep-3-7-{index}" for index in (1, 2, 3)]
     assert {case.values["speed"] for case in made} == {"6"}

@@ -26,7 +26,7 @@ def written(folder: Path, chosen: RunOptions | None = None, **changes: Any) -> P
     return path
 
 
-def test_a_config_holds_every_option_and_gives_back_those_that_repeat_the_run(tmp_path: Path) -> None:
+def test_a_config_holds_every_option_and_gives_back_what_repeats_the_run(tmp_path: Path) -> None:
     options = RunOptions(seed=4, walkers=3, host="there", output=Path("elsewhere"), step_limit_s=2.0)
     path = written(tmp_path, options)
     document = json.loads(path.read_text())

@@ -37,6 +37,40 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place
 
 
+PLAIN = ("--offset.disable-normalization", "true")
+STREET_NODES = """<nodes><node id="a" x="0" y="4000"/><node id="b" x="200" y="4000"/><node id="c" x="400" y="4000"/>
+</nodes>"""  # north of Linden, where nothing stands
+STREET_EDGES = (
+    '<edges><edge id="ab" from="a" to="b" sidewalkWidth="2"/><edge id="bc" from="b" to="c" sidewalkWidth="2"/></edges>'
+)
+STOPS = """<additional><busStop id="S1" lane="ab_1" startPos="90" endPos="102"/>
+<busStop id="S2" lane="bc_1" startPos="90" endPos="102"/></additional>"""
+PEOPLE = """<routes>
+<person id="early" depart="0"><stop busStop="S1" duration="0.1"/><ride busStop="S2" lines="shuttle"/><walk to="bc"/>
+</person>
+<person id="second" depart="0"><stop busStop="S1" duration="0.1"/><ride busStop="S2" lines="shuttle"/></person>
+<person id="tram" depart="0"><stop busStop="S1" duration="0.1"/><ride busStop="S2" lines="tram"/></person>
+<person id="walker" depart="0" departPos="80"><walk from="ab" busStop="S1"/><ride busStop="S2" lines="shuttle"/>
+</person>
+</routes>"""
+STREET_CONFIG = """<configuration><input><net-file value="walk.net.xml"/><additional-files value="stops.add.xml"/>
+<route-files value="people.rou.xml"/></input></configuration>"""
+
+
+@pytest.fixture(scope="session")
+def walked(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A street with a pavement and two stops, and four persons at the first of them or on their way to it."""
+    place = tmp_path_factory.mktemp("walked")
+    (place / "n.nod.xml").write_text(STREET_NODES)
+    (place / "e.edg.xml").write_text(STREET_EDGES)
+    netconvert = Path(sumo.SUMO_HOME) / "bin" / "netconvert"
+    command = [str(netconvert), "-n", "n.nod.xml", "-e", "e.edg.xml", "--walkingareas", *PLAIN, "-o", "walk.net.xml"]
+    subprocess.run(command, cwd=place, check=True, capture_output=True)
+    for name, text in (("stops.add.xml", STOPS), ("people.rou.xml", PEOPLE), ("walk.sumocfg", STREET_CONFIG)):
+        (place / name).write_text(text)
+    return place
+
+
 @pytest.fixture(autouse=True)
 def _one_sumo_a_test() -> Iterator[None]:
     """End the SUMO of a test that failed: a process holds one."""

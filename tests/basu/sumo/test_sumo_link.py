@@ -108,7 +108,11 @@ def test_a_town_s_folder_is_made_once_and_a_failure_is_one_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    maker = [sys.executable, "-c", "import sys, pathlib; pathlib.Path(sys.argv[5], 'a.sumocfg').touch()"]
+    maker = [
+        sys.executable,
+        "-c",
+        "import sys, pathlib; p = pathlib.Path(sys.argv[5]); p.mkdir(); (p / 'a.sumocfg').touch()",
+    ]
     first = made_of("<OpenDRIVE/>", "Town", 1, maker)
     assert [path.name for path in first.iterdir()] == ["a.sumocfg"]
     assert made_of("<OpenDRIVE/>", "Town", 1, ["no-such-program"]) == first

@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from linden.authoring.autoware_folder import NAMES, point_cloud_metadata
+from linden.authoring.autoware_folder import UNIVERSE, point_cloud_metadata
 from linden.authoring.lanelet2.model import bounds_of
 from linden.authoring.lanelet2.osm import osm_bytes, read_osm
 from linden.authoring.pointcloud.cloud import Cloud, in_map
@@ -38,7 +38,15 @@ def test_the_folder_is_complete_and_its_manifest_names_every_file(tmp_path, clou
     target = tmp_path / "town"
     words = ["map", "package", str(tmp_path / "small.xodr"), "--for", "autoware", "-o", str(target)]
     assert main([*words, "--pointcloud", str(cloud)]) == 0
-    assert {path.name for path in target.iterdir()} == NAMES
+    assert {path.name for path in target.iterdir()} == {
+        "lanelet2_map.osm",
+        "map_projector_info.yaml",
+        "pointcloud_map.pcd",
+        "pointcloud_map_metadata.yaml",
+        "aisan",
+        "manifest.json",
+    }
+    assert all(UNIVERSE.is_ours(path.name) for path in target.iterdir())
     told = json.loads((target / "manifest.json").read_text())
     assert told["source"]["sha256"] == hashlib.sha256(two_roads().encode()).hexdigest()
     assert told["origin"] == {"latitude_deg": 40.0, "longitude_deg": -83.0}
@@ -48,6 +56,23 @@ def test_the_folder_is_complete_and_its_manifest_names_every_file(tmp_path, clou
         assert facts["sha256"] == hashlib.sha256((target / name).read_bytes()).hexdigest()
     assert main([*words, "--pointcloud", str(cloud)]) == 0  # over its own older one
     assert json.loads((target / "manifest.json").read_text()) == told
+
+
+def test_the_folder_for_carla_autoware_has_the_places_that_its_launch_files_read(tmp_path, cloud, capsys):
+    (tmp_path / "small.xodr").write_text(two_roads())
+    target = tmp_path / "contents"
+    words = ["map", "package", str(tmp_path / "small.xodr"), "--for", "autoware", "--ros1", "-o", str(target)]
+    assert main([*words, "--pointcloud", str(cloud)]) == 0
+    files = {path.relative_to(target).as_posix() for path in target.rglob("*") if path.is_file()}
+    vectors = "maps/vector_maps/asian/small"
+    assert {"maps/point_cloud_maps/small.pcd", "maps/vector_maps/lanelet2/small.osm", "manifest.json"} <= files
+    wanted = {"dtlane", "lane", "line", "node", "point"}
+    assert {f"{vectors}/{name}.csv" for name in wanted} <= files
+    (tmp_path / "other.xodr").write_text(two_roads())
+    words[2] = str(tmp_path / "other.xodr")
+    assert main([*words, "--pointcloud", str(cloud)]) == 2
+    assert "which is no part of this town; name a folder of its own" in capsys.readouterr().err
+    assert files == {path.relative_to(target).as_posix() for path in target.rglob("*") if path.is_file()}
 
 
 def test_a_folder_with_other_files_is_left_alone(tmp_path, cloud, capsys):

@@ -79,7 +79,7 @@ def test_the_shuttle_tops_out_at_forty_kilometres_an_hour(drive: dict[str, dict[
     assert 3.6 * drive["in the end"]["vehicle.easymile.ez10"] == pytest.approx(40.0, abs=0.3)
 
 
-def test_nobody_pedals_faster_than_thirty(drive: dict[str, dict[str, float]]) -> None:
+def test_bicycles_do_not_exceed_thirty(drive: dict[str, dict[str, float]]) -> None:
     bicycles = [speed for name, speed in drive["in the end"].items() if base_type(name) == "bicycle"]
     assert len(bicycles) == 3
     assert all(18.0 < 3.6 * speed_mps < 30.0 for speed_mps in bicycles)

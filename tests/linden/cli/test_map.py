@@ -49,7 +49,7 @@ def test_a_file_that_is_no_map_ends_with_2_and_a_sentence(
     assert capsys.readouterr().err.startswith("linden: line ")
 
 
-def test_a_file_that_is_not_there_is_told_with_the_built_in_maps(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_file_is_refused_with_the_built_in_maps(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["map", "info", "Atlantis"]) == 2
     told = capsys.readouterr().err
     assert "cannot read Atlantis: No such file or directory" in told
@@ -75,14 +75,14 @@ def test_show_writes_a_picture(good_map: Path, tmp_path: Path) -> None:
     assert picture.read_text().startswith("<svg")
 
 
-def test_a_picture_that_cannot_be_written_is_told(
+def test_a_picture_that_cannot_be_written_gets_a_sentence(
     good_map: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["map", "show", str(good_map), "-o", str(tmp_path / "no" / "map.svg")]) == 2
     assert "name a file in a folder that exists" in capsys.readouterr().err
 
 
-def test_streets_that_are_no_geojson_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_streets_that_are_no_geojson_get_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     streets = tmp_path / "streets.geojson"
     streets.write_text("{")
     assert main(["map", "build", str(streets), "-o", str(tmp_path / "map.xodr")]) == 2
@@ -118,7 +118,7 @@ def test_a_route_feature_becomes_a_route_file(
     assert file.exists() == (code == 0 and bool(option))
 
 
-def test_output_that_nobody_reads_ends_it_quietly(good_map: Path) -> None:
+def test_a_closed_output_ends_it_quietly(good_map: Path) -> None:
     reader, writer = os.pipe()
     os.close(reader)
     try:

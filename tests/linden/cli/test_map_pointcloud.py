@@ -110,7 +110,7 @@ def test_scans_of_other_programs_are_taken(tmp_path: Path, capsys: pytest.Captur
         (["--upper-fov", "-30", "-o", "a.pcd"], "--upper-fov -30 is below --lower-fov -25"),
     ],
 )
-def test_what_does_not_go_together_is_told(
+def test_options_that_contradict_each_other_get_a_sentence(
     arguments: list[str], told: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -119,13 +119,13 @@ def test_what_does_not_go_together_is_told(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_labels_that_nobody_gave_are_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_missing_labels_get_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = pcd(tmp_path / "a.pcd", {axis: np.float32([1.0]) for axis in "xyz"}, "ascii")
     assert pointcloud("--from", file, "--labels", "-o", tmp_path / "b.pcd") == 2
     assert f"--labels: not every file of {file} has a field label" in capsys.readouterr().err
 
 
-def test_a_map_without_a_lane_to_drive_on_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_map_without_a_driving_lane_gets_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "path.xodr").write_text(
         opendrive(road(1, 9.0, line(0, 0, 0, 0, 9), section(right=lane(-1, "walking"))))
     )
@@ -143,7 +143,7 @@ def test_a_map_without_a_lane_to_drive_on_is_told(tmp_path: Path, capsys: pytest
         ("--range", "inf", "not a positive number"),
     ],
 )
-def test_a_number_that_cannot_be_meant_is_told(
+def test_a_number_out_of_range_gets_a_sentence(
     option: str, value: str, told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit):
@@ -151,7 +151,7 @@ def test_a_number_that_cannot_be_meant_is_told(
     assert told in capsys.readouterr().err
 
 
-def test_who_is_told_to_stop_leaves_nothing_behind(town: str, tmp_path: Path) -> None:
+def test_an_interrupted_command_leaves_nothing_behind(town: str, tmp_path: Path) -> None:
     tmp, file = tmp_path / "tmp", tmp_path / "town.pcd"
     tmp.mkdir()
     command = [sys.executable, "-m", "linden.cli", "map", "pointcloud", town, "-o", str(file), "--every", "0.05"]

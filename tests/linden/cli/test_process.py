@@ -87,7 +87,7 @@ def pipe_of_log(monkeypatch: pytest.MonkeyPatch) -> tuple[int, logging.Logger]:
     return reading, logger
 
 
-def test_a_log_that_nobody_reads_loses_lines_and_stops_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_log_without_a_reader_loses_lines_and_stops_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
     reading, logger = pipe_of_log(monkeypatch)
     for number in range(10_000):  # a pipe holds 64 KiB
         logger.warning("line %d", number)
@@ -100,7 +100,7 @@ def test_a_log_that_nobody_reads_loses_lines_and_stops_nobody(monkeypatch: pytes
     os.close(reading)
 
 
-def test_a_log_whose_reader_has_gone_is_written_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_log_without_its_reader_is_written_nowhere(monkeypatch: pytest.MonkeyPatch) -> None:
     reading, logger = pipe_of_log(monkeypatch)
     os.close(reading)
     logger.warning("into the void")

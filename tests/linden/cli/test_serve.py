@@ -103,7 +103,7 @@ def test_ports_that_cannot_be_are_a_sentence(
     assert said.count("\n") == 1
 
 
-def test_it_serves_on_although_nobody_reads_what_it_prints() -> None:
+def test_it_serves_on_although_its_output_is_not_read() -> None:
     reading, writing = os.pipe()
     os.close(reading)
     with (
@@ -132,7 +132,7 @@ def until_it_answers(port: int) -> None:
             return
 
 
-def test_a_cache_that_cannot_be_written_stops_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cache_that_cannot_be_written_stops_no_server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "linden").write_text("a file where the folder should be")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     with running_server() as server, RawClient(server.port) as client:
@@ -178,7 +178,7 @@ def test_it_ends_while_a_subscriber_reads_nothing() -> None:
         assert server.log() == ""
 
 
-def test_it_listens_on_ipv6_too_for_those_who_speak_it() -> None:  # the official client looks for IPv4 alone
+def test_it_listens_on_ipv6_too() -> None:  # the official client looks for IPv4 alone
     with running_server("--host", "::1") as server:
         with socket.create_connection(("::1", server.port), 10.0) as client:
             client.sendall(msgpack.packb([0, 1, "version", [[False]]]))

@@ -99,7 +99,7 @@ def test_other_sources_or_another_machine_derive_anew(
     assert len(list(tmp_path.iterdir())) == 2
 
 
-def test_the_sources_named_are_those_that_derive() -> None:
+def test_the_named_sources_derive_the_facts() -> None:
     package = Path(map_cache.__file__).parent.parent
     named = {file for pattern in map_cache._DERIVING for file in package.glob(pattern)}
     for module in (

@@ -75,7 +75,7 @@ def test_the_terrain_beside_a_slope_follows_it() -> None:
     assert height(ground, 80.0, 104.0, 50.0) == pytest.approx(4.0, abs=0.15)
 
 
-def test_who_is_below_everything_stands_on_the_terrain() -> None:
+def test_a_body_below_everything_stands_on_the_terrain() -> None:
     ground = stacked(0.0, 6.0)
     assert surface_under(ground, 5.0, 5.0, -40.0)[0] == pytest.approx(0.0)
 
@@ -94,7 +94,7 @@ def test_walls_and_lines_are_no_ground() -> None:
     assert surface_under(Ground.from_triangles(wall, [(0, 1, 2)]), 5.0, 0.0, 9.0)[4] == -1
 
 
-def test_many_points_are_asked_at_once() -> None:
+def test_heights_of_many_points_come_at_once() -> None:
     ground = stacked(0.0, 6.0)
     heights, triangles = ground.surfaces_under([(5.0, 4.0, 0.0), (5.0, 4.0, 9.0), (-5.0, 4.0, 9.0)])
     assert heights == pytest.approx([0.0, 6.0, 0.0])

@@ -53,7 +53,7 @@ def test_a_sent_map_is_kept_under_carlas_name_until_another_is_sent(folder: Path
     assert library.names() == ["/Game/Carla/Maps/Linden", "/Game/Carla/Maps/Street"]
 
 
-def test_a_map_that_is_not_there_is_refused_with_those_that_are(folder: Path) -> None:
+def test_a_missing_map_is_refused_with_the_maps_that_exist(folder: Path) -> None:
     with pytest.raises(Refusal, match=r"Map 'Town10' not found; this server has: Linden, Street"):
         MapLibrary([folder]).load("Town10")
 

@@ -2,12 +2,13 @@
 
 import math
 
+import numba
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fleet import BOX, FLAT, NOTHING, OFFSETS, at, one, run, sedan, slick, slope, wall
+from fleet import BOX, FLAT, NOTHING, OFFSETS, at, one, run, sedan, seeds, slick, slope, wall
 from linden.physics.bodies import Bodies
 from linden.physics.contact.boxes import overlap
 from linden.physics.contact.pairs import find_pairs
@@ -29,7 +30,7 @@ half = st.floats(0.1, 3.0)
 boxes = st.builds(box, place, place, st.floats(-4.0, 4.0), half, half)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=20 if numba.config.DISABLE_JIT else 300, deadline=None)
 @given(boxes, boxes)
 def test_boxes_overlap_where_their_polygons_share_an_area(a: np.ndarray, b: np.ndarray) -> None:
     depth, normal_x, normal_y, _, _ = overlap(a, b)
@@ -68,7 +69,7 @@ def scattered(seed: int, count: int) -> Bodies:
     return bodies
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", seeds(8))
 def test_the_grid_finds_the_pairs_that_all_against_all_finds(seed: int) -> None:
     bodies = scattered(seed, 60)
     s = bodies.state[: bodies.count]
@@ -80,7 +81,7 @@ def test_the_grid_finds_the_pairs_that_all_against_all_finds(seed: int) -> None:
     assert list(map(tuple, found.tolist())) == near_pairs(circles, s["immovable"].tolist())
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", seeds(4))
 def test_statics_are_found_like_bodies(seed: int) -> None:
     rng = np.random.default_rng(seed)
     standing = np.zeros(80, STATIC_BOX)
@@ -110,7 +111,7 @@ def floating(seed: int, count: int) -> Bodies:
     return bodies
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", seeds(6))
 def test_collisions_keep_momentum_and_make_no_energy(seed: int) -> None:
     bodies = floating(seed, 12)
     mass = bodies.mass_kg[:12]

@@ -56,7 +56,14 @@ def test_coasting_slows_by_drag() -> None:
     assert bodies.velocity[car, 0] == pytest.approx(expected, rel=0.005)
 
 
-@pytest.mark.parametrize(("v_mps", "friction"), [(10.0, 0.8), (20.0, 0.8), (30.0, 0.4)])
+@pytest.mark.parametrize(
+    ("v_mps", "friction"),
+    [
+        (10.0, 0.8),
+        pytest.param(20.0, 0.8, marks=slow_uncompiled),
+        pytest.param(30.0, 0.4, marks=slow_uncompiled),
+    ],
+)
 def test_braking_distance_of_locked_wheels_is_v_squared_over_two_mu_g(v_mps: float, friction: float) -> None:
     locking = wheels(damping_rate=0.0, tire_friction=friction, max_brake_torque=1e5)
     bodies, car = launched(v_mps, VehicleControl(manual_gear_shift=True, brake=1.0), wheels=locking)
@@ -196,6 +203,7 @@ def test_top_speed_is_where_the_engine_balances_what_holds_the_car_back() -> Non
     assert radps > v / radius * 2.5  # the clutch slips by torque over its strength
 
 
+@slow_uncompiled
 def test_the_automatic_goes_through_its_gears_with_a_pause_in_each_change() -> None:
     bodies, car = one()
     bodies.set_control(car, VehicleControl(throttle=1.0))
@@ -330,6 +338,7 @@ def test_a_two_wheeler_stays_up_and_leans_into_the_bend() -> None:
     assert bodies.rotation[bike, 2] == pytest.approx(math.atan(felt / G), rel=0.2)
 
 
+@slow_uncompiled
 def test_a_standing_car_wakes_for_throttle_and_for_a_push() -> None:
     bodies, car = one()
     run(bodies, 2.0)

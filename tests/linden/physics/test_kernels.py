@@ -71,7 +71,7 @@ def test_small_loads_grip_more_than_their_share_and_great_ones_no_more_than_thre
 
 
 @given(st.floats(-1, 1), st.floats(-1, 1), st.floats(0.001, 0.2))
-def test_an_input_follows_at_its_rates_and_never_past_what_is_asked(now: float, target: float, dt_s: float) -> None:
+def test_an_input_follows_at_its_rates_and_never_past_its_target(now: float, target: float, dt_s: float) -> None:
     after = follow(now, target, 2.5, 5.0, dt_s)
     assert min(now, target) - 1e-12 <= after <= max(now, target) + 1e-12
     assert abs(after - now) <= 5.0 * dt_s + 1e-12

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from fleet import one, run
+from fleet import one, run, slow_uncompiled
 from linden.physics.bodies import Bodies
 from linden.protocol.values.control import AckermannControl, VehicleControl
 
@@ -40,6 +40,7 @@ def nothing(_bodies: Bodies, _car: int) -> None:
     """A client that keeps silent."""
 
 
+@slow_uncompiled
 def test_a_control_that_sticks_is_one_that_comes_every_frame() -> None:
     assert drive(nothing, sticky=True) == drive(again, sticky=True) == drive(again, sticky=False) > 10.0
 

@@ -75,7 +75,9 @@ def test_a_vehicle_that_lands_a_little_askew_comes_down_on_its_wheels() -> None:
     assert bodies.position[car, 2] == pytest.approx(0.0, abs=0.02)
 
 
-@pytest.mark.parametrize(("gained_mps", "falls"), [(1.0, False), (3.0, True), (5.0, True)])
+@pytest.mark.parametrize(
+    ("gained_mps", "falls"), [(1.0, False), (3.0, True), pytest.param(5.0, True, marks=slow_uncompiled)]
+)
 def test_a_push_at_the_roof_tips_a_vehicle_if_it_is_hard_enough(gained_mps: float, *, falls: bool) -> None:
     bodies, car = standing()
     bodies.add_impulse(car, (0.0, MASS_KG * gained_mps, 0.0), (0.0, 0.0, 1.4))
@@ -177,6 +179,7 @@ def test_a_two_wheeler_that_leans_in_the_air_is_not_upset_and_one_that_lies_is()
         assert (abs(roll_deg(bodies, bike)) > 60.0) is upset
 
 
+@slow_uncompiled
 def test_nothing_falls_through_the_ground_however_fast_and_coarsely_stepped() -> None:
     for dt_s in (0.01, 0.05, 0.1):
         bodies, car = one(pose=put(170.0, 60.0, 20.0))

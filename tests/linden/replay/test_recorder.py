@@ -54,7 +54,7 @@ def test_a_frame_holds_the_rows_of_its_snapshot(drive: Drive, tmp_path: Path) ->
         assert frame.walkers["speed_mps"].tolist() == [1.5]
 
 
-def test_the_first_frame_tells_who_is_there_and_what_they_are(drive: Drive, tmp_path: Path) -> None:
+def test_the_first_frame_lists_all_actors_with_their_types(drive: Drive, tmp_path: Path) -> None:
     drive.record(tmp_path / "drive.log")
     drive.step(2)
     first, second = read(tmp_path / "drive.log")
@@ -89,7 +89,7 @@ def test_without_additional_data_none_of_it_is_written(drive: Drive, tmp_path: P
     assert len(frame.positions) == 4
 
 
-def test_who_comes_and_goes_is_told_in_the_frame_after(drive: Drive, tmp_path: Path) -> None:
+def test_arrivals_and_departures_are_in_the_frame_after(drive: Drive, tmp_path: Path) -> None:
     drive.record(tmp_path / "drive.log")
     drive.step(1)
     third = spawned(drive.simulation, HERO, drive.along(30.0, 0.0))
@@ -105,7 +105,7 @@ def test_who_comes_and_goes_is_told_in_the_frame_after(drive: Drive, tmp_path: P
     assert drive.hero.id not in ids(after.positions)
 
 
-def test_what_changes_seldom_is_told_when_it_does(drive: Drive, tmp_path: Path) -> None:
+def test_what_changes_seldom_is_written_when_it_changes(drive: Drive, tmp_path: Path) -> None:
     drive.record(tmp_path / "drive.log")
     drive.step(1)
     drive.simulation.episode.traffic.set_time(0, TrafficLightState.GREEN, 4.0)
@@ -147,7 +147,7 @@ def test_a_collision_names_the_hero_first_and_each_frame_once(drive: Drive, tmp_
     assert all(row[1:] == (drive.hero.id, drive.other.id, 1, 0) for row in with_car)
 
 
-def test_a_collision_with_the_scenery_names_nobody_second(drive: Drive) -> None:
+def test_a_collision_with_the_scenery_names_no_second_actor(drive: Drive) -> None:
     episode = drive.simulation.episode
     contacts = np.zeros(2, episode.contacts.dtype)
     contacts["a"], contacts["b"] = drive.walker.slot, (-1, -1)
@@ -214,7 +214,7 @@ def test_the_same_drive_gives_the_same_file(tmp_path: Path) -> None:
     assert files[0] == files[1]
 
 
-def test_a_folder_that_cannot_be_written_is_told_and_nothing_is_recorded(drive: Drive, tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_gets_a_sentence_and_nothing_is_recorded(drive: Drive, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         drive.record(tmp_path / "none" / "drive.log")
     assert isinstance(drive.simulation, World)

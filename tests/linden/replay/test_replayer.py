@@ -126,7 +126,7 @@ def test_wheels_and_doors_stand_as_recorded(world_map: LoadedMap, tmp_path: Path
         assert simulation.episode.doors.open.get(hero.id) == doors
 
 
-def test_who_came_comes_under_the_same_id_and_who_went_goes(recorded: Recorded) -> None:
+def test_actors_come_under_the_same_id_and_leave_as_recorded(recorded: Recorded) -> None:
     simulation = fresh(recorded)
     there = []
     for _ in range(FRAMES):
@@ -144,7 +144,7 @@ def test_actors_of_the_same_id_and_type_are_reused(recorded: Recorded) -> None:
     assert told(simulation, *recorded.ids) == recorded.shown[0]
 
 
-def test_an_id_that_somebody_else_has_is_not_taken(recorded: Recorded) -> None:
+def test_the_id_of_another_actor_is_not_taken(recorded: Recorded) -> None:
     simulation = World(recorded.map)
     poses = [recorded.drive.along(-10.0 * n, 0.0) for n in range(3)]
     tenants = [spawned(simulation, "vehicle.mini.cooper_s", pose) for pose in poses]
@@ -232,7 +232,7 @@ def test_at_the_end_everybody_stands_still_and_the_physics_has_them_again(record
     np.testing.assert_allclose(simulation.episode.transform(hero.id).location, at, atol=0.1)
 
 
-def test_while_they_are_replayed_nobody_runs_into_them(recorded: Recorded) -> None:
+def test_while_they_are_replayed_no_actor_runs_into_them(recorded: Recorded) -> None:
     simulation = fresh(recorded)
     simulation.step(STEP_S)
     hero = recorded.drive.hero.id
@@ -279,7 +279,7 @@ def test_the_spectator_moves_only_where_asked_for(recorded: Recorded, tmp_path: 
         assert simulation.episode.transform(simulation.episode.spectator_id) == expected
 
 
-def test_the_spectator_follows_whom_it_should(recorded: Recorded) -> None:
+def test_the_spectator_follows_the_chosen_actor(recorded: Recorded) -> None:
     offset = Transform(Vector3D(-10.0, 0.0, 5.0), Rotation(-25.0, 0.0, 0.0))
     hero = recorded.drive.hero.id
     simulation = fresh(recorded, ALL._replace(follow_id=hero, offset=offset))
@@ -297,7 +297,7 @@ def test_sensors_are_attached_again_where_asked_for(recorded: Recorded) -> None:
     assert recorded.drive.imu.id not in fresh(recorded).episode.actors
 
 
-def test_stopping_leaves_everybody_or_takes_those_who_would_have_gone(recorded: Recorded) -> None:
+def test_stopping_leaves_all_actors_or_destroys_the_replayed_ones(recorded: Recorded) -> None:
     for keep_actors in (True, False):
         simulation = fresh(recorded)
         for _ in range(15):
@@ -309,7 +309,7 @@ def test_stopping_leaves_everybody_or_takes_those_who_would_have_gone(recorded: 
         assert simulation.episode.bodies.simulate[actors.get(recorded.drive.hero.id).slot]
 
 
-def test_whom_a_client_destroys_meanwhile_is_not_missed(recorded: Recorded) -> None:
+def test_an_actor_that_a_client_destroys_meanwhile_is_not_missed(recorded: Recorded) -> None:
     simulation = fresh(recorded)
     for n in range(FRAMES):
         if n == 5:

@@ -94,7 +94,7 @@ def test_a_house_s_ridge_is_its_box_s_top(scene: Scene, mesh: Mesh) -> None:
     )
 
 
-def test_traffic_lights_show_three_lamps_to_those_who_come(street: LoadedMap) -> None:
+def test_traffic_lights_show_three_lamps_to_oncoming_traffic(street: LoadedMap) -> None:
     scene = scenery_of(street).scene
     mesh = things(street, scene)
     for lamp in (LampOf.TRAFFIC_RED, LampOf.TRAFFIC_YELLOW, LampOf.TRAFFIC_GREEN):

@@ -41,7 +41,7 @@ def test_machine_code_that_was_removed_is_made_again(tmp_path: Path, warmed: lis
     assert warmed == ["warm", "warm"]
 
 
-def test_where_machine_code_lies_elsewhere_it_is_asked_for_there(
+def test_where_machine_code_lies_elsewhere_it_is_looked_up_there(
     tmp_path: Path, warmed: list[str], machine_code: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     assert machine_code.exists()

@@ -70,7 +70,7 @@ def test_a_subscriber_that_says_nothing_is_shown_out_and_a_client_may_be_silent(
     assert house.acceptor.wait_s(100_000.0) is None
 
 
-def test_without_room_the_silent_make_it_and_those_who_have_spoken_stay(
+def test_without_room_silent_connections_are_closed_and_others_stay(
     house: House, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(house.acceptor, "_most", 30)
@@ -119,7 +119,7 @@ class Failing:
 
 
 @pytest.mark.parametrize("code", [errno.ECONNABORTED, errno.EPROTO, errno.EPERM])
-def test_one_that_has_gone_before_it_is_let_in_keeps_nobody_else_out(house: House, code: int) -> None:
+def test_a_connection_closed_before_its_accept_keeps_no_other_out(house: House, code: int) -> None:
     house.knock(house.ports.rpc)
     house.acceptor._let_in(Failing(house.ports.rpc, code), RpcPeer)
     assert len(house.inside) == 1

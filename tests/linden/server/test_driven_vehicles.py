@@ -4,7 +4,7 @@ from typing import Any
 
 from fakes.raw_client import RawClient
 from linden.protocol.wire.commands import COMMANDS, ApplyLocation, ApplyVehicleControl, DestroyActor
-from linden.server.driven_vehicles import LONG_PATIENCE_S, PATIENCE_S, Driven
+from linden.server.driven_vehicles import LONG_PATIENCE_S, PATIENCE_S, DrivenVehicles
 from servers import running_server
 
 APPLY_LOCATION = COMMANDS.index(ApplyLocation)
@@ -16,7 +16,7 @@ def _batch(*actor_ids: int) -> list[Any]:
 
 
 def test_an_answer_waits_for_a_batch_without_the_car() -> None:
-    driven = Driven()
+    driven = DrivenVehicles()
     assert driven.batch(_batch(5, 6)) == []
     assert driven.destroyed(5, b"gone", 1.0, frames_come=True)
     assert driven.batch(_batch(5, 6)) == [], "of the step before"
@@ -25,7 +25,7 @@ def test_an_answer_waits_for_a_batch_without_the_car() -> None:
 
 
 def test_an_answer_that_no_batch_confirms_is_overdue() -> None:
-    driven = Driven()
+    driven = DrivenVehicles()
     driven.batch(_batch(5, 6))
     assert driven.destroyed(5, b"5", 1.0, frames_come=True)
     assert driven.destroyed(6, b"6, the last", 1.0, frames_come=True)
@@ -35,7 +35,7 @@ def test_an_answer_that_no_batch_confirms_is_overdue() -> None:
 
 
 def test_other_actors_and_a_second_destruction_do_not_wait() -> None:
-    driven = Driven()
+    driven = DrivenVehicles()
     driven.batch(_batch(5))
     assert not driven.destroyed(9, b"gone", 1.0, frames_come=True)
     assert driven.destroyed(5, b"gone", 1.0, frames_come=True)
@@ -43,7 +43,7 @@ def test_other_actors_and_a_second_destruction_do_not_wait() -> None:
 
 
 def test_between_ticks_an_idle_thread_is_enough() -> None:
-    driven = Driven()
+    driven = DrivenVehicles()
     driven.shown()
     driven.batch(_batch(5, 6))
     assert not driven.destroyed(5, b"gone", 1.0, frames_come=False)
@@ -53,7 +53,7 @@ def test_between_ticks_an_idle_thread_is_enough() -> None:
 
 
 def test_a_frame_without_a_car_waits_for_the_step_on_it() -> None:
-    driven, there = Driven(), {5, 6}
+    driven, there = DrivenVehicles(), {5, 6}
     driven.batch(_batch(5, 6))
     driven.shown()
     assert driven.frame_wait_s(1.0, there.__contains__) == 0.0
@@ -64,7 +64,7 @@ def test_a_frame_without_a_car_waits_for_the_step_on_it() -> None:
 
 
 def test_a_step_that_began_before_the_last_frame_is_followed_by_another() -> None:
-    driven = Driven()
+    driven = DrivenVehicles()
     driven.batch(_batch(5))
     for _ in range(3):
         driven.shown()
@@ -76,7 +76,7 @@ def test_a_step_that_began_before_the_last_frame_is_followed_by_another() -> Non
 
 
 def test_a_frame_waits_once_for_a_thread_that_stands_still() -> None:
-    driven = Driven()
+    driven = DrivenVehicles()
     driven.batch(_batch(5))
     driven.shown()
     assert driven.frame_wait_s(1.0, set().__contains__) == PATIENCE_S
@@ -86,7 +86,7 @@ def test_a_frame_waits_once_for_a_thread_that_stands_still() -> None:
 
 
 def test_batches_of_another_form_are_no_traffic_managers() -> None:
-    driven = Driven()
+    driven = DrivenVehicles()
     destroy = [[[COMMANDS.index(DestroyActor), [5]]]]
     for commands in (None, 3, [3], [[]], [[[1, [[5]]]]], [[[1, {}]]], destroy):
         assert driven.batch(commands) == []

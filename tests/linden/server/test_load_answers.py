@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 from fakes.raw_client import RawClient
 from linden.protocol.wire.rpc import Call
-from linden.server.load_answers import ASKING_S, GATHERING_S, SETTLING_S, Handover
+from linden.server.load_answers import ASKING_S, GATHERING_S, SETTLING_S, LoadAnswers
 from linden.server.peers import RpcPeer
 from servers import running_server
 
@@ -24,31 +24,31 @@ def _peer(*methods: str) -> FakePeer:
 
 
 def test_a_load_waits_until_each_traffic_managers_thread_stands_in_a_call() -> None:
-    handover = Handover(b"loaded", threads=2, until_s=GATHERING_S)
-    assert handover.waits(_peer("load_new_episode"), 0.0)
-    assert handover.waits(_peer("load_new_episode", "get_episode_settings"), 0.0)
-    assert not handover.waits(_peer("load_new_episode", "get_episode_settings", "apply_batch"), 0.0)
-    assert not handover.waits(_peer("load_new_episode"), GATHERING_S), "they sleep: synchronous mode"
+    answers = LoadAnswers(b"loaded", threads=2, until_s=GATHERING_S)
+    assert answers.waits(_peer("load_new_episode"), 0.0)
+    assert answers.waits(_peer("load_new_episode", "get_episode_settings"), 0.0)
+    assert not answers.waits(_peer("load_new_episode", "get_episode_settings", "apply_batch"), 0.0)
+    assert not answers.waits(_peer("load_new_episode"), GATHERING_S), "they sleep: synchronous mode"
 
 
 def test_their_calls_wait_until_the_client_has_its_episode() -> None:
-    handover = Handover(b"loaded", threads=1, until_s=GATHERING_S)
-    assert handover.answered(1.0) == b"loaded"
-    assert handover.waits(_peer("apply_batch"), 1.0)
+    answers = LoadAnswers(b"loaded", threads=1, until_s=GATHERING_S)
+    assert answers.answered(1.0) == b"loaded"
+    assert answers.waits(_peer("apply_batch"), 1.0)
     peer = _peer("apply_batch", "version")
-    assert not handover.waits(peer, 1.0)
-    assert handover.bring_forward(peer, 1.0)
+    assert not answers.waits(peer, 1.0)
+    assert answers.bring_forward(peer, 1.0)
     assert peer.calls[0].method == "version"
     peer = _peer("apply_batch", "get_episode_info")
-    assert handover.bring_forward(peer, 1.5)
-    assert handover.waits(_peer("apply_batch"), 1.5)
-    assert not handover.waits(_peer("apply_batch"), 1.5 + SETTLING_S)
+    assert answers.bring_forward(peer, 1.5)
+    assert answers.waits(_peer("apply_batch"), 1.5)
+    assert not answers.waits(_peer("apply_batch"), 1.5 + SETTLING_S)
 
 
 def test_a_client_that_never_asks_gets_its_other_answers() -> None:
-    handover = Handover(b"loaded", threads=1, until_s=GATHERING_S)
-    handover.answered(1.0)
-    assert not handover.waits(_peer("apply_batch"), 1.0 + ASKING_S)
+    answers = LoadAnswers(b"loaded", threads=1, until_s=GATHERING_S)
+    answers.answered(1.0)
+    assert not answers.waits(_peer("apply_batch"), 1.0 + ASKING_S)
 
 
 def test_the_order_of_answers_is_load_episode_and_then_the_threads_call() -> None:

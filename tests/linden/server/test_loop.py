@@ -185,7 +185,7 @@ def test_in_synchronous_mode_time_stands_still_between_ticks(running: Live) -> N
         assert running.simulation.steps_s == [0.05, 0.05]
 
 
-def test_a_tick_waits_for_whoever_has_just_asked_where_a_stream_is(running: Live) -> None:
+def test_a_tick_waits_for_a_client_that_has_just_requested_a_stream(running: Live) -> None:
     with running.client() as client:
         client.call("get_sensor_token", 1)
         client.send("tick_cue")
@@ -194,7 +194,7 @@ def test_a_tick_waits_for_whoever_has_just_asked_where_a_stream_is(running: Live
         client.answer()
 
 
-def test_an_answer_waits_for_the_scene_and_nobody_else_does(running: Live) -> None:
+def test_an_answer_waits_for_the_scene_and_no_other_call_does(running: Live) -> None:
     sensor_scene = running.simulation.sensor_scene
     with running.client() as client, running.client() as other:
         sensor_scene.is_there = False
@@ -248,7 +248,9 @@ def test_long_work_that_fails_is_refused(running: Live, monkeypatch: pytest.Monk
         assert client.call("version") == "0.9.16"
 
 
-def test_who_leaves_before_its_long_work_is_done_leaves_nothing(running: Live, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_client_that_leaves_before_its_long_work_is_done_leaves_nothing(
+    running: Live, monkeypatch: pytest.MonkeyPatch
+) -> None:
     may_end = threading.Event()
     with long_work(monkeypatch, lambda: may_end.wait(20)), running.client() as other:
         with running.client() as client:
@@ -275,7 +277,7 @@ def test_a_call_for_which_the_memory_does_not_suffice_is_refused_even_without_me
         assert client.call("tick_cue") == 1
 
 
-def test_asking_for_streams_that_nobody_joins_holds_up_no_ticks_for_long(running: Live) -> None:
+def test_requests_for_streams_without_a_subscriber_hold_up_no_ticks_for_long(running: Live) -> None:
     with running.client() as rude, running.client() as polite:
         for number in range(2000):
             rude.call("get_sensor_token", 1000 + number)  # there are no such streams
@@ -285,7 +287,7 @@ def test_asking_for_streams_that_nobody_joins_holds_up_no_ticks_for_long(running
             polite.call("tick_cue")
 
 
-def test_a_tick_does_not_wait_for_ever_for_who_has_asked(running: Live) -> None:
+def test_a_tick_waits_for_an_expected_subscriber_for_a_limited_time(running: Live) -> None:
     with running.client() as client:
         client.call("get_sensor_token", 1)
         assert client.call("tick_cue") == 1
@@ -313,7 +315,7 @@ def test_settings_take_effect_from_the_next_frame_and_name_the_present_one(runni
     assert running.simulation.steps_s == [0.05, 0.1]
 
 
-def test_whoever_joins_between_two_ticks_sees_the_world(running: Live) -> None:
+def test_a_client_that_joins_between_two_ticks_sees_the_world(running: Live) -> None:
     with running.client() as client:
         client.call("tick_cue")
         with running.subscriber() as late:
@@ -332,7 +334,7 @@ def test_every_subscriber_has_its_own_copy() -> None:
         assert one.message() == another.message()
 
 
-def test_a_sensor_is_sent_to_those_who_listen_to_it() -> None:
+def test_a_sensor_is_sent_to_its_subscribers() -> None:
     with (
         live(frames=FakeFrames(sensor_bytes=300_000)) as running,
         running.client() as client,
@@ -505,7 +507,7 @@ def test_a_thousand_clients_and_subscribers_come_and_go_and_nothing_is_kept_of_t
         assert not running.server._acceptor._silent[StreamPeer]
 
 
-def test_ten_who_tick_at_once_get_a_frame_each(running: Live) -> None:
+def test_ten_clients_that_tick_at_once_get_a_frame_each(running: Live) -> None:
     frames: list[list[int]] = [[] for _ in range(10)]
 
     def tick(mine: list[int]) -> None:

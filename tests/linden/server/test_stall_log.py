@@ -22,7 +22,7 @@ DEAF = FakePeer("subscriber 7 at 127.0.0.1:5 of stream 3", 3 * 2**20)
 DRIVER, OTHER = FakePeer("client 1 at 127.0.0.1:6"), FakePeer("client 2 at 127.0.0.1:8")
 
 
-def test_a_stretch_is_told_of_once_when_it_has_lasted() -> None:
+def test_a_stall_is_logged_once_when_it_has_lasted() -> None:
     stretch = Stall(5.0)
     assert [stretch.goes_on(now_s) for now_s in (100.0, 104.9, 105.0, 106.0)] == [False, False, True, False]
     assert stretch.ends(107.5) == 7.5
@@ -37,7 +37,7 @@ def test_a_short_stretch_is_not_told_of_at_all() -> None:
     assert stretch.ends(104.0) is None
 
 
-def test_a_tick_that_waits_says_for_whom_and_that_it_goes_on(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_tick_that_waits_names_the_client_and_its_end(caplog: pytest.LogCaptureFixture) -> None:
     waiting = StallLog()
     for now_s in (10.0, 10.0 + HELD_UP_S, 10.5 + HELD_UP_S):
         waiting.for_subscribers(now_s, [DEAF])
@@ -56,7 +56,7 @@ def test_a_crowd_is_not_named_one_by_one(caplog: pytest.LogCaptureFixture) -> No
     assert caplog.messages == ["a tick waits for s0, s1, s2, s3, s4 and 95 more, with 0.0 MiB unread"]
 
 
-def test_a_missing_tick_says_whose_it_is_and_when_it_has_come(caplog: pytest.LogCaptureFixture) -> None:
+def test_a_missing_tick_names_its_client_and_its_arrival(caplog: pytest.LogCaptureFixture) -> None:
     waiting = StallLog()
     for now_s, frame in ((0.0, 4), (3.0, 5), (3.0 + NO_TICK_S, 5), (20.0, 5), (33.0, 6), (34.0, 7)):
         waiting.for_a_tick(now_s, frame, [DRIVER, OTHER], DRIVER)
@@ -78,7 +78,7 @@ def test_a_missing_tick_says_whose_it_is_and_when_it_has_come(caplog: pytest.Log
         ),
     ],
 )
-def test_whoever_could_tick_instead_is_named(
+def test_clients_that_could_tick_instead_are_named(
     last: FakePeer | None, whose: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     waiting = StallLog()

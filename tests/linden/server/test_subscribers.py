@@ -90,7 +90,7 @@ def test_in_asynchronous_mode_the_newest_message_waits_for_a_slow_reader_and_tho
     assert not house.closed
 
 
-def test_in_asynchronous_mode_little_waits_for_those_who_never_read(house: House) -> None:
+def test_in_asynchronous_mode_little_waits_for_subscribers_that_never_read(house: House) -> None:
     for mark in range(200):
         house.publish(mark, 0.0, may_drop=True)
     assert all(listener.peer.outgoing.waiting_bytes <= 2 * MESSAGE_BYTES for listener in house.listeners)
@@ -116,7 +116,7 @@ def congest(house: House, monkeypatch: pytest.MonkeyPatch) -> None:
         house.publish(mark % 251, 10.0, may_drop=False)
 
 
-def test_frames_wait_for_a_while_and_those_for_whom_they_waited_are_then_closed(
+def test_frames_wait_for_a_while_and_slow_subscribers_are_then_closed(
     house: House, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     congest(house, monkeypatch)
@@ -127,7 +127,7 @@ def test_frames_wait_for_a_while_and_those_for_whom_they_waited_are_then_closed(
     assert house.table.listened() == set()
 
 
-def test_whoever_catches_up_holds_up_nobody(house: House, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_subscriber_that_catches_up_holds_up_no_other(house: House, monkeypatch: pytest.MonkeyPatch) -> None:
     congest(house, monkeypatch)
     for listener in house.listeners[1:]:
         house.close(listener.peer)
@@ -138,7 +138,7 @@ def test_whoever_catches_up_holds_up_nobody(house: House, monkeypatch: pytest.Mo
     assert reader.peer not in house.closed
 
 
-def test_many_who_are_behind_share_what_may_wait_for_all(house: House, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_slow_subscribers_share_the_limit_of_waiting_bytes(house: House, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(subscribers, "QUEUED_BYTES_OF_ALL", 3_000_000)
     mark = 0
     while not house.subscribers.congested(0.0):
@@ -148,7 +148,7 @@ def test_many_who_are_behind_share_what_may_wait_for_all(house: House, monkeypat
     assert waiting <= 3_000_000 + 3 * MESSAGE_BYTES
 
 
-def test_nothing_is_kept_of_those_who_have_left(house: House) -> None:
+def test_nothing_is_kept_of_subscribers_that_have_left(house: House) -> None:
     for mark in range(100):
         house.publish(mark, 0.0, may_drop=False)
     for listener in house.listeners:

@@ -7,11 +7,11 @@ from linden.server.subscribers import MOST_IN_VAIN, SUBSCRIPTION_WAIT_S, Expecte
 CLIENT, OTHER = 1, 2
 
 
-def test_nobody_is_waited_for_who_has_not_asked() -> None:
+def test_a_client_without_a_request_is_not_waited_for() -> None:
     assert Expected().wait_s(5.0) is None
 
 
-def test_a_frame_waits_until_all_who_asked_have_come() -> None:
+def test_a_frame_waits_until_all_expected_subscribers_have_come() -> None:
     expected = Expected()
     expected.asked(3, CLIENT, 10.0)
     expected.asked(4, CLIENT, 10.01)
@@ -21,20 +21,20 @@ def test_a_frame_waits_until_all_who_asked_have_come() -> None:
     assert expected.wait_s(10.02) is None
 
 
-def test_whoever_asks_and_does_not_come_is_given_up() -> None:
+def test_an_expected_subscriber_that_does_not_come_is_given_up() -> None:
     expected = Expected()
     expected.asked(3, CLIENT, 10.0)
     assert expected.wait_s(10.0 + SUBSCRIPTION_WAIT_S) is None
 
 
-def test_asking_again_makes_nobody_wait_longer() -> None:
+def test_a_repeated_request_makes_no_frame_wait_longer() -> None:
     expected = Expected()
     expected.asked(3, CLIENT, 10.0)
     expected.asked(3, OTHER, 10.4)
     assert expected.wait_s(10.4) == pytest.approx(SUBSCRIPTION_WAIT_S - 0.4)
 
 
-def test_whoever_has_asked_in_vain_a_few_times_is_not_waited_for_until_it_comes_once() -> None:
+def test_a_client_that_failed_to_come_a_few_times_is_not_waited_for_until_it_comes_once() -> None:
     expected, now_s = Expected(), 0.0
     for stream_id in range(MOST_IN_VAIN):
         expected.asked(stream_id, CLIENT, now_s)
@@ -46,7 +46,7 @@ def test_whoever_has_asked_in_vain_a_few_times_is_not_waited_for_until_it_comes_
     assert expected.wait_s(now_s) == SUBSCRIPTION_WAIT_S
 
 
-def test_whoever_comes_once_is_waited_for_again() -> None:
+def test_a_client_that_comes_once_is_waited_for_again() -> None:
     expected = Expected()
     for stream_id in range(MOST_IN_VAIN - 1):
         expected.asked(stream_id, CLIENT, 0.0)

@@ -38,7 +38,7 @@ def test_a_destroyed_actor_is_not_in_the_next_frame() -> None:
     assert first.id not in table
 
 
-def test_an_announced_end_is_told_in_one_snapshot() -> None:
+def test_an_announced_end_is_in_one_snapshot() -> None:
     table = ActorTable()
     first, second = add(table), add(table)
     table.remove(first.id, announce=True)
@@ -49,7 +49,7 @@ def test_an_announced_end_is_told_in_one_snapshot() -> None:
     assert shown(table) == [second.id]
 
 
-def test_rows_of_those_who_have_left_are_used_again_where_no_frame_is_made() -> None:
+def test_rows_of_destroyed_actors_are_used_again_where_no_frame_is_made() -> None:
     table = ActorTable()
     stays = add(table)
     for _ in range(1000):
@@ -58,7 +58,7 @@ def test_rows_of_those_who_have_left_are_used_again_where_no_frame_is_made() -> 
     assert table.row(stays.id) == 0
 
 
-def test_an_id_whose_actor_has_left_in_this_very_frame_can_be_given_again() -> None:
+def test_an_id_that_became_free_in_this_very_frame_can_be_given_again() -> None:
     table = ActorTable()
     first, second = add(table), add(table)
     table.remove(first.id, announce=False)

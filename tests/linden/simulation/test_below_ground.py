@@ -25,7 +25,7 @@ def buried(bodies: Bodies) -> BelowGround:
     return BelowGround(Ground.flat(100.0), bodies)
 
 
-def test_who_is_put_far_below_stays_there_until_put_up_again(bodies: Bodies, buried: BelowGround) -> None:
+def test_an_actor_put_far_below_stays_there_until_put_up_again(bodies: Bodies, buried: BelowGround) -> None:
     slot = bodies.add_walker(at(101.0), BOX, 70.0)
     buried.arrive(slot)
     assert bodies.simulate[slot]
@@ -37,7 +37,7 @@ def test_who_is_put_far_below_stays_there_until_put_up_again(bodies: Bodies, bur
     assert bodies.simulate[slot]
 
 
-def test_who_begins_below_gets_its_physics_when_it_is_put_up(bodies: Bodies, buried: BelowGround) -> None:
+def test_an_actor_that_begins_below_gets_its_physics_when_it_is_put_up(bodies: Bodies, buried: BelowGround) -> None:
     slot = bodies.add_walker(at(-400.0), BOX, 70.0)
     buried.arrive(slot)
     assert not bodies.simulate[slot]
@@ -48,7 +48,7 @@ def test_who_begins_below_gets_its_physics_when_it_is_put_up(bodies: Bodies, bur
     assert bodies.simulate[slot]
 
 
-def test_who_was_told_to_have_no_physics_has_none_when_put_up(bodies: Bodies, buried: BelowGround) -> None:
+def test_an_actor_without_physics_has_none_when_put_up(bodies: Bodies, buried: BelowGround) -> None:
     slot = bodies.add_walker(at(-400.0), BOX, 70.0)
     buried.arrive(slot)
     buried.simulate(slot, wanted=False)
@@ -57,7 +57,7 @@ def test_who_was_told_to_have_no_physics_has_none_when_put_up(bodies: Bodies, bu
     assert not bodies.simulate[slot]
 
 
-def test_a_slot_begins_anew_with_whoever_has_it(bodies: Bodies, buried: BelowGround) -> None:
+def test_a_slot_begins_anew_with_each_actor(bodies: Bodies, buried: BelowGround) -> None:
     first = bodies.add_walker(at(-400.0), BOX, 70.0)
     buried.arrive(first)
     bodies.remove(first)
@@ -68,7 +68,7 @@ def test_a_slot_begins_anew_with_whoever_has_it(bodies: Bodies, buried: BelowGro
     assert not bodies.simulate[slot]
 
 
-def test_who_stands_on_the_ground_is_let_alone(bodies: Bodies, buried: BelowGround) -> None:
+def test_an_actor_on_the_ground_is_let_alone(bodies: Bodies, buried: BelowGround) -> None:
     slot = bodies.add_walker(at(100.93), BOX, 70.0)
     buried.arrive(slot)
     bodies.set_pose(slot, at(100.0 - DEEP_M + 0.1))  # deep in, not below

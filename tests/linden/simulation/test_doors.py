@@ -34,7 +34,7 @@ def test_all_means_every_door_there_is() -> None:
     assert not doors.open
 
 
-def test_who_has_gone_has_no_open_doors() -> None:
+def test_a_destroyed_vehicle_has_no_open_doors() -> None:
     doors = Doors()
     doors.swing(vehicle(7), Door.ALL, opens=True)
     doors.swing(vehicle(8), Door.ALL, opens=True)

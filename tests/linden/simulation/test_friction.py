@@ -105,7 +105,7 @@ def test_a_trigger_that_is_moved_takes_its_friction_along(simulation: World) -> 
     assert friction_of(simulation, car) == 0.5
 
 
-def test_who_comes_into_the_slot_of_one_inside_a_trigger_is_inside_too(simulation: World) -> None:
+def test_an_actor_in_the_slot_of_one_inside_a_trigger_is_inside_too(simulation: World) -> None:
     first = simulation.spawn(CAR, at(0.0))
     trigger(simulation, 0.0, 0.5)
     simulation.step(0.05)

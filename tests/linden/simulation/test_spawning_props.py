@@ -34,7 +34,7 @@ def test_every_prop_has_a_mass() -> None:
             assert made(blueprint.definition.id).mass_kg > 0.0
 
 
-def test_a_mesh_is_as_heavy_and_large_as_it_is_asked_to_be() -> None:
+def test_a_mesh_is_as_heavy_and_large_as_its_attributes_say() -> None:
     heavy = made(MESH, mass=250.0, scale=2.0)
     assert (heavy.mass_kg, heavy.loose) == (250.0, True)
     assert heavy.box.extent == (1.0, 1.0, 1.0)

@@ -67,7 +67,7 @@ def test_a_led_walker_stands_on_the_ground_however_roughly_the_mesh_lies(
     assert simulation.episode.transform(follower).location.z == pytest.approx(PAVEMENT_M + HALF_M, abs=1e-9)
 
 
-def test_one_led_where_no_ground_is_stays_where_it_is_told(simulation: World, follower: int) -> None:
+def test_a_walker_led_where_no_ground_is_stays_at_its_given_place(simulation: World, follower: int) -> None:
     led(simulation, follower, at(12.0, 4.25, 8.0))
     assert simulation.episode.transform(follower).location.z == pytest.approx(8.0 + HALF_M)
 
@@ -90,7 +90,7 @@ def test_a_jump_to_another_place_is_no_motion(simulation: World, follower: int) 
     assert not row(simulation, follower)["velocity"].any()
 
 
-def test_one_that_nobody_leads_any_more_stands(simulation: World, follower: int) -> None:
+def test_a_walker_that_is_no_longer_led_stands(simulation: World, follower: int) -> None:
     led(simulation, follower, at(10.0, 4.25, PAVEMENT_M))
     led(simulation, follower, at(10.1, 4.25, PAVEMENT_M))
     simulation.step(DT_S)
@@ -136,7 +136,7 @@ def test_an_invincible_one_is_pushed_and_lives(simulation: World) -> None:
     assert episode.transform(victim).rotation.pitch == pytest.approx(0.0)
 
 
-def test_a_shove_kills_nobody(simulation: World) -> None:
+def test_a_shove_kills_no_walker(simulation: World) -> None:
     victim = walker(simulation, at(20.0, 1.75, 1.0), invincible=False)
     strike(simulation, 1.5)
     assert not simulation.episode.walkers.is_dead(victim)

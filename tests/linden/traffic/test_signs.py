@@ -46,16 +46,16 @@ def test_a_stop_sign_is_red_for_two_seconds_and_then_green() -> None:
     assert [cars.told(now_s) for now_s in (5.0, 5.0 + STOP_S - 0.05, 5.0 + STOP_S)] == [[RED], [RED], [GREEN]]
 
 
-def test_a_yield_sign_is_green_where_nobody_comes() -> None:
+def test_a_yield_sign_is_green_where_no_vehicle_comes() -> None:
     assert Cars(crossing(is_stop=False), AT_SIGN).told(0.0) == [GREEN]
 
 
-def test_who_is_under_no_sign_reads_green() -> None:
+def test_a_vehicle_under_no_sign_reads_green() -> None:
     assert Cars(crossing(is_stop=True), FAR).told(0.0) == [GREEN]
 
 
 @pytest.mark.parametrize("is_stop", [True, False])
-def test_somebody_in_the_way_keeps_it_red_until_a_little_after_he_has_gone(
+def test_a_vehicle_in_the_way_keeps_it_red_until_a_little_after_it_has_gone(
     is_stop: bool,  # noqa: FBT001 - pytest gives it by name
 ) -> None:
     cars = Cars(crossing(is_stop=is_stop), AT_SIGN, IN_THE_WAY)
@@ -66,7 +66,7 @@ def test_somebody_in_the_way_keeps_it_red_until_a_little_after_he_has_gone(
     assert cars.told(20.0 + CLEAR_S) == [GREEN, GREEN]
 
 
-def test_who_drives_on_reads_green_and_stops_again_the_next_time() -> None:
+def test_a_vehicle_that_drives_on_reads_green_and_stops_again_the_next_time() -> None:
     cars = Cars(crossing(is_stop=True), AT_SIGN)
     cars.told(0.0)
     cars.places[0] = FAR
@@ -82,7 +82,7 @@ def test_another_car_in_the_same_slot_has_to_stop_for_itself() -> None:
     assert cars.told(STOP_S, [8]) == [RED]
 
 
-def test_one_who_waits_at_the_same_sign_is_in_nobodys_way() -> None:
+def test_a_vehicle_that_waits_at_the_same_sign_is_in_no_others_way() -> None:
     beside = (-12.0, 0.5, 0.0)
     assert Cars(crossing(is_stop=False), AT_SIGN, beside).told(0.0) == [GREEN, GREEN]
 
@@ -98,6 +98,6 @@ def test_more_cars_may_come_later() -> None:
     assert Cars(watch, AT_SIGN, FAR, IN_THE_WAY).told(STOP_S) == [RED, GREEN, GREEN]
 
 
-def test_a_map_without_signs_tells_nobody_anything() -> None:
+def test_a_map_without_signs_changes_no_vehicle() -> None:
     nothing = SignWatch(sign_rules(trigger_grid([]), np.zeros(0, bool), []))
     assert Cars(nothing, AT_SIGN, FAR).told(0.0) == [GREEN, GREEN]

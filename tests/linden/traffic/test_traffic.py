@@ -224,7 +224,7 @@ def test_off_lasts_for_no_time(traffic: Traffic) -> None:
         traffic.set_time(0, TrafficLightState.OFF, 1.0)
 
 
-def test_a_map_without_signals_steps_and_has_nobody_under_a_light() -> None:
+def test_a_map_without_signals_steps_and_has_no_vehicle_under_a_light() -> None:
     empty = crossing("", "", "", "")
     empty.step(1.0)
     assert empty.actors == ()

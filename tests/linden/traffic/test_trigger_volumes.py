@@ -59,7 +59,7 @@ def test_only_the_slots_asked_for_are_answered_in_their_order() -> None:
     assert bodies.over(volumes, [3, 1]) == [3, 1]
 
 
-def test_where_there_is_no_volume_nobody_is_under_one() -> None:
+def test_where_there_is_no_volume_no_vehicle_is_under_one() -> None:
     assert Bodies(2).over([]) == [-1, -1]
 
 

@@ -31,7 +31,7 @@ class LeaderboardAgent(AutonomousAgent):
 
     _agent: Any = None
     _gps: Gps
-    _feeds: Feeds | None = None
+    _providers_of_run: RunProviders | None = None
     _pseudo: Mapping[str, str]
     _opendrive: str
 
@@ -44,7 +44,7 @@ class LeaderboardAgent(AutonomousAgent):
         assert self.route is not None  # a run of BASU's has one
         self._gps = Gps(self.map)
         plan = global_plan(self.route, self._gps)
-        self._feeds = Feeds(self.client, self.world, self.vehicle, plan.world)
+        self._providers_of_run = RunProviders(self.client, self.world, self.vehicle, plan.world)
         agent_class, dialect = self.foreign
         if dialect is Dialect.LEADERBOARD_2:
             self._agent = agent_class(*self.server_address, 0)
@@ -63,9 +63,9 @@ class LeaderboardAgent(AutonomousAgent):
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
         """One step of the agent's, with its measurements in the leaderboard's form."""
-        assert self._feeds is not None  # setup came first
+        assert self._providers_of_run is not None  # setup came first
         snapshot = self.world.get_snapshot()
-        timestamp_s = self._feeds.tick(snapshot.timestamp)
+        timestamp_s = self._providers_of_run.tick(snapshot.timestamp)
         input_data = {name: (frame, self._measured(measured)) for name, (frame, measured) in sensor_data.items()}
         input_data |= {name: (snapshot.frame, self._answer(kind)) for name, kind in self._pseudo.items()}
         control = self._agent.run_step(input_data, timestamp_s)
@@ -80,8 +80,8 @@ class LeaderboardAgent(AutonomousAgent):
             if agent is not None:
                 agent.destroy()
         finally:
-            if self._feeds is not None:
-                self._feeds.close()
+            if self._providers_of_run is not None:
+                self._providers_of_run.close()
 
     def _measured(self, measured: Any) -> Any:  # noqa: ANN401 - by its sensor
         """A measurement as the leaderboard gives it, positions in its degrees."""
@@ -111,7 +111,7 @@ def adapted(foreign: ForeignAgent, conf_file: str | None) -> type[LeaderboardAge
     return type(foreign.agent_class.__name__, (LeaderboardAgent,), members)
 
 
-class Feeds:
+class RunProviders:
     """The providers of one run. An agent may import ScenarioRunner's modules late, so each step checks."""
 
     def __init__(self, client: carla.Client, world: carla.World, vehicle: carla.Vehicle, ego_route: Any) -> None:  # noqa: ANN401 - a list of (transform, option)

@@ -77,7 +77,7 @@ CENTRE_1PS = 1.5  # back towards the middle, hands off or against the turn: thre
 MOST_STEER = 0.7
 
 
-class Hands(NamedTuple):
+class PedalsAndWheel(NamedTuple):
     """Pedals and wheel as keys have brought them, in CARLA's ranges."""
 
     throttle: float = 0.0
@@ -85,9 +85,9 @@ class Hands(NamedTuple):
     steer: float = 0.0
 
 
-def after(hands: Hands, held: Held, dt_s: float) -> Hands:
+def after(hands: PedalsAndWheel, held: Held, dt_s: float) -> PedalsAndWheel:
     """Pedals and wheel after ``dt_s`` with these keys down."""
-    return Hands(
+    return PedalsAndWheel(
         throttle=min(1.0, hands.throttle + THROTTLE_1PS * dt_s) if Held.THROTTLE in held else 0.0,
         brake=min(1.0, hands.brake + BRAKE_1PS * dt_s) if Held.BRAKE in held else 0.0,
         steer=steer_after(hands.steer, held, dt_s),
@@ -118,7 +118,7 @@ class Person:
     def __init__(self, source: InputSource, *, drives_first: bool, taken_by_any_input: bool, live: bool) -> None:
         self.source = source
         self._taken_by_any_input = taken_by_any_input
-        self._hands = Hands()
+        self._hands = PedalsAndWheel()
         self._reverse = False
         self.driving = drives_first
         self.drives_first = drives_first
@@ -135,7 +135,7 @@ class Person:
         """
         self.latest = done = self.source.read(tick)
         if self._takes_or_gives(done):
-            self._hands = Hands(steer=float(agents.steer))
+            self._hands = PedalsAndWheel(steer=float(agents.steer))
             self._reverse = bool(agents.reverse)
         if not self.driving:
             return None
@@ -154,7 +154,7 @@ class Person:
         return self.driving and not before
 
 
-def _control(hands: Hands, done: Input, *, reverse: bool) -> carla.VehicleControl:
+def _control(hands: PedalsAndWheel, done: Input, *, reverse: bool) -> carla.VehicleControl:
     """Keys and axes together: of each pedal the one that is pressed more, of the wheel the axis where it is turned."""
     throttle, brake, steer, hand_brake = hands.throttle, hands.brake, hands.steer, Held.HAND_BRAKE in done.held
     if done.axes is not None:

@@ -45,7 +45,7 @@ class LiveStage:
         self._cast: dict[str, Member] = {EGO: member_of(run.vehicle, EGO)}
         self._roles: dict[int, str] = {}  # of all actors that were ever in the cast
         self._types: dict[int, str] = {}
-        self._puppets = ActorCommands(run.client)
+        self._commands = ActorCommands(run.client)
         self._surroundings = Surroundings(run.client, run.world, shared, case)
         self._changes: dict[str, Callable[[Controls], Controls]] = {}
         self._bodies: dict[str, Body] = {}
@@ -75,7 +75,7 @@ class LiveStage:
             self._roles[member.actor.id], self._types[member.actor.id] = spec.name, member.actor.type_id
             if member.kind == "vehicle":
                 self.move(spec.name, 0.0, 0.0, 0.0)
-        self._puppets.carry_out()
+        self._commands.carry_out()
 
     def set_off(self, specs: Sequence[ActorSpec]) -> None:
         """Set off the actors that begin in motion."""
@@ -86,7 +86,7 @@ class LiveStage:
                     self.move(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad), 0.0)
                 elif kind == "walker":
                     self.walk(spec.name, speed_mps * math.cos(yaw_rad), speed_mps * math.sin(yaw_rad))
-        self._puppets.carry_out()
+        self._commands.carry_out()
 
     def begin(self, tick: int) -> None:
         """Let the scenario's clock begin."""
@@ -94,7 +94,7 @@ class LiveStage:
 
     def fault(self, frame: Frame) -> str | None:
         """Half a sentence about an actor of the cast with a control that the scenario did not give; else None."""
-        for actor in self._puppets.with_other_controls(frame.snapshot):
+        for actor in self._commands.with_other_controls(frame.snapshot):
             if not (actor.type_id.startswith("walker.") and self._may_be_struck(actor, frame)):
                 return f"gave the actor {actor.id} ({actor.type_id}) a control"
         return None
@@ -122,7 +122,7 @@ class LiveStage:
 
     def carry_out(self) -> None:
         """Send this frame's commands."""
-        self._puppets.carry_out()
+        self._commands.carry_out()
 
     def clear(self) -> None:
         """Leave the world as it was before."""
@@ -132,7 +132,7 @@ class LiveStage:
         self._run.changes.removed.update(actor.id for actor in actors)
         destroy_actors(self._run.client, actors)
         self._cast = {EGO: self._cast[EGO]}
-        self._puppets.forget()
+        self._commands.forget()
 
     def through(self, controls: Controls) -> Controls:
         """The ego's controls after every disturbance, in the order in which they began."""
@@ -189,11 +189,11 @@ class LiveStage:
 
     def move(self, name: str, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Let a vehicle have this velocity and turning until the next command."""
-        self._puppets.move(self._kind(name, "vehicle"), velocity_x_mps, velocity_y_mps, yaw_rate_radps)
+        self._commands.move(self._kind(name, "vehicle"), velocity_x_mps, velocity_y_mps, yaw_rate_radps)
 
     def walk(self, name: str, velocity_x_mps: float, velocity_y_mps: float) -> None:
         """Let a walker go."""
-        self._puppets.walk(self._kind(name, "walker"), velocity_x_mps, velocity_y_mps)
+        self._commands.walk(self._kind(name, "walker"), velocity_x_mps, velocity_y_mps)
 
     def put(self, name: str, pose: Pose) -> None:
         """Put an actor elsewhere, at rest."""
@@ -205,12 +205,12 @@ class LiveStage:
 
     def let_go(self, name: str) -> None:
         """Lead it no more."""
-        self._puppets.let_go(self._member(name))
+        self._commands.let_go(self._member(name))
 
     def remove(self, name: str) -> None:
         """Take an actor out of the world."""
         member = self._member(name)
-        self._puppets.let_go(member)
+        self._commands.let_go(member)
         self._run.changes.removed.add(member.actor.id)
         destroy_actors(self._run.client, [self._cast.pop(name).actor])
         self._moves.append(Move(name, self._next_s, None))

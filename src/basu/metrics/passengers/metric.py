@@ -110,6 +110,11 @@ _VISIT = record(
     delay_s=number("s", null=True),
     headway_s=number("s", null=True),
     on_time=flag(null=True),
+    waiting=integer(low=0, null=True),
+    boarded=integer(low=0, null=True),
+    left_behind=integer(low=0, null=True),
+    alighted=integer(low=0, null=True),
+    mean_wait_s=number("s", low=0, null=True),
 )
 
 
@@ -199,6 +204,7 @@ class Passengers(Metric):
                 f"{' or '.join(value['vibration']['reactions'])}"
             ),
             *_timetable(value["service"]),
+            *_boarding(value["service"]),
         ]
 
     def columns(self, result: JudgedRun) -> list[Column]:
@@ -216,6 +222,15 @@ def _timetable(visits: list[dict[str, Any]]) -> list[str]:
     delays = [visit["delay_s"] for visit in planned if visit["delay_s"] is not None]
     worst = f", {min(delays):+.0f} to {max(delays):+.0f} s" if delays else ""
     return [f"timetable         {sum(visit['on_time'] for visit in planned)} of {len(planned)} stops on time{worst}"]
+
+
+def _boarding(visits: list[dict[str, Any]]) -> list[str]:
+    """How many passengers each stop had, where SUMO has brought any."""
+    counted = [visit for visit in visits if visit.get("waiting") or visit.get("alighted")]
+    return [
+        f"  {visit['stop_id']:<16}{visit['boarded']} of {visit['waiting']} boarded, {visit['alighted']} alighted"
+        for visit in counted
+    ]
 
 
 def passengers_to_json(history: History, judged: Judged | None) -> dict[str, Any] | None:

@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.path_following import serving
+from basu.metrics.path_following import SERVED_M, serving
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from basu.records.history import History
+    from basu.records.history.sumo import Passenger
     from basu.routing import Stop
     from basu.routing.timetable import Call
 
@@ -35,6 +38,11 @@ class Visit(NamedTuple):
     delay_s: float | None  # of the arrival, negative for early
     headway_s: float | None  # to a vehicle before it that is on time
     on_time: bool | None
+    waiting: int | None = None  # persons that came before the vehicle left; None for a run without SUMO
+    boarded: int | None = None
+    left_behind: int | None = None
+    alighted: int | None = None
+    mean_wait_s: float | None = None  # of those that boarded
 
 
 def service(history: History) -> tuple[Visit, ...]:
@@ -42,7 +50,32 @@ def service(history: History) -> tuple[Visit, ...]:
     timetable = history.facts.route.timetable
     calls = {} if timetable is None else {call.stop_id: call for call in timetable.calls}
     headway_s = None if timetable is None else timetable.headway_s
-    return tuple(_visit(history, stop, calls.get(stop.id), headway_s) for stop in history.facts.route.stops)
+    visits = (_visit(history, stop, calls.get(stop.id), headway_s) for stop in history.facts.route.stops)
+    return tuple(
+        _with_passengers(history, history.sumo.passengers, stop, visit) if history.sumo is not None else visit
+        for stop, visit in zip(history.facts.route.stops, visits, strict=True)
+    )
+
+
+def _with_passengers(history: History, passengers: Sequence[Passenger], stop: Stop, visit: Visit) -> Visit:
+    """A visit with its passengers: left behind is a person that stood there when the vehicle left or passed the stop.
+
+    At a stop that the vehicle has not passed by the end, all that wait there are left behind.
+    """
+    passed = np.flatnonzero(history.frames["route_s_m"] > stop.s_m + SERVED_M)
+    end_s = float(history.frames["t_s"][passed[0] if len(passed) else -1])
+    leaves_s = end_s if visit.departure_s is None else visit.departure_s
+    here = [each for each in passengers if each.stop_id == stop.id]
+    waits_s = [each.boarded_s - each.came_s for each in here if each.boarded_s is not None]
+    behind = sum(each.boarded_s is None and each.came_s <= leaves_s for each in here)
+    alighted = sum(each.destination_id == stop.id and each.alighted_s is not None for each in passengers)
+    return visit._replace(
+        waiting=len(waits_s) + behind,
+        boarded=len(waits_s),
+        left_behind=behind,
+        alighted=alighted,
+        mean_wait_s=sum(waits_s) / len(waits_s) if waits_s else None,
+    )
 
 
 def _visit(history: History, stop: Stop, call: Call | None, headway_s: float | None) -> Visit:

@@ -1,6 +1,7 @@
-"""Writes a record to its two files and reads it back: ``history.parquet`` (frames, events), ``route.json`` (facts).
+"""Writes a record to its files and reads it back: ``history.parquet`` (frames, events), ``route.json`` (facts).
 
-Both are deterministic: no clock, no path and no order of hashes enters them.
+A run amid SUMO's traffic has ``sumo.json`` as well. All are deterministic: no clock, no path and no order of hashes
+enters them.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 import io
 import json
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +18,9 @@ import pyarrow.parquet as pq
 
 from basu.errors import UserError
 from basu.files import write_bytes
-from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle, to_arrow
+from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle
+from basu.records.history.sumo import read_sumo, write_sumo
+from basu.records.history.tables import to_arrow
 from basu.routing import Control, ControlKind, Route, Stop
 from basu.routing.timetable import timetable_from_json, timetable_to_json
 
@@ -62,7 +65,7 @@ WITHOUT_APPLIED = 2  # its records hold the requested control alone, which is re
 
 
 def write_history(folder: Path, history: History) -> None:
-    """Write both files into ``folder``, each at once or not at all.
+    """Write the files into ``folder``, each at once or not at all.
 
     Raises:
         UserError: the disk is full or the folder cannot be written.
@@ -71,6 +74,8 @@ def write_history(folder: Path, history: History) -> None:
     pq.write_table(to_arrow(history), buffer, compression="zstd", store_schema=True)
     write_bytes(folder / HISTORY_FILE, buffer.getvalue())
     write_bytes(folder / FACTS_FILE, facts_to_json(history.facts).encode())
+    if history.sumo is not None:
+        write_sumo(folder, history.sumo)
 
 
 def read_history(folder: Path) -> History:
@@ -82,7 +87,7 @@ def read_history(folder: Path) -> History:
     try:
         table = pq.read_table(folder / HISTORY_FILE)
         facts = facts_from_json((folder / FACTS_FILE).read_text(encoding="utf-8"))
-        return _history(table, facts)
+        return replace(_history(table, facts), sumo=read_sumo(folder))
     except OSError as error:
         raise UserError(f"{folder} is no run folder that can be scored: {error}") from error
     except (KeyError, ValueError, TypeError, pa.ArrowException) as error:
@@ -140,7 +145,7 @@ def facts_from_json(text: str) -> Facts:
 
 
 def _history(table: pa.Table, facts: Facts) -> History:
-    """The record in a table of :func:`to_arrow`."""
+    """The record in a table of :func:`~basu.records.history.tables.to_arrow`."""
     frames = np.zeros(table.num_rows, dtype=FRAME)
     for name in FRAME.names or ():
         kept = name if name in table.column_names else name.removeprefix("applied_")

@@ -1,4 +1,4 @@
-"""The record of a run: its frames as one packed array, events, constant facts; the same as tables with units.
+"""The record of a run: its frames as one packed array, events, constant facts.
 
 A frame's ``tick`` counts from 0 at the first step of the agent and ``t_s`` is ``tick`` times the step, so that two
 runs of one seed leave the same bytes whatever the server's own frame counter says.
@@ -11,120 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from basu.errors import UserError
-
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import pyarrow as pa
     from numpy.typing import NDArray
 
+    from basu.records.history.sumo import SumoRecord
     from basu.routing import Route
-
-
-UNITS = {"radps": "rad/s", "mps2": "m/s²", "mps": "m/s", "ns": "N s", "rad": "rad", "m": "m", "s": "s"}
-TABLES = ("frames", "others", "collisions", "lane_invasions")
-
-
-def unit_of(column: str) -> str:
-    """The unit that ends a column's name; nothing for a column without one."""
-    _, _, last = column.rpartition("_")
-    return UNITS.get(last, "") if last != column else ""
-
-
-def units() -> dict[str, str]:
-    """The unit of each column of a frame."""
-    return {name: unit_of(name) for name in FRAME.names or ()}
-
-
-def to_arrow(history: History) -> pa.Table:
-    """One row a tick, the unit of each column in its field's metadata; events and others are lists in their row."""
-    import pyarrow as pa  # noqa: PLC0415 - slow to import, and only tables need it
-
-    ticks = len(history.frames)
-    columns = {name: pa.array(np.ascontiguousarray(history.frames[name])) for name in FRAME.names or ()}
-    columns["others"] = _lists(_structs(history.others), history.others["tick"], ticks)
-    contacts = pa.array(
-        [
-            {"other_id": c.other_id, "other_type": c.other_type, "impulse_ns": list(c.impulse_ns)}
-            for c in history.collisions
-        ],
-        type=pa.struct(
-            [("other_id", pa.uint32()), ("other_type", pa.string()), ("impulse_ns", pa.list_(pa.float64(), 3))]
-        ),
-    )
-    columns["collisions"] = _lists(contacts, [c.tick for c in history.collisions], ticks)
-    crossed = pa.array([list(e.markings) for e in history.lane_invasions], type=pa.list_(pa.string()))
-    columns["lane_invasions"] = _lists(crossed, [e.tick for e in history.lane_invasions], ticks)
-    fields = [_field(name, column.type) for name, column in columns.items()]
-    return pa.Table.from_arrays(list(columns.values()), schema=pa.schema(fields))
-
-
-def to_pandas(history: History, what: str = "frames") -> Any:  # noqa: ANN401 - a DataFrame; pandas is optional
-    """A data frame with its units in ``attrs["units"]``: the frames, or one of the other `TABLES`.
-
-    Raises:
-        UserError: there is no such table, or pandas is not installed.
-    """
-    if what not in TABLES:
-        raise UserError(f"a record has no table '{what}'; there are {', '.join(TABLES)}")
-    try:
-        import pandas as pd  # noqa: PLC0415 - optional
-    except ImportError as error:
-        raise UserError("pandas is not installed; install it, or use to_arrow()") from error
-    rows: Any
-    if what == "frames":
-        rows = {name: history.frames[name] for name in FRAME.names or ()}
-    elif what == "others":
-        rows = {name: history.others[name] for name in OTHER.names or ()}
-        rows["type"] = [history.facts.actor_types.get(int(key), "") for key in history.others["id"]]
-    elif what == "collisions":
-        rows = _collisions(history)
-    else:
-        rows = [{"tick": e.tick, "marking": marking} for e in history.lane_invasions for marking in e.markings]
-    table = pd.DataFrame(rows)
-    table.attrs["units"] = {str(name): unit_of(str(name)) for name in table.columns}
-    return table
-
-
-def _collisions(history: History) -> dict[str, Any]:
-    """The messages of the collision sensor as columns."""
-    impulse_ns = np.array([c.impulse_ns for c in history.collisions], dtype=np.float64).reshape(-1, 3)
-    return {
-        "tick": [c.tick for c in history.collisions],
-        "other_id": [c.other_id for c in history.collisions],
-        "other_type": [c.other_type for c in history.collisions],
-        **{f"impulse_{axis}_ns": impulse_ns[:, index] for index, axis in enumerate("xyz")},
-    }
-
-
-def _field(name: str, kind: pa.DataType) -> pa.Field:
-    """A column with its unit."""
-    import pyarrow as pa  # noqa: PLC0415 - likewise
-
-    unit = unit_of(name)
-    return pa.field(name, kind, metadata={"unit": unit} if unit else None)
-
-
-def _structs(others: NDArray[np.void]) -> pa.StructArray:
-    """The rows of OTHER without their tick, which the list they stand in tells."""
-    import pyarrow as pa  # noqa: PLC0415 - likewise
-
-    names = [name for name in OTHER.names or () if name != "tick"]
-    arrays = [pa.array(np.ascontiguousarray(others[name])) for name in names]
-    return pa.StructArray.from_arrays(
-        arrays, fields=[_field(name, array.type) for name, array in zip(names, arrays, strict=True)]
-    )
-
-
-def _lists(values: pa.Array, tick_of_value: NDArray[np.int64] | list[int], ticks: int) -> pa.ListArray:
-    """Values gathered into one list a tick; ``tick_of_value`` ascends."""
-    import pyarrow as pa  # noqa: PLC0415 - likewise
-
-    counts = np.bincount(np.asarray(tick_of_value, dtype=np.int64), minlength=ticks)
-    offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
-    return pa.ListArray.from_arrays(pa.array(offsets), values)
-
 
 # One row a tick. World quantities in CARLA's frame (x east, y south, z up), angles in rad, yaw clockwise from above.
 FRAME = np.dtype(
@@ -244,9 +138,12 @@ class History:
     others: NDArray[np.void]  # (M,) of OTHER, ticks ascending
     collisions: tuple[Collision, ...]  # ticks ascending
     lane_invasions: tuple[LaneInvasion, ...]  # ticks ascending
+    sumo: SumoRecord | None = None  # None for a run without SUMO
 
     def to_arrow(self) -> pa.Table:
         """The record as an Arrow table, one row a tick, with the unit of each column in its field's metadata."""
+        from basu.records.history.tables import to_arrow  # noqa: PLC0415 - slow to import, and few need tables
+
         return to_arrow(self)
 
     def to_pandas(self, what: str = "frames") -> Any:  # noqa: ANN401 - a DataFrame; pandas is optional
@@ -255,6 +152,8 @@ class History:
         Raises:
             UserError: there is no such table, or pandas is not installed.
         """
+        from basu.records.history.tables import to_pandas  # noqa: PLC0415 - likewise
+
         return to_pandas(self, what)
 
     def speed_mps(self) -> NDArray[np.float64]:

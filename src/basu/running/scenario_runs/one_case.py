@@ -185,8 +185,8 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
     with simulator_for(options.run_options("basic")) as simulator, asking(f"loading {case.town}"):
-        check_town(case, towns_of(simulator.client))
-        carla_map = world_of(simulator.client, case.town).get_map()
+        check_town(case, towns_of(simulator))
+        carla_map = world_of(simulator, case.town).get_map()
         route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))
         placed = place_scenario(playable, route, carla_map, own=True)
         return call_scenario(case.name, partial(draw, placed.scenario, form))

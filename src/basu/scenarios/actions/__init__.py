@@ -19,7 +19,7 @@ from basu.scenarios.actions.one_frame import (
     Together,
     Wait,
 )
-from basu.scenarios.actions.puppet import Limits, Puppet
+from basu.scenarios.actions.path_follower import Limits, PathFollower
 from basu.scenarios.actions.walking import WalkAlong
 
 __all__ = [
@@ -40,8 +40,8 @@ __all__ = [
     "Limits",
     "Meanwhile",
     "OpenDoor",
+    "PathFollower",
     "PullSteering",
-    "Puppet",
     "PutAt",
     "ReachAtEgosArrival",
     "Remove",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.scenarios.actions.puppet import LOOK_M, AtEnd, Limits, Puppet, minded
+from basu.scenarios.actions.path_follower import LOOK_M, AtEnd, Limits, PathFollower, minded
 from basu.scenarios.stage import EGO
 from basu.scenarios.triggers.along_route import LEAST_MPS, rests_in_s
 
@@ -39,7 +39,7 @@ def bend_speeds_mps(path: Path, sideways_mps2: float, brake_mps2: float) -> NDAr
     return speeds_mps
 
 
-class DriveAlong(Puppet):
+class DriveAlong(PathFollower):
     """Lead a vehicle along a path.
 
     ``considerate`` makes it brake for the ego where that is ahead on its path, ``minds`` for others by name.
@@ -99,7 +99,7 @@ class DriveAlong(Puppet):
 CLOSE_PER_S = 0.6  # of what the gap is off, made good in a second
 
 
-class FollowEgo(Puppet):
+class FollowEgo(PathFollower):
     """Lead a vehicle behind the ego on a path, ``gap_m`` from bumper to bumper, for ``for_s`` seconds.
 
     It answers to what the ego did ``reaction_s`` before, so that a stop without cause may be too much for it.
@@ -143,7 +143,7 @@ class FollowEgo(Puppet):
         return super().over()
 
 
-class ReachAtEgosArrival(Puppet):
+class ReachAtEgosArrival(PathFollower):
     """Lead a vehicle to be ``meet_s_m`` along its path ``offset_s`` after the ego is ``ego_s_m`` along its route.
 
     A negative offset is before the ego. Each frame the ego is taken to go on at the speed it has, and the vehicle makes

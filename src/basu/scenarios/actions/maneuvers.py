@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
-from basu.scenarios.actions.puppet import AtEnd, Limits, Puppet, minded
+from basu.scenarios.actions.path_follower import AtEnd, Limits, PathFollower, minded
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from basu.scenarios.paths import Path
 
 
-class _ToSpeed(Puppet):
+class _ToSpeed(PathFollower):
     """Change to a speed; done when it has it."""
 
     to_mps: float
@@ -66,7 +66,7 @@ class Brake(_ToSpeed):
         self.to_mps = to_mps
 
 
-class Hold(Puppet):
+class Hold(PathFollower):
     """Hold a vehicle where it is, by its brakes, for some seconds."""
 
     def __init__(self, actor: str, seconds: float) -> None:
@@ -87,7 +87,7 @@ class Hold(Puppet):
         return f"stood for {self.seconds:.3g} s" if self.stage.time_s >= self.until_s - 1e-6 else None
 
 
-class ChangeLane(Puppet):
+class ChangeLane(PathFollower):
     """Lead a vehicle to ``to_right_m`` beside a path, from wherever beside it it is, within ``over_m`` or ``over_s``.
 
     Along the ego's route (``Path.of_route``) and with ``to_right_m=0`` it cuts in on the ego. The speed is

@@ -17,9 +17,11 @@ from linden.authoring.streets.document import (
     RoadRecord,
     Signal,
     SignalReference,
+    value,
 )
 from linden.authoring.streets.network import End, Leg, Network, nearest_road
 from linden.authoring.streets.network import build as build_network
+from linden.authoring.streets.standing import standing
 from linden.authoring.streets.street_facts import Control, Facts, Intersection, read
 from linden.authoring.streets.writing import text
 from linden.errors import UserError
@@ -28,6 +30,7 @@ FIRST_JUNCTION_ID = 1_000_000  # above all road ids: LibCarla takes a link to an
 FIRST_CONTROLLER_ID = 2_000_000
 CROSSWALK_BEFORE_STOP_M = 8.0  # passengers cross behind the shuttle
 ONE_CROSSWALK_WITHIN_M = 30.0  # of opposite stops
+CROSSING_AT_JUNCTION_M = 14.0  # a crossing this near to a junction crosses that leg, before the stop line
 MADE_UP = "made up: the street goes on outside of the map"
 SCHOOL_CROSSING_WITHIN_M = 150.0
 
@@ -48,6 +51,8 @@ class Built(NamedTuple):
     roads: tuple[RoadRecord | None, ...]
     ways: tuple[Way, ...]
     document: Document
+    left_out: tuple[str, ...] = ()
+    """Ids of buildings and furniture that would stand on a street."""
 
 
 def build(streets: dict[str, object]) -> bytes:
@@ -84,6 +89,7 @@ class _Assembly:
         self.corners: list[RoadRecord] = []
         self.junctions: list[JunctionRecord] = []
         self.controllers: list[Controller] = []
+        self.walked_ends, self.crossings = self._mapped_crossings()
 
     def result(self) -> Built:
         crossings = self._school_crossings()
@@ -94,6 +100,10 @@ class _Assembly:
             else:
                 self._add_junction(nodes, legs, crossings)
         self._add_stop_crosswalks()
+        self._add_mapped_crosswalks()
+        placed = standing(self.facts, self.network)
+        for edge, thing in placed.objects:
+            self.objects[edge].append(thing._replace(id=next(self.object_ids)))
         street_roads = tuple(self._street_road(edge) for edge in range(len(self.network.edges)))
         every = [road for road in street_roads if road is not None]
         every += sorted([way.record for way in self.ways] + self.corners, key=lambda road: road.id)
@@ -108,7 +118,7 @@ class _Assembly:
             junctions=tuple(self.junctions),
             notes=(("elevation_confidence", self.facts.ground.confidence),),
         )
-        return Built(self.facts, self.network, street_roads, tuple(self.ways), document)
+        return Built(self.facts, self.network, street_roads, tuple(self.ways), document, placed.left_out)
 
     def _intersections(self, nodes: tuple[int, ...]) -> list[Intersection]:
         return [one for one in (self.network.nodes[node].intersection for node in nodes) if one is not None]
@@ -195,7 +205,7 @@ class _Assembly:
             ranks[leg.end] = 0 if kind is None else 1
             road_m, edge = self._road_m(leg), leg.end.edge
             crosswalk = road_m >= controls.ROOM_FOR_CROSSWALK_M and (
-                rule in {Control.SIGNAL, Control.ALL_WAY_STOP} or walked
+                rule in {Control.SIGNAL, Control.ALL_WAY_STOP} or walked or leg.end in self.walked_ends
             )
             if crosswalk:
                 self.objects[edge].append(controls.crosswalk(next(self.object_ids), leg, road_m, confidence))
@@ -285,6 +295,32 @@ class _Assembly:
             across = view(self.network.edges[edge].section, along=True)
             self.objects[edge].append(controls.crosswalk_at(next(self.object_ids), across, at_m, stop.confidence))
 
+    def _mapped_crossings(self) -> tuple[frozenset[End], tuple[tuple[int, float, str], ...]]:
+        """Return the ends of roads that the facts' crossings lie at, and the others: edge, place, confidence."""
+        ends, between = set(), []
+        for crossing in self.facts.crossings:
+            edge, s_m = nearest_road(self.network, crossing.street_id, crossing.point)
+            road = self.network.roads[edge] if edge >= 0 else None
+            if road is None:
+                continue
+            rest_m = length(road) - s_m
+            met = {leg.end for _, legs in self.network.junctions if len(legs) > 1 for leg in legs}
+            end = End(edge, at_end=rest_m < s_m)
+            if min(s_m, rest_m) < CROSSING_AT_JUNCTION_M and end in met:
+                ends.add(end)
+            else:
+                between.append((edge, s_m, crossing.confidence))
+        return frozenset(ends), tuple(between)
+
+    def _add_mapped_crosswalks(self) -> None:
+        """Put a crosswalk on a road for each crossing of the facts that lies between junctions."""
+        for edge, s_m, confidence in self.crossings:
+            road = self.network.roads[edge]
+            assert road is not None
+            at_m = min(max(s_m, controls.CROSSWALK_M), length(road) - controls.CROSSWALK_M)
+            across = view(self.network.edges[edge].section, along=True)
+            self.objects[edge].append(controls.crosswalk_at(next(self.object_ids), across, at_m, confidence))
+
     def _street_road(self, edge: int) -> RoadRecord | None:
         path = self.network.roads[edge]
         if path is None:
@@ -295,6 +331,20 @@ class _Assembly:
         record = roads.street_road(self.road_ids[edge], one.street, one.section, path, heights)
         record = roads.linked(record, self.touches.get(begin), self.touches.get(end))
         return record._replace(signals=tuple(self.signals[edge]), objects=tuple(self.objects[edge]))
+
+
+def off_ground_m(built: Built) -> tuple[float, float]:
+    """Return by how many m roads leave the ground at most: away from junctions, and near them, where they are level."""
+    ground, worst_m = built.facts.ground, [0.0, 0.0]
+    for record in (road for road in built.roads if road is not None):
+        total_m, ramp_m = length(record.path), ground.profile.ramp_m
+        for i in range(int(total_m / 2.0) + 1):
+            s_m = min(2.0 * i, total_m)
+            pose = pose_at(record.path, s_m)
+            apart_m = abs(value(record.elevation, s_m) - ground.height_m(pose.x_m, pose.y_m))
+            is_near = min(s_m, total_m - s_m) < ramp_m
+            worst_m[is_near] = max(worst_m[is_near], apart_m)
+    return worst_m[0], worst_m[1]
 
 
 def _turns(legs: tuple[Leg, ...], centre: Point, *, is_roundabout: bool) -> tuple[junctions.Turn, ...]:

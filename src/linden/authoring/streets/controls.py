@@ -30,8 +30,9 @@ def sign_of(control: Control, leg: Leg, stops: frozenset[str]) -> str | None:
     """Return the type of the sign or light for traffic that enters on a leg, None where it needs none."""
     if not leg.view.driving(right=True):
         return None
-    if control is Control.TWO_WAY_STOP:
-        return STOP if leg.street.name in stops else None
+    if control in {Control.TWO_WAY_STOP, Control.GIVE_WAY}:
+        waits = leg.street.name in stops or leg.street.id in stops
+        return None if not waits else STOP if control is Control.TWO_WAY_STOP else YIELD
     return {Control.SIGNAL: LIGHT, Control.ALL_WAY_STOP: STOP, Control.ROUNDABOUT: YIELD}.get(control)
 
 

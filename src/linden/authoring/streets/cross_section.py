@@ -96,7 +96,7 @@ def of_street(street: Street) -> Section:
     Parking (a shoulder where parking is limited) lies on both sides where the lanes keep 3.0 m, else on the right side
     in the direction of the street's points, else nowhere. What remains is the driving lanes', in equal parts.
     """
-    right_count = street.lanes if street.oneway else (street.lanes + 1) // 2
+    right_count = street.lanes if street.oneway else street.lanes_forward or (street.lanes + 1) // 2
     left_count = street.lanes - right_count
     edge_kind = "parking" if street.parking == "both" else "shoulder"
     edges = _edges(street, right_count + left_count)

@@ -99,6 +99,7 @@ class Object(NamedTuple):
     heading_rad: float
     outline: tuple[Point, ...]
     confidence: str
+    height_m: float = 0.0
 
 
 class RoadRecord(NamedTuple):

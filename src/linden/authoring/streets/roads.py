@@ -9,12 +9,9 @@ from linden.authoring.streets.cross_section import KERB_HEIGHT_M, PAVED, RAISED,
 from linden.authoring.streets.curves import Path, Pose, joined, length, pose_at, turned_back
 from linden.authoring.streets.document import Cubic, LaneRecord, Link, Mark, RoadRecord, eased
 from linden.authoring.streets.network import End, Leg
-from linden.authoring.streets.street_facts import Ground, Street
+from linden.authoring.streets.street_facts import AnyGround, Street
 
-RAMP_M = 30.0  # a junction is level; over this length a road finds back to the plane of the ground
-STEEPEST = 0.012  # mean rise of a road between level junctions; its middle is half as steep again
 LEVELLING_ROUNDS = 100
-KNOT_M = 60.0  # between points where the height is given
 KINDS = ("driving", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
 
 Numbered = tuple[tuple[int, Lane], ...]
@@ -36,25 +33,26 @@ class Strip(NamedTuple):
     after: int | None
 
 
-def height(ground: Ground, pose: Pose) -> float:
+def height(ground: AnyGround, pose: Pose) -> float:
     """Return the ground's height in m under a pose."""
-    return ground.base_m + ground.north * pose.y_m + ground.east * pose.x_m
+    return ground.height_m(pose.x_m, pose.y_m)
 
 
-def slope(ground: Ground, pose: Pose) -> float:
+def slope(ground: AnyGround, pose: Pose) -> float:
     """Return the ground's rise per metre along a pose's heading."""
-    return ground.north * math.sin(pose.heading_rad) + ground.east * math.cos(pose.heading_rad)
+    east, north = ground.rise(pose.x_m, pose.y_m)
+    return north * math.sin(pose.heading_rad) + east * math.cos(pose.heading_rad)
 
 
-def elevation(ground: Ground, path: Path, ends_m: tuple[float | None, float | None]) -> tuple[Cubic, ...]:
-    """Return the height along a path: on the plane, but level and at the given height where it meets a junction.
+def elevation(ground: AnyGround, path: Path, ends_m: tuple[float | None, float | None]) -> tuple[Cubic, ...]:
+    """Return the height along a path: on the ground, but level and at the given height where it meets a junction.
 
-    ``None`` stands for an end where the plane goes on.
+    ``None`` stands for an end where the ground goes on.
     """
     total_m = length(path)
-    ramp_m = min(RAMP_M, total_m / 2)
+    ramp_m = min(ground.profile.ramp_m, total_m / 2)
     middle_m = total_m - 2 * ramp_m
-    count = round(middle_m / KNOT_M) + 1 if middle_m > 1.0 else 0
+    count = round(middle_m / ground.profile.knot_m) + 1 if middle_m > 1.0 else 0
     knots = [0.0, *(ramp_m + middle_m * i / max(count, 1) for i in range(count + 1)), total_m]
     if not count:
         knots = [0.0, total_m]
@@ -69,11 +67,13 @@ def elevation(ground: Ground, path: Path, ends_m: tuple[float | None, float | No
     )
 
 
-def levels(ground: Ground, junctions: Sequence[tuple[Leg, ...]], roads_m: Sequence[float | None]) -> tuple[float, ...]:
+def levels(
+    ground: AnyGround, junctions: Sequence[tuple[Leg, ...]], roads_m: Sequence[float | None]
+) -> tuple[float, ...]:
     """Return each junction's height: the ground's under its legs, but no road between two of them too steep.
 
-    Where a road would rise by more than ``STEEPEST`` on the whole, both its junctions give way by half the rest; a
-    few rounds of that settle. ``roads_m``: length of each edge's road, None inside junctions.
+    Where a road would rise by more than the profile's ``steepest`` on the whole, both its junctions give way by half
+    the rest; a few rounds of that settle. ``roads_m``: length of each edge's road, None inside junctions.
     """
     found = [math.fsum(height(ground, leg.pose) for leg in legs) / len(legs) for legs in junctions]
     at = {leg.end: number for number, legs in enumerate(junctions) for leg in legs}
@@ -85,7 +85,7 @@ def levels(ground: Ground, junctions: Sequence[tuple[Leg, ...]], roads_m: Sequen
     for _ in range(LEVELLING_ROUNDS):
         for a, b, road_m in links:
             rise_m = found[b] - found[a]
-            rest_m = math.copysign(max(abs(rise_m) - STEEPEST * road_m, 0.0), rise_m) / 2
+            rest_m = math.copysign(max(abs(rise_m) - ground.profile.steepest * road_m, 0.0), rise_m) / 2
             found[a] += rest_m
             found[b] -= rest_m
     return tuple(round(height_m, 3) for height_m in found)
@@ -130,7 +130,7 @@ def linked(road: RoadRecord, before: Touch | None, after: Touch | None) -> RoadR
     )
 
 
-def bend(number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: Ground) -> RoadRecord:
+def bend(number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: AnyGround) -> RoadRecord:
     """Return the road that goes on from one road into another where just two meet."""
     come, go = legs
     path = joined(come.pose, turned_back(go.pose))

@@ -57,9 +57,11 @@ def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
 
 
 def turning_circle(leg: Leg, centre: Point) -> tuple[Turn, ...]:
-    """Return the paths for turning back at the end of a street: each lane into its opposite."""
+    """Return the paths for turning back at the end of a street: each lane into its opposite, a spare one beside it."""
     found = []
-    for lane_in, lane_out in zip(leg.view.driving(right=True), leg.view.driving(right=False), strict=False):
+    ins, outs = leg.view.driving(right=True), leg.view.driving(right=False)
+    for place in range(max(len(ins), len(outs)) if ins and outs else 0):
+        lane_in, lane_out = ins[min(place, len(ins) - 1)], outs[min(place, len(outs) - 1)]
         widths_m = leg.view.lane(lane_in).width_m, leg.view.lane(lane_out).width_m
         path, widths = _way(pose_in(leg, lane_in), pose_out(leg, lane_out), centre, widths_m)
         found.append(Turn(leg, lane_in, leg, lane_out, path, widths))

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Mapping
 from enum import Enum
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from pyproj import Proj
 
@@ -24,13 +24,15 @@ class Control(Enum):
     TWO_WAY_STOP = "two_way_stop"
     ALL_WAY_STOP = "all_way_stop"
     ROUNDABOUT = "roundabout"
+    GIVE_WAY = "give_way"
     NONE = "none"
 
 
 class Street(NamedTuple):
     """One centre-line with what lies across it. ``width_m`` is between the kerbs.
 
-    ``confidences``: which fact, how sure ("width_confidence", "estimated").
+    ``confidences``: which fact, how sure ("width_confidence", "estimated"). ``lanes_forward``: how many of the lanes
+    run along the points; None stands for half of them, the odd one too.
     """
 
     id: str
@@ -44,10 +46,11 @@ class Street(NamedTuple):
     parking: str
     sidewalk: str
     confidences: tuple[tuple[str, str], ...]
+    lanes_forward: int | None = None
 
 
 class Intersection(NamedTuple):
-    """A place where streets meet, and the streets that must wait there. ``stops`` holds names of streets."""
+    """A place where streets meet, and the streets that must wait there: ``stops`` holds their names or ids."""
 
     id: str
     name: str
@@ -76,6 +79,36 @@ class Place(NamedTuple):
     point: Point
 
 
+class Crossing(NamedTuple):
+    """A painted crossing of a street, where people cross it."""
+
+    id: str
+    point: Point
+    street_id: str
+    confidence: str
+
+
+class Building(NamedTuple):
+    """A building on its footprint: a ring of corners, closed (the first corner stands at the end again)."""
+
+    id: str
+    name: str
+    kind: str
+    ring: tuple[Point, ...]
+    height_m: float
+    confidence: str
+
+
+class Furniture(NamedTuple):
+    """A small thing beside a street; ``kind`` is one of ``FURNITURE``."""
+
+    id: str
+    kind: str
+    name: str
+    point: Point
+    confidence: str
+
+
 class Route(NamedTuple):
     """A way along streets, through points of theirs; ``stops`` are the ids of the stops called at, in their order.
 
@@ -89,6 +122,18 @@ class Route(NamedTuple):
     timetable: str = ""
 
 
+class Profile(NamedTuple):
+    """How closely roads follow the ground.
+
+    A junction is level; over ``ramp_m`` a road finds back to the ground. ``knot_m`` lies between the points where the
+    height is given. ``steepest`` is the greatest mean rise of a road between level junctions.
+    """
+
+    ramp_m: float
+    knot_m: float
+    steepest: float
+
+
 class Ground(NamedTuple):
     """A plane: height in m at the origin, and its rise per metre north and east."""
 
@@ -96,6 +141,34 @@ class Ground(NamedTuple):
     north: float
     east: float
     confidence: str
+    profile: Profile = Profile(ramp_m=30.0, knot_m=60.0, steepest=0.012)
+
+    def height_m(self, x_m: float, y_m: float) -> float:
+        """Return the height in m at a place."""
+        return self.base_m + self.north * y_m + self.east * x_m
+
+    def rise(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """Return the rise per metre east and north at a place."""
+        del x_m, y_m
+        return self.east, self.north
+
+
+class AnyGround(Protocol):
+    """Ground that roads are laid on: a plane, or measured terrain."""
+
+    @property
+    def confidence(self) -> str:
+        """Where the heights are known from."""
+
+    @property
+    def profile(self) -> Profile:
+        """How closely roads follow the ground."""
+
+    def height_m(self, x_m: float, y_m: float) -> float:
+        """Return the height in m at a place."""
+
+    def rise(self, x_m: float, y_m: float) -> tuple[float, float]:
+        """Return the rise per metre east and north at a place."""
 
 
 class Facts(NamedTuple):
@@ -104,23 +177,29 @@ class Facts(NamedTuple):
     name: str
     longitude_deg: float
     latitude_deg: float
-    ground: Ground
+    ground: AnyGround
     turning_circles: bool
     streets: tuple[Street, ...]
     intersections: tuple[Intersection, ...]
     stops: tuple[Stop, ...]
     schools: tuple[Place, ...]
     routes: Mapping[str, Route]
+    crossings: tuple[Crossing, ...] = ()
+    buildings: tuple[Building, ...] = ()
+    furniture: tuple[Furniture, ...] = ()
 
 
 NARROWEST_M = 2.0  # of a lane; a car is 1.8 m wide
+FURNITURE = ("bench", "bin", "mailbox")
 _ROUTES = frozenset({"route", "route_alternative"})
 _LINES = _ROUTES | {"street", "railroad"}
+_GEOMETRY = {**dict.fromkeys(_LINES, "LineString"), "building": "Polygon"}
 _CHOICES = {
     "street_class": ("arterial", "collector", "local", "service"),
     "oneway": ("no", "forward"),
     "parking": ("both", "limited", "none/limited", "none"),
     "sidewalk": ("both", "one", "none"),
+    "kind": FURNITURE,
 }
 
 
@@ -148,7 +227,7 @@ def read(document: object) -> Facts:
     known = {feature.text("id") for feature in streets}
     if len(known) < len(streets):
         raise UserError("two streets share an id; each needs its own")
-    names = {feature.text("name") for feature in streets}
+    names = {feature.text("name") for feature in streets} | known
     plane = metadata.get("ground", {})
     return Facts(
         name=str(metadata.get("name", document.get("name", "map"))),
@@ -174,6 +253,9 @@ def read(document: object) -> Facts:
             if feature.kind == "poi" and feature.properties.get("kind") == "school"
         ),
         routes={f.text("id"): _route(f, metres(f.lonlats())) for f in features if f.kind in _ROUTES},
+        crossings=tuple(_crossing(f, metres(f.lonlats())[0], known) for f in features if f.kind == "crossing"),
+        buildings=tuple(_building(f, metres(f.lonlats())) for f in features if f.kind == "building"),
+        furniture=tuple(_furniture(f, metres(f.lonlats())[0]) for f in features if f.kind == "furniture"),
     )
 
 
@@ -204,20 +286,22 @@ class _Feature:
         return float(found)
 
     def lonlats(self) -> list[tuple[float, float]]:
-        wanted = "LineString" if self.kind in _LINES else "Point"
+        wanted = _GEOMETRY.get(self.kind, "Point")
         geometry = self.geometry if isinstance(self.geometry, dict) else {}
         if geometry.get("type") != wanted:
             raise UserError(f"{self.label}: its geometry is {geometry.get('type')!r}; it must be a {wanted}")
         found = geometry.get("coordinates")
-        points = found if wanted == "LineString" else [found]
         try:
-            lonlats = [(float(point[0]), float(point[1])) for point in points]  # type: ignore[index, union-attr]  # checked by trying
-        except (TypeError, ValueError, IndexError):
+            points: Any = [found] if wanted == "Point" else found if wanted == "LineString" else found[0]  # type: ignore[index]  # checked by trying
+            lonlats = [(float(point[0]), float(point[1])) for point in points]
+        except (TypeError, ValueError, IndexError, KeyError):
             raise UserError(f"{self.label}: its coordinates are not pairs of longitude and latitude") from None
         if any(not (abs(lon) <= 180 and abs(lat) <= 90) for lon, lat in lonlats):
             raise UserError(f"{self.label}: its coordinates are not degrees of longitude and latitude")
         if wanted == "LineString" and (len(lonlats) < 2 or any(a == b for a, b in pairwise(lonlats))):
             raise UserError(f"{self.label}: it needs two points at least, and no point twice in a row")
+        if wanted == "Polygon" and (len(set(lonlats)) < 3 or lonlats[0] != lonlats[-1]):
+            raise UserError(f"{self.label}: its outline needs three corners, and the first one again at the end")
         return lonlats
 
     def _needed(self, key: str) -> Any:  # noqa: ANN401 - JSON holds anything; the callers narrow it
@@ -233,6 +317,9 @@ def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
             f"{feature.label}: {feature.properties['lanes']} lanes do not fit between kerbs {width_m} m apart; "
             f"`lanes` is a whole number, and each lane takes {NARROWEST_M} m"
         )
+    forward = feature.properties.get("lanes_forward")
+    if forward is not None and not (isinstance(forward, int) and 0 < forward <= lanes):
+        raise UserError(f"{feature.label}: `lanes_forward` is {forward!r}; it is a whole number from 1 to {lanes}")
     return Street(
         id=feature.text("id"),
         name=feature.text("name"),
@@ -247,6 +334,7 @@ def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
         confidences=tuple(
             (key, str(value)) for key, value in sorted(feature.properties.items()) if key.endswith("confidence")
         ),
+        lanes_forward=forward,
     )
 
 
@@ -281,6 +369,34 @@ def _stop(feature: _Feature, point: Point, streets: set[str]) -> Stop:
         point=point,
         street_id=street_id,
         forward=bool(feature.properties.get("forward", True)),
+        confidence=str(feature.properties.get("confidence", "unknown")),
+    )
+
+
+def _crossing(feature: _Feature, point: Point, streets: set[str]) -> Crossing:
+    street_id = feature.text("street_id")
+    if street_id not in streets:
+        raise UserError(f"{feature.label}: no street has the id {street_id!r}")
+    return Crossing(feature.text("id"), point, street_id, str(feature.properties.get("confidence", "unknown")))
+
+
+def _building(feature: _Feature, ring: tuple[Point, ...]) -> Building:
+    return Building(
+        id=feature.text("id"),
+        name=str(feature.properties.get("name", "")),
+        kind=str(feature.properties.get("kind", "yes")),
+        ring=ring,
+        height_m=feature.positive("height_m"),
+        confidence=str(feature.properties.get("height_confidence", "unknown")),
+    )
+
+
+def _furniture(feature: _Feature, point: Point) -> Furniture:
+    return Furniture(
+        id=feature.text("id"),
+        kind=feature.choice("kind"),
+        name=str(feature.properties.get("name", "")),
+        point=point,
         confidence=str(feature.properties.get("confidence", "unknown")),
     )
 

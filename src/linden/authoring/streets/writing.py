@@ -190,11 +190,11 @@ def _add_object(parent: etree._Element, thing: Object) -> None:
         roll=0,
         length=_metres(max(us) - min(us)),
         width=_metres(max(vs) - min(vs)),
-        height=0,
+        height=_metres(thing.height_m),
     )
     outline = _add(element, "outline")
     for u_m, v_m in thing.outline:
-        _add(outline, "cornerLocal", u=_metres(u_m), v=_metres(v_m), z=0, height=0)
+        _add(outline, "cornerLocal", u=_metres(u_m), v=_metres(v_m), z=0, height=_metres(thing.height_m))
     _add_notes(element, (("confidence", thing.confidence),))
 
 

@@ -1,15 +1,16 @@
-"""Bus stops on a SUMO network, where a route file has the shuttle's stops."""
+"""Bus stops on a SUMO network, where a route file has the shuttle's stops; parking areas along its parking lanes."""
 
-import math
 from pathlib import Path
 from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.sumo.net import Net, NetLane
+from linden.authoring.sumo.net import PARKING_TYPE, Net, along
 from linden.errors import UserError
 
 LENGTH_M = 12.0  # of a bus stop: the shuttle's 4 m twice, and room to pull in
+SPACE_M, CORNER_M = 6.7, 10.0
+"""A space at the kerb is 22 feet long; none lies near a corner (Manual on Uniform Traffic Control Devices, 3B.19)."""
 REACH_M = 8.0  # from a stop's place to the middle of its lane
 
 
@@ -42,14 +43,47 @@ def read_stops(path: Path) -> tuple[RouteStop, ...]:
         raise UserError(f"{path}: a <stop> needs id, x and y: {error}") from None
 
 
-def stops_file(net: Net, stops: tuple[RouteStop, ...]) -> tuple[bytes, tuple[RouteStop, ...]]:
-    """SUMO's additional file with a bus stop for each of ``stops``, and the stops far from any lane for cars."""
-    root = etree.Element("additional")
-    lost = []
+class ParkingArea(NamedTuple):
+    """Parking at the roadside: the lane beside it, from and to along the lane, how many cars it holds."""
+
+    id: str
+    lane: str
+    from_m: float
+    to_m: float
+    capacity: int
+
+
+def parking_areas(net: Net) -> tuple[ParkingArea, ...]:
+    """An area for each parking lane that lies beside a lane for cars; none near the ends of the street."""
+    areas = []
+    for edge in net.car_edges():
+        lane = edge.car_lanes[0]
+        length_m = lane.length_m - 2.0 * CORNER_M
+        if any(each.type == PARKING_TYPE for each in edge.lanes) and length_m >= SPACE_M:
+            capacity = int(length_m / SPACE_M)
+            area = ParkingArea(f"parking{edge.id}", lane.id, CORNER_M, CORNER_M + capacity * SPACE_M, capacity)
+            areas.append(area)
+    return tuple(areas)
+
+
+class BusStop(NamedTuple):
+    """A stop on SUMO's network: its lane, from and to along the lane, its place in SUMO's frame."""
+
+    id: str
+    name: str
+    lane: str
+    from_m: float
+    to_m: float
+    at_m: tuple[float, float]
+
+
+def bus_stops(net: Net, stops: tuple[RouteStop, ...]) -> tuple[tuple[BusStop, ...], tuple[RouteStop, ...]]:
+    """A bus stop for each of ``stops``, and the stops far from any lane for cars."""
+    found, lost = [], []
     for stop in stops:
         x_m, y_m = stop.x_m + net.offset_m[0], -stop.y_m + net.offset_m[1]
         distance_m, at_m, lane = min(
-            (( *_along(lane, x_m, y_m), lane) for edge in net.car_edges() for lane in edge.car_lanes[:1]),
+            (( *along(lane, x_m, y_m), lane) for edge in net.car_edges() for lane in edge.car_lanes[:1]),
             key=lambda found: found[0],
         )  # fmt: skip
         if distance_m > REACH_M:
@@ -57,27 +91,19 @@ def stops_file(net: Net, stops: tuple[RouteStop, ...]) -> tuple[bytes, tuple[Rou
             continue
         half_m = 0.5 * min(LENGTH_M, lane.length_m - 0.2)
         middle_m = min(max(at_m, half_m + 0.1), lane.length_m - half_m - 0.1)
-        given = {
-            "id": stop.id,
-            "name": stop.name,
-            "lane": lane.id,
-            "startPos": f"{middle_m - half_m:.2f}",
-            "endPos": f"{middle_m + half_m:.2f}",
-        }
-        etree.SubElement(root, "busStop", given)
-    return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8"), tuple(lost)
+        found.append(BusStop(stop.id, stop.name, lane.id, middle_m - half_m, middle_m + half_m, (x_m, y_m)))
+    return tuple(found), tuple(lost)
 
 
-def _along(lane: NetLane, x_m: float, y_m: float) -> tuple[float, float]:
-    """How far a place lies from a lane, and how far along the lane it is."""
-    best, passed_m = (math.inf, 0.0), 0.0
-    for first, second in zip(lane.shape, lane.shape[1:], strict=False):
-        dx_m, dy_m = second[0] - first[0], second[1] - first[1]
-        length_m = math.hypot(dx_m, dy_m)
-        if length_m > 0.0:
-            share = ((x_m - first[0]) * dx_m + (y_m - first[1]) * dy_m) / length_m**2
-            share = min(max(share, 0.0), 1.0)
-            away_m = math.hypot(first[0] + share * dx_m - x_m, first[1] + share * dy_m - y_m)
-            best = min(best, (away_m, passed_m + share * length_m))
-        passed_m += length_m
-    return best
+def stops_file(stops: tuple[BusStop, ...], areas: tuple[ParkingArea, ...]) -> bytes:
+    """SUMO's additional file with the bus stops and the parking areas."""
+    root = etree.Element("additional")
+    for stop in stops:
+        given = {"id": stop.id, "name": stop.name, "lane": stop.lane}
+        along_lane = {"startPos": f"{stop.from_m:.2f}", "endPos": f"{stop.to_m:.2f}"}
+        etree.SubElement(root, "busStop", given | along_lane)
+    for area in areas:
+        given = {"id": area.id, "lane": area.lane, "roadsideCapacity": str(area.capacity)}
+        along_lane = {"startPos": f"{area.from_m:.2f}", "endPos": f"{area.to_m:.2f}"}
+        etree.SubElement(root, "parkingArea", given | along_lane)
+    return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8")

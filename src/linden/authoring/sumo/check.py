@@ -1,17 +1,21 @@
 """Compares a SUMO network with its OpenDRIVE map: lanes, lengths, speeds, controls, connections."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import networkx as nx
 
 from linden.authoring.sumo.net import Net
 from linden.authoring.sumo.network import Converted
+from linden.maps.navigation.areas import crosswalk_places
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
 
 LENGTH_SHARE = 0.02  # of the whole length that netconvert may cut off or add at joints of lanes
 SPEED_MPS = 0.05  # SUMO writes two decimals
+AT_JUNCTION_M = 20.0  # from a crosswalk to the end of a street; one farther away crosses within the street
+CROSSWALK_M = 12.0  # from a crosswalk to its crossing: netconvert puts crossings to the edge of the junction
 SHORT_M = 0.5  # netconvert drops shorter sections
 
 
@@ -30,11 +34,13 @@ def compare(converted: Converted) -> Compared:
     net_car_km = sum(lane.length_m for edge in net.edges.values() for lane in edge.car_lanes) / 1000.0
     net_walk_km = sum(lane.length_m for e in net.edges.values() for lane in e.lanes if lane.for_people) / 1000.0
     found, signs, parts = _found(converted), _signs(converted), _parts(net)
+    people = _people(converted)
     table = (
         ("lanes for cars outside junctions, km", f"{car_km:.1f}", f"{net_car_km:.1f}"),
         ("pavements outside junctions, km", f"{walk_km:.1f}", f"{net_walk_km:.1f}"),
         *((name, str(wanted), str(kept)) for name, wanted, kept in signs),
-        ("parts that cannot reach each other", "1", str(parts)),
+        ("parts that cannot reach each other by car", "1", str(parts)),
+        *people.table,
     )
     misfits = [
         *(f"lane {origin}: the network has no edge of it" for origin in found.missing),
@@ -50,6 +56,30 @@ def compare(converted: Converted) -> Compared:
             misfits.append(f"lanes for {name}: {in_net:.1f} km in the network, {in_map:.1f} km in the map")
     if parts > 1:
         misfits.append(f"the network falls into {parts} parts that cannot reach each other by car")
+    return Compared(table, (*misfits, *people.misfits))
+
+
+def _people(converted: Converted) -> Compared:
+    """Compare what people walk on: crosswalks with crossings, and whether the pavements hang together.
+
+    A network without crossings was made for cars alone.
+    """
+    net = converted.net
+    places = [(x_m + net.offset_m[0], y_m + net.offset_m[1]) for x_m, y_m in crosswalk_places(converted.opendrive)]
+    marked = [place for place in places if _nearest_m(place, net.ends) < AT_JUNCTION_M]
+    crossed, parts = sum(_nearest_m(place, net.crossing_middles) < CROSSWALK_M for place in marked), walkable(net)
+    table = (
+        ("crosswalks at junctions", str(len(marked)), str(crossed)),
+        ("crosswalks within streets: SUMO has none", str(len(places) - len(marked)), "0"),
+        ("crossings in all", "", str(len(net.crossed))),
+        ("parts that cannot reach each other on foot", "1" if parts else "0", str(parts)),
+    )
+    misfits = []
+    if parts > 1 and net.crossed:
+        misfits.append(f"the pavements fall into {parts} parts that cannot reach each other on foot")
+    if crossed < len(marked) and net.crossed:
+        without = f"{len(marked) - crossed} of {len(marked)} at junctions"
+        misfits.append(f"crosswalks: {without} have no crossing within {CROSSWALK_M:g} m")
     return Compared(table, tuple(misfits))
 
 
@@ -114,6 +144,28 @@ def _signs(converted: Converted) -> list[tuple[str, int, int]]:
 
 def _is_of(name: str, kind: str, *, is_light: bool) -> bool:
     return is_light if name == "lights" else {"stop signs": "206", "yield signs": "205"}[name] == kind
+
+
+def _nearest_m(place_m: tuple[float, float], others_m: Iterable[tuple[float, ...]]) -> float:
+    """How far the nearest of other places lies."""
+    return min((math.dist(place_m, other_m) for other_m in others_m), default=math.inf)
+
+
+def walkable(net: Net) -> int:
+    """How many groups of pavements there are within which people reach every other."""
+    graph: nx.Graph[str] = nx.Graph()
+    graph.add_nodes_from(edge.id for edge in net.edges.values() if edge.pavements)
+    for connection in net.connections:
+        ends = ((connection.start, connection.start_lane), (connection.end, connection.end_lane))
+        if all(_is_for_people(net, edge, lane) for edge, lane in ends):
+            graph.add_edge(connection.start, connection.end)
+    return nx.number_connected_components(graph)
+
+
+def _is_for_people(net: Net, edge: str, lane: int) -> bool:
+    if edge.startswith(":"):  # an edge within a junction: walking areas end with w and a number, crossings with c
+        return edge.rpartition("_")[2][:1] in ("w", "c")
+    return net.edges[edge].lanes[lane].for_people
 
 
 def _parts(net: Net) -> int:

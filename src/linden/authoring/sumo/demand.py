@@ -1,5 +1,6 @@
 """A demand for a network: trips between homes and the town's edge, drawn from a seed, as many as fit the hour."""
 
+import enum
 import random
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -7,6 +8,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from linden.authoring.sumo.net import Net, NetEdge
+from linden.authoring.sumo.places import SCHOOL, TRANSIT, Place, car_streets
 from linden.authoring.sumo.vehicle_types import MIX
 from linden.errors import UserError
 
@@ -22,6 +24,12 @@ PURPOSES = ("out", "home", "within", "through")
 
 MORNING, EVENING, ELSE = (0.40, 0.10, 0.20, 0.30), (0.12, 0.38, 0.20, 0.30), (0.25, 0.25, 0.20, 0.30)
 """Shares of the purposes before 10:00, from 15:00 to 20:00, and at all other times: estimates."""
+
+TO_SCHOOL_H, FROM_SCHOOL_H = (8.0, 9.5), (14.0, 15.5)
+"""When schools begin and end: the Linden LEAP paused in these hours (docs/reference/passengers.md)."""
+SCHOOL_SHARE, TRANSIT_SHARE = 0.12, 0.06
+"""Shares of the trips that bring to or fetch from a school at those hours, and a transit station at all: estimates."""
+PARKING_SHARE = 0.3  # of the trips that end at homes with parking at the kerb and stay there: an estimate
 
 HOME_SPEED_MPS = 12.0  # streets up to 25 mph have homes; the faster ones are arterials
 MEAN_TRIP_S = 200.0  # observed on Linden: so many seconds' trips are under way at the beginning
@@ -44,6 +52,21 @@ class Trip(NamedTuple):
     start: str
     end: str
     is_under_way: bool
+    parking: str | None = None  # the parking area that it ends in
+
+
+class HomeWard(enum.Enum):
+    """The way of school children at an hour."""
+
+    TO = "to school"
+    FROM = "from school"
+
+
+def school_way(hour: float) -> HomeWard | None:
+    """Whether children go to school at an hour, or come from it."""
+    if TO_SCHOOL_H[0] <= hour < TO_SCHOOL_H[1]:
+        return HomeWard.TO
+    return HomeWard.FROM if FROM_SCHOOL_H[0] <= hour < FROM_SCHOOL_H[1] else None
 
 
 def check(demand: Demand) -> None:
@@ -66,8 +89,10 @@ def trips_per_hour(net: Net, demand: Demand) -> float:
     return BUSY_TRIPS_PER_KM * lane_km * HOUR_SHARES[int(demand.hour)] * demand.scale
 
 
-def draw(net: Net, demand: Demand) -> list[Trip]:
+def draw(net: Net, demand: Demand, places: tuple[Place, ...] = (), parking: frozenset[str] = frozenset()) -> list[Trip]:
     """The trips of a demand in the order of their departure: those under way first.
+
+    ``parking`` are the edges with a parking area.
 
     Raises:
         UserError: the network has no street to begin or end at.
@@ -84,24 +109,45 @@ def draw(net: Net, demand: Demand) -> list[Trip]:
     under_way = round(rate_hz * MEAN_TRIP_S)
     later = round(rate_hz * demand.duration_s)
     departures = [0.0] * under_way + sorted(round(dice.uniform(0.0, demand.duration_s), 2) for _ in range(later))
+    schools, stations = car_streets(net, places, SCHOOL), car_streets(net, places, TRANSIT)
     trips = []
     for number, depart_s in enumerate(departures):
         purpose = dice.choices(PURPOSES, shares)[0]
         starts = homes if purpose in ("out", "within") else entries
         ends = homes if purpose in ("home", "within") else exits
-        start = _drawn(starts, dice)
-        end = _drawn([edge for edge in ends if _is_elsewhere(edge, start)] or homes, dice)
-        trips.append(Trip(depart_s, start.id, end.id, number < under_way))
+        start = drawn(starts, dice)
+        end = drawn([edge for edge in ends if _is_elsewhere(edge, start)] or homes, dice)
+        start, end = _by_place(start, end, dice, demand.hour, (schools, stations))
+        parks = end.id in parking and ends is homes and dice.random() < PARKING_SHARE
+        trips.append(Trip(depart_s, start.id, end.id, number < under_way, end.id if parks else None))
     return trips
+
+
+def _by_place(
+    start: NetEdge, end: NetEdge, dice: random.Random, hour: float, places: tuple[list[NetEdge], list[NetEdge]]
+) -> tuple[NetEdge, NetEdge]:
+    """The ends of a trip, one of them now and then at one of the ``places``: schools, then transit stations."""
+    schools, stations = places
+    way = school_way(hour)
+    if schools and way is not None and dice.random() < SCHOOL_SHARE:
+        place, is_end = dice.choice(schools), way is HomeWard.TO
+    elif stations and dice.random() < TRANSIT_SHARE:
+        place, is_end = dice.choice(stations), dice.random() < 0.5
+    else:
+        return start, end
+    fits = _is_elsewhere(place, start) if is_end else _is_elsewhere(end, place)
+    if not fits:
+        return start, end
+    return (start, place) if is_end else (place, end)
 
 
 def _limit_mps(edge: NetEdge) -> float:
     return max(lane.speed_mps for lane in edge.car_lanes)
 
 
-def _drawn(edges: Sequence[NetEdge], dice: random.Random) -> NetEdge:
+def drawn(edges: Sequence[NetEdge], dice: random.Random) -> NetEdge:
     """One of the edges; the longer it is and the more lanes it has, the likelier."""
-    return dice.choices(edges, [edge.length_m * len(edge.car_lanes) for edge in edges])[0]
+    return dice.choices(edges, [edge.length_m * max(1, len(edge.car_lanes)) for edge in edges])[0]
 
 
 def _is_elsewhere(edge: NetEdge, start: NetEdge) -> bool:
@@ -124,5 +170,7 @@ def trips_file(trips: Sequence[Trip]) -> bytes:
         }
         if trip.is_under_way:
             given |= {"departEdge": "random", "departPos": "random_free"}
-        etree.SubElement(root, "trip", given)
+        element = etree.SubElement(root, "trip", given)
+        if trip.parking is not None:
+            etree.SubElement(element, "stop", {"parkingArea": f"parking{trip.parking}", "duration": f"{HOUR_S:g}"})
     return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8")

@@ -5,13 +5,16 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from linden.authoring.sumo.bus_stops import RouteStop, stops_file
+from linden.authoring.output import staged_folder
+from linden.authoring.sumo.bus_stops import RouteStop, bus_stops, parking_areas, stops_file
 from linden.authoring.sumo.demand import Demand, check, draw, trips_file
 from linden.authoring.sumo.network import Converted, convert
+from linden.authoring.sumo.people import draw_riders, draw_walks, people_file
+from linden.authoring.sumo.places import places_of
 from linden.authoring.sumo.vehicle_types import types_file
-from linden.errors import UserError
 
 STEP_S = 0.05  # as a benchmark's tick
+OURS = (".net.xml", ".rou.xml", ".add.xml", ".sumocfg")  # ends of the names of files in such a folder
 
 
 class Written(NamedTuple):
@@ -21,32 +24,45 @@ class Written(NamedTuple):
     config: Path  # with the demand
     empty: Path  # without it
     trips: int
+    walks: int
+    riders: int
     lost_stops: tuple[RouteStop, ...]
 
 
 def write_folder(
-    text: bytes, name: str, folder: Path, demand: Demand, stops: tuple[RouteStop, ...] = (), *, people: bool = True
+    text: bytes,
+    name: str,
+    folder: Path,
+    demand: Demand,
+    stops: tuple[RouteStop, ...] = (),
+    *,
+    people: bool = True,
+    places: Path | None = None,
 ) -> Written:
     """Write the scenario folder of an OpenDRIVE map; the same input gives the same bytes.
 
+    ``places`` is a GeoJSON file with places that people go to; without it those of Linden, where the map has them.
+
     Raises:
-        UserError: SUMO is not installed, the map cannot be converted, or the folder cannot be written.
+        UserError: SUMO is not installed, the map cannot be converted, or the folder cannot be written. Then an older
+            folder is left as it was.
     """
     check(demand)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        converted = convert(text, folder / f"{name}.net.xml", people=people)
-        trips = draw(converted.net, demand)
-        (folder / f"{name}.rou.xml").write_bytes(trips_file(trips))
-        (folder / "types.add.xml").write_bytes(types_file())
-        content, lost = stops_file(converted.net, stops)
-        (folder / "stops.add.xml").write_bytes(content)
-        config, empty = folder / f"{name}.sumocfg", folder / f"{name}.empty.sumocfg"
-        config.write_bytes(_config(name, demand, has_trips=True))
-        empty.write_bytes(_config(name, demand, has_trips=False))
-    except OSError as error:
-        raise UserError(f"cannot write to {folder}: {error.strerror}; name a folder that you may write to") from None
-    return Written(converted, config, empty, len(trips), lost)
+    with staged_folder(folder, lambda entry: entry.endswith(OURS)) as stage:
+        converted = convert(text, stage / f"{name}.net.xml", people=people)
+        net, found = converted.net, places_of(places, converted.opendrive.geo_origin)
+        at_kerbs, (at_stops, lost) = parking_areas(net), bus_stops(net, stops)
+        trips = draw(net, demand, found, frozenset(area.id.removeprefix("parking") for area in at_kerbs))
+        walks = draw_walks(net, demand, found) if people else []
+        riders = draw_riders(net, demand, at_stops) if people else []
+        (stage / f"{name}.rou.xml").write_bytes(trips_file(trips))
+        (stage / f"{name}.people.rou.xml").write_bytes(people_file(walks, riders, at_stops))
+        (stage / "types.add.xml").write_bytes(types_file())
+        (stage / "stops.add.xml").write_bytes(stops_file(at_stops, at_kerbs))
+        (stage / f"{name}.sumocfg").write_bytes(_config(name, demand, has_trips=True))
+        (stage / f"{name}.empty.sumocfg").write_bytes(_config(name, demand, has_trips=False))
+    configs = folder / f"{name}.sumocfg", folder / f"{name}.empty.sumocfg"
+    return Written(converted, *configs, len(trips), len(walks), len(riders), lost)
 
 
 def _config(name: str, demand: Demand, *, has_trips: bool) -> bytes:
@@ -56,7 +72,7 @@ def _config(name: str, demand: Demand, *, has_trips: bool) -> bytes:
     etree.SubElement(given, "net-file", {"value": f"{name}.net.xml"})
     etree.SubElement(given, "additional-files", {"value": "types.add.xml,stops.add.xml"})
     if has_trips:
-        etree.SubElement(given, "route-files", {"value": f"{name}.rou.xml"})
+        etree.SubElement(given, "route-files", {"value": f"{name}.rou.xml,{name}.people.rou.xml"})
     time = etree.SubElement(root, "time")
     etree.SubElement(time, "begin", {"value": "0"})
     etree.SubElement(time, "step-length", {"value": f"{STEP_S:g}"})
@@ -65,4 +81,5 @@ def _config(name: str, demand: Demand, *, has_trips: bool) -> bytes:
     processing = etree.SubElement(root, "processing")
     etree.SubElement(processing, "time-to-teleport", {"value": "-1"})
     etree.SubElement(processing, "collision.action", {"value": "warn"})
+    etree.SubElement(processing, "collision.check-junctions", {"value": "true"})
     return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8")

@@ -1,5 +1,6 @@
 """A SUMO network as frozen values: edges with lanes, connections, nodes, and the OpenDRIVE lanes they were made of."""
 
+import math
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -41,6 +42,11 @@ class NetEdge(NamedTuple):
         return tuple(lane for lane in self.lanes if lane.for_cars)
 
     @property
+    def pavements(self) -> tuple[NetLane, ...]:
+        """The lanes that people alone may use."""
+        return tuple(lane for lane in self.lanes if lane.for_people and not lane.for_cars)
+
+    @property
     def length_m(self) -> float:
         """The length of its lanes, which all have the same."""
         return self.lanes[0].length_m
@@ -68,6 +74,7 @@ class Net:
     node_types: MappingProxyType[str, str]
     lights: frozenset[str]
     crossed: MappingProxyType[str, tuple[str, ...]]  # the edges that a crossing leads over, by the crossing's id
+    crossing_middles: tuple[tuple[float, float], ...]  # SUMO's frame, m
     offset_m: tuple[float, float]
 
     @cached_property
@@ -87,6 +94,11 @@ class Net:
         for edge in self.car_edges():
             found[edge.end].append(edge)
         return found
+
+    @cached_property
+    def ends(self) -> list[tuple[float, ...]]:
+        """Where the lanes of all streets end, SUMO's frame."""
+        return [lane.shape[-1][:2] for edge in self.edges.values() for lane in edge.lanes]
 
     def car_edges(self) -> Iterator[NetEdge]:
         """Yield the edges that cars may use."""
@@ -123,8 +135,15 @@ def read_net(path: Path) -> Net:
                 if edge.get("function") == "crossing"
             }
         ),
+        crossing_middles=tuple(_middle(edge) for edge in root.iter("edge") if edge.get("function") == "crossing"),
         offset_m=(x_m, y_m),
     )
+
+
+def _middle(crossing: "etree._Element") -> tuple[float, float]:
+    """The middle between the ends of a crossing."""
+    shape = _lane(next(crossing.iter("lane"))).shape
+    return 0.5 * (shape[0][0] + shape[-1][0]), 0.5 * (shape[0][1] + shape[-1][1])
 
 
 def _lane(element: "etree._Element") -> NetLane:
@@ -154,3 +173,18 @@ def _connection(element: "etree._Element") -> Connection:
         direction=str(element.get("dir")),
         state=str(element.get("state")),
     )
+
+
+def along(lane: NetLane, x_m: float, y_m: float) -> tuple[float, float]:
+    """How far a place lies from a lane, and how far along the lane it is."""
+    best, passed_m = (math.inf, 0.0), 0.0
+    for first, second in zip(lane.shape, lane.shape[1:], strict=False):
+        dx_m, dy_m = second[0] - first[0], second[1] - first[1]
+        length_m = math.hypot(dx_m, dy_m)
+        if length_m > 0.0:
+            share = ((x_m - first[0]) * dx_m + (y_m - first[1]) * dy_m) / length_m**2
+            share = min(max(share, 0.0), 1.0)
+            away_m = math.hypot(first[0] + share * dx_m - x_m, first[1] + share * dy_m - y_m)
+            best = min(best, (away_m, passed_m + share * length_m))
+        passed_m += length_m
+    return best

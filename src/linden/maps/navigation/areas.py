@@ -76,6 +76,19 @@ def crosswalks(
     return found
 
 
+def crosswalk_places(opendrive: OpenDrive) -> list[tuple[float, float]]:
+    """Return the middle of every crosswalk in OpenDRIVE's frame, m."""
+    tables = tables_of(opendrive)
+    outlines = [
+        _outline(tables, index, thing)
+        for index, road in enumerate(opendrive.roads)
+        for thing in road.objects
+        if thing.is_crosswalk
+    ]
+    middles = (outline_m[:, :2].mean(axis=0) for outline_m in outlines if len(outline_m) >= 3)
+    return [(float(x_m), -float(y_m)) for x_m, y_m in middles]
+
+
 def _outline(tables: Tables, road_index: int, thing: RoadObject) -> F64:
     """Return an object's outline in CARLA's frame, (N, 3) in m, open; from its sizes where it has none."""
     half_x, half_y = 0.5 * thing.length_m, 0.5 * thing.width_m

@@ -36,13 +36,13 @@ def surveyed(origin_deg: tuple[float, float]) -> Surveyed:
     stops = [f for f in features if f["properties"]["feature"] == "shuttle_stop"]
     lines = [f["geometry"]["coordinates"] for f in features if f["properties"]["feature"] == "railroad"]
     return Surveyed(
-        _placed([stop["geometry"]["coordinates"] for stop in stops], origin_deg),
+        placed([stop["geometry"]["coordinates"] for stop in stops], origin_deg),
         np.array([_COMPASS[stop["properties"]["side"].split()[0]] for stop in stops]).reshape(-1, 2),
-        _placed(lines[0] if lines else [], origin_deg),
+        placed(lines[0] if lines else [], origin_deg),
     )
 
 
-def _placed(longitude_latitude: list[list[float]], origin_deg: tuple[float, float]) -> F64:
+def placed(longitude_latitude: list[list[float]], origin_deg: tuple[float, float]) -> F64:
     """Return places (N, 2) around an origin: the radii of curvature there (Snyder 1987, 4-20, 4-18) give metres.
 
     Beside a transverse Mercator projection this is off by less than a metre within three kilometres.

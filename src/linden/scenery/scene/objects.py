@@ -32,6 +32,10 @@ class Kind(IntEnum):
     PARKED_CAR = 9
     UTILITY_POLE = 10
     SHELTER = 11
+    BUILDING = 12  # on the footprint that the map gives
+    BENCH = 13
+    BIN = 14
+    MAILBOX = 15
 
 
 _NAMES = {
@@ -47,6 +51,10 @@ _NAMES = {
     Kind.PARKED_CAR: "ParkedCar",
     Kind.UTILITY_POLE: "UtilityPole",
     Kind.SHELTER: "BusStop",
+    Kind.BUILDING: "Building",
+    Kind.BENCH: "Bench",
+    Kind.BIN: "Bin",
+    Kind.MAILBOX: "Mailbox",
 }
 _TAG_NAMES: dict[int, str] = {SemanticTag.POLES: "Poles", SemanticTag.TRAFFIC_LIGHT: "TrafficLight"}
 """How CARLA writes the tags of a traffic light's parts into their names (Tagger.cpp, GetTagAsString)."""
@@ -64,6 +72,10 @@ LAYER = {
     Kind.PARKED_CAR: MapLayer.PARKED_VEHICLES,
     Kind.UTILITY_POLE: MapLayer.PROPS,
     Kind.SHELTER: MapLayer.PROPS,
+    Kind.BUILDING: MapLayer.BUILDINGS,
+    Kind.BENCH: MapLayer.PROPS,
+    Kind.BIN: MapLayer.PROPS,
+    Kind.MAILBOX: MapLayer.PROPS,
 }
 """The layer that a thing is loaded and unloaded with."""
 
@@ -91,6 +103,7 @@ class Scene:
 
     things: NDArray[np.void]  # of THING
     boxes: NDArray[np.void]  # of BOX
+    labels: tuple[tuple[int, str], ...] = ()  # rows of things with a name of their own, and that name
 
     @cached_property
     def layers(self) -> NDArray[np.int64]:
@@ -107,6 +120,8 @@ class Scene:
         for kind in map(Kind, self.things["kind"].tolist()):
             names.append(f"{_NAMES[kind]}_{count[kind]}")
             count[kind] += 1
+        for thing, label in self.labels:
+            names[thing] += f"_{label}"
         return tuple(names)
 
     @cached_property
@@ -155,7 +170,10 @@ def join(scenes: "list[Scene]") -> Scene:
     before = np.cumsum([0, *(len(scene.things) for scene in scenes)])
     boxes = np.concatenate([scene.boxes for scene in scenes])
     boxes["thing"] += np.repeat(before[:-1], [len(scene.boxes) for scene in scenes]).astype(np.int32)
-    return Scene(np.concatenate([scene.things for scene in scenes]), boxes)
+    labels = [
+        (int(start) + row, label) for start, scene in zip(before, scenes, strict=False) for row, label in scene.labels
+    ]
+    return Scene(np.concatenate([scene.things for scene in scenes]), boxes, tuple(labels))
 
 
 def things_with(kind: Kind, base_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> NDArray[np.void]:

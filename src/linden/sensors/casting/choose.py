@@ -1,4 +1,4 @@
-"""Which caster answers on this machine."""
+"""Choice of the ray caster for a device, and the check that this machine has the device."""
 
 import importlib.util
 import logging

@@ -22,20 +22,20 @@ def message(context: Context, record: ActorRecord) -> Actor:
 @method("get_actor_definitions")
 def get_actor_definitions(context: Context) -> tuple[ActorDefinition, ...]:
     """Return the blueprint library."""
-    return context.simulation.library.definitions
+    return context.world.library.definitions
 
 
 @method("get_actors_by_id")
 def get_actors_by_id(context: Context, actor_ids: list[U32]) -> list[Actor]:
     """Return the actors of these ids; unknown ids are left out."""
-    found = map(context.simulation.episode.actors.find, actor_ids)
+    found = map(context.world.episode.actors.find, actor_ids)
     return [message(context, record) for record in found if record is not None]
 
 
 @method("get_spectator")
 def get_spectator(context: Context) -> Actor:
     """Return the spectator, which every episode has."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return message(context, episode.actors.get(episode.spectator_id))
 
 
@@ -66,10 +66,10 @@ def attach(
     """
     context.frame_is_due = True
     if not socket:
-        return context.simulation.spawn(description, pose, parent_id=parent_id)
-    episode = context.simulation.episode
+        return context.world.spawn(description, pose, parent_id=parent_id)
+    episode = context.world.episode
     at = in_parent(episode, parent_id, socket, pose)
-    record = context.simulation.spawn(description, at, parent_id=parent_id)
+    record = context.world.spawn(description, at, parent_id=parent_id)
     episode.sockets.attach(episode, record.id, socket, pose)
     return record
 
@@ -77,7 +77,7 @@ def attach(
 @method("destroy_actor")
 def destroy_actor(context: Context, actor_id: U32) -> bool:
     """Take an actor out of the world; what is attached to it stays where it is, attached to nothing."""
-    context.simulation.destroy(actor_id)
+    context.world.destroy(actor_id)
     return True
 
 
@@ -88,34 +88,34 @@ def get_actor_bounding_box(context: Context, actor_id: U32) -> BoundingBox:
     The client then takes the box it knows. Its Traffic Manager asks for vehicles that another client may have destroyed
     since the last snapshot, in a thread where an error would end the whole program.
     """
-    record = context.simulation.episode.actors.find(actor_id)
+    record = context.world.episode.actors.find(actor_id)
     return BoundingBox() if record is None else record.box._replace(actor_id=actor_id)
 
 
 @method("set_actor_transform")
 def set_actor_transform(context: Context, actor_id: U32, pose: Transform) -> None:
     """Put an actor somewhere."""
-    context.simulation.episode.place(actor_id, pose)
+    context.world.episode.place(actor_id, pose)
 
 
 @method("set_actor_location")
 def set_actor_location(context: Context, actor_id: U32, location: Vector3D) -> None:
     """Put an actor somewhere and keep its rotation."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.place(actor_id, episode.own_transform(actor_id)._replace(location=location))
 
 
 @method("set_actor_target_velocity")
 def set_actor_target_velocity(context: Context, actor_id: U32, velocity: Vector3D) -> None:
     """Give an actor a velocity in m/s, in the world."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.set_target_velocity(episode.body(actor_id), velocity)
 
 
 @method("set_actor_target_angular_velocity")
 def set_actor_target_angular_velocity(context: Context, actor_id: U32, angular_velocity: Vector3D) -> None:
     """Give an actor an angular velocity in degrees/s, about the world's axes."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     radians = Vector3D(*map(math.radians, angular_velocity))
     episode.bodies.set_target_angular_velocity(episode.body(actor_id), radians)
 
@@ -123,56 +123,56 @@ def set_actor_target_angular_velocity(context: Context, actor_id: U32, angular_v
 @method("enable_actor_constant_velocity")
 def enable_actor_constant_velocity(context: Context, actor_id: U32, velocity: Vector3D) -> None:
     """Hold a velocity in m/s in the actor's own frame until it is disabled."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.enable_constant_velocity(episode.body(actor_id), velocity)
 
 
 @method("disable_actor_constant_velocity")
 def disable_actor_constant_velocity(context: Context, actor_id: U32) -> None:
     """Let forces rule the actor's velocity again."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.disable_constant_velocity(episode.body(actor_id))
 
 
 @method("add_actor_impulse")
 def add_actor_impulse(context: Context, actor_id: U32, impulse: Vector3D) -> None:
     """Push an actor at its centre of mass, N·s in the world."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.add_impulse(episode.body(actor_id), impulse)
 
 
 @method("add_actor_force")
 def add_actor_force(context: Context, actor_id: U32, force: Vector3D) -> None:
     """Push an actor at its centre of mass during the next frame, N in the world."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.add_force(episode.body(actor_id), force)
 
 
 @method("add_actor_impulse_at_location")
 def add_actor_impulse_at_location(context: Context, actor_id: U32, impulse: Vector3D, location: Vector3D) -> None:
     """Push an actor at a point of the world, N·s."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.add_impulse(episode.body(actor_id), impulse, location)
 
 
 @method("add_actor_force_at_location")
 def add_actor_force_at_location(context: Context, actor_id: U32, force: Vector3D, location: Vector3D) -> None:
     """Push an actor at a point of the world during the next frame, N."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.add_force(episode.body(actor_id), force, location)
 
 
 @method("add_actor_angular_impulse")
 def add_actor_angular_impulse(context: Context, actor_id: U32, impulse: Vector3D) -> None:
     """Turn an actor once, kg·cm²·degrees/s about the world's axes; the client's ``add_torque`` calls this too."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.add_angular_impulse(episode.body(actor_id), _from_unreal(impulse))
 
 
 @method("add_actor_torque")
 def add_actor_torque(context: Context, actor_id: U32, torque: Vector3D) -> None:
     """Turn an actor during the next frame, kg·cm²·degrees/s² about the world's axes."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.add_torque(episode.body(actor_id), _from_unreal(torque))
 
 
@@ -188,19 +188,19 @@ def _from_unreal(moment: Vector3D) -> Vector3D:
 @method("set_actor_simulate_physics")
 def set_actor_simulate_physics(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let forces move an actor, or hold it where it is put."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.below_ground.simulate(episode.body(actor_id), wanted=enabled)
 
 
 @method("set_actor_enable_gravity")
 def set_actor_enable_gravity(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let an actor fall, or float."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.set_gravity(episode.body(actor_id), falls=enabled)
 
 
 @method("set_actor_collisions")
 def set_actor_collisions(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let an actor stand in the way of others, or be passed through."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.collides[episode.body(actor_id)] = enabled

@@ -74,7 +74,7 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
 
 def _drive(context: Context, controls: Controls) -> list[Answer]:
     """Set the controls of many vehicles at once: what a script for traffic sends every tick."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     actor_ids = controls.actor_ids.tolist()
     slots = episode.vehicles(controls.actor_ids)
     if slots is not None:
@@ -92,7 +92,7 @@ def _drive(context: Context, controls: Controls) -> list[Answer]:
 
 def _place(context: Context, transforms: Transforms) -> list[Answer]:
     """Put many actors somewhere at once; each by itself where one comes twice, has no body or is not there."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     records = [episode.actors.find(actor_id) for actor_id in transforms.actor_ids]
     slots = [NO_BODY if record is None else record.slot for record in records]
     if NO_BODY in slots or len(set(slots)) < len(slots):

@@ -1,4 +1,4 @@
-"""What a handler may touch: the simulation, the maps, the streams, and what goes out with this call."""
+"""What a handler may touch: the world, the maps, the streams, and what goes out with this call."""
 
 import logging
 import traceback
@@ -40,7 +40,7 @@ class PendingLoad(NamedTuple):
 class Context:
     """One server's state as its handlers see it."""
 
-    simulation: World
+    world: World
     maps: MapLibrary
     frames: Frames
     streams: StreamTable
@@ -62,13 +62,13 @@ class Context:
 
     def advance(self) -> int:
         """Make one frame, put what it shows into the outbox, and return its number."""
-        fixed_s = self.simulation.settings.fixed_delta_seconds
-        self.simulation.step(self.variable_step_s() if fixed_s is None else fixed_s)
+        fixed_s = self.world.settings.fixed_delta_seconds
+        self.world.step(self.variable_step_s() if fixed_s is None else fixed_s)
         listened = self.streams.listened()
         if WORLD_OBSERVER_ID in listened:
-            self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.simulation)))
-        self.outbox.extend(self.frames.sensor_payloads(self.simulation, listened))
-        return self.simulation.frame
+            self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.world)))
+        self.outbox.extend(self.frames.sensor_payloads(self.world, listened))
+        return self.world.frame
 
     def begin_pending_load(self) -> None:
         """Begin the episode that a load has been answered for, if there is one."""
@@ -78,13 +78,13 @@ class Context:
 
     def builds_the_scene(self) -> bool:
         """Whether what sensors look at is being built."""
-        return not self.simulation.sensor_scene.wait(0.0)
+        return not self.world.sensor_scene.wait(0.0)
 
     def waits_for_the_scene(self) -> bool:
         """Return whether the next frame has to wait for the sensor scene, because a subscriber needs it."""
         if not self.builds_the_scene():
             return False
-        world = self.simulation
+        world = self.world
         return world.sensors.any_looking(world.episode.actors, self.streams.listened())
 
     def warn_once(self, sentence: str) -> None:

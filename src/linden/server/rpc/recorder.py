@@ -27,7 +27,7 @@ MOST_TIMES_FASTER = 1000.0
 @method("start_recorder")
 def start_recorder(context: Context, name: str, additional_data: bool) -> str:  # noqa: FBT001 - the wire's order
     """Record from the next frame on and return the file's path; what is recorded or replayed meanwhile ends."""
-    simulation, path = context.simulation, context.recordings.file(name)
+    simulation, path = context.world, context.recordings.file(name)
     simulation.replayer.stop(keep_actors=False)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -45,7 +45,7 @@ def start_recorder(context: Context, name: str, additional_data: bool) -> str:  
 @method("stop_recorder")
 def stop_recorder(context: Context) -> None:
     """End the recording, if one is under way."""
-    context.simulation.recorder.stop()
+    context.world.recorder.stop()
 
 
 @method("show_recorder_file_info")
@@ -122,7 +122,7 @@ def replay_file(
     """Replay a recording from the next frame on, on its own map; what is recorded or replayed meanwhile ends."""
     if not (math.isfinite(start) and math.isfinite(duration)):
         raise Refusal(f"replay_file: start {start} and duration {duration} must be finite numbers of seconds")
-    simulation, path = context.simulation, context.recordings.file(name)
+    simulation, path = context.world, context.recordings.file(name)
     simulation.recorder.stop()
     told = f"Replaying File: {path}\n"
     recording = _opened(path)
@@ -164,7 +164,7 @@ def _short(map_name: str) -> str:
 @method("stop_replayer")
 def stop_replayer(context: Context, keep_actors: bool) -> None:  # noqa: FBT001 - the wire's order
     """End the replay, if one is under way."""
-    context.simulation.replayer.stop(keep_actors=keep_actors)
+    context.world.replayer.stop(keep_actors=keep_actors)
 
 
 @method("set_replayer_time_factor")
@@ -172,16 +172,16 @@ def set_replayer_time_factor(context: Context, time_factor: float) -> None:
     """Set how fast replays go, the one under way too; 0 holds it."""
     if not 0.0 <= time_factor <= MOST_TIMES_FASTER:
         raise Refusal(f"a replay's time factor lies between 0 and {MOST_TIMES_FASTER:g}, not at {time_factor:g}")
-    context.simulation.replayer.time_factor = time_factor
+    context.world.replayer.time_factor = time_factor
 
 
 @method("set_replayer_ignore_hero")
 def set_replayer_ignore_hero(context: Context, ignore_hero: bool) -> None:  # noqa: FBT001 - the wire's order
     """Leave the hero out of the next replays, or let it in."""
-    context.simulation.replayer.ignore_hero = ignore_hero
+    context.world.replayer.ignore_hero = ignore_hero
 
 
 @method("set_replayer_ignore_spectator")
 def set_replayer_ignore_spectator(context: Context, ignore_spectator: bool) -> None:  # noqa: FBT001 - the wire's order
     """Leave the spectator where it is in the next replays, or move it as recorded."""
-    context.simulation.replayer.ignore_spectator = ignore_spectator
+    context.world.replayer.ignore_spectator = ignore_spectator

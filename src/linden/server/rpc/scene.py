@@ -30,19 +30,19 @@ def get_all_level_bbs(context: Context, tag: U8) -> list[BoundingBox]:
 
     The surface of roads and pavements is no object here, so it has no box.
     """
-    return queries.level_boxes(context.simulation.episode, tag)
+    return queries.level_boxes(context.world.episode, tag)
 
 
 @method("get_environment_objects")
 def get_environment_objects(context: Context, tag: U8) -> list[EnvironmentObject]:
     """Return the objects of the scene that have a semantic tag; 255 is any tag. Boxes are in the world."""
-    return queries.environment_objects(context.simulation.episode, tag)
+    return queries.environment_objects(context.world.episode, tag)
 
 
 @method("enable_environment_objects")
 def enable_environment_objects(context: Context, object_ids: list[U64], enable: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let objects disappear, so that nothing meets or hits them, or appear again."""
-    unknown = context.simulation.episode.surroundings.enable(object_ids, enabled=enable)
+    unknown = context.world.episode.surroundings.enable(object_ids, enabled=enable)
     if unknown:
         context.warn_once(
             f"enable_environment_objects: no object has the id {unknown[0]} (get_environment_objects lists them)"
@@ -52,25 +52,25 @@ def enable_environment_objects(context: Context, object_ids: list[U64], enable: 
 @method("get_names_of_all_objects")
 def get_names_of_all_objects(context: Context) -> list[str]:
     """Return the names of the things that the scene's objects are parts of."""
-    return queries.object_names(context.simulation.episode)
+    return queries.object_names(context.world.episode)
 
 
 @method("load_map_layer")
 def load_map_layer(context: Context, layers: U16) -> None:
     """Let the houses, trees, lamps or walls appear again; CARLA's other layers hold nothing here, nor in most towns."""
-    context.simulation.episode.surroundings.load_layers(layers)
+    context.world.episode.surroundings.load_layers(layers)
 
 
 @method("unload_map_layer")
 def unload_map_layer(context: Context, layers: U16) -> None:
     """Let the houses, trees, lamps or walls disappear."""
-    context.simulation.episode.surroundings.unload_layers(layers)
+    context.world.episode.surroundings.unload_layers(layers)
 
 
 @method("cast_ray")
 def cast_ray(context: Context, start: Vector3D, end: Vector3D) -> list[LabelledPoint]:
     """Return every surface that the way from one point to another crosses, in its order."""
-    return queries.cast_ray(context.simulation.episode, start, end)
+    return queries.cast_ray(context.world.episode, start, end)
 
 
 @method("project_point")
@@ -78,14 +78,14 @@ def project_point(
     context: Context, start: Vector3D, direction: Vector3D, search_distance: float
 ) -> tuple[bool, LabelledPoint]:
     """Return whether there is a surface in a direction within a distance in m, and where."""
-    found = queries.project_point(context.simulation.episode, start, direction, search_distance)
+    found = queries.project_point(context.world.episode, start, direction, search_distance)
     return (True, found) if found is not None else (False, _NOWHERE)
 
 
 @method("get_light_boxes")
 def get_light_boxes(context: Context, actor_id: U32) -> list[BoundingBox]:
     """Return the boxes of a traffic light's heads, in the world."""
-    return queries.light_boxes(context.simulation.episode, actor_id)
+    return queries.light_boxes(context.world.episode, actor_id)
 
 
 @method("apply_color_texture_to_objects")
@@ -131,7 +131,7 @@ _BRIGHTEST = 255
 @method("query_lights_state")
 def query_lights_state(context: Context, _client: str) -> tuple[LightState, ...]:
     """Return how all lamps stand."""
-    return context.simulation.episode.surroundings.lamp_states()
+    return context.world.episode.surroundings.lamp_states()
 
 
 @method("update_lights_state")
@@ -144,7 +144,7 @@ def update_lights_state(
     """Change lamps; the next snapshots tell all clients to ask anew."""
     for light in lights:
         _check(light)
-    unknown = context.simulation.episode.surroundings.lamps.update(lights)
+    unknown = context.world.episode.surroundings.lamps.update(lights)
     if unknown:
         context.warn_once(
             f"update_lights_state: no lamp has the id {unknown[0]} (get_all_lights lists those there are)"
@@ -154,7 +154,7 @@ def update_lights_state(
 @method("update_day_night_cycle")
 def update_day_night_cycle(context: Context, _client: str, active: bool) -> None:  # noqa: FBT001 - the wire's order
     """Let the sun switch the lamps, or leave them to the clients."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.surroundings.lamps.day_night_cycle = active
     episode.surroundings.lamps.follow_sun(episode.weather)
 
@@ -173,13 +173,13 @@ def _check(light: LightState) -> None:
 @method("get_weather_parameters")
 def get_weather_parameters(context: Context) -> WeatherParameters:
     """Return the weather as it was set."""
-    return context.simulation.episode.weather
+    return context.world.episode.weather
 
 
 @method("set_weather_parameters")
 def set_weather_parameters(context: Context, weather: WeatherParameters) -> None:
     """Keep the weather; negative values mean the map's own default and are returned as they came."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.weather = weather
     episode.surroundings.lamps.follow_sun(weather)
 
@@ -187,13 +187,13 @@ def set_weather_parameters(context: Context, weather: WeatherParameters) -> None
 @method("get_imui_gravity")
 def get_imui_gravity(context: Context) -> float:
     """Return the gravity that IMU sensors add, in m/s²."""
-    return context.simulation.episode.imu_gravity_mps2
+    return context.world.episode.imu_gravity_mps2
 
 
 @method("set_imui_gravity")
 def set_imui_gravity(context: Context, gravity_mps2: float) -> None:
     """Set the gravity that IMU sensors add."""
-    context.simulation.episode.imu_gravity_mps2 = gravity_mps2
+    context.world.episode.imu_gravity_mps2 = gravity_mps2
 
 
 @method("draw_debug_shape")
@@ -201,7 +201,7 @@ def draw_debug_shape(context: Context, shape: DebugShape) -> None:
     """Keep a shape for viewers and recordings until its simulated lifetime ends."""
     if not all(0 <= part <= _BRIGHTEST for part in shape.color):
         raise Refusal(f"the colour of a shape has parts from 0 to {_BRIGHTEST}, not {shape.color}")
-    episode = context.simulation.episode
+    episode = context.world.episode
     if not episode.surroundings.debug.draw(shape, episode.elapsed_s):
         context.warn_once(
             f"more than {MOST_SHAPES} debug shapes at a time: the oldest are given up; draw with a life_time above 0, "
@@ -212,10 +212,10 @@ def draw_debug_shape(context: Context, shape: DebugShape) -> None:
 @method("clear_debug_shape")
 def clear_debug_shape(context: Context) -> None:
     """Take away what was drawn into the world; text and what is drawn on the screen stay, as in CARLA."""
-    context.simulation.episode.surroundings.debug.clear_shapes()
+    context.world.episode.surroundings.debug.clear_shapes()
 
 
 @method("clear_debug_string")
 def clear_debug_string(context: Context) -> None:
     """Take away all text."""
-    context.simulation.episode.surroundings.debug.clear_strings()
+    context.world.episode.surroundings.debug.clear_strings()

@@ -53,7 +53,7 @@ def load_new_episode(context: Context, name: str, reset_settings: bool, layers: 
     a new ``Episode`` by ``get_episode_info`` and resets its Traffic Managers only when a snapshot has another id than
     that one: it must learn the id of the episode before. In CARLA it does, because a load takes seconds.
     """
-    simulation, maps = context.simulation, context.maps
+    simulation, maps = context.world, context.maps
     wanted = name or simulation.map_name
     ready = maps.ready(wanted)
     if ready is None:
@@ -85,19 +85,19 @@ def copy_opendrive_to_file(context: Context, opendrive: str, parameters: Opendri
 @method("get_map_info")
 def get_map_info(context: Context) -> MapInfo:
     """Return the map's name as CARLA writes it, and the recommended spawn points."""
-    return MapInfo(context.simulation.map_name, context.simulation.spawn_points)
+    return MapInfo(context.world.map_name, context.world.spawn_points)
 
 
 @method("get_map_data")
 def get_map_data(context: Context) -> str:
     """Return the OpenDRIVE text."""
-    return context.simulation.opendrive_text
+    return context.world.opendrive_text
 
 
 @method("get_episode_info")
 def get_episode_info(context: Context) -> EpisodeInfo:
     """Return the episode's id and the token of the world snapshots."""
-    return EpisodeInfo(context.simulation.episode_id, context.streams.token(WORLD_OBSERVER_ID))
+    return EpisodeInfo(context.world.episode_id, context.streams.token(WORLD_OBSERVER_ID))
 
 
 @method("get_sensor_token")
@@ -109,15 +109,15 @@ def get_sensor_token(context: Context, stream_id: U32) -> Token:
 @method("get_episode_settings")
 def get_episode_settings(context: Context) -> EpisodeSettings:
     """Return how time passes."""
-    return context.simulation.settings
+    return context.world.settings
 
 
 @method("set_episode_settings")
 def set_episode_settings(context: Context, settings: EpisodeSettings) -> int:
     """Change how time passes, from the next frame on; returns the present frame, for which no client has to wait."""
     _check(settings)
-    context.simulation.settings = settings
-    return context.simulation.frame
+    context.world.settings = settings
+    return context.world.frame
 
 
 @method("tick_cue", advances=True)
@@ -192,7 +192,7 @@ def _check(settings: EpisodeSettings) -> None:
 
 def _mesh(context: Context) -> Long[MeshFile | None]:
     """Return the mesh of the map that is loaded; where it is not known, it is made in the background."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     if context.meshes.knows(episode.map):
         return mesh_file(episode, context.meshes)
     made: MeshFile | None = yield lambda: mesh_file(episode, context.meshes)

@@ -72,7 +72,7 @@ def set_ignored_vehicles(context: Context, actor_id: U32, vehicle_ids: list[U32]
     """Check which vehicles a sensor shall not show; in 0.9.16 the cosmos camera alone asks, and it is not here."""
     _check_sensor(context, actor_id)
     for vehicle_id in vehicle_ids:
-        if "vehicle" not in context.simulation.episode.actors.get(vehicle_id).description.id:
+        if "vehicle" not in context.world.episode.actors.get(vehicle_id).description.id:
             raise ActorRefusal("Actor does not match the expected type", vehicle_id)
     if vehicle_ids:
         context.warn_once(
@@ -87,14 +87,14 @@ def _check_sensor(context: Context, actor_id: int) -> None:
     Raises:
         ActorRefusal: there is no such actor, or it is no sensor.
     """
-    if not context.simulation.episode.actors.get(actor_id).description.id.startswith("sensor."):
+    if not context.world.episode.actors.get(actor_id).description.id.startswith("sensor."):
         raise ActorRefusal("Actor does not match the expected type", actor_id)
 
 
 @method("enable_carsim")
 def enable_carsim(context: Context, actor_id: U32, _simfile: str) -> None:
     """Refuse: CarSim is a commercial program that CARLA reaches through a plugin of Unreal's."""
-    context.simulation.episode.vehicle(actor_id)
+    context.world.episode.vehicle(actor_id)
     raise Refusal(
         "CarSim is not here: it would need the VehicleSim library of Mechanical Simulation and a licence; vehicle "
         f"{actor_id} goes on with linden's own physics"
@@ -104,7 +104,7 @@ def enable_carsim(context: Context, actor_id: U32, _simfile: str) -> None:
 @method("use_carsim_road")
 def use_carsim_road(context: Context, actor_id: U32, _enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Refuse: there is no CarSim, and so no road of its."""
-    context.simulation.episode.vehicle(actor_id)
+    context.world.episode.vehicle(actor_id)
     raise Refusal(
         "CarSim is not here, nor are its roads: it would need the VehicleSim library of Mechanical Simulation and a "
         f"licence; vehicle {actor_id} drives on the map"
@@ -123,7 +123,7 @@ def enable_chrono_physics(
     _folder: str,
 ) -> None:
     """Refuse: Project Chrono would have to be compiled in."""
-    context.simulation.episode.vehicle(actor_id)
+    context.world.episode.vehicle(actor_id)
     raise Refusal(
         "Chrono is not here: it would need the Project Chrono vehicle library (CARLA has it only if built with "
         f"ARGS=--chrono); vehicle {actor_id} goes on with linden's own physics"
@@ -133,13 +133,13 @@ def enable_chrono_physics(
 @method("restore_physx_physics")
 def restore_physx_physics(context: Context, actor_id: U32) -> None:
     """Accept: a vehicle never leaves the server's own physics, so it has what is to be restored."""
-    context.simulation.episode.vehicle(actor_id)
+    context.world.episode.vehicle(actor_id)
 
 
 @method("show_vehicle_debug_telemetry")
 def show_vehicle_debug_telemetry(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Refuse to show, for there is no spectator window; not to show is what happens anyway."""
-    context.simulation.episode.vehicle(actor_id)
+    context.world.episode.vehicle(actor_id)
     if enabled:
         raise Refusal(
             f"the telemetry of vehicle {actor_id} cannot be drawn: this server has no spectator window; "

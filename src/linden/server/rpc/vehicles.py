@@ -17,36 +17,36 @@ from linden.simulation.episode import Episode
 @method("apply_control_to_vehicle")
 def apply_control_to_vehicle(context: Context, actor_id: U32, control: ClientControl) -> None:
     """Set feet and hands of the driver; they stay until the next call."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.set_control(episode.vehicle(actor_id), control)
 
 
 @method("apply_ackermann_control_to_vehicle")
 def apply_ackermann_control_to_vehicle(context: Context, actor_id: U32, control: AckermannControl) -> None:
     """Set a target motion that the vehicle's own controllers seek until the next call."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.set_ackermann(episode.vehicle(actor_id), control)
 
 
 @method("get_ackermann_controller_settings")
 def get_ackermann_controller_settings(context: Context, actor_id: U32) -> AckermannSettings:
     """Return the gains of the controllers behind Ackermann control."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return episode.bodies.ackermann_settings(episode.vehicle(actor_id))
 
 
 @method("apply_ackermann_controller_settings")
 def apply_ackermann_controller_settings(context: Context, actor_id: U32, settings: AckermannSettings) -> None:
     """Set the gains of the controllers behind Ackermann control."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.set_ackermann_settings(episode.vehicle(actor_id), settings)
 
 
 @method("get_physics_control")
 def get_physics_control(context: Context, actor_id: U32) -> VehiclePhysicsControl:
     """Return engine, gears and wheels; wheel positions in cm in the world, friction that of a trigger inside one."""
-    bodies = context.simulation.episode.bodies
-    slot = context.simulation.episode.vehicle(actor_id)
+    bodies = context.world.episode.bodies
+    slot = context.world.episode.vehicle(actor_id)
     control = bodies.physics_control(slot)
     here = float(bodies.friction_here[slot])
     if here < 0.0:
@@ -57,11 +57,11 @@ def get_physics_control(context: Context, actor_id: U32) -> VehiclePhysicsContro
 @method("apply_physics_control")
 def apply_physics_control(context: Context, actor_id: U32, control: VehiclePhysicsControl) -> None:
     """Replace engine, gears and wheels; the wheels stay where they are, whatever their positions say (as in CARLA)."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     slot = episode.vehicle(actor_id)
     wheels = tuple(wheel._replace(position=Vector3D()) for wheel in control.wheels)
     episode.bodies.set_physics_control(slot, control._replace(wheels=wheels))
-    context.simulation.recorder.physics_changed(actor_id)
+    context.world.recorder.physics_changed(actor_id)
     episode.bodies.friction_here[slot] = -1.0
     if control.use_sweep_wheel_collision:
         context.warn_once("use_sweep_wheel_collision is kept and has no effect: a wheel meets the ground at one point")
@@ -70,14 +70,14 @@ def apply_physics_control(context: Context, actor_id: U32, control: VehiclePhysi
 @method("get_telemetry_data")
 def get_telemetry_data(context: Context, actor_id: U32) -> VehicleTelemetry:
     """Return what moves the vehicle now."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return episode.bodies.telemetry(episode.vehicle(actor_id))
 
 
 @method("get_vehicle_light_state")
 def get_vehicle_light_state(context: Context, actor_id: U32) -> tuple[int, ...]:
     """Return the lamps that are lit, as bits of VehicleLightState."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.vehicle(actor_id)
     return (episode.actors.get(actor_id).light_state,)
 
@@ -92,7 +92,7 @@ def set_vehicle_light_state(context: Context, actor_id: U32, state: tuple[U32, .
 
 def set_light_bits(context: Context, actor_id: int, bits: int) -> None:
     """Switch lamps, as bits of VehicleLightState."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.vehicle(actor_id)
     episode.actors.set_lamps(actor_id, bits)
 
@@ -100,13 +100,13 @@ def set_light_bits(context: Context, actor_id: int, bits: int) -> None:
 @method("get_vehicle_light_states")
 def get_vehicle_light_states(context: Context) -> list[tuple[int, int]]:
     """Return (id, lamps) of every vehicle."""
-    return context.simulation.episode.actors.lamps()
+    return context.world.episode.actors.lamps()
 
 
 @method("set_actor_autopilot")
 def set_actor_autopilot(context: Context, actor_id: U32, enabled: bool) -> None:  # noqa: FBT001 - the wire's order
     """Take note of a vehicle's autopilot: it is driven by the Traffic Manager of the client that set it."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.bodies.set_autopilot(episode.vehicle(actor_id), on=enabled)
 
 
@@ -123,7 +123,7 @@ def close_vehicle_door(context: Context, actor_id: U32, door: U8) -> None:
 
 
 def _swing(context: Context, actor_id: int, door: int, *, opens: bool) -> None:
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.vehicle(actor_id)
     episode.doors.swing(episode.actors.get(actor_id), door, opens=opens)
 
@@ -131,14 +131,14 @@ def _swing(context: Context, actor_id: int, door: int, *, opens: bool) -> None:
 @method("get_wheel_steer_angle")
 def get_wheel_steer_angle(context: Context, actor_id: U32, wheel: U8) -> float:
     """Return a wheel's steering angle in degrees, positive to the right; without physics the one that was set."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return episode.bodies.wheel_steer_deg(_slot(episode, actor_id, wheel), wheel)
 
 
 @method("set_wheel_steer_direction")
 def set_wheel_steer_direction(context: Context, actor_id: U32, wheel: U8, angle_deg: float) -> None:
     """Let a wheel of a vehicle without physics point somewhere: for the eye only."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     slot = _still_slot(episode, actor_id, wheel, "wheel steer direction")
     episode.bodies.point_wheel(slot, wheel, angle_deg)
 
@@ -146,14 +146,14 @@ def set_wheel_steer_direction(context: Context, actor_id: U32, wheel: U8, angle_
 @method("get_wheel_pitch_angle")
 def get_wheel_pitch_angle(context: Context, actor_id: U32, wheel: U8) -> float:
     """Return how far a wheel has rolled, in degrees from -180 to 180; forward is negative, as Unreal has it."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return episode.bodies.wheel_pitch_deg(_slot(episode, actor_id, wheel), wheel)
 
 
 @method("set_wheel_pitch_angle")
 def set_wheel_pitch_angle(context: Context, actor_id: U32, wheel: U8, angle_deg: float) -> None:
     """Turn a wheel of a vehicle without physics about its axle: for the eye only."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     slot = _still_slot(episode, actor_id, wheel, "wheel pitch angle")
     episode.bodies.roll_wheel(slot, wheel, angle_deg)
 

@@ -20,7 +20,7 @@ from linden.simulation import bones
 @method("apply_control_to_walker")
 def apply_control_to_walker(context: Context, actor_id: U32, control: WalkerControl) -> None:
     """Set where a walker goes; it holds until the next call."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     slot = episode.walker(actor_id)
     episode.walkers.refuse_dead(actor_id)
     episode.bodies.set_walker_control(slot, control)
@@ -37,7 +37,7 @@ def lead(context: Context, states: Sequence[tuple[int, Transform, float]]) -> No
     Raises:
         ActorRefusal: one of them is none, or dead; then none is moved.
     """
-    episode = context.simulation.episode
+    episode = context.world.episode
     for actor_id, _, _ in states:
         episode.walker(actor_id)
         episode.walkers.refuse_dead(actor_id)
@@ -48,7 +48,7 @@ def lead(context: Context, states: Sequence[tuple[int, Transform, float]]) -> No
 @method("set_actor_dead")
 def set_actor_dead(context: Context, actor_id: U32) -> None:
     """Let a walker fall and lie for ten seconds, then remove it. The client's crowd calls this after a collision."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.walkers.die(episode, actor_id)
 
 
@@ -83,7 +83,7 @@ class BonesIn(NamedTuple):
 @method("get_bones_transform")
 def get_bones_transform(context: Context, actor_id: U32) -> BonesOut:
     """Return a walker's bones as they are now."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.walker(actor_id)
     found = bones.bones_of(episode, actor_id)
     world = bones.in_world(episode, actor_id, found.in_actor)
@@ -96,7 +96,7 @@ def get_bones_transform(context: Context, actor_id: U32) -> BonesOut:
 @method("set_bones_transform")
 def set_bones_transform(context: Context, actor_id: U32, pose: BonesIn) -> None:
     """Set bones of a walker's custom pose, which ``blend_pose`` shows."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.walker(actor_id)
     episode.poses.set(episode, actor_id, {bone.name: bone.relative for bone in pose.bones})
 
@@ -104,7 +104,7 @@ def set_bones_transform(context: Context, actor_id: U32, pose: BonesIn) -> None:
 @method("blend_pose")
 def blend_pose(context: Context, actor_id: U32, share: float) -> None:
     """Show the walking animation (0), the custom pose (1), or what lies between."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.walker(actor_id)
     episode.poses.blend(actor_id, share)
 
@@ -112,27 +112,27 @@ def blend_pose(context: Context, actor_id: U32, share: float) -> None:
 @method("get_pose_from_animation")
 def get_pose_from_animation(context: Context, actor_id: U32) -> None:
     """Make what the animation shows now the custom pose."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.poses.take(episode, actor_id)
 
 
 @method("get_actor_bone_names")
 def get_actor_bone_names(context: Context, actor_id: U32) -> list[str]:
     """Return the names of an actor's bones."""
-    return list(bones.bones_of(context.simulation.episode, actor_id).names)
+    return list(bones.bones_of(context.world.episode, actor_id).names)
 
 
 @method("get_actor_bone_world_transforms")
 def get_actor_bone_world_transforms(context: Context, actor_id: U32) -> list[Transform]:
     """Return where an actor's bones are, in the order of their names."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return bones.in_world(episode, actor_id, bones.bones_of(episode, actor_id).in_actor)
 
 
 @method("get_actor_bone_relative_transforms")
 def get_actor_bone_relative_transforms(context: Context, actor_id: U32) -> list[Transform]:
     """Return where an actor's bones are in the frame of its skeleton."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     found = bones.bones_of(episode, actor_id)
     return [transform_of(frame) for frame in bones.in_skeleton(episode, actor_id, found)]
 
@@ -140,7 +140,7 @@ def get_actor_bone_relative_transforms(context: Context, actor_id: U32) -> list[
 @method("get_vehicle_bone_world_transforms")
 def get_vehicle_bone_world_transforms(context: Context, actor_id: U32) -> list[Transform]:
     """Return where a vehicle's body and wheels are."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     episode.vehicle(actor_id)
     return bones.in_world(episode, actor_id, bones.bones_of(episode, actor_id).in_actor)
 
@@ -148,36 +148,36 @@ def get_vehicle_bone_world_transforms(context: Context, actor_id: U32) -> list[T
 @method("get_actor_socket_names")
 def get_actor_socket_names(context: Context, actor_id: U32) -> list[str]:
     """Return the names of what something can be attached to: every bone is a socket."""
-    return list(bones.sockets_of(context.simulation.episode, actor_id).names)
+    return list(bones.sockets_of(context.world.episode, actor_id).names)
 
 
 @method("get_actor_socket_world_transforms")
 def get_actor_socket_world_transforms(context: Context, actor_id: U32) -> list[Transform]:
     """Return where an actor's sockets are."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return bones.in_world(episode, actor_id, bones.sockets_of(episode, actor_id).in_actor)
 
 
 @method("get_actor_socket_relative_transforms")
 def get_actor_socket_relative_transforms(context: Context, actor_id: U32) -> list[Transform]:
     """Return where an actor's sockets are in its own frame."""
-    return [transform_of(frame) for frame in bones.sockets_of(context.simulation.episode, actor_id).in_actor]
+    return [transform_of(frame) for frame in bones.sockets_of(context.world.episode, actor_id).in_actor]
 
 
 @method("get_actor_component_names")
 def get_actor_component_names(context: Context, actor_id: U32) -> list[str]:
     """Return the names of an actor's components."""
-    return list(bones.component_names(context.simulation.episode, actor_id))
+    return list(bones.component_names(context.world.episode, actor_id))
 
 
 @method("get_actor_component_world_transform")
 def get_actor_component_world_transform(context: Context, actor_id: U32, name: str) -> Transform:
     """Return where a component is."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     return bones.in_world(episode, actor_id, bones.component(episode, actor_id, name)[None])[0]
 
 
 @method("get_actor_component_relative_transform")
 def get_actor_component_relative_transform(context: Context, actor_id: U32, name: str) -> Transform:
     """Return where a component is in its actor's frame."""
-    return transform_of(bones.component(context.simulation.episode, actor_id, name))
+    return transform_of(bones.component(context.world.episode, actor_id, name))

@@ -20,12 +20,12 @@ STEP_S = 0.05
 
 
 class OneActor:
-    """As much of a stage as one puppet needs."""
+    """As much of a stage as one actor needs."""
 
     step_s, ego_contacts = STEP_S, frozenset()
 
     def __init__(self, client: carla.Client, actor: carla.Actor) -> None:
-        self.actor, self.puppets, self.time_s = actor, ActorCommands(client), 0.0
+        self.actor, self.commands, self.time_s = actor, ActorCommands(client), 0.0
         self.member = SimpleNamespace(actor=actor)
         self.seen: list[Body] = []
 
@@ -40,13 +40,13 @@ class OneActor:
         return Body(x_m, y_m, pose.location.z, yaw_rad, velocity.x, velocity.y, box.extent.x, box.extent.y)
 
     def move(self, _name: str, *motion: float) -> None:
-        self.puppets.move(self.member, *motion)
+        self.commands.move(self.member, *motion)
 
     def walk(self, _name: str, *velocity: float) -> None:
-        self.puppets.walk(self.member, *velocity)
+        self.commands.walk(self.member, *velocity)
 
     def let_go(self, _name: str) -> None:
-        self.puppets.let_go(self.member)
+        self.commands.let_go(self.member)
 
     def play(self, action: Action, until_s: float = 60.0) -> None:
         """Until it is done."""
@@ -60,7 +60,7 @@ class OneActor:
 
     def go_on(self, frames: int) -> None:
         for _ in range(frames):
-            self.puppets.carry_out()
+            self.commands.carry_out()
             self.actor.get_world().tick()
             self.time_s += STEP_S
             self.seen.append(self.body(""))

@@ -47,7 +47,7 @@ def test_that_stands_and_is_touched_is_reported_and_may_be_forgiven(counts: bool
     assert said.sentence.startswith("was touched by child (vehicle.audi.tt) at 2.00 s at 0.00 m/s")
 
 
-def test_whom_the_scenario_excepts_may_be_touched_and_others_not() -> None:
+def test_actors_that_the_scenario_excepts_may_be_touched_and_others_not() -> None:
     history = driven(at(5.0, 4.0), collisions=[hit(30, "vehicle.audi.tt", 9), hit(60)])
     said = NoCollision(except_with=["child"]).judge(played(history))
     assert (said.passed, said.other, said.t_s) == (False, "static.poles", pytest.approx(3.0))

@@ -48,7 +48,7 @@ def test_things_of_the_scenario_count_like_actors() -> None:
     assert said.passed is False
 
 
-def test_only_the_one_that_is_asked_about_counts() -> None:
+def test_only_the_chosen_actor_counts() -> None:
     case = played(
         ride(5.0, eastward(lambda _: 10.0, 6.0), others=[CHILD, (10, moving(30.0, -2.5, 0.0, 0.0))]),
         roles={9: "child", 10: "car"},
@@ -128,7 +128,7 @@ def test_braking_in_front_of_an_actor_it_is_least_on_the_way() -> None:
     assert said.measured == pytest.approx(math.sqrt(1.6), abs=0.005)
 
 
-def test_things_are_run_towards_like_anybody() -> None:
+def test_things_are_run_towards_like_actors() -> None:
     said = LeastTtc(2.0).judge(played(driven(at(10.0, 2.05)), things=(Thing("barrier", 30.5, 0.0, 0.0, 0.5, 1.0),)))
     assert (said.other, said.passed) == ("barrier", False)
     assert said.measured == pytest.approx((30.0 - 22.0) / 10.0, abs=1e-6)

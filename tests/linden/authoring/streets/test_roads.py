@@ -8,7 +8,7 @@ import pytest
 from linden.authoring.streets.cross_section import Lane
 from linden.authoring.streets.curves import Piece, Pose, length
 from linden.authoring.streets.document import value
-from linden.authoring.streets.roads import RAMP_M, blended, elevation
+from linden.authoring.streets.roads import blended, elevation
 from linden.authoring.streets.street_facts import Ground
 
 GROUND = Ground(250.0, 0.01, 0.0, "estimated")
@@ -24,7 +24,7 @@ def test_a_road_meets_a_junction_level_and_at_its_height() -> None:
     heights = elevation(GROUND, NORTHWARD, (250.2, None))
     assert value(heights, 0.0) == pytest.approx(250.2)
     assert value(heights, 0.01) - value(heights, 0.0) < 1e-6
-    assert value(heights, RAMP_M) == pytest.approx(250.0 + 0.01 * RAMP_M)
+    assert value(heights, GROUND.profile.ramp_m) == pytest.approx(250.0 + 0.01 * GROUND.profile.ramp_m)
 
 
 def test_pieces_of_a_profile_meet_in_height_and_slope() -> None:

@@ -1,13 +1,14 @@
 """Claims about SUMO networks of maps: every sign and light is kept, and the same map gives the same bytes."""
 
 from dataclasses import replace
+from importlib import resources
 from pathlib import Path
 
 import pytest
 from lxml import etree
 
 from linden.authoring.sumo import programs
-from linden.authoring.sumo.bus_stops import RouteStop, stops_file
+from linden.authoring.sumo.bus_stops import RouteStop, bus_stops, stops_file
 from linden.authoring.sumo.check import compare
 from linden.authoring.sumo.demand import Demand, draw, trips_per_hour
 from linden.authoring.sumo.network import Converted, convert, with_lane_speeds
@@ -15,13 +16,6 @@ from linden.authoring.sumo.vehicle_types import MIX, blueprints, types_file
 from linden.errors import UserError
 
 pytest.importorskip("sumo", reason="the extra for SUMO is not installed")
-LINDEN = Path(programs.__file__).parents[2] / "data" / "Linden.xodr"
-
-
-@pytest.fixture(scope="module")
-def linden(tmp_path_factory: pytest.TempPathFactory) -> tuple[Converted, Path]:
-    target = tmp_path_factory.mktemp("sumo") / "Linden.net.xml"
-    return convert(LINDEN.read_bytes(), target), target
 
 
 def test_linden_keeps_every_sign_and_light(linden: tuple[Converted, Path]) -> None:
@@ -30,7 +24,10 @@ def test_linden_keeps_every_sign_and_light(linden: tuple[Converted, Path]) -> No
     assert rows["stop signs"] == ("157", "157")
     assert rows["yield signs"] == ("8", "8")
     assert rows["lights"] == ("22", "22")
-    assert rows["parts that cannot reach each other"] == ("1", "1")
+    assert rows["parts that cannot reach each other by car"] == ("1", "1")
+    assert rows["crosswalks at junctions"] == ("36", "36")
+    assert rows["crosswalks within streets: SUMO has none"] == ("4", "0")
+    assert rows["parts that cannot reach each other on foot"] == ("1", "1")
     assert compared.misfits == ()
 
 
@@ -47,7 +44,7 @@ def test_a_lost_sign_and_a_wrong_speed_are_misfits(linden: tuple[Converted, Path
 
 def test_the_network_has_no_date_and_the_same_bytes_twice(linden: tuple[Converted, Path], tmp_path: Path) -> None:
     again = tmp_path / "again.net.xml"
-    convert(LINDEN.read_bytes(), again)
+    convert((resources.files("linden") / "data" / "Linden.xodr").read_bytes(), again)
     assert again.read_bytes() == linden[1].read_bytes()
     assert b"generated on" not in again.read_bytes()
 
@@ -78,8 +75,8 @@ def test_lanes_without_a_speed_take_that_of_their_road() -> None:
 def test_stops_of_a_route_file_lie_on_their_side_of_the_street(linden: tuple[Converted, Path]) -> None:
     net = linden[0].net
     both = (RouteStop("S3E", "", 620.257, -368.426), RouteStop("S3W", "", 629.571, -370.938))
-    content, lost = stops_file(net, (*both, RouteStop("far", "", 1e5, 1e5)))
-    lanes = [str(each.get("lane")) for each in etree.fromstring(content).iter("busStop")]
+    found, lost = bus_stops(net, (*both, RouteStop("far", "", 1e5, 1e5)))
+    lanes = [str(each.get("lane")) for each in etree.fromstring(stops_file(found, ())).iter("busStop")]
     assert [stop.id for stop in lost] == ["far"]
     assert len(lanes) == 2
     assert lanes[0].split("_")[0].lstrip("-") == lanes[1].split("_")[0].lstrip("-"), "the same street"

@@ -130,7 +130,7 @@ def test_the_mesh_lies_on_the_ground(street: WalkingMesh) -> None:
             assert heights_m == pytest.approx(0.15 if polygon.area == Area.SIDEWALK else 0.075, abs=0.076)
 
 
-def test_nobody_is_led_through_what_stands_on_the_pavement() -> None:
+def test_no_walker_is_led_through_what_stands_on_the_pavement() -> None:
     box = Obstacles(np.array([[20.0, 4.25, 1.0]]), np.array([[0.5, 0.1, 1.0]]), np.zeros(1))
     mesh = mesh_of(street_through_junction(), box)
     assert areas_at(mesh, 20.0, 4.25) == set()

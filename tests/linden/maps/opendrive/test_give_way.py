@@ -22,7 +22,7 @@ def squares(request: pytest.FixtureRequest) -> dict[str, NDArray[np.void]]:
     return {signal_id: found[found["signal"] == nth] for nth, signal_id in enumerate(ids)}
 
 
-def test_every_sign_at_a_crossing_has_somebody_to_let_go(squares: dict[str, NDArray[np.void]]) -> None:
+def test_every_sign_at_a_crossing_has_traffic_to_give_way_to(squares: dict[str, NDArray[np.void]]) -> None:
     assert sorted(squares) == ["100", "101", "102", "103"]
     assert all(len(own) for own in squares.values())
 

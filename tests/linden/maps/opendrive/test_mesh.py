@@ -95,7 +95,7 @@ def test_a_lanes_own_limit_goes_before_the_roads_and_may_change_on_the_way() -> 
 
 
 @pytest.mark.parametrize("speed", ["", '<type s="0" type="town"><speed max="no limit"/></type>'])
-def test_a_limit_nobody_told_is_not_a_number(speed: str) -> None:
+def test_an_unknown_limit_is_not_a_number(speed: str) -> None:
     assert np.isnan(one_road(lane(-1), speed=speed).lanes["speed_limit_mps"]).all()
 
 
@@ -163,7 +163,7 @@ HIGH = '<elevation s="0" a="1e8" b="0" c="0" d="0"/>'
     ],
     ids=["wide", "long", "high", "places", "overlaps"],
 )
-def test_a_map_that_asks_for_too_much_is_told_how_much_is_allowed(text: str, told: str) -> None:
+def test_a_map_that_asks_for_too_much_is_refused_with_the_limit(text: str, told: str) -> None:
     with pytest.raises(MapError) as caught:
         road_mesh(parse(text))
     assert told in str(caught.value)

@@ -23,7 +23,7 @@ def test_it_is_computed_once_for_each_map() -> None:
     assert seen == [first, second]
 
 
-def test_a_map_that_nobody_holds_goes_at_once_with_all_that_was_derived_from_it() -> None:
+def test_an_unreferenced_map_is_freed_at_once_with_all_that_was_derived_from_it() -> None:
     opendrive = parse(street_through_junction() + "\n" * 3)  # a text that no other test holds
     gone = [weakref.ref(thing) for thing in (opendrive, tables_of(opendrive))]
     lane_links(opendrive)

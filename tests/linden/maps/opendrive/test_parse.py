@@ -85,7 +85,7 @@ def test_shapes_are_read() -> None:
         ("OpenDRIVE>", "svg>", "the outermost element is <svg>"),
     ],
 )
-def test_a_bad_text_is_told_what_stands_where(before: str, after: str, told: str) -> None:
+def test_a_bad_text_is_refused_with_the_value_and_its_place(before: str, after: str, told: str) -> None:
     assert before in GOOD
     with pytest.raises(MapError) as caught:
         parse(GOOD.replace(before, after))
@@ -183,7 +183,7 @@ def crossed(corners: str) -> str:
     ],
     ids=["beyond numbers", "far", "corners", "signals", "elements", "long"],
 )
-def test_a_text_that_asks_for_too_much_is_told_how_much_is_allowed(text: str, told: str) -> None:
+def test_a_text_that_asks_for_too_much_is_refused_with_the_limit(text: str, told: str) -> None:
     with pytest.raises(MapError) as caught:
         parse(text)
     assert told in str(caught.value)

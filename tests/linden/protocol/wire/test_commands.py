@@ -118,7 +118,7 @@ def nested_spawns(depth: int) -> list[Any]:
     return [command]
 
 
-def test_spawns_stand_in_one_another_as_deep_as_anybody_needs() -> None:
+def test_spawns_stand_in_one_another_to_the_needed_depth() -> None:
     (outer,) = decode_commands(nested_spawns(MAX_NESTED_SPAWNS))
     assert isinstance(outer, SpawnActor)
     assert isinstance(outer.do_after[0], SpawnActor)

@@ -214,7 +214,7 @@ def test_pixels_are_passed_over_and_the_calls_round_them_are_not(
     assert connection.unfinished_bytes == 0
 
 
-def test_pixels_whose_call_makes_no_sense_are_a_sentence() -> None:
+def test_pixels_of_a_call_without_sense_get_a_sentence() -> None:
     broken = b"\x94\x00\x01\xbe" + rpc.OF_PIXELS[0].encode() + b"\x91\xc1"
     with pytest.raises(ProtocolError, match="not msgpack"):
         RpcConnection().receive(broken)

@@ -40,7 +40,7 @@ def test_a_message_is_preceded_by_its_size_and_never_empty() -> None:
         size_prefix(0)
 
 
-def test_a_stream_is_listened_to_as_long_as_somebody_does() -> None:
+def test_a_stream_has_listeners_until_the_last_one_leaves() -> None:
     table = StreamTable(2001)
     table.subscribe(3)
     table.subscribe(3)

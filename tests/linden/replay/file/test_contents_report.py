@@ -140,13 +140,13 @@ def info(path: Path, *, show_all: bool) -> str:
         return file_info(recording, show_all=show_all)
 
 
-def test_everything_is_told_in_carlas_words(tmp_path: Path) -> None:
+def test_the_report_uses_carlas_words(tmp_path: Path) -> None:
     path = made.write(tmp_path, made.header(), FIRST, QUIET, LAST)
     quiet = "\nFrame 2 at 0.0166667 seconds\n Positions: 1\n  Id: 29 Location: (100, 200.5, 0) Rotation: (1, 2, 3)\n"
     assert info(path, show_all=True) == TEXT_OF_EVENTS + TEXT_OF_STATES + quiet + TAIL
 
 
-def test_frames_in_which_nobody_came_or_went_leave_a_blank_line_where_not_all_is_shown(tmp_path: Path) -> None:
+def test_frames_without_arrivals_and_departures_leave_a_blank_line_where_not_all_is_shown(tmp_path: Path) -> None:
     path = made.write(tmp_path, made.header(), FIRST, QUIET, LAST)
     assert info(path, show_all=False) == TEXT_OF_EVENTS + "\n" + TAIL
 
@@ -158,7 +158,7 @@ def test_no_doors_are_not_told_for_scenariorunner_would_read_no_positions_after_
     assert " Positions: 0\n" in text
 
 
-def test_a_recording_cut_short_is_told_up_to_its_last_whole_frame(tmp_path: Path) -> None:
+def test_a_cut_recording_is_reported_up_to_its_last_whole_frame(tmp_path: Path) -> None:
     text = info(made.write(tmp_path, made.header(), QUIET, LAST[:-1]), show_all=False)
     assert text.endswith("\nFrames: 2\nDuration: 0.0166667 seconds\n")
 

@@ -104,7 +104,7 @@ BIKERS = struct.pack("<HIff", 1, 9, 3.5, 0.5)
     [(DOORS, PacketId.DOORS), (WHEELS, PacketId.WHEELS), (BIKERS, PacketId.BIKERS)],
     ids=["doors", "wheels", "bikers"],
 )
-def test_doors_wheels_and_bikers_are_told_apart_under_whichever_number(
+def test_doors_wheels_and_bikers_are_distinguished_under_each_number(
     tmp_path: Path, number: int, content: bytes, kind: PacketId
 ) -> None:
     with Recording(made.write(tmp_path, made.header(), made.frame(1, 0.0, made.packet(number, content)))) as recording:
@@ -136,7 +136,7 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize(("content", "offset", "says"), DAMAGES.values(), ids=DAMAGES.keys())
-def test_damage_is_told_with_the_byte_where_it_shows(
+def test_damage_is_reported_with_the_byte_where_it_shows(
     tmp_path: Path, content: bytes, offset: int, says: str | None
 ) -> None:
     path = made.write(tmp_path, made.header(), content)
@@ -162,7 +162,7 @@ def test_what_is_no_recording_is_called_so(tmp_path: Path, content: bytes) -> No
         Recording(made.write(tmp_path, content))
 
 
-def test_a_version_that_nobody_knows_and_a_date_that_is_none_are_refused(tmp_path: Path) -> None:
+def test_an_unknown_version_and_an_impossible_date_are_refused(tmp_path: Path) -> None:
     with pytest.raises(RecordingError, match="version 3"):
         Recording(made.write(tmp_path, made.header(version=3)))
     with pytest.raises(RecordingError, match="are no date"):

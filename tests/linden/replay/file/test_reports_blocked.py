@@ -23,7 +23,7 @@ def report(path: Path, min_time_s: float, min_distance_cm: float) -> str:
         return blocked(recording, min_time_s, min_distance_cm).split("\n\n", 1)[1]
 
 
-def test_stops_are_told_longest_first_with_when_they_began(tmp_path: Path) -> None:
+def test_stops_are_listed_longest_first_with_their_beginning(tmp_path: Path) -> None:
     path = drive(
         tmp_path, (0, 0), (9, 9), (9.5, 20), (9.5, 20.1), (9.5, 20.2), (30, 20.3), (40, 20.4), (50, 40), (60, 60)
     )
@@ -35,7 +35,7 @@ def test_stops_are_told_longest_first_with_when_they_began(tmp_path: Path) -> No
     )
 
 
-def test_who_crawls_moves_on_as_soon_as_the_distance_is_reached(tmp_path: Path) -> None:
+def test_a_crawling_vehicle_moves_on_as_soon_as_the_distance_is_reached(tmp_path: Path) -> None:
     path = drive(tmp_path, *((0.4 * n, 5.0 * n) for n in range(10)))
     told = report(path, 2.0, 100.0)
     assert told.count("vehicle.tesla.model3") == 3  # three times 2 s at 0.4 m/s within less than 1 m

@@ -54,7 +54,7 @@ def report(tmp_path: Path, first: str, second: str) -> str:
         ("v", "o", ["scenery"]),
     ],
 )
-def test_a_contact_is_told_once_while_it_lasts_to_whom_it_fits(
+def test_a_contact_is_reported_once_while_it_lasts_for_matching_actors(
     tmp_path: Path, first: str, second: str, rows: list[str]
 ) -> None:
     duration = "5" if rows else "4.6"

@@ -23,7 +23,7 @@ FULL = Path("/dev/full")
 REMOVED = encode.records(PacketId.REMOVED, np.array([(9,)], layouts.REMOVED))
 
 
-def test_the_bytes_are_those_that_carlas_headers_describe(tmp_path: Path) -> None:
+def test_the_bytes_are_as_carlas_headers_describe(tmp_path: Path) -> None:
     writer = RecordingWriter(tmp_path / "drive.log", "Town01", made.NOON_19_NOV_2021_UTC)
     writer.add(0.05, [encode.added([HERO])])
     writer.add(0.1, [REMOVED])

@@ -73,7 +73,7 @@ def test_a_body_is_as_long_and_wide_and_high_as_its_box_within_2_cm(bodies, blue
 
 
 @pytest.mark.parametrize("blueprint", VISIBLE, ids=lambda b: b.definition.id)
-def test_nobody_who_looks_from_outside_sees_the_inside(bodies, blueprint):
+def test_a_look_from_outside_never_sees_the_inside(bodies, blueprint):
     mesh = whole(bodies, blueprint)
     caster = caster_of(mesh, [])
     caster.pose(nobody())
@@ -168,7 +168,7 @@ def test_riders_differ_by_driver_and_share_the_machine(bodies):
     assert {part.mesh for part in first} != {part.mesh for part in second}
 
 
-def test_who_uses_a_wheelchair_sits_lower_and_is_as_much_a_pedestrian(bodies):
+def test_a_wheelchair_user_sits_lower_and_is_as_much_a_pedestrian(bodies):
     blueprint = LIBRARY.find("walker.pedestrian.0001")
     sitting = whole(bodies, blueprint, use_wheelchair="true")
     assert 1.1 < sitting.vertices_m[:, 2].max() + blueprint.box.extent.z < 1.5
@@ -176,7 +176,7 @@ def test_who_uses_a_wheelchair_sits_lower_and_is_as_much_a_pedestrian(bodies):
     assert set(sitting.faces["tag"].tolist()) == {SemanticTag.PEDESTRIANS}
 
 
-def test_a_mesh_of_unreals_is_a_cube_as_large_as_it_is_asked_for(bodies):
+def test_a_mesh_of_unreals_is_a_cube_of_the_given_size(bodies):
     mesh = whole(bodies, LIBRARY.find(SCALED), scale="3.0")
     assert (mesh.vertices_m.max(0) - mesh.vertices_m.min(0)).tolist() == [3.0, 3.0, 3.0]
 

@@ -34,7 +34,7 @@ def test_lamps_are_those_of_the_street_and_off_by_day(lamps: Lamps) -> None:
     assert frames_that_tell(lamps) == 0
 
 
-def test_what_a_client_sets_is_told_to_all_and_moves_no_lamp(lamps: Lamps) -> None:
+def test_what_a_client_sets_reaches_all_clients_and_moves_no_lamp(lamps: Lamps) -> None:
     changed = lamps.states()[0]._replace(active=True, color=(1, 2, 3), location=Vector3D(7.0, 7.0, 7.0))
     assert lamps.update([changed, changed._replace(id=99)]) == [99]
     assert lamps.states()[0] == changed._replace(location=Vector3D(0.0, 0.0, 1.0))
@@ -42,7 +42,7 @@ def test_what_a_client_sets_is_told_to_all_and_moves_no_lamp(lamps: Lamps) -> No
     assert frames_that_tell(lamps) == 3
 
 
-def test_the_sun_switches_all_of_them_unless_it_is_told_not_to(lamps: Lamps) -> None:
+def test_the_sun_switches_all_of_them_unless_that_is_switched_off(lamps: Lamps) -> None:
     lamps.follow_sun(NIGHT)
     assert all(lamp.active for lamp in lamps.states())
     assert frames_that_tell(lamps) == 3

@@ -86,7 +86,7 @@ def test_cars_are_parked_the_way_the_traffic_beside_them_goes(linden: LoadedMap,
     assert 0.9 < (along > 0.9).mean() < 1.0  # some park the other way round
 
 
-def test_nobody_parks_where_the_shuttle_stops_or_before_a_sign(linden: LoadedMap, scene: Scene) -> None:
+def test_no_car_parks_where_the_shuttle_stops_or_before_a_sign(linden: LoadedMap, scene: Scene) -> None:
     cars = of_kinds(scene, Kind.PARKED_CAR)["centre"][:, :2]
     cars = cars[lanes_under(linden, cars) >= 0]
     signals = np.array([signal.transform.location[:2] for signal in linden.signals])

@@ -42,7 +42,7 @@ def test_a_crosswalk_is_bars_that_lie_the_way_the_cars_go() -> None:
     assert np.abs(bars[..., 1]).max() <= 3.5
 
 
-def test_the_teeth_of_a_yield_line_point_at_those_who_come() -> None:
+def test_the_teeth_of_a_yield_line_point_at_oncoming_traffic() -> None:
     mesh = painted("YieldLine", "roadMark", [(-0.2, -1.5), (0.2, -1.5), (0.2, 1.5), (-0.2, 1.5)], t=-1.75)
     teeth = mesh.vertices_m.reshape(-1, 3, 3)
     eastward = teeth[..., 0]  # traffic of lane -1 comes from the west

@@ -105,7 +105,7 @@ def test_normals_are_those_of_view_space() -> None:
     assert np.abs(image[tags == SemanticTag.BUILDINGS][:, :3].astype(int) - (255, 128, 128)).max() <= 1  # to the eye
 
 
-def test_who_sits_in_a_car_sees_out_of_it() -> None:
+def test_a_camera_in_a_car_sees_out_of_it() -> None:
     tags = pixels("semantic_segmentation", street(car_m=(0.0, 0.0, 2.0)))[:, :, 2]
     assert (tags[: HEIGHT // 2 - 20] == SemanticTag.SKY).any()
     assert (tags != SemanticTag.CAR).all()

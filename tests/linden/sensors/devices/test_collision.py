@@ -21,7 +21,7 @@ def contacts(*rows: tuple[int, int, float]) -> NDArray[np.void]:
     return made
 
 
-def test_both_sides_are_told_with_opposite_impulses() -> None:
+def test_both_sides_get_opposite_impulses() -> None:
     one, other = collisions(contacts((3, 8, 120.0)), {3: [50], 8: [60]})
     assert (one.sensor_id, one.slot, one.other_slot, one.impulse_ns) == (50, 3, 8, (120.0, 0.0, 0.0))
     assert (other.sensor_id, other.slot, other.other_slot, other.impulse_ns) == (60, 8, 3, (-120.0, 0.0, 0.0))
@@ -32,15 +32,15 @@ def test_scenery_is_named_and_carries_no_sensor() -> None:
     assert (event.other_slot, event.scenery_type) == (SCENERY, "static.building")
 
 
-def test_a_body_without_sensor_tells_nobody() -> None:
+def test_a_body_without_sensor_reports_nothing() -> None:
     assert list(collisions(contacts((3, 8, 1.0)), {4: [50]})) == []
 
 
-def test_every_sensor_of_a_carrier_is_told() -> None:
+def test_every_sensor_of_a_carrier_gets_the_event() -> None:
     assert [event.sensor_id for event in collisions(contacts((3, 8, 1.0)), {3: [50, 51]})] == [50, 51]
 
 
-def test_a_pair_is_told_once_a_frame_with_all_it_took() -> None:
+def test_a_pair_is_reported_once_a_frame_with_its_whole_impulse() -> None:
     found = list(collisions(contacts((3, 8, 1.0), (3, 9, 5.0), (3, 8, 2.0)), {3: [50]}))
     assert [(event.other_slot, event.impulse_ns.x, event.point_m.x) for event in found] == [
         (8, 3.0, 0.0),

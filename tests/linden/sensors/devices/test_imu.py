@@ -66,7 +66,7 @@ def test_until_there_are_three_places_nothing_accelerates() -> None:
     assert acceleration(extend(Trace(), Vector3D(1e6, 0.0, 0.0), 0.0), Vector3D(), 0.1) == AT_REST
 
 
-def test_time_that_does_not_pass_accelerates_nobody() -> None:
+def test_time_that_does_not_pass_accelerates_no_body() -> None:
     trace = extend(extend(Trace(), Vector3D(), 1.0), Vector3D(1.0, 0.0, 0.0), 1.0)
     assert acceleration(trace, Vector3D(2.0, 0.0, 0.0), 1.1) == AT_REST
 

@@ -74,7 +74,7 @@ def test_with_a_tick_only_its_frames_are_read_and_the_acceleration_is_that_over_
 
 
 @pytest.mark.parametrize("name", ["gnss", "imu"])
-def test_who_listens_later_reads_the_same(name: str) -> None:
+def test_a_later_listener_reads_the_same(name: str) -> None:
     noise = {"gnss": {"noise_lat_stddev": "0.1"}, "imu": {"noise_accel_stddev_x": "0.1"}}[name]
     always = readings(made(name, noise_seed="4", **noise), range(20))
     late = readings(made(name, noise_seed="4", **noise), range(20), wanted_from=12)

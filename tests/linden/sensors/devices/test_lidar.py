@@ -88,7 +88,7 @@ def test_half_a_turn_a_frame_begins_behind_and_goes_on_where_it_ended() -> None:
 
 @settings(max_examples=40)
 @given(st.lists(st.sampled_from([0.01, 0.02, 0.05]), max_size=20))
-def test_where_it_points_is_the_same_whether_or_not_somebody_listened(intervals_s: list[float]) -> None:
+def test_where_it_points_does_not_depend_on_listeners(intervals_s: list[float]) -> None:
     fan = read_fan(described("sensor.lidar.ray_cast", rotation_frequency=7, horizontal_fov=180))
     at_deg = 0.0
     for interval_s in intervals_s:

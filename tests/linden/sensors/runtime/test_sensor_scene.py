@@ -73,7 +73,7 @@ def test_a_car_is_seen_where_it_is_with_all_its_wheels(simulation: World) -> Non
     assert hits.distance_m[0] == pytest.approx(20.0 - 2.0 * car.box.extent.z, abs=0.1)
 
 
-def test_before_is_where_a_body_was_a_frame_earlier_if_somebody_looked_then(simulation: World) -> None:
+def test_before_is_where_a_body_was_a_frame_earlier_if_a_sensor_looked_then(simulation: World) -> None:
     prop = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 0.0, 50.0)))
     simulation.step(STEP_S)
     simulation.sensor_scene.follow(simulation.episode, simulation.frame)
@@ -89,7 +89,7 @@ def test_before_is_where_a_body_was_a_frame_earlier_if_somebody_looked_then(simu
     assert later.before.tolist() == later.pose.tolist()
 
 
-def test_who_comes_while_others_go_brings_nobody_elses_past(simulation: World) -> None:
+def test_an_actor_that_comes_while_others_go_has_no_past_of_another(simulation: World) -> None:
     first = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 0.0, 50.0)))
     second = simulation.spawn(described("static.prop.container"), Transform(Vector3D(0.0, 30.0, 50.0)))
     simulation.step(STEP_S)
@@ -191,7 +191,7 @@ def test_building_begins_when_a_sensor_that_looks_is_spawned_and_is_waited_for(w
     assert len(simulation.measure({lidar.stream_id})[0].reading.points) > 0
 
 
-def test_a_reading_is_the_same_whoever_listened_before(simulation: World, world_map: LoadedMap) -> None:
+def test_a_reading_does_not_depend_on_earlier_listeners(simulation: World, world_map: LoadedMap) -> None:
     def sixth(listened_from: int) -> bytes:
         running = World(world_map, EpisodeSettings())
         running.sensor_scene = simulation.sensor_scene
@@ -205,7 +205,7 @@ def test_a_reading_is_the_same_whoever_listened_before(simulation: World, world_
     assert sixth(0) == sixth(5)
 
 
-def test_who_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedMap) -> None:
+def test_a_thread_that_waits_for_the_scene_has_it_or_goes_on_without_it(world_map: LoadedMap) -> None:
     sensor_scene, may_build = SensorScene(BlueprintLibrary.load()), Event()
     assert sensor_scene.wait(60.0)  # without any request
 

@@ -28,44 +28,44 @@ def context() -> Context:
 @pytest.fixture
 def slot(context: Context) -> int:
     """Slot of a car that floats, its nose to the east."""
-    episode = context.simulation.episode
+    episode = context.world.episode
     pose = Transform(Vector3D(0.0, 500.0, HIGH_M), Rotation())
-    record = context.simulation.spawn(ActorDescription(0, "vehicle.tesla.model3"), pose)
+    record = context.world.spawn(ActorDescription(0, "vehicle.tesla.model3"), pose)
     episode.bodies.set_gravity(record.slot, falls=False)
-    context.simulation.step(0.05)
+    context.world.step(0.05)
     return record.slot
 
 
 def actor(context: Context, slot: int) -> int:
-    return context.simulation.episode.actors.of_slot(slot).id
+    return context.world.episode.actors.of_slot(slot).id
 
 
 def test_an_impulse_before_the_centre_turns_the_nose_with_it(context: Context, slot: int) -> None:
-    bodies = context.simulation.episode.bodies
+    bodies = context.world.episode.bodies
     mass_kg, inertia = float(bodies.mass_kg[slot]), float(bodies.state["yaw_inertia_kgm2"][slot])
     centre = bodies.position[slot] + bodies.state["centre_of_mass"][slot]
     push = Vector3D(0.0, mass_kg, 0.0)
     at = Vector3D(float(centre[0]) + 2.0, float(centre[1]), float(centre[2]))
     actors.add_actor_impulse_at_location(context, actor(context, slot), push, at)
-    context.simulation.step(0.05)
+    context.world.step(0.05)
     assert bodies.angular_velocity[slot, 2] == pytest.approx(2.0 * mass_kg / inertia, rel=0.01)
 
 
 def test_a_force_at_a_point_acts_for_one_frame(context: Context, slot: int) -> None:
-    bodies = context.simulation.episode.bodies
+    bodies = context.world.episode.bodies
     centre = bodies.position[slot] + bodies.state["centre_of_mass"][slot]
     push = Vector3D(0.0, 0.0, float(bodies.mass_kg[slot]) * 10.0)
     actors.add_actor_force_at_location(context, actor(context, slot), push, Vector3D(*map(float, centre)))
-    context.simulation.step(0.05)
+    context.world.step(0.05)
     assert bodies.velocity[slot, 2] == pytest.approx(0.5, rel=0.01)
     assert bodies.angular_velocity[slot] == pytest.approx(0.0, abs=1e-6)
-    context.simulation.step(0.05)
+    context.world.step(0.05)
     assert bodies.velocity[slot, 2] == pytest.approx(0.5, rel=0.01)
 
 
 def test_a_torque_is_in_kg_cm2_and_degrees(context: Context, slot: int) -> None:
-    bodies = context.simulation.episode.bodies
+    bodies = context.world.episode.bodies
     inertia = float(bodies.state["yaw_inertia_kgm2"][slot])
     actors.add_actor_torque(context, actor(context, slot), Vector3D(0.0, 0.0, 100.0 * inertia * 1e4))
-    context.simulation.step(0.05)
+    context.world.step(0.05)
     assert math.degrees(bodies.angular_velocity[slot, 2]) == pytest.approx(100.0 * 0.05, rel=0.01)

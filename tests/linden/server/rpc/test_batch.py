@@ -53,7 +53,7 @@ def test_many_transforms_at_once_do_what_each_alone_does() -> None:
     assert answers == [cmd.done(actor_id) for actor_id in ids]
     for actor_id, row in zip(ids, rows, strict=True):
         set_actor_transform(alone, actor_id, Transform(Vector3D(*row[:3]), Rotation(*row[3:])))
-    ours, theirs = (context.simulation.episode.bodies.state for context in (together, alone))
+    ours, theirs = (context.world.episode.bodies.state for context in (together, alone))
     for name in ours.dtype.names:
         np.testing.assert_array_equal(ours[name], theirs[name], err_msg=name)
 
@@ -69,6 +69,6 @@ def test_of_two_transforms_of_one_actor_the_last_holds() -> None:
     context, ids = crowd()
     rows = ((1.0, 300.0, 1.0, 0.0, 0.0, 0.0), (2.0, 310.0, 1.0, 0.0, 90.0, 0.0))
     apply_batch(context, (Transforms((ids[0], ids[0]), rows),), False)
-    bodies, slot = context.simulation.episode.bodies, context.simulation.episode.actors.get(ids[0]).slot
+    bodies, slot = context.world.episode.bodies, context.world.episode.actors.get(ids[0]).slot
     assert bodies.position[slot].tolist() == [2.0, 310.0, 1.0]
     assert bodies.rotation[slot, 1] == pytest.approx(math.pi / 2.0)

@@ -14,14 +14,14 @@ CAMERA, STREAM = 7, 3
 @pytest.mark.parametrize(
     ("is_there", "listened", "waits"), [(False, {STREAM}, True), (False, {1}, False), (True, {STREAM}, False)]
 )
-def test_a_frame_waits_for_the_scene_only_where_somebody_looks_at_it(
+def test_a_frame_waits_for_the_scene_only_where_a_sensor_looks_at_it(
     *, is_there: bool, listened: set[int], waits: bool
 ) -> None:
     episode = SimpleNamespace(actors={CAMERA: SimpleNamespace(stream_id=STREAM)})
     sensors = EpisodeSensors()
     sensors.looking[CAMERA] = None
     context = Context(
-        simulation=SimpleNamespace(sensor_scene=FakeSensorScene(is_there=is_there), episode=episode, sensors=sensors),
+        world=SimpleNamespace(sensor_scene=FakeSensorScene(is_there=is_there), episode=episode, sensors=sensors),
         maps=FakeMaps(),
         frames=FakeFrames(),
         streams=SimpleNamespace(listened=lambda: listened),

@@ -13,7 +13,7 @@ from linden.server.rpc.registry import METHODS, dispatch, method
 
 def new_context() -> Context:
     return Context(
-        simulation=FakeSimulation(),
+        world=FakeSimulation(),
         maps=FakeMaps(),
         frames=FakeFrames(),
         streams=StreamTable(2001),
@@ -38,7 +38,7 @@ def test_a_function_cannot_be_registered_twice() -> None:
         method("version")(lambda context: None)
 
 
-def test_an_asynchronous_call_that_is_refused_is_told_to_the_log_once(
+def test_a_refused_asynchronous_call_is_logged_once(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delitem(METHODS, "enable_carsim", raising=False)

@@ -17,7 +17,7 @@ from linden.server.rpc.warning_log import KINDS
 @pytest.fixture
 def context() -> Context:
     return Context(
-        simulation=FakeSimulation(),
+        world=FakeSimulation(),
         maps=FakeMaps(),
         frames=FakeFrames(sensor_bytes=10),
         streams=StreamTable(2001),
@@ -25,14 +25,14 @@ def context() -> Context:
     )
 
 
-def test_a_variable_step_is_asked_of_the_clock_and_a_fixed_one_is_not(context: Context) -> None:
+def test_a_variable_step_comes_from_the_clock_and_a_fixed_one_does_not(context: Context) -> None:
     session.tick_cue(context)
-    context.simulation.settings = EpisodeSettings(fixed_delta_seconds=0.05)
+    context.world.settings = EpisodeSettings(fixed_delta_seconds=0.05)
     session.tick_cue(context)
-    assert context.simulation.steps_s == [0.04, 0.05]
+    assert context.world.steps_s == [0.04, 0.05]
 
 
-def test_a_frame_is_put_into_the_outbox_for_those_who_listen_only(context: Context) -> None:
+def test_a_frame_is_put_into_the_outbox_of_subscribers_only(context: Context) -> None:
     assert session.tick_cue(context) == 1
     assert context.outbox == []
     context.streams.subscribe(1)
@@ -66,7 +66,7 @@ def test_an_opendrive_text_can_be_loaded_once_it_was_sent(context: Context) -> N
     assert session.get_map_info(context).name == "Carla/Maps/OpenDriveMap"
 
 
-def test_a_traffic_manager_port_belongs_to_the_first_who_takes_it(context: Context) -> None:
+def test_a_traffic_manager_port_belongs_to_the_first_client_that_takes_it(context: Context) -> None:
     context.caller = 5
     assert session.add_traffic_manager_running(context, ("10.0.0.1", 8000))
     context.caller = 6
@@ -82,7 +82,7 @@ def test_a_traffic_manager_port_belongs_to_the_first_who_takes_it(context: Conte
 def test_a_step_must_be_one(context: Context, fixed_s: float) -> None:
     with pytest.raises(Refusal, match="fixed_delta_seconds must be above 0"):
         session.set_episode_settings(context, EpisodeSettings(fixed_delta_seconds=fixed_s))
-    assert context.simulation.settings == EpisodeSettings()
+    assert context.world.settings == EpisodeSettings()
 
 
 def test_substeps_shorter_than_the_step_are_warned_about(context: Context, caplog: pytest.LogCaptureFixture) -> None:
@@ -95,7 +95,7 @@ def test_substeps_shorter_than_the_step_are_warned_about(context: Context, caplo
 def test_without_substepping_their_figures_do_not_matter(context: Context) -> None:
     settings = EpisodeSettings(substepping=False, max_substeps=0, max_substep_delta_time=0.0)
     assert session.set_episode_settings(context, settings) == 0
-    assert context.simulation.settings == settings
+    assert context.world.settings == settings
 
 
 def test_a_bug_of_ours_is_logged_however_many_kinds_of_warnings_clients_have_called_forth(
@@ -110,7 +110,7 @@ def test_a_bug_of_ours_is_logged_however_many_kinds_of_warnings_clients_have_cal
 
 
 def test_a_load_is_answered_before_its_episode_begins(context: Context) -> None:
-    context.caller, before = 7, context.simulation.episode_id
+    context.caller, before = 7, context.world.episode_id
     carry_out(session.copy_opendrive_to_file(context, EMPTY_MAP, OpendriveGenerationParameters()))
     carry_out(session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF))
     assert session.get_episode_info(context).id == before
@@ -123,10 +123,10 @@ def test_a_load_is_answered_before_its_episode_begins(context: Context) -> None:
 
 
 def test_a_pending_load_begins_where_its_client_leaves(context: Context) -> None:
-    context.caller, before = 7, context.simulation.episode_id
+    context.caller, before = 7, context.world.episode_id
     carry_out(session.copy_opendrive_to_file(context, EMPTY_MAP, OpendriveGenerationParameters()))
     carry_out(session.load_new_episode(context, "OpenDriveMap", reset_settings=True, layers=0xFFFF))
     session.client_left(context, 8)
-    assert context.simulation.episode_id == before
+    assert context.world.episode_id == before
     session.client_left(context, 7)
-    assert context.simulation.episode_id != before
+    assert context.world.episode_id != before

@@ -79,6 +79,7 @@ def report(run: RunRecord) -> bytes:
         "charts": charts(history, felt, found),
         "evidence": evidence(history, felt, found),
         "reported": table(rows(document["reported"])) if document["reported"] else None,
+        "sumo": table(rows(document["sumo"])) if document["sumo"] else None,
         "samples": _samples(history, felt),
         "script": script,
     }

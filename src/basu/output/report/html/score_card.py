@@ -105,5 +105,6 @@ def score_card(result: Result) -> Markup:
         not_measured=sorted({words(kind) for each in (leaderboard or {}).values() for kind in each["not_measured"]}),
         passengers=passengers,
         passenger_figures=table(rows(shown)),
+        has_riders=bool(passengers) and any(visit.get("waiting") is not None for visit in passengers["service"]),
         own=[(own.title, written(own.value, own.unit, own.digits), bool(own.penalties)) for own in result.own.values()],
     )

@@ -12,6 +12,8 @@ from basu.cli import main
 from basu.output.report.html.page import report
 from basu.output.report.html.score_card import rows
 from basu.output.report.templates import e, html
+from basu.records.history.sumo import Passenger, Second, SumoRecord
+from basu.routing import Stop
 from fakes.drives import at, driven, ramp, straight_route
 from fakes.run_records import crashing, record, written
 
@@ -124,3 +126,18 @@ def test_figures_get_names_and_units_from_their_keys() -> None:
         ("comfort: jerk max", "\u2013"),
         ("kinds", "a_b, c"),
     ]
+
+
+def test_a_run_amid_sumo_s_traffic_shows_its_load_and_the_riders_of_each_stop() -> None:
+    stop = Stop(id="A", name="a stop", s_m=50.0, x_m=50.0, y_m=0.0, z_m=0.0, yaw_rad=0.0)
+    seconds = (Second(1.0, vehicles=12, people=3, halted=1, driven_m=100.0, lost_s=2.0),)
+    riders = (Passenger("one", "A", "B", came_s=0.0, boarded_s=11.0), Passenger("two", "A", "B", came_s=1.0))
+    counts = {"departed": 12, "arrived": 0, "delayed": 0, "hidden": 0, "people": 3, "contacts": 0}
+    traffic = SumoRecord(**counts, seconds=seconds, passengers=riders)
+    drive = driven([*at(5.0, 10.0), *at(0.0, 10.0), *at(5.0, 20.0)], route=straight_route(stops=(stop,)))
+    page = report(record(replace(drive, sumo=traffic))).decode()
+    assert "<h2>SUMO's traffic</h2>" in page
+    assert "20.000" in page, "2 s lost on 100 m are 20 s on a km"
+    assert "left behind" in page
+    assert '<section id="sumo">' not in report(record(drive)).decode(), "a run without SUMO has no such section"
+    assert "left behind" not in report(record(drive)).decode()

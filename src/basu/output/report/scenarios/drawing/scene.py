@@ -14,8 +14,8 @@ from basu.output.report.scenarios.drawing.encounter import (
     boxes_at,
     thing_boxes,
 )
+from basu.output.report.scenarios.drawing.inset import INSET_PX, inset
 from basu.output.report.scenarios.drawing.labels import Labels, cross
-from basu.output.report.scenarios.drawing.lens import LENS_PX, lens
 from basu.output.report.streets import on_the_map
 from basu.output.report.templates import e
 
@@ -46,10 +46,10 @@ class Scene:
 
     def draw(self, streets: Sequence[Line]) -> list[Element]:
         """Everything, the lowest first."""
-        larger = lens(self._story, self._canvas, streets)
+        larger = inset(self._story, self._canvas, streets)
         if larger is not None:
             left, top = larger.corner_px
-            self._labels.keep_free([(left, top), (left + LENS_PX[0], top + LENS_PX[1])], 2.0)
+            self._labels.keep_free([(left, top), (left + INSET_PX[0], top + INSET_PX[1])], 2.0)
         self._labels.keep_free([(WIDTH_PX - 44.0, 0.0), (WIDTH_PX, 24.0)])  # where north is
         self._labels.keep_free([(0.0, self._canvas.height_px - 30.0), (180.0, self._canvas.height_px)])  # the scale
         ground, ways = self._ground(streets), self._ways()

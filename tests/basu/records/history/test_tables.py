@@ -1,5 +1,7 @@
 """Claims about a record as tables: units in the metadata, and nothing lost."""
 
+import os
+import subprocess
 import sys
 from pathlib import Path
 
@@ -9,7 +11,8 @@ import pytest
 
 from basu.errors import UserError
 from basu.records.history import History, LaneInvasion
-from basu.records.history.model import FRAME, unit_of
+from basu.records.history.model import FRAME
+from basu.records.history.tables import unit_of
 from fakes.drives import at, driven, hit
 
 
@@ -35,6 +38,18 @@ def record() -> History:
 )
 def test_a_columns_unit_is_the_end_of_its_name(column: str, unit: str) -> None:
     assert unit_of(column) == unit
+
+
+def test_the_arrow_table_is_made_without_pandas() -> None:
+    code = (
+        "import sys; from fakes.drives import at, driven, hit; from basu.records.history.tables import to_arrow; "
+        "print(to_arrow(driven(at(5.0, 1.0), collisions=[hit(3)])).num_rows > 0, 'pandas' in sys.modules)"
+    )
+    path = os.pathsep.join([str(Path(__file__).parents[3]), *sys.path])
+    done = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split() == ["True", "False"]
 
 
 def test_the_arrow_table_has_the_units_in_its_fields() -> None:

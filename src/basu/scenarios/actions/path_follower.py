@@ -19,23 +19,23 @@ if TYPE_CHECKING:
 AtEnd = Literal["hold", "go on", "vanish"]
 BACKWARDS_RAD = math.radians(100.0)  # a path that begins farther off a vehicle's heading leads behind it
 STRAIGHT_M = 400.0  # of the path of a vehicle without one
-PULL_PER_S = 2.0  # of the way off its path that a puppet makes good in a second
+PULL_PER_S = 2.0  # of the way off its path that a path follower makes good in a second
 SIDEWAYS = 0.35  # of its speed that it may do so with
 TURN_RADPS = 2.0  # no command turns faster
-MARGIN_M = 0.4  # beside its own width, that a puppet minds
+MARGIN_M = 0.4  # beside its own width, that a path follower minds
 JAM_M, HEADWAY_S = 2.0, 1.0  # of the follower: the gap at rest, and what it keeps besides at speed
 LOOK_M = 60.0  # ahead
 
 
 class Limits(NamedTuple):
-    """How hard a puppet accelerates and brakes, m/s²."""
+    """How hard a path follower accelerates and brakes, m/s²."""
 
     accelerate_mps2: float = 2.5
     brake_mps2: float = 4.0
     emergency_mps2: float = 8.0  # for those it minds
 
 
-class Puppet(Action):
+class PathFollower(Action):
     """The base of all that lead a vehicle. Subclasses say how fast (``wanted_mps``) and how long (``over``).
 
     The path is followed from the place nearest to the vehicle, and its speed changed from what it is, so that one
@@ -196,5 +196,5 @@ def lead(stage: Stage, actor: str, path: Path, near: OnPath, speed_mps: float) -
 
 
 def minded(*, considerate: bool, minds: Sequence[str]) -> tuple[str, ...]:
-    """The actors that a puppet brakes for: the named ones, and the ego where it is considerate."""
+    """The actors that a path follower brakes for: the named ones, and the ego where it is considerate."""
     return (EGO, *minds) if considerate else tuple(minds)

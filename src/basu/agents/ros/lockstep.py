@@ -1,0 +1,215 @@
+"""``basu run ros``: ROS 2 software on CARLA's topics drives; simulated time waits for its command in each step.
+
+An agent publishes the frame and the clock, and waits for a command that belongs to it: one whose time is that of the
+frame, or none at all. What its software does not do in time is the agent's time-out.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import TYPE_CHECKING, Any
+
+import carla
+
+from basu.agents.autonomous_agent import AutonomousAgent
+from basu.agents.builtin.perception import SHUTTLE, read_facts
+from basu.agents.calls import SETUP_LIMIT_S, OverrunError
+from basu.agents.ros.commands import AckermannControl, Wanted, ackermann_command, carla_command
+from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, control_of
+from basu.agents.sensor_file import read_sensors
+from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
+from basu.files import find
+from basu.ros.dds import Node
+from basu.ros.moment import Vehicle
+from basu.ros.topics import (
+    Message,
+    Topic,
+    ackermann_of,
+    first_messages,
+    moment_messages,
+    objects_of,
+    path_message,
+    path_of,
+    vehicle_topics,
+)
+from basu.ros.topics import control_of as control_topic
+from basu.ros.vehicle_messages import nanoseconds
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from basu.agents.builtin.perception import VehicleFacts
+    from basu.ros.moment import Moment
+
+APPEARS_S = SETUP_LIMIT_S - 20.0  # wall time for the software to appear on the domain: it may load maps and networks
+SLICE_S = 0.02  # of waiting: in between, the step's time limit can interrupt
+NODE = "basu"
+
+
+class RosAgent(AutonomousAgent):
+    """CARLA's topics: ``vehicle_control_cmd`` or ``ackermann_cmd`` drives."""
+
+    facts: VehicleFacts | None = None
+    appears_s = APPEARS_S
+
+    def setup(self) -> None:
+        """Publish what does not move, and wait until software that commands appears on the domain."""
+        file = self.config_values.get("sensors")
+        specs = () if file is None else read_sensors(find(str(file), "sensor file"))
+        self._source = VehicleSource(self.world, self.vehicle, specs, self.time_step_s)
+        self._applied = BRAKED
+        self._ackermann: AckermannControl | None = None
+        self.facts = None
+        role = self.vehicle.attributes["role_name"]
+        mounts = tuple(self._source.mounts.values())
+        self.described = Vehicle(role, mounts, self.time_step_s)
+        topics = self.topics()
+        self.node = Node(NODE)
+        self.node.listen(*self.commands())
+        self.node.announce(*topics)
+        self.node.publish(*self.beginning())
+        self._await_software()
+
+    def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
+        """Publish the frame, wait for its command, and turn that into pedals and wheel."""
+        moment = self._source.moment(sensor_data, self._applied)
+        if moment is None:
+            return carla.VehicleControl(brake=1.0)  # not in the world before its first tick
+        if self.facts is None:
+            self.facts = read_facts(self.vehicle, self.vehicle.get_transform())
+            self.described = self.described._replace(rear_axle_m=self.axle_m(self.facts))
+            self.node.publish(*first_messages(self.node.types, self.described, moment.t_s))
+        if self.node.readers_of(objects_of(self.described.role)):
+            moment = moment._replace(others=[actor_of(other) for other in self.visible_actors()])
+        self._check_alone()
+        self.node.publish(*self.messages(moment))
+        control = self._control(self._command(moment), moment)
+        self._applied = control_of(control)
+        return control
+
+    def config(self) -> dict[str, str]:
+        """The shuttle on its round."""
+        return {"routes": "routes/linden_leap.xml", "sensors": "config/sensors.json", "vehicle": SHUTTLE}
+
+    def destroy(self) -> None:
+        """Leave the domain."""
+        if hasattr(self, "node"):
+            self.node.close()
+
+    # -- what differs from stack to stack
+
+    def topics(self) -> Sequence[Topic]:
+        """Return the topics that are published."""
+        return [*vehicle_topics(self.described), path_of(self.described.role)]
+
+    def commands(self) -> Sequence[Topic]:
+        """Return the topics on which commands come; any of them drives."""
+        return [control_topic(self.described.role), ackermann_of(self.described.role)]
+
+    def beginning(self) -> Sequence[Message]:
+        """Return what is published before the first frame: transforms, and the route as a path."""
+        first = first_messages(self.node.types, self.described, 0.0)
+        return [*first, path_message(self.node.types, self.described.role, self.way())]
+
+    def messages(self, moment: Moment) -> Sequence[Message]:
+        """Return what is published in a frame."""
+        return list(moment_messages(self.node.types, self.described, moment))
+
+    def axle_m(self, _facts: VehicleFacts) -> float:
+        """Return how far base_link lies behind the vehicle's origin."""
+        return 0.0
+
+    def wanted(self, topic: Topic, message: Any) -> Wanted | carla.VehicleControl:  # noqa: ANN401 - a message
+        """Return what a command says.
+
+        Raises:
+            AgentInvalidControlError: it holds what is no number.
+        """
+        return carla_command(message) if topic == control_topic(self.described.role) else ackermann_command(message)
+
+    # -- the same for all
+
+    def way(self) -> list[tuple[float, float, float, float]]:
+        """Return x, y, z and yaw of the route's points, in CARLA's axes.
+
+        Raises:
+            UserError: the run has no route.
+        """
+        if self.route is None:
+            raise UserError(f"{type(self).__name__} follows a route and was given none; name one with --routes")
+        rows = zip(self.route.points_m.tolist(), self.route.yaw_rad.tolist(), strict=True)
+        return [(*point, yaw) for point, yaw in rows]
+
+    def _await_software(self) -> None:
+        """Wait until a peer publishes commands.
+
+        Raises:
+            AgentTimedOutError: none appears.
+        """
+        until_s = time.monotonic() + self.appears_s
+        while not any(self.node.writers_of(topic) for topic in self.commands()):
+            if time.monotonic() > until_s:
+                names = " or ".join(topic.name for topic in self.commands())
+                raise AgentTimedOutError(
+                    f"no ROS 2 node publishes on {names} in the domain {self.node.domain} within {self.appears_s:g} s; "
+                    "start the software, and give both the same ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY"
+                )
+            time.sleep(SLICE_S)  # discovery has no event that this could wait for
+
+    def _check_alone(self) -> None:
+        """Check that one node drives.
+
+        Raises:
+            AgentCrashedError: several do.
+        """
+        writers = {topic.name: self.node.writers_of(topic) for topic in self.commands()}
+        if sum(writers.values()) > 1:
+            found = ", ".join(f"{count} on {name}" for name, count in writers.items() if count)
+            raise AgentCrashedError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
+
+    def _command(self, moment: Moment) -> Wanted | carla.VehicleControl:
+        """The command that belongs to a frame.
+
+        Raises:
+            AgentTimedOutError: it does not come within the limit of a step.
+        """
+        try:
+            while True:
+                for topic in self.commands():
+                    fresh = [each for each in self.node.received(topic) if _belongs(each, moment.t_s)]
+                    if fresh:
+                        return self.wanted(topic, fresh[-1])
+                if not any(self.node.writers_of(topic) for topic in self.commands()):
+                    raise AgentTimedOutError(
+                        f"the ROS 2 software left the domain {self.node.domain} before it answered frame "
+                        f"{moment.frame}; see its own output"
+                    )
+                self.node.wait_any(self.commands(), SLICE_S)
+        except OverrunError:
+            names = " or ".join(topic.name for topic in self.commands())
+            raise AgentTimedOutError(
+                f"the ROS 2 software gave no command on {names} for frame {moment.frame} ({moment.t_s:.2f} s) within "
+                "the limit of a step; it is still on the domain: see its own output, or give it more with --step-limit"
+            ) from None
+
+    def _control(self, wanted: Wanted | carla.VehicleControl, moment: Moment) -> carla.VehicleControl:
+        """A command as CARLA's control."""
+        if isinstance(wanted, carla.VehicleControl):
+            return wanted
+        assert self.facts is not None, "the first frame reads them"
+        if self._ackermann is None:
+            self._ackermann = AckermannControl(self.facts, self.time_step_s)
+        motion = moment.motion
+        speed = motion.velocity_x_mps * math.cos(motion.yaw_rad) + motion.velocity_y_mps * math.sin(motion.yaw_rad)
+        return self._ackermann.step(wanted, speed, int(self.vehicle.get_control().gear))
+
+
+def _belongs(message: Any, t_s: float) -> bool:  # noqa: ANN401 - a message
+    """Whether a command is an answer to the frame of ``t_s``: it has that time or a later one, or no time at all."""
+    header = getattr(message, "header", message)
+    stamp = getattr(header, "stamp", None)
+    if stamp is None:
+        return True
+    stamped_ns = stamp.sec * 1_000_000_000 + stamp.nanosec
+    return bool(stamped_ns == 0 or stamped_ns >= nanoseconds(t_s))

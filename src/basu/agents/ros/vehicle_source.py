@@ -1,0 +1,110 @@
+"""Moments of an agent's vehicle, the source of its ROS messages; values of the client turned into ours."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from basu.agents.sight.actors import Kind
+from basu.ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import carla
+
+    from basu.agents.sensor_file import SensorSpec
+    from basu.agents.sight import Other
+
+TYPE_OF_KIND = {Kind.VEHICLE: "vehicle.", Kind.WALKER: "walker.", Kind.PROP: "static.prop."}
+"""The beginning of a blueprint's id, which is all that an agent sees of it."""
+BRAKED = Control(brake=1.0)  # what the vehicle has before its first control
+
+
+class VehicleSource:
+    """Makes moments of an agent's frames; time runs from 0 at the first of them."""
+
+    def __init__(self, world: carla.World, vehicle: carla.Vehicle, specs: Sequence[SensorSpec], step_s: float) -> None:
+        """Look up the traffic lights; ``specs`` are the agent's sensors."""
+        self._world, self._vehicle, self._step_s = world, vehicle, step_s
+        self.mounts = {spec.id: mount_of(spec) for spec in specs}
+        self._lights = sorted(world.get_actors().filter("traffic.traffic_light"), key=lambda light: light.id)
+        self._last_lights: tuple[Light, ...] = ()
+        self._sent: dict[str, int] = {}  # the frame of the latest measurement, by sensor
+        self._first_frame: int | None = None
+
+    def moment(self, sensor_data: Mapping[str, tuple[int, Any]], control: Control) -> Moment | None:
+        """Return the latest frame, ``control`` applied in it; None while the vehicle is not in the world yet."""
+        snapshot = self._world.get_snapshot()
+        own = snapshot.find(self._vehicle.id)
+        if own is None:
+            return None
+        if self._first_frame is None:
+            self._first_frame = snapshot.frame
+        frame = snapshot.frame - self._first_frame
+        lights = tuple(Light(light.id, int(light.get_state())) for light in self._lights)
+        changed, self._last_lights = lights != self._last_lights, lights
+        return Moment(
+            t_s=frame * self._step_s,
+            frame=frame,
+            motion=motion_of(own),
+            control=control,
+            lights=lights if changed else (),
+            measured=self._measured(sensor_data),
+        )
+
+    def _measured(self, sensor_data: Mapping[str, tuple[int, Any]]) -> list[Measurement]:
+        """Measurements that are new since the last frame, in the order of the sensors."""
+        fresh = []
+        for sensor_id, mount in self.mounts.items():
+            made_in, data = sensor_data.get(sensor_id, (None, None))
+            if made_in is not None and self._sent.get(sensor_id) != made_in:
+                self._sent[sensor_id] = made_in
+                fresh.append(Measurement(mount, data))
+        return fresh
+
+
+def motion_of(own: carla.ActorSnapshot) -> Motion:
+    """Return the motion of an actor of a snapshot."""
+    pose = own.get_transform()
+    at, turned = pose.location, pose.rotation
+    velocity, acceleration, spin = own.get_velocity(), own.get_acceleration(), own.get_angular_velocity()
+    turns = (math.radians(angle) for angle in (turned.roll, turned.pitch, turned.yaw))
+    rates = (math.radians(rate) for rate in (spin.x, spin.y, spin.z))
+    moving = (velocity.x, velocity.y, velocity.z, acceleration.x, acceleration.y, acceleration.z)
+    return Motion._make((at.x, at.y, at.z, *turns, *moving, *rates))
+
+
+def actor_of(other: Other) -> Actor:
+    """Return an actor that the agent sees."""
+    return Actor(
+        other.id,
+        TYPE_OF_KIND[other.kind],
+        other.x_m,
+        other.y_m,
+        other.z_m,
+        other.yaw_rad,
+        other.velocity_x_mps,
+        other.velocity_y_mps,
+        other.half_length_m,
+        other.half_width_m,
+    )
+
+
+def mount_of(spec: SensorSpec) -> Mount:
+    """Return a sensor of a set with its place in rad."""
+    roll, pitch, yaw = (math.radians(angle) for angle in (spec.roll_deg, spec.pitch_deg, spec.yaw_deg))
+    return Mount(spec.id, spec.type_id, spec.x_m, spec.y_m, spec.z_m, roll, pitch, yaw, dict(spec.attributes))
+
+
+def control_of(control: carla.VehicleControl) -> Control:
+    """Return a control of the client; the gear is the vehicle's own affair unless it is shifted by hand."""
+    return Control(
+        float(control.throttle),
+        float(control.steer),
+        float(control.brake),
+        bool(control.hand_brake),
+        bool(control.reverse),
+        int(control.gear) if control.manual_gear_shift else 0,
+        bool(control.manual_gear_shift),
+    )

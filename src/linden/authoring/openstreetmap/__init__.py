@@ -1,0 +1,1 @@
+"""OpenStreetMap extracts as street facts: reading, meaning of tags, graph, controls, buildings."""

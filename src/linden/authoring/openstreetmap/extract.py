@@ -1,0 +1,181 @@
+"""An OpenStreetMap extract as frozen values: nodes, ways and relations of an ``.osm`` file, with their lines.
+
+Source of the format: OpenStreetMap Wiki, "OSM XML", version 0.6. References to elements outside of the extract are
+allowed there: every extract cuts ways and relations at its edge. Such references are left out and counted.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+from lxml import etree
+
+from linden.errors import UserError
+
+Tags = Mapping[str, str]
+
+MOST_BYTES = 1 << 28
+"""256 MiB: a large city. Streets of a whole country are no map to drive a shuttle on."""
+
+
+class OsmNode(NamedTuple):
+    """A place in degrees."""
+
+    longitude_deg: float
+    latitude_deg: float
+    tags: Tags
+
+
+class OsmWay(NamedTuple):
+    """A line through nodes of the extract; ``line`` of the file."""
+
+    id: int
+    nodes: tuple[int, ...]
+    tags: Tags
+    line: int
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it ends where it begins."""
+        return len(self.nodes) > 3 and self.nodes[0] == self.nodes[-1]
+
+
+class OsmMember(NamedTuple):
+    """What a relation refers to."""
+
+    kind: str
+    ref: int
+    role: str
+
+
+class OsmRelation(NamedTuple):
+    """Members with roles; ``line`` of the file."""
+
+    id: int
+    members: tuple[OsmMember, ...]
+    tags: Tags
+    line: int
+
+
+class Extract(NamedTuple):
+    """What an extract holds; ``dangling`` counts the references to nodes that the extract leaves out."""
+
+    nodes: Mapping[int, OsmNode]
+    ways: Mapping[int, OsmWay]
+    relations: tuple[OsmRelation, ...]
+    dangling: int
+
+
+def read_extract(data: bytes, name: str) -> Extract:
+    """Return the elements of an ``.osm`` file.
+
+    Raises:
+        UserError: the text is no OSM XML, or says something that cannot be; with the file and the line.
+    """
+    root = _root(data, name)
+    reader = _Reader(name)
+    nodes: dict[int, OsmNode] = {}
+    for element in _present(root, "node"):
+        number = reader.fresh(element, nodes)
+        longitude, latitude = reader.degrees(element, "lon", 180.0), reader.degrees(element, "lat", 90.0)
+        nodes[number] = OsmNode(longitude, latitude, reader.tags(element))
+    ways: dict[int, OsmWay] = {}
+    dangling = 0
+    for element in _present(root, "way"):
+        number = reader.fresh(element, ways)
+        refs = [reader.whole(child, "ref") for child in element.iterchildren("nd")]
+        kept = tuple(ref for ref in refs if ref in nodes)
+        dangling += len(refs) - len(kept)
+        ways[number] = OsmWay(number, _without_repeats(kept), reader.tags(element), element.sourceline)
+    relations = tuple(
+        OsmRelation(
+            reader.whole(element, "id"),
+            tuple(
+                OsmMember(child.get("type", ""), reader.whole(child, "ref"), child.get("role", ""))
+                for child in element.iterchildren("member")
+            ),
+            reader.tags(element),
+            element.sourceline,
+        )
+        for element in _present(root, "relation")
+    )
+    if any(relation.tags.get("type") == "lanelet" for relation in relations):
+        raise UserError(
+            f"{name} is a Lanelet2 map, not an OpenStreetMap extract; `linden map convert {name} -o DIR` makes an "
+            "Aisan map of it"
+        )
+    return Extract(nodes, ways, relations, dangling)
+
+
+def _present(root: Any, tag: str) -> list[Any]:  # noqa: ANN401 - an element of lxml
+    """Return the elements that the extract does not mark as deleted."""
+    return [
+        element
+        for element in root.iterchildren(tag)
+        if element.get("action") != "delete" and element.get("visible") != "false"
+    ]
+
+
+def _without_repeats(nodes: tuple[int, ...]) -> tuple[int, ...]:
+    return tuple(node for place, node in enumerate(nodes) if place == 0 or node != nodes[place - 1])
+
+
+def _root(data: bytes, name: str) -> Any:  # noqa: ANN401 - an element of lxml
+    if not data.strip():
+        raise UserError(f"{name}, line 1: the file is empty; name an OpenStreetMap extract (.osm)")
+    if len(data) > MOST_BYTES:
+        raise UserError(f"{name} has {len(data) >> 20} MiB; cut a part of at most {MOST_BYTES >> 20} MiB out of it")
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=False, load_dtd=False)
+    try:
+        root = etree.fromstring(data, parser)
+    except etree.XMLSyntaxError as error:
+        raise UserError(f"{name}, line {error.lineno}: this is no well-formed XML: {error.msg}") from None
+    if root.tag != "osm":
+        raise UserError(f"{name}, line {root.sourceline}: the outermost element is <{root.tag}>, not <osm>")
+    return root
+
+
+class _Reader:
+    """Attributes with checks; each refusal names the file and the line."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def whole(self, element: Any, key: str) -> int:  # noqa: ANN401 - an element of lxml
+        """Return a whole number of 64 bits."""
+        text = element.get(key, "")
+        try:
+            value = int(text)
+        except ValueError:
+            value = 1 << 63
+        if not -(1 << 63) <= value < 1 << 63:
+            raise self._refuse(element, key, "a whole number of 64 bits")
+        return value
+
+    def fresh(self, element: Any, known: Mapping[int, object]) -> int:  # noqa: ANN401 - an element of lxml
+        """Return the element's id, which no other element of its kind has."""
+        number = self.whole(element, "id")
+        if number in known:
+            raise UserError(f"{self._name}, line {element.sourceline}: {element.tag} {number} stands twice")
+        return number
+
+    def degrees(self, element: Any, key: str, most: float) -> float:  # noqa: ANN401 - an element of lxml
+        """Return an angle in degrees of at most ``most``."""
+        to_number: Callable[[str], float] = float
+        try:
+            value = to_number(element.get(key, ""))
+        except ValueError:
+            value = float("nan")
+        if not abs(value) <= most:
+            raise self._refuse(element, key, f"degrees between {-most:g} and {most:g}")
+        return value
+
+    def tags(self, element: Any) -> dict[str, str]:  # noqa: ANN401 - an element of lxml
+        """Return the tags of an element."""
+        return {tag.get("k", ""): tag.get("v", "") for tag in element.iterchildren("tag")}
+
+    def _refuse(self, element: Any, key: str, wanted: str) -> UserError:  # noqa: ANN401 - an element of lxml
+        found = element.get(key)
+        shown = "is missing" if found is None else f"is {found[:40]!r}"
+        return UserError(
+            f"{self._name}, line {element.sourceline}: `{key}` of <{element.tag}> {shown}; it should be {wanted}"
+        )

@@ -1,0 +1,122 @@
+"""``linden map build``: streets (GeoJSON), or an OpenStreetMap extract, to OpenDRIVE."""
+
+import argparse
+import difflib
+import json
+from collections import Counter
+from collections.abc import Collection
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from linden.authoring.output import write_output
+from linden.cli.map_source import bytes_of
+from linden.errors import UserError
+
+if TYPE_CHECKING:
+    from linden.authoring.openstreetmap.convert import Imported
+
+HELP = "turn streets (GeoJSON, or an OpenStreetMap extract) into OpenDRIVE"
+_HOME_STREETS = "linden.geojson"
+
+
+def add_arguments(command: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
+    command.add_argument(
+        "streets", nargs="?", type=Path, help="GeoJSON file, or OpenStreetMap extract (.osm); default: Linden's streets"
+    )
+    command.add_argument("-o", "--output", type=Path, required=True, help="where to write the .xodr file")
+    command.add_argument(
+        "--facts", type=Path, metavar="FILE", help="write the streets of an OpenStreetMap extract as GeoJSON too"
+    )
+    command.add_argument(
+        "--elevation", type=Path, metavar="FILE", help="lay the streets on measured ground: a GeoTIFF, or LAS or LAZ"
+    )
+    command.add_argument(
+        "--route",
+        action="append",
+        default=[],
+        metavar="NAME=FILE",
+        help="write the route feature NAME of the streets as a route file, for `basu run --routes`; may be given "
+        "several times",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the OpenDRIVE map of a file of streets, and the route files that are wanted."""
+    try:
+        from linden.authoring.openstreetmap.convert import convert  # noqa: PLC0415 - an optional part, slow to load
+        from linden.authoring.streets.build import assembled, off_ground_m  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.routes import xml  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.street_facts import read  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.terrain import with_terrain  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.writing import text as written  # noqa: PLC0415 - likewise
+    except ModuleNotFoundError as error:
+        if (error.name or "").startswith("linden"):
+            raise
+        raise UserError(
+            f"building maps needs the package {error.name}; install it with: pip install 'linden[maps]'"
+        ) from None
+    source: Path | None = arguments.streets
+    imported = convert(bytes_of(source), str(source)) if source is not None and source.suffix == ".osm" else None
+    if arguments.facts is not None and imported is None:
+        raise UserError("--facts writes the streets of an OpenStreetMap extract; name a .osm file, or leave it out")
+    facts = read(_streets(source) if imported is None else imported.streets)
+    built = assembled(facts if arguments.elevation is None else with_terrain(facts, arguments.elevation))
+    wanted = [_route_and_file(given, built.facts.routes) for given in arguments.route]
+    files = [(arguments.output, written(built.document))]
+    files += [(file, xml(built, built.facts.routes[name], number)) for number, (name, file) in enumerate(wanted)]
+    if imported is not None and arguments.facts is not None:
+        files.append((arguments.facts, (json.dumps(imported.streets, indent=1) + "\n").encode()))
+    for file, data in files:
+        write_output(file, data)
+        _say(f"{file}: {len(data):,} bytes")
+    if imported is not None:
+        _report(imported)
+    if arguments.elevation is not None:
+        away_m, near_m = off_ground_m(built)
+        _say(f"off the ground: {away_m:.2f} m at most, {near_m:.2f} m where roads come down to level junctions")
+    if built.left_out:
+        _say(f"left out: {len(built.left_out)} buildings or things that would stand on a street")
+    unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]
+    if unwritten and source is not None:
+        _say(f"not written: {', '.join(unwritten)}; `--route {unwritten[0]}=FILE.xml` writes a route feature")
+    return 0
+
+
+def _report(imported: "Imported") -> None:
+    """Print what the extract says, what is guessed, and what is left out."""
+    kinds = Counter(feature["properties"]["feature"] for feature in imported.streets["features"])
+    _say(", ".join(f"{count:,} {kind}" for kind, count in sorted(kinds.items())))
+    for fact in sorted(imported.known.keys() | imported.guessed.keys()):
+        _say(f"{fact:24} {imported.known[fact]:6,} tagged {imported.guessed[fact]:6,} guessed")
+    for reason, count in sorted(imported.left_out.items()):
+        if count:
+            _say(f"left out: {count:,} {reason}")
+
+
+def _route_and_file(given: str, known: Collection[str]) -> tuple[str, Path]:
+    """The route feature and the file of ``NAME=FILE``."""
+    name, sign, file = given.partition("=")
+    if not (name and sign and file):
+        raise UserError(f"--route {given}: give the name of a route feature and a file, such as --route loop=loop.xml")
+    if name not in known:
+        close = difflib.get_close_matches(name, known, 1)
+        there = f"it has {', '.join(known)}" if known else "it has none"
+        raise UserError(f"the streets have no route '{name}'; {f'did you mean {close[0]!r}?' if close else there}")
+    return name, Path(file)
+
+
+def _streets(path: Path | None) -> dict[str, Any]:
+    data = (resources.files("linden") / "data" / _HOME_STREETS).read_bytes() if path is None else bytes_of(path)
+    try:
+        streets = json.loads(data)
+    except ValueError as error:
+        raise UserError(f"{path} is no GeoJSON: {error}") from None
+    if not isinstance(streets, dict):
+        raise UserError(f"{path} is no GeoJSON: it should be an object of type FeatureCollection")
+    return streets
+
+
+def _say(line: str) -> None:
+    print(line)  # noqa: T201 - what a command says to its user

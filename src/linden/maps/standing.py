@@ -1,0 +1,121 @@
+"""What an OpenDRIVE map says of the things beside its roads: buildings on their footprints, benches, bins, mailboxes.
+
+A footprint becomes upright boxes: it is cut into strips across its longest side, at each of its corners. For a
+footprint of right angles, which most buildings have, the boxes are exact; an oblique wall becomes steps.
+"""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linden.maps.ground import Ground
+from linden.maps.opendrive.evaluate.tables import tables_of
+from linden.maps.opendrive.model import OpenDrive
+from linden.maps.opendrive.outlines import outline_of
+from linden.maps.opendrive.roadside import RoadObject
+from linden.maps.records import Standing, StandingBox
+
+F64 = NDArray[np.float64]
+
+FURNITURE = frozenset({"bench", "bin", "mailbox"})
+"""Names of objects of the type ``obstacle`` that are known."""
+
+MOST_STANDING = 20_000
+MOST_STRIPS = 24
+"""Of one footprint; a round one has as many corners as its author liked."""
+_SAME_M = 0.05  # corners that are nearer to each other along the longest side share a cut
+_HIGH_M = 1e6
+
+
+def standing_on(opendrive: OpenDrive, ground: Ground) -> tuple[Standing, ...]:
+    """Return the buildings and the furniture of a map in the order of its roads, at most ``MOST_STANDING``."""
+    tables = tables_of(opendrive)
+    found: list[Standing] = []
+    for index, road in enumerate(tables.roads):
+        for thing in road.objects:
+            kind = _kind(thing)
+            if kind is None or len(found) == MOST_STANDING:
+                continue
+            outline = outline_of(tables, index, thing)
+            if len(outline) < 3 or not np.isfinite(outline).all():
+                continue
+            boxes = footprint_boxes(outline)
+            if not boxes:
+                continue
+            middle = outline.mean(axis=0)
+            heights, _ = ground.surfaces_under(np.array([[*middle, _HIGH_M]]))
+            base_m = float(heights[0]) + thing.z_offset_m
+            found.append(_standing(kind, thing, boxes, (float(middle[0]), float(middle[1]), base_m)))
+    return tuple(found)
+
+
+def footprint_boxes(outline: F64) -> list[tuple[float, float, float, float, float]]:
+    """Return upright boxes over a ring of corners (N, 2): x, y of the middle, half length, half width, yaw in rad."""
+    sides = np.roll(outline, -1, axis=0) - outline
+    longest = sides[int(np.argmax(np.hypot(*sides.T)))]
+    yaw_rad = math.atan2(longest[1], longest[0])
+    cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
+    turned = outline @ np.array([[cos, -sin], [sin, cos]])
+    found = []
+    cuts = _cuts(np.sort(turned[:, 0]))
+    for low, high in pairwise(cuts):
+        for below, above in _spans(turned, 0.5 * (low + high)):
+            u, v = 0.5 * (low + high), 0.5 * (below + above)
+            half_u, half_v = 0.5 * (high - low), 0.5 * (above - below)
+            if half_v > 0.5 * _SAME_M:
+                found.append((u * cos - v * sin, u * sin + v * cos, half_u, half_v, yaw_rad))
+    return found
+
+
+def _cuts(places: F64) -> list[float]:
+    """Return where strips begin and end: at the corners, but in equal parts where these are too many."""
+    cuts = [float(places[0])]
+    for place in places[1:].tolist():
+        if place - cuts[-1] > _SAME_M:
+            cuts.append(place)
+    if len(cuts) > MOST_STRIPS + 1:
+        return [float(place) for place in np.linspace(cuts[0], cuts[-1], MOST_STRIPS + 1)]
+    return cuts
+
+
+def _spans(ring: F64, at: float) -> list[tuple[float, float]]:
+    """Return where a line across a ring at one place lies inside of it (even-odd rule)."""
+    after = np.roll(ring, -1, axis=0)
+    crossing = (ring[:, 0] > at) != (after[:, 0] > at)
+    first, second = ring[crossing], after[crossing]
+    share = (at - first[:, 0]) / (second[:, 0] - first[:, 0])
+    places = np.sort(first[:, 1] + share * (second[:, 1] - first[:, 1])).tolist()
+    return list(zip(places[::2], places[1::2], strict=True))
+
+
+def _kind(thing: RoadObject) -> str | None:
+    """Return what an object is, None where it is nothing that stands, or has no height."""
+    height_m = _height_m(thing)
+    if not 0.0 < height_m < 1000.0:
+        return None
+    if thing.type.lower() == "building":
+        return "building"
+    return thing.name if thing.type.lower() == "obstacle" and thing.name in FURNITURE else None
+
+
+def _height_m(thing: RoadObject) -> float:
+    return max((thing.height_m, *(corner.height_m for corner in thing.outline)))
+
+
+def _standing(
+    kind: str,
+    thing: RoadObject,
+    boxes: list[tuple[float, float, float, float, float]],
+    base_m: tuple[float, float, float],
+) -> Standing:
+    half_z = 0.5 * _height_m(thing)
+    name = thing.name if kind == "building" else ""
+    return Standing(
+        kind,
+        name,
+        *base_m,
+        boxes[0][4],
+        tuple(StandingBox(x, y, base_m[2] + half_z, u, v, half_z, yaw) for x, y, u, v, yaw in boxes),
+    )

@@ -1,0 +1,99 @@
+"""Whole runs that ROS 2 software in another process drives, over real DDS, and what becomes of software that fails."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from basu.agents.ros.lockstep import RosAgent
+from basu.cli import main
+from basu.records.history.files import read_history
+from servers import RunningServer
+
+ROOT = Path(__file__).parents[4]
+FOLLOWER, STACK = ROOT / "examples" / "ros_follower.py", ROOT / "tests" / "fakes" / "ros_stack.py"
+Starts = Callable[..., "subprocess.Popen[bytes]"]
+
+
+@pytest.fixture
+def starts(monkeypatch: pytest.MonkeyPatch) -> Iterator[Starts]:
+    """Starts software on this process's own domain, and ends it."""
+    monkeypatch.setenv("ROS_LOCALHOST_ONLY", "1")
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(1 + os.getpid() % 200))
+    with ExitStack() as stack:
+
+        def start(file: Path, *words: str) -> "subprocess.Popen[bytes]":
+            environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+            process = stack.enter_context(subprocess.Popen([sys.executable, str(file), *words], env=environment))
+            stack.callback(process.kill)
+            return process
+
+        yield start
+
+
+def run(
+    agent: str, simulator: RunningServer, route_file: Path, output: Path, *options: str
+) -> tuple[int, dict[str, Any], Path]:
+    address = ["--host", "127.0.0.1", "--port", str(simulator.port), "--in-process", "--output", str(output)]
+    code = main(["run", agent, *address, "--routes", str(route_file), *options])
+    result = output / "latest" / "result.json"
+    return code, json.loads(result.read_text()) if result.exists() else {}, output / "latest"
+
+
+@pytest.mark.parametrize(("agent", "kind"), [("ros", "ackermann"), ("autoware", "autoware")])
+def test_a_follower_drives_along_the_route(
+    agent: str, kind: str, simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
+) -> None:
+    starts(FOLLOWER, kind)
+    _, result, folder = run(agent, simulator, route_file, tmp_path, "--stop-after", "6")
+    assert result["status"] == "Stopped", result["message"]
+    frames = read_history(folder).frames
+    assert frames["route_s_m"][-1] > 8.0
+    assert np.abs(frames["lateral_m"]).max() < 1.0
+    assert len(frames) == 121
+
+
+@pytest.mark.parametrize(
+    ("kind", "status", "says"),
+    [
+        ("nan", "AgentInvalidControl", "commands throttle = nan; it must be a finite number"),
+        ("dies", "AgentTimedOut", "left the domain"),
+        ("stalls", "AgentTimedOut", "within the limit of a step; it is still on the domain"),
+    ],
+)
+def test_software_that_fails_is_the_agent_s_failure_and_the_record_is_kept(
+    kind: str, status: str, says: str, simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
+) -> None:
+    starts(STACK, kind)
+    code, result, folder = run("ros", simulator, route_file, tmp_path, "--step-limit", "5")
+    assert (code, result["status"], result["fault"]) == (1, status, "agent"), result["message"]
+    assert says in result["message"]
+    assert 5 <= len(read_history(folder).frames) <= 6
+
+
+def test_two_drivers_at_one_wheel_are_refused(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
+) -> None:
+    starts(STACK, "good")
+    starts(FOLLOWER, "ackermann")
+    _, result, _ = run("ros", simulator, route_file, tmp_path, "--stop-after", "60")
+    assert result["fault"] == "agent"
+    assert "several ROS 2 nodes command the vehicle (1 on /carla/hero/vehicle_control_cmd, 1 on" in result["message"]
+
+
+def test_software_that_never_appears_is_a_time_out_with_a_sentence(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    del starts  # but its domain
+    monkeypatch.setattr(RosAgent, "appears_s", 0.3)
+    _, result, _ = run("ros", simulator, route_file, tmp_path)
+    assert (result["status"], result["fault"]) == ("AgentTimedOut", "agent")
+    assert "no ROS 2 node publishes on /carla/hero/vehicle_control_cmd or /carla/hero/ackermann" in result["message"]
+    assert "give both the same ROS_DOMAIN_ID" in result["message"]

@@ -1,0 +1,93 @@
+"""Claims about what tags of ways say, each against the wording of OpenStreetMap's own documentation."""
+
+import pytest
+
+from linden.authoring.openstreetmap.tags import TAGGED, carriageway, direction, is_street, limit_mph, metres
+
+
+def told(**tags: str) -> dict[str, str]:
+    return {"highway": "residential", **{key.replace("__", ":"): value for key, value in tags.items()}}
+
+
+@pytest.mark.parametrize(
+    ("tags", "lanes", "is_tagged"),
+    [
+        (told(), (1, 1), False),
+        (told(lanes="4"), (2, 2), True),
+        (told(lanes="3", lanes__forward="1", lanes__backward="2"), (1, 2), True),
+        (told(lanes="3", lanes__backward="1"), (2, 1), True),
+        (told(lanes="3"), (2, 1), False),  # which direction has the odd lane is guessed
+        (told(lanes="1"), (1, 1), False),
+        (told(lanes="2", oneway="yes"), (2, 0), True),
+        (told(lanes="2", oneway="-1"), (0, 2), True),
+        (told(lanes="many"), (1, 1), False),
+        (told(junction="roundabout"), (1, 0), False),
+    ],
+)
+def test_lanes(tags: dict[str, str], lanes: tuple[int, int], *, is_tagged: bool) -> None:
+    found = carriageway(tags, metric=False)
+    assert (found.forward, found.backward) == lanes
+    assert (dict(found.sources)["lanes_confidence"] == TAGGED) == is_tagged
+
+
+@pytest.mark.parametrize(
+    ("text", "mph"),
+    [("25 mph", 25.0), ("50", 31.07), ("50 km/h", 31.07), ("walk", None), ("none", None), ("0", None), ("", None)],
+)
+def test_limits(text: str, mph: float | None) -> None:
+    found = limit_mph(text)
+    assert found is None if mph is None else found == pytest.approx(mph, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    ("text", "m"), [("7.5", 7.5), ("7.5 m", 7.5), ("24 ft", 7.315), ("24'6\"", 7.468), ("wide", None), ("-3", None)]
+)
+def test_lengths(text: str, m: float | None) -> None:
+    found = metres(text)
+    assert found is None if m is None else found == pytest.approx(m, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("tags", "is_one"),
+    [
+        (told(), True),
+        ({"highway": "footway"}, False),
+        ({"highway": "service", "service": "driveway"}, False),
+        (told(access="private"), False),
+        (told(access="private", motor_vehicle="yes"), True),
+        ({"highway": "primary_link"}, True),
+        (told(area="yes"), False),
+        ({"highway": "construction"}, False),
+    ],
+)
+def test_streets_are_what_the_public_drives_on(tags: dict[str, str], *, is_one: bool) -> None:
+    assert is_street(tags) == is_one
+
+
+def test_a_motorway_has_one_direction_unless_a_tag_denies_it() -> None:
+    assert direction({"highway": "motorway"}) == 1
+    assert direction({"highway": "motorway", "oneway": "no"}) == 0
+
+
+def test_sides_are_read_in_the_newer_and_the_older_keys() -> None:
+    assert carriageway(told(parking__left="lane"), metric=False).parking == (True, False)
+    assert carriageway(told(parking__lane__both="parallel"), metric=False).parking == (True, True)
+    assert carriageway(told(sidewalk__right="yes"), metric=False).sidewalk == (False, True)
+    assert carriageway(told(sidewalk="no"), metric=False).sidewalk == (False, False)
+
+
+def test_separate_sidewalks_are_a_guess() -> None:
+    found = carriageway(told(sidewalk="separate"), metric=False)
+    assert found.sidewalk == (True, True)
+    assert dict(found.sources)["sidewalk_confidence"] == "guessed from sidewalk=separate"
+
+
+def test_a_width_that_has_no_room_for_the_lanes_is_not_taken() -> None:
+    found = carriageway(told(width="3", lanes="4"), metric=False)
+    assert found.width_m == pytest.approx(4 * 3.05)
+    assert dict(found.sources)["width_confidence"].startswith("guessed")
+
+
+def test_guessed_limits_have_the_unit_of_the_extract() -> None:
+    assert carriageway(told(), metric=False).speed_mph == 25.0
+    assert carriageway(told(), metric=True).speed_mph == pytest.approx(50 / 1.609344, abs=1e-4)

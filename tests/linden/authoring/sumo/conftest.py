@@ -1,0 +1,17 @@
+"""Linden's network, converted once."""
+
+from importlib import resources
+from pathlib import Path
+
+import pytest
+
+from linden.authoring.sumo.network import Converted, convert
+
+pytest.importorskip("sumo", reason="the extra for SUMO is not installed")
+
+
+@pytest.fixture(scope="session")
+def linden(tmp_path_factory: pytest.TempPathFactory) -> tuple[Converted, Path]:
+    """What was converted, and the file of the network."""
+    target = tmp_path_factory.mktemp("sumo") / "Linden.net.xml"
+    return convert((resources.files("linden") / "data" / "Linden.xodr").read_bytes(), target), target
