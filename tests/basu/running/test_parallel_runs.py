@@ -10,7 +10,6 @@ from basu.errors import UserError
 from basu.options import RunOptions
 from basu.running.parallel_runs import check_parallel
 
-
 VOLATILE = {"wall_s", "started", "first_server_frame"}  # of the meta: times, and the age of the server
 
 
