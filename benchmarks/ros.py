@@ -2,8 +2,8 @@
 
     ROS_LOCALHOST_ONLY=1 python benchmarks/ros.py [--rounds 100]
 
-The subscriber is a second node of this process, which keeps the last ten messages. Times are medians of processor time of
-the publishing thread: on a busy machine they say more than wall time.
+The subscriber is a second node of this process, which keeps the last ten messages. Times are medians of processor
+time of the publishing thread: on a busy machine they say more than wall time.
 """
 
 from __future__ import annotations

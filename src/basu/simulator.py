@@ -50,7 +50,7 @@ class Simulator:
     own: bool
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
     ended: Callable[[], bool]  # whether its process is seen to have ended; asks it nothing
-    uploaded: str | None = None  # the town whose map BASU sent; the simulator calls it by UPLOADED_NAME
+    uploaded: str | None = None  # the town of the map that BASU sent; the simulator calls it by UPLOADED_NAME
 
     def map_name(self, town: str) -> str:
         """The name by which the simulator knows a town."""

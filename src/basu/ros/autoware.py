@@ -1,8 +1,8 @@
 """Topics and messages of Autoware Universe and Core: what its sensing and vehicle interfaces publish, and its commands.
 
-Names and types are those of ``autoware_carla_interface`` and of the vehicle interface in Autoware's documentation.
-base_link is the middle of the rear axle on the ground. Localisation is given: pose, acceleration and the transform of
-base_link come from the simulator, so a stack runs without its own.
+Names and types follow ``autoware_carla_interface`` and Autoware's documentation of the vehicle interface. The frame
+``base_link`` is the middle of the rear axle on the ground. Localisation is given. Pose, acceleration and the transform
+of ``base_link`` come from the simulator, so a stack runs without its own.
 """
 
 from __future__ import annotations

@@ -69,6 +69,11 @@ def ackermann_of(role: str) -> Topic:
     return Topic(f"/carla/{role}/ackermann_cmd", "ackermann_msgs/msg/AckermannDrive")
 
 
+def info_of(role: str) -> Topic:
+    """Return the topic of what does not change about a vehicle: wheels, engine, mass."""
+    return Topic(f"/carla/{role}/vehicle_info", "carla_msgs/msg/CarlaEgoVehicleInfo", is_latched=True, depth=1)
+
+
 def path_of(role: str) -> Topic:
     """Return the topic of the planned route, as CARLA's waypoint publisher has it."""
     return Topic(f"/carla/{role}/waypoints", "nav_msgs/msg/Path", is_latched=True, depth=1)

@@ -28,7 +28,7 @@ def test_a_field_that_a_type_lacks_is_refused() -> None:
     assert types_of(Generation.ROS_1).message("std_msgs/msg/Header", seq=1).seq == 1
 
 
-def test_hashes_are_those_that_ros_publishes() -> None:
+def test_hashes_agree_with_ros() -> None:
     """MD5 sums as `rosmsg md5` prints them: std_msgs, nav_msgs and tf2_msgs of Noetic, and CARLA's control."""
     store = types_of(Generation.ROS_1).store
     sums = {name: store.generate_msgdef(name)[1] for name in SUMS}

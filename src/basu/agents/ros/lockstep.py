@@ -1,7 +1,7 @@
 """``basu run ros``: ROS 2 software on CARLA's topics drives; simulated time waits for its command in each step.
 
-An agent publishes the frame and the clock, and waits for a command that belongs to it: one whose time is that of the
-frame, or none at all. What its software does not do in time is the agent's time-out.
+The agent publishes the frame and the clock. Then it waits for a command of the same time, or of no time at all. A
+command that does not come within the limit of a step is the agent's time-out.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.builtin.perception import SHUTTLE, read_facts
 from basu.agents.calls import SETUP_LIMIT_S, OverrunError
 from basu.agents.ros.commands import AckermannControl, Wanted, ackermann_command, carla_command
-from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, control_of
+from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, control_of, info_message
 from basu.agents.sensor_file import read_sensors
 from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
 from basu.files import find
@@ -44,6 +44,7 @@ if TYPE_CHECKING:
 
 APPEARS_S = SETUP_LIMIT_S - 20.0  # wall time for the software to appear on the domain: it may load maps and networks
 SLICE_S = 0.02  # of waiting: in between, the step's time limit can interrupt
+MISSED_S = 12.0  # wall time after which DDS has missed a node that was killed: its lease is 10 s
 NODE = "basu"
 
 
@@ -79,7 +80,8 @@ class RosAgent(AutonomousAgent):
         if self.facts is None:
             self.facts = read_facts(self.vehicle, self.vehicle.get_transform())
             self.described = self.described._replace(rear_axle_m=self.axle_m(self.facts))
-            self.node.publish(*first_messages(self.node.types, self.described, moment.t_s))
+            still = first_messages(self.node.types, self.described, moment.t_s)
+            self.node.publish(*still, info_message(self.node.types, self.vehicle))
         if self.node.readers_of(objects_of(self.described.role)):
             moment = moment._replace(others=[actor_of(other) for other in self.visible_actors()])
         self._check_alone()
@@ -158,15 +160,25 @@ class RosAgent(AutonomousAgent):
             time.sleep(SLICE_S)  # discovery has no event that this could wait for
 
     def _check_alone(self) -> None:
-        """Check that one node drives.
+        """Check that one node drives. One that was killed stays on the domain until DDS misses it, so this waits.
 
         Raises:
             AgentCrashedError: several do.
         """
+        until_s = time.monotonic() + MISSED_S
+        try:
+            while sum(self.node.writers_of(topic) for topic in self.commands()) > 1:
+                if time.monotonic() > until_s:
+                    raise self._several()
+                time.sleep(SLICE_S)  # DDS has no event for it that could be waited for together with a time limit
+        except OverrunError:
+            raise self._several() from None
+
+    def _several(self) -> AgentCrashedError:
+        """The failure of several drivers."""
         writers = {topic.name: self.node.writers_of(topic) for topic in self.commands()}
-        if sum(writers.values()) > 1:
-            found = ", ".join(f"{count} on {name}" for name, count in writers.items() if count)
-            raise AgentCrashedError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
+        found = ", ".join(f"{count} on {name}" for name, count in writers.items() if count)
+        return AgentCrashedError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
 
     def _command(self, moment: Moment) -> Wanted | carla.VehicleControl:
         """The command that belongs to a frame.

@@ -5,8 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from basu.agents.sight.actors import Kind
+from basu.ros.frames import vector
 from basu.ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount
+from basu.ros.sensor_messages import vector3
+from basu.ros.topics import Message, info_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -15,6 +20,7 @@ if TYPE_CHECKING:
 
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sight import Other
+    from basu.ros.types import Types
 
 TYPE_OF_KIND = {Kind.VEHICLE: "vehicle.", Kind.WALKER: "walker.", Kind.PROP: "static.prop."}
 """The beginning of a blueprint's id, which is all that an agent sees of it."""
@@ -73,6 +79,44 @@ def motion_of(own: carla.ActorSnapshot) -> Motion:
     rates = (math.radians(rate) for rate in (spin.x, spin.y, spin.z))
     moving = (velocity.x, velocity.y, velocity.z, acceleration.x, acceleration.y, acceleration.z)
     return Motion._make((at.x, at.y, at.z, *turns, *moving, *rates))
+
+
+INFO = (
+    "max_rpm", "moi", "damping_rate_full_throttle", "damping_rate_zero_throttle_clutch_engaged",
+    "damping_rate_zero_throttle_clutch_disengaged", "use_gear_autobox", "gear_switch_time", "clutch_strength", "mass",
+    "drag_coefficient",
+)  # fmt: skip
+"""The members of carla.VehiclePhysicsControl that a message takes as they are."""
+WHEEL = ("tire_friction", "damping_rate", "radius", "max_brake_torque", "max_handbrake_torque")
+"""Likewise of carla.WheelPhysicsControl; the radius is in cm, as in the ros-bridge."""
+M_PER_CM = 0.01  # of wheels' places
+
+
+def info_message(types: Types, vehicle: carla.Vehicle) -> Message:
+    """Return wheels, engine and mass of a vehicle that is in the world, with the wheels' places in its frame in m."""
+    physics = vehicle.get_physics_control()
+    into_vehicle = np.array(vehicle.get_transform().get_inverse_matrix())
+    wheels = []
+    for wheel in physics.wheels:
+        at = np.array([wheel.position.x, wheel.position.y, wheel.position.z]) * M_PER_CM
+        place = (into_vehicle @ np.append(at, 1.0))[:3].tolist()
+        values = {name: float(getattr(wheel, name)) for name in WHEEL}
+        angle, position = math.radians(wheel.max_steer_angle), vector3(types, vector(*place))
+        kind = "carla_msgs/msg/CarlaEgoVehicleInfoWheel"
+        wheels.append(types.message(kind, **values, max_steer_angle=angle, position=position))
+    middle, role = physics.center_of_mass, vehicle.attributes["role_name"]
+    topic = info_of(role)
+    known = {name: getattr(physics, name) for name in INFO}
+    content = types.message(
+        topic.type,
+        id=vehicle.id,
+        type=vehicle.type_id,
+        rolename=role,
+        wheels=wheels,
+        center_of_mass=vector3(types, vector(middle.x, middle.y, middle.z)),
+        **known,
+    )
+    return Message(topic, content)
 
 
 def actor_of(other: Other) -> Actor:

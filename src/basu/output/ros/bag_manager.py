@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING
 
-from basu.agents.ros.vehicle_source import control_of
+from basu.agents.ros.vehicle_source import control_of, info_message
 from basu.errors import UserError
 from basu.managers.base_manager import BaseManager
 from basu.output.ros.live_vehicle import LiveVehicle
@@ -46,7 +46,7 @@ class BagManager(BaseManager):
         self._path: Path = run.folder / BAGS[self._generation]
         self._bag = bag = BagFile(self._path, self._generation)
         bag.announce(topics)
-        bag.write(0.0, first_messages(bag.types, vehicle, 0.0))
+        bag.write(0.0, [*first_messages(bag.types, vehicle, 0.0), info_message(bag.types, run.vehicle)])
 
     def tick(self, frame: Frame) -> None:
         """Write a frame.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from basu.agents.ros.vehicle_source import info_message
 from basu.managers.base_manager import BaseManager
 from basu.output.ros.live_vehicle import LiveVehicle
 from basu.output.ros.record_bag import event_messages, event_topics
@@ -39,7 +40,7 @@ class PublishManager(BaseManager):
         node.announce(*vehicle_topics(vehicle), *event_topics(vehicle.role), path_of(vehicle.role))
         rows = zip(run.route.points_m.tolist(), run.route.yaw_rad.tolist(), strict=True)
         way = path_message(node.types, vehicle.role, [(*point, yaw) for point, yaw in rows])
-        node.publish(*first_messages(node.types, vehicle, 0.0), way)
+        node.publish(*first_messages(node.types, vehicle, 0.0), way, info_message(node.types, run.vehicle))
         self._say(f"ROS 2             domain {node.domain}, topics /carla/{vehicle.role}/…")
 
     def tick(self, frame: Frame) -> None:

@@ -25,7 +25,7 @@ _RANK = {"arterial": 0, "collector": 1, "local": 2, "service": 3}
 
 
 class Governed(NamedTuple):
-    """What governs a junction: the segments whose traffic waits, and where that is known from."""
+    """What governs a junction: the segments with traffic that waits, and where that is known from."""
 
     control: Control
     waiting: tuple[str, ...]

@@ -47,7 +47,7 @@ class Spot(NamedTuple):
 
 
 def buildings(extract: Extract) -> Iterator[Footprint]:
-    """Yield the buildings whose whole outline is in the extract, in the order of their ids."""
+    """Yield the buildings with their whole outline in the extract, in the order of their ids."""
     outlines = {way.id: (way.nodes, way.tags) for way in extract.ways.values() if way.is_closed}
     for number, (nodes, tags) in sorted(outlines.items()):
         if _is_building(tags):

@@ -61,7 +61,7 @@ class _Roads:
         self._paved = STRtree([*_along_roads(network, self._roads, lines), *_in_junctions(network)])
 
     def place(self, point: Point) -> tuple[int, Path, float]:
-        """Return the edge whose road passes nearest to a point, the road, and how far along it."""
+        """Return the edge of the road nearest to a point, the road, and how far along it."""
         row = int(self._lines.nearest(point))
         edge, road = self._roads[row]
         return edge, road, min(float(self._lines.geometries[row].project(point)), length(road))
@@ -101,7 +101,7 @@ def _half_m(seen: View) -> float:
 def _building(building: Building, roads: _Roads) -> tuple[int, Object] | None:
     ground = Polygon(building.ring)
     if not ground.is_valid:
-        ground = ground.buffer(0.0)  # type: ignore[assignment]  # a bow tie becomes its larger half below
+        ground = ground.buffer(0.0)
     free = roads.clear_of(ground)
     if free is None:
         return None

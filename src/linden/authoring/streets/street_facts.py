@@ -125,8 +125,8 @@ class Route(NamedTuple):
 class Profile(NamedTuple):
     """How closely roads follow the ground.
 
-    A junction is level; over ``ramp_m`` a road finds back to the ground. ``knot_m`` lies between the points where the
-    height is given. ``steepest`` is the greatest mean rise of a road between level junctions.
+    A junction is level. A road finds back to the ground over ``ramp_m``. Its height is given every ``knot_m``.
+    ``steepest`` is the greatest mean rise of a road between level junctions.
     """
 
     ramp_m: float

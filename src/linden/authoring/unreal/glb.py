@@ -16,7 +16,8 @@ def glb(parts: Sequence[Part], name: str) -> bytes:
     buffer = Buffer()
     surfaces = sorted({surface for part in parts for surface in part.surfaces})
     rows = {surface: row for row, surface in enumerate(surfaces)}
-    nodes, meshes = [], []
+    nodes: list[dict[str, Any]] = []
+    meshes: list[dict[str, Any]] = []
     for part in parts:
         origin = np.round(part.vertices_m.mean(axis=0))  # so that single precision lasts
         moved = (origin[_AXES] * _SIGNS).tolist()

@@ -139,7 +139,7 @@ def _groups(mesh: Mesh) -> I64:
     of_tag = np.full(256, names.index(OTHER_GROUP), np.int64)
     for tag, group in GROUP_OF_TAG.items():
         of_tag[int(tag)] = names.index(group)
-    groups = of_tag[mesh.faces["tag"]]
+    groups: I64 = of_tag[mesh.faces["tag"]]
     is_kerb = (mesh.faces["colour"] == np.array(KERB_STONE, np.uint8)).all(axis=1)
     groups[is_kerb & (mesh.faces["tag"] == int(SemanticTag.SIDEWALKS))] = names.index(CURB_GROUP)
     return groups

@@ -28,8 +28,8 @@ _FURNITURE = {
 def buildings(parts: Frames, half_m: F64, building: NDArray[np.intp], objects: I32) -> Mesh:
     """Return buildings of upright boxes: walls with rows of windows, and flat roofs.
 
-    ``parts`` stand at the feet of the boxes, ``half_m`` (N, 3) are their half sizes, ``building`` (N,) is the number of
-    the building that each belongs to.
+    ``parts`` stand at the feet of the boxes. ``half_m`` (N, 3) are their half sizes. ``building`` (N,) is the number of
+    each box's building.
     """
     centre = half_m * (0.0, 0.0, 1.0)
     colour = _WALLS[building % len(_WALLS)].astype(np.uint8)

@@ -123,7 +123,7 @@ def driving(road: Road) -> tuple[int, int]:
     return sum(lane < 0 for lane in lanes), sum(lane > 0 for lane in lanes)
 
 
-def test_a_street_whose_traffic_opposes_its_nodes_is_turned_about(opendrive: OpenDrive, imported: Imported) -> None:
+def test_a_street_against_the_order_of_its_nodes_is_turned_about(opendrive: OpenDrive, imported: Imported) -> None:
     road = next(road for road in opendrive.roads if dict(road.user_data).get("street") == "20")
     assert driving(road) == (1, 0)
     assert features(imported, "street")["20"]["oneway"] == "forward"
@@ -168,7 +168,7 @@ def peer(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return sumolib.net.readNet(str(folder / "net.xml"))
 
 
-def test_lanes_are_those_that_netconvert_reads(peer: Any, imported: Imported, opendrive: OpenDrive) -> None:
+def test_netconvert_reads_the_same_lanes(peer: Any, imported: Imported, opendrive: OpenDrive) -> None:
     theirs: dict[int, set[tuple[int, bool]]] = defaultdict(set)
     for edge in peer.getEdges():
         found = re.fullmatch(r"(-?)(\d+)(?:#\d+)?", edge.getID())
@@ -186,7 +186,7 @@ def test_lanes_are_those_that_netconvert_reads(peer: Any, imported: Imported, op
         assert counts == {count for count, _ in theirs[way]}, way
 
 
-def test_junctions_are_those_that_netconvert_reads(peer: Any, opendrive: OpenDrive) -> None:
+def test_netconvert_reads_the_same_junctions(peer: Any, opendrive: OpenDrive) -> None:
     def ends(node: Any) -> int:
         return len({edge.getID().lstrip("-") for edge in (*node.getIncoming(), *node.getOutgoing())})
 
