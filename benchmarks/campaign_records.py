@@ -91,12 +91,13 @@ def main() -> None:
     files = list(folder.glob("drives/*/*.parquet"))
     size = sum(path.stat().st_size for path in files)
     workers_s = resource.getrusage(resource.RUSAGE_CHILDREN)
-    workers_us = 1e6 * (workers_s.ru_utime + workers_s.ru_stime) / done
+    us_a_row = 1e6 / done
+    theirs_s = workers_s.ru_utime + workers_s.ru_stime
     print(f"{done} rows in {wall_s:.0f} s ({done / wall_s:.0f}/s)")
-    print(f"processor time a row: {1e6 * cpu_s / done:.0f} us of the driver, {workers_us:.0f} us of the workers")
+    print(f"processor: driver {us_a_row * cpu_s:.0f} us a row, workers {us_a_row * theirs_s:.0f} us a row")
     print(f"{len(files)} files, {size / 1e6:.1f} MB, {size / done:.0f} bytes a row")
-    middle_mb = memory[len(memory) // 2]
-    print(f"memory of the driver: first {memory[0]:.0f} MB, middle {middle_mb:.0f} MB, last {memory[-1]:.0f} MB")
+    first, middle, last = memory[0], memory[len(memory) // 2], memory[-1]
+    print(f"memory of the driver: first {first:.0f} MB, middle {middle:.0f} MB, last {last:.0f} MB")
     if arguments.folder is None:
         shutil.rmtree(folder)
 

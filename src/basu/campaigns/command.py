@@ -57,8 +57,8 @@ def run_campaign(settings: RunSettings) -> int:
     folder = settings.output / plan.campaign.name
     schema = schema_of(plan.parameters(), plan.metric_files)
     with locked(folder):
-        begin(folder, plan, settings.file, resume=settings.resume)
         backend, workers = _backend(settings, drive_player(_player_settings(plan, folder, settings)))
+        begin(folder, plan, settings.file, resume=settings.resume)
         run = _Run(plan, folder, DriveTable(folder, schema, plan.campaign.block, plan.size), settings)
         pool = Pool(
             backend,

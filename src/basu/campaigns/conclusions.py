@@ -29,7 +29,7 @@ class Rate(NamedTuple):
     successes: int
     wilson: Interval
     exact: Interval  # Clopper and Pearson
-    faults: dict[str, int]  # drives that say nothing of the agent, by the party at fault; "nobody": not exercised
+    faults: dict[str, int]  # drives that say nothing of the agent, by the party at fault; without one: not exercised
 
 
 class Pair(NamedTuple):

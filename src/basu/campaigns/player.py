@@ -46,7 +46,7 @@ if TYPE_CHECKING:
     from basu.scenarios.cases import Library
     from basu.simulator import Simulator
 
-JUDGED = frozenset({Fault.NOBODY, Fault.AGENT})  # what ended otherwise says nothing of the agent
+JUDGED = frozenset(Fault) - {Fault.SETUP, Fault.SIMULATOR, Fault.BENCHMARK, Fault.USER}  # the rest says nothing of it
 AGAIN = frozenset({Status.SIMULATOR_FAILED})  # tried again elsewhere
 
 

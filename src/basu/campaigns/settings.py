@@ -96,7 +96,7 @@ class Work(Table):
     """How drives are worked off; nothing of it changes a result."""
 
     block: Annotated[int, Field(ge=1, le=1_000_000)] = 1_000  # drives in one file of the table, of all agents
-    attempts: Annotated[int, Field(ge=1, le=10)] = 3  # at a drive that loses its worker
+    attempts: Annotated[int, Field(ge=1, le=10)] = 3  # at a drive, where its worker dies
     drive_limit_s: Annotated[float, Field(gt=0.0)] = 3_600.0  # wall time of one drive; longer counts as a death
 
 

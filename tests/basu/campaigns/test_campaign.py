@@ -1,6 +1,7 @@
 """Claims about campaigns as a whole, with a player that computes rows: nothing is lost or counted twice."""
 
 import importlib
+import logging
 import os
 import signal
 import subprocess
@@ -188,3 +189,19 @@ def test_a_campaign_can_be_described_without_a_drive(campaign: Write) -> None:
 def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="is no folder of a campaign"):
         status(tmp_path)
+
+
+@pytest.mark.slow
+def test_a_campaign_on_a_cluster_equals_one_of_processes(run: Callable[..., Path], campaign: Write) -> None:
+    ray = pytest.importorskip("ray")
+    from ray.cluster_utils import Cluster  # noqa: PLC0415 - behind the check for Ray
+
+    file = campaign(("number = 3", "number = 1"))
+    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 2, "object_store_memory": 80_000_000})
+    try:
+        ray.init(address=cluster.address, logging_level=logging.ERROR, log_to_driver=False)
+        on_cluster = run(file, "cluster", ray="auto")
+    finally:
+        ray.shutdown()
+        cluster.shutdown()
+    assert steady(on_cluster).equals(steady(run(file)))

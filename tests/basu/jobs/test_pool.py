@@ -50,7 +50,7 @@ def test_a_job_that_kills_its_worker_three_times_is_lost_and_costs_no_other(play
     assert all(isinstance(answer, Done) for answer in answers.values())
 
 
-def test_a_job_whose_worker_died_once_is_tried_again(player: str, tmp_path: Path) -> None:
+def test_a_job_is_tried_again_after_the_death_of_its_worker(player: str, tmp_path: Path) -> None:
     with pool_of(player) as pool:
         (answer,) = pool.play([Job(0, ("die-once", str(tmp_path / "died")))])
     assert isinstance(answer, Done)
