@@ -9,6 +9,7 @@ from every_method.entries import missing
 from every_method.stage import Stage
 
 PORT = 8030
+OF_ITS_THREAD = ("apply_batch", "get_actor_bounding_box", "get_vehicle_light_states", "get_weather_parameters")
 
 
 def manager(stage: Stage) -> carla.TrafficManager:
@@ -49,6 +50,7 @@ def for_all(name: str, *values: Any) -> Call:
 
 def shut_down(stage: Stage) -> None:
     """End a Traffic Manager, not the one that others need."""
+    stage.forget(*OF_ITS_THREAD)  # whether it has made its first step by then is a matter of the load
     ending = stage.once("ending", lambda: stage.client.get_trafficmanager(PORT + 1))
     ending.shut_down()
 
