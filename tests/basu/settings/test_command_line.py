@@ -87,6 +87,8 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop("hud_screenshot", None)
     if given.get("host") is not None:
         given.pop("maps", None)  # those of a simulator that basu starts
+    else:
+        given.pop("upload_map", None)  # to a simulator that is running
     for name in refused_by_sumo(given):
         given.pop(name, None)
     if given.get("in_process"):

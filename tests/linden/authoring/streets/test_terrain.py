@@ -1,6 +1,8 @@
 """Claims about measured ground: a hilly landscape with a formula, written as GeoTIFF and as LAS, and read back."""
 
 import math
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -68,6 +70,13 @@ def expected(hills: Hills, x_m: float, y_m: float, facts: Facts) -> float:
 @pytest.fixture
 def facts(facts_of: Any, sketch: Any) -> Facts:
     return facts_of(sketch.crossing())
+
+
+@pytest.fixture(autouse=True)
+def own_projections(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Hide what an import of SUMO by another test has set: the rasters are written with rasterio's own projections."""
+    for name in ("PROJ_DATA", "PROJ_LIB"):
+        monkeypatch.delenv(name, raising=False)
 
 
 def test_heights_are_those_of_the_landscape(facts: Facts, tmp_path: Path) -> None:
@@ -154,3 +163,13 @@ def test_the_command_leaves_no_map_where_the_ground_is_missing(
     assert main(["map", "build", "--elevation", str(ground), "-o", str(out)]) == 2
     assert "take a file that covers them" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_a_program_that_has_imported_sumo_reads_the_ground_as_well(tmp_path: Path) -> None:
+    ground = geotiff(tmp_path / "hills.tif", gentle)
+    program = "import libsumo, sys; from linden.cli import main; sys.exit(main(sys.argv[1:]))"
+    words = ["map", "build", "--elevation", str(ground), "-o", str(tmp_path / "Linden.xodr")]
+    ran = subprocess.run(
+        [sys.executable, "-c", program, *words], capture_output=True, text=True, timeout=120, check=False
+    )
+    assert "take a file that covers them" in ran.stderr, ran.stderr  # it was read: SUMO's projections were not used
