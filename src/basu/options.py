@@ -496,7 +496,7 @@ class RunOptions(Settings):
         self._check_demand_of_sumo(is_file=self.sumo not in words)
 
     def _check_demand_of_sumo(self, *, is_file: bool) -> None:
-        """Check what is said of SUMO's demand, and of a SUMO that runs.
+        """Check the options of SUMO's demand and outputs.
 
         Raises:
             UserError: there is no demand to which it applies.

@@ -102,7 +102,7 @@ def quarter() -> Drawing:
     )  # fmt: skip
     draw.way(8, (180.0, 120.0), (400.0, 120.0), highway="residential", name="East 12th Avenue")
     draw.node(180.0, 120.0, highway="stop", stop="all")
-    draw.node(180.0, 0.0, highway="give_way", direction="forward")  # on the junction: says nothing of whom it is for
+    draw.node(180.0, 0.0, highway="give_way", direction="forward")  # on the junction: its street is not known
     # a small roundabout as a ring of two ways
     draw.way(9, *circle[:5], highway="residential", junction="roundabout", oneway="yes", name="Circle")
     draw.way(10, *circle[4:], highway="residential", junction="roundabout", oneway="yes", name="Circle")

@@ -13,6 +13,7 @@ from basu.campaigns.plan import CampaignPlan
 from basu.errors import UserError
 from basu.files import read_json
 from basu.output.report.documents import write_json
+from basu.running.series import changes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -125,14 +126,10 @@ def _compare(before: dict[str, Any], now: dict[str, Any], folder: Path) -> None:
     Raises:
         UserError: names what is different.
     """
-    changed = [
-        f"{name} was {_short(before.get(name))} and is {_short(now.get(name))}"
-        for name in sorted({*before, *now})
-        if before.get(name) != now.get(name)
-    ]
+    changed = changes(before, now, shown=_short)
     if changed:
         raise UserError(
-            f"the campaign in {folder} was begun differently: {'; '.join(changed)}; go on with the file and versions "
+            f"the campaign in {folder} was begun differently: {changed}; go on with the file and versions "
             "that it was begun with, or begin another with --output"
         )
 

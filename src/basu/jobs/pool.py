@@ -83,7 +83,7 @@ class Pool(Generic[W]):
             while following is not None and self._idle:
                 self._give(self._idle.pop(), *following)
                 following = self._next(waiting)
-            wanted = min(self._most, self._busy() + (following is not None) * self._most)
+            wanted = self._busy() if following is None else self._most
             while len(self._workers) < wanted:
                 self._workers[self._backend.start()] = None
             for worker, answer in self._backend.answers(list(self._workers), WAIT_S):
@@ -129,7 +129,7 @@ class Pool(Generic[W]):
         elif isinstance(answer, Refused):
             raise raised(answer)
         elif isinstance(answer, Died):
-            yield from self._buried(worker, answer.sentence)
+            yield from self._died(worker, answer.sentence)
         else:
             yield from self._played(worker, answer)
 
@@ -149,7 +149,7 @@ class Pool(Generic[W]):
         if played.after is After.INTERRUPTED:
             raise KeyboardInterrupt
 
-    def _buried(self, worker: W, sentence: str) -> Iterator[Done | Lost]:
+    def _died(self, worker: W, sentence: str) -> Iterator[Done | Lost]:
         """Remove a worker that has died; its job is tried again, or lost."""
         duty = self._workers[worker]
         if worker not in self._ready_once:
@@ -169,7 +169,7 @@ class Pool(Generic[W]):
         now_s = time.monotonic()
         late = [w for w, duty in self._workers.items() if duty and duty.deadline_s and duty.deadline_s < now_s]
         for worker in late:
-            yield from self._buried(worker, f"it was ended after {self._limit_s:g} s over one job")
+            yield from self._died(worker, f"it was ended after {self._limit_s:g} s over one job")
 
     def _remove(self, worker: W, *, at_once: bool) -> None:
         del self._workers[worker]

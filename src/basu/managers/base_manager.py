@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
+from basu.records.motion import VehicleMotion, motion_of
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
@@ -57,24 +59,10 @@ class Run:
     changes: WorldChanges = field(default_factory=WorldChanges)  # what the benchmark itself has changed
 
 
-class Ego(NamedTuple):
-    """The vehicle under test in one frame: world, CARLA's axes, m, rad, s."""
+class Ego(VehicleMotion):
+    """The motion of the vehicle under test in one frame."""
 
-    x_m: float
-    y_m: float
-    z_m: float
-    roll_rad: float
-    pitch_rad: float
-    yaw_rad: float
-    velocity_x_mps: float
-    velocity_y_mps: float
-    velocity_z_mps: float
-    acceleration_x_mps2: float
-    acceleration_y_mps2: float
-    acceleration_z_mps2: float
-    angular_velocity_x_radps: float
-    angular_velocity_y_radps: float
-    angular_velocity_z_radps: float
+    __slots__ = ()
 
     @property
     def speed_mps(self) -> float:
@@ -93,27 +81,7 @@ class Frame(NamedTuple):
 
 def ego_in(snapshot: carla.ActorSnapshot) -> Ego:
     """Read the vehicle's state out of its part of a world snapshot."""
-    transform = snapshot.get_transform()
-    at, turned = transform.location, transform.rotation
-    velocity, acceleration, spin = snapshot.get_velocity(), snapshot.get_acceleration(), snapshot.get_angular_velocity()
-    radians = math.radians
-    return Ego(
-        at.x,
-        at.y,
-        at.z,
-        radians(turned.roll),
-        radians(turned.pitch),
-        radians(turned.yaw),
-        velocity.x,
-        velocity.y,
-        velocity.z,
-        acceleration.x,
-        acceleration.y,
-        acceleration.z,
-        radians(spin.x),
-        radians(spin.y),
-        radians(spin.z),
-    )
+    return Ego(*motion_of(snapshot))
 
 
 @dataclass(slots=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.records.motion import VehicleMotion
 from basu.ros import frames
 from basu.ros.frames import Pose
 
@@ -13,24 +14,10 @@ if TYPE_CHECKING:
     from basu.ros.frames import Vector
 
 
-class Motion(NamedTuple):
-    """A vehicle's motion in the world: CARLA's axes, m, rad, s. The order is that of ``managers.base_manager.Ego``."""
+class Motion(VehicleMotion):
+    """A vehicle's motion, which ROS's axes can be read from."""
 
-    x_m: float
-    y_m: float
-    z_m: float
-    roll_rad: float
-    pitch_rad: float
-    yaw_rad: float
-    velocity_x_mps: float
-    velocity_y_mps: float
-    velocity_z_mps: float
-    acceleration_x_mps2: float
-    acceleration_y_mps2: float
-    acceleration_z_mps2: float
-    angular_velocity_x_radps: float
-    angular_velocity_y_radps: float
-    angular_velocity_z_radps: float
+    __slots__ = ()
 
     @property
     def pose(self) -> Pose:

@@ -61,7 +61,7 @@ def cosimulate(options: RunOptions, *, step_s: float, makes_ticks: bool, limit_s
 
 
 def _link(sumo: Sumo, carla_map: carla.Map, seed: int, step_s: float) -> Link:
-    """A SUMO with the scenario that was asked for, or with one made of the simulator's map."""
+    """A SUMO with the given scenario; without one, with a scenario made of the simulator's map."""
     if sumo.port is not None:
         return connected(HOST, sumo.port, step_s=step_s)
     config = sumo.file

@@ -35,7 +35,7 @@ from basu.output.report.series_document import SERIES_SCHEMA_VERSION, row, serie
 from basu.settings.option import fields_of, to_json
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from basu.metrics.scoring import Scoring
     from basu.options import RunOptions
@@ -205,21 +205,25 @@ def _digest(data: bytes) -> str:
     return f"sha256 {hashlib.sha256(data).hexdigest()[:16]}"
 
 
+def changes(before: Mapping[str, Any], now: Mapping[str, Any], shown: Callable[[Any], str] = repr) -> str:
+    """Name the conditions that are different, with both values as ``shown`` writes them; empty where none is."""
+    return "; ".join(
+        f"{name} was {shown(before.get(name))} and is {shown(now.get(name))}"
+        for name in sorted({*before, *now})
+        if before.get(name) != now.get(name)
+    )
+
+
 def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) -> None:
     """Refuse to go on with a series under other conditions.
 
     Raises:
         UserError: names what is different.
     """
-    stored = json.loads(json.dumps(now))  # as the file has it
-    changed = [
-        f"{name} was {before.get(name)!r} and is {stored.get(name)!r}"
-        for name in sorted({*before, *stored})
-        if before.get(name) != stored.get(name)
-    ]
+    changed = changes(before, json.loads(json.dumps(now)))  # as the file has it
     if changed:
         raise UserError(
-            f"the series in {folder} was begun differently: {'; '.join(changed)}; give what it was begun with, or "
+            f"the series in {folder} was begun differently: {changed}; give what it was begun with, or "
             "begin another with --series"
         )
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from basu.agents.sight.actors import Kind
+from basu.records.motion import motion_of
 from basu.ros.frames import vector
 from basu.ros.moment import Actor, Control, Light, Measurement, Moment, Motion, Mount
 from basu.ros.sensor_messages import vector3
@@ -53,7 +54,7 @@ class VehicleSource:
         return Moment(
             t_s=frame * self._step_s,
             frame=frame,
-            motion=motion_of(own),
+            motion=Motion(*motion_of(own)),
             control=control,
             lights=lights if changed else (),
             measured=self._measured(sensor_data),
@@ -68,17 +69,6 @@ class VehicleSource:
                 self._sent[sensor_id] = made_in
                 fresh.append(Measurement(mount, data))
         return fresh
-
-
-def motion_of(own: carla.ActorSnapshot) -> Motion:
-    """Return the motion of an actor of a snapshot."""
-    pose = own.get_transform()
-    at, turned = pose.location, pose.rotation
-    velocity, acceleration, spin = own.get_velocity(), own.get_acceleration(), own.get_angular_velocity()
-    turns = (math.radians(angle) for angle in (turned.roll, turned.pitch, turned.yaw))
-    rates = (math.radians(rate) for rate in (spin.x, spin.y, spin.z))
-    moving = (velocity.x, velocity.y, velocity.z, acceleration.x, acceleration.y, acceleration.z)
-    return Motion._make((at.x, at.y, at.z, *turns, *moving, *rates))
 
 
 INFO = (

@@ -6,10 +6,10 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-from lxml import etree
 
 from linden.authoring.lanelet2.model import DIGITS, LaneletMap, Member, Node, Relation, Way
 from linden.authoring.lanelet2.projection import NOWHERE, Projection, projection_of
+from linden.authoring.osm_xml import osm_root, tags_of
 from linden.errors import UserError
 from linden.maps.opendrive.evaluate.pieces import F64
 
@@ -99,10 +99,6 @@ class _Reader:
             raise self.refuse(node, f"{what} is {text!r}; it should be a number")
         return value
 
-    def tags(self, node: Any) -> dict[str, str]:  # noqa: ANN401 - an element of lxml
-        """Return the tags of an element."""
-        return {tag.get("k", ""): tag.get("v", "") for tag in node.iterchildren("tag")}
-
 
 def read_osm(data: bytes, name: str, geo_reference: str = "") -> LaneletMap:
     """Return the map of an ``.osm`` file; places are local_x, local_y and ele, else projected.
@@ -113,13 +109,14 @@ def read_osm(data: bytes, name: str, geo_reference: str = "") -> LaneletMap:
     Raises:
         UserError: the text is no OSM XML, or says something that cannot be; with the file and the line.
     """
-    root = _root(data, name)
+    too_large = f"{name} has more than 1 GiB; such maps are not read"
+    root = osm_root(data, name, kind="a Lanelet2 map", most_bytes=_MOST_BYTES, too_large=too_large, huge=True)
     reader = _Reader(name)
     found = LaneletMap(geo_reference=geo_reference)
     nodes = [node for node in root.iterchildren("node") if node.get("action") != "delete"]
     projection = projection_of(geo_reference) or _first_place(reader, nodes)
     for node in nodes:
-        number, tags = reader.number(node, "id"), reader.tags(node)
+        number, tags = reader.number(node, "id"), tags_of(node)
         ele = reader.real(node, tags.pop("ele", "0"), "ele")
         found.nodes[_fresh(reader, node, number, found.nodes)] = Node(
             *_place(reader, node, tags, projection), ele, tags
@@ -133,7 +130,7 @@ def read_osm(data: bytes, name: str, geo_reference: str = "") -> LaneletMap:
         if missing is not None or not refs:
             what = f"names node {missing}, which is not there" if refs else "has no node"
             raise reader.refuse(node, f"way {number} {what}")
-        found.ways[number] = Way(refs, reader.tags(node))
+        found.ways[number] = Way(refs, tags_of(node))
     for node in root.iterchildren("relation"):
         if node.get("action") == "delete":
             continue
@@ -142,24 +139,9 @@ def read_osm(data: bytes, name: str, geo_reference: str = "") -> LaneletMap:
             Member(child.get("type", ""), reader.number(child, "ref"), child.get("role", ""))
             for child in node.iterchildren("member")
         )
-        found.relations[number] = Relation(members, reader.tags(node))
+        found.relations[number] = Relation(members, tags_of(node))
     _check_lanelets(reader, root, found)
     return found
-
-
-def _root(data: bytes, name: str) -> Any:  # noqa: ANN401 - an element of lxml
-    if not data.strip():
-        raise UserError(f"{name}, line 1: the file is empty; name a Lanelet2 map (.osm)")
-    if len(data) > _MOST_BYTES:
-        raise UserError(f"{name} has more than 1 GiB; such maps are not read")
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True, load_dtd=False)
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as error:
-        raise UserError(f"{name}, line {error.lineno}: this is no well-formed XML: {error.msg}") from None
-    if root.tag != "osm":
-        raise UserError(f"{name}, line {root.sourceline}: the outermost element is <{root.tag}>, not <osm>")
-    return root
 
 
 def _fresh(reader: _Reader, node: Any, number: int, known: dict[int, Any]) -> int:  # noqa: ANN401 - an element of lxml

@@ -7,8 +7,7 @@ allowed there: every extract cuts ways and relations at its edge. Such reference
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from lxml import etree
-
+from linden.authoring.osm_xml import osm_root, tags_of
 from linden.errors import UserError
 
 Tags = Mapping[str, str]
@@ -71,13 +70,14 @@ def read_extract(data: bytes, name: str) -> Extract:
     Raises:
         UserError: the text is no OSM XML, or says something that cannot be; with the file and the line.
     """
-    root = _root(data, name)
+    too_large = f"{name} has {len(data) >> 20} MiB; cut a part of at most {MOST_BYTES >> 20} MiB out of it"
+    root = osm_root(data, name, kind="an OpenStreetMap extract", most_bytes=MOST_BYTES, too_large=too_large)
     reader = _Reader(name)
     nodes: dict[int, OsmNode] = {}
     for element in _present(root, "node"):
         number = reader.fresh(element, nodes)
         longitude, latitude = reader.degrees(element, "lon", 180.0), reader.degrees(element, "lat", 90.0)
-        nodes[number] = OsmNode(longitude, latitude, reader.tags(element))
+        nodes[number] = OsmNode(longitude, latitude, tags_of(element))
     ways: dict[int, OsmWay] = {}
     dangling = 0
     for element in _present(root, "way"):
@@ -85,7 +85,7 @@ def read_extract(data: bytes, name: str) -> Extract:
         refs = [reader.whole(child, "ref") for child in element.iterchildren("nd")]
         kept = tuple(ref for ref in refs if ref in nodes)
         dangling += len(refs) - len(kept)
-        ways[number] = OsmWay(number, _without_repeats(kept), reader.tags(element), element.sourceline)
+        ways[number] = OsmWay(number, _without_repeats(kept), tags_of(element), element.sourceline)
     relations = tuple(
         OsmRelation(
             reader.whole(element, "id"),
@@ -93,7 +93,7 @@ def read_extract(data: bytes, name: str) -> Extract:
                 OsmMember(child.get("type", ""), reader.whole(child, "ref"), child.get("role", ""))
                 for child in element.iterchildren("member")
             ),
-            reader.tags(element),
+            tags_of(element),
             element.sourceline,
         )
         for element in _present(root, "relation")
@@ -117,21 +117,6 @@ def _present(root: Any, tag: str) -> list[Any]:  # noqa: ANN401 - an element of 
 
 def _without_repeats(nodes: tuple[int, ...]) -> tuple[int, ...]:
     return tuple(node for place, node in enumerate(nodes) if place == 0 or node != nodes[place - 1])
-
-
-def _root(data: bytes, name: str) -> Any:  # noqa: ANN401 - an element of lxml
-    if not data.strip():
-        raise UserError(f"{name}, line 1: the file is empty; name an OpenStreetMap extract (.osm)")
-    if len(data) > MOST_BYTES:
-        raise UserError(f"{name} has {len(data) >> 20} MiB; cut a part of at most {MOST_BYTES >> 20} MiB out of it")
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=False, load_dtd=False)
-    try:
-        root = etree.fromstring(data, parser)
-    except etree.XMLSyntaxError as error:
-        raise UserError(f"{name}, line {error.lineno}: this is no well-formed XML: {error.msg}") from None
-    if root.tag != "osm":
-        raise UserError(f"{name}, line {root.sourceline}: the outermost element is <{root.tag}>, not <osm>")
-    return root
 
 
 class _Reader:
@@ -168,10 +153,6 @@ class _Reader:
         if not abs(value) <= most:
             raise self._refuse(element, key, f"degrees between {-most:g} and {most:g}")
         return value
-
-    def tags(self, element: Any) -> dict[str, str]:  # noqa: ANN401 - an element of lxml
-        """Return the tags of an element."""
-        return {tag.get("k", ""): tag.get("v", "") for tag in element.iterchildren("tag")}
 
     def _refuse(self, element: Any, key: str, wanted: str) -> UserError:  # noqa: ANN401 - an element of lxml
         found = element.get(key)
