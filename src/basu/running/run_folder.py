@@ -174,18 +174,18 @@ def write_run_folder(
     }
     result = judge(driven.outcome, history, scoring, meta, scenarios=scenarios, own=own)
     document = result.document()
-    text, lanes_m = table(result), lanes.streets()
+    text = table(result)
     if not quiet:
         print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
+    streets = [] if history is None else around(lanes.streets(), history)
     if history is not None:
         write_history(folder, history)
         title = f"{_heading(config)}: {document['status']}"
         if pictures:
-            path_picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
-    streets = [] if history is None else around(lanes_m, history)
+            path_picture.draw(folder / PICTURE_FILE, history, streets, title, scoring)
     write_streets(folder, streets)
     if pictures:
         run = RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets)
