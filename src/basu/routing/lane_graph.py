@@ -11,7 +11,6 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-import networkx as nx
 import numpy as np
 from lxml import etree
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import carla
+    import networkx as nx
     from numpy.typing import NDArray
 
 
@@ -157,6 +157,8 @@ def _graph_of(carla_map: carla.Map, opendrive: str) -> LaneGraph:
 
 def _connections(carla_map: carla.Map, roads: dict[int, Road]) -> nx.DiGraph[LaneKey]:
     """Edges from the client's topology, and from the lane ends that the topology passes over."""
+    import networkx as nx  # noqa: PLC0415 - a quarter of the imports of an agent's process, which makes no graph
+
     graph: nx.DiGraph[LaneKey] = nx.DiGraph()
     known: dict[LaneKey, None] = {}
 
