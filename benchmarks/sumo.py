@@ -100,8 +100,9 @@ def peer(port: int, server: psutil.Process, folder: Path, scripts: Path, vehicle
         stdout=subprocess.PIPE,
         text=True,
     )
+    (found,) = [line for line in ended.stdout.splitlines() if line.startswith("{")]  # SUMO prints lines of its own
     server_s = (sum(server.cpu_times()[:2]) - server_s) * ticks / (ticks + SETTLE_TICKS)
-    return SimpleNamespace(server_s=server_s, **json.loads(ended.stdout.splitlines()[-1]))
+    return SimpleNamespace(server_s=server_s, **json.loads(found))
 
 
 def look(world: carla.World, bridge: Bridge, path: Path, tick: Callable[[], None]) -> None:

@@ -4,7 +4,7 @@
 
 DIR is CARLA's folder ``Co-Simulation/Sumo``. The loop of its script sleeps to the wall clock; here ``tick`` is called
 without the sleep. The vehicles are our random trips. ``traci.sumolib`` is set, because today's TraCI has none.
-The output is one line of JSON: vehicles shown, s of wall time, s of processor time of client and SUMO.
+Among the output is one line of JSON: vehicles shown, s of wall time, s of processor time of client and SUMO.
 """
 
 from __future__ import annotations

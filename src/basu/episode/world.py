@@ -72,8 +72,8 @@ class Towns:
     def load(self, name: str, *, reload: bool | None = None) -> tuple[carla.World, Town]:
         """Return the world with the town ``name`` in it, and the town.
 
-        ``reload`` begins the world anew. By default a simulator of our own does so from its second episode on, and
-        another one never does: its world may hold other programs' actors.
+        ``reload`` begins the world anew. By default a simulator of our own does so from its second episode on.
+        Another one never does: its world may hold other programs' actors.
 
         Raises:
             SimulatorError: the simulator does not load it.
