@@ -29,6 +29,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--voxel", default="0.2", metavar="M", help="width of the cloud's cells (default: %(default)s)"
     )
+    map_convert.add_choices(command)
     command.add_argument("--every", default="5.0", metavar="M", help="between two scans (default: %(default)s)")
 
 
@@ -70,9 +71,11 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
 
     source = content_of(arguments.file)
-    converted = convert(parse(source))
+    opendrive = parse(source)
+    converted = convert(opendrive, map_convert.wanted_of(arguments, opendrive))
+    vectors = aisan_of(converted.lanelet_map)
+    converted = map_convert.written_of(converted, arguments)
     lanelet_map = converted.lanelet_map
-    vectors = aisan_of(lanelet_map)
     town = Path(arguments.file).name.removesuffix(".xodr")
     layout = folder.ros1_layout(town) if arguments.ros1 else folder.UNIVERSE
     layout.refuse_other_towns(arguments.output)

@@ -6,7 +6,7 @@ import pytest
 
 from linden.authoring.lanelet2.areas import inside
 from linden.authoring.lanelet2.checking import compare, reach, worst_error_m
-from linden.authoring.lanelet2.convert import convert
+from linden.authoring.lanelet2.convert import Wanted, convert
 from linden.authoring.lanelet2.model import bounds_of
 from linden.authoring.lanelet2.osm import osm_bytes
 from linden.authoring.lanelet2.second_reader import routes_of
@@ -229,7 +229,9 @@ class TestLinden:
     def test_two_way_stops_let_the_through_street_go_first(self, linden, linden_lanelets):
         stretch = dict(zip(linden_lanelets.lanelet_of, linden_lanelets.network.stretches, strict=True))
         found = {}
-        for _, element in linden_lanelets.lanelet_map.elements("right_of_way"):
+        everything = convert(linden, Wanted(pairwise_priority=True))
+        assert everything.lanelet_of == linden_lanelets.lanelet_of
+        for _, element in everything.lanelet_map.elements("right_of_way"):
             first = stretch[element.refs("right_of_way")[0]]
             found[linden.roads[first.road].id] = {linden.roads[stretch[n].road].id for n in element.refs("yield")}
         pairs = [pair for junction in linden.junctions for pair in junction.priorities]
