@@ -38,14 +38,20 @@ def complete_claims(
         against, yielding = met[way.stretch], set(waiting.get(way.stretch, ()))
         if way.stretch in lit:
             held = [other.stretch for other in against if _is_held(way, other, lit) and other.stretch in yielding]
-            if held or way.direction != "straight":
+            if held:  # Lanelet2 refuses an element that names none
                 claims[way.stretch] = held
         elif against and all(other.stretch in yielding for other in against):
             claims[way.stretch] = [other.stretch for other in against]
-    if not claims:  # a way that meets no other stands for the junction
-        free = next((way.stretch for way in movements if not met[way.stretch]), None)
-        claims = {} if free is None else {free: []}
-    return claims
+    return claims or _nominal(movements, met)
+
+
+def _nominal(movements: list[Movement], met: dict[int, list[Movement]]) -> Claims:
+    """Return one element for a junction where none is complete: of a way that meets no other, so it changes nothing."""
+    for way in movements:
+        others = [other.stretch for other in movements if not way.origins & other.origins]
+        if others and not met[way.stretch]:
+            return {way.stretch: others[:1]}
+    return {}
 
 
 def _met(movements: list[Movement], rings: dict[int, F64]) -> dict[int, list[Movement]]:

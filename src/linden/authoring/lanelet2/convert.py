@@ -16,7 +16,16 @@ from linden.authoring.lanelet2.markings import KERB, tags_of_sides
 from linden.authoring.lanelet2.model import DIGITS, Bounds, LaneletMap, Member, Node, Relation, Way
 from linden.authoring.lanelet2.movements import Movement, movements_of
 from linden.authoring.lanelet2.roundabouts import FORMAT_VERSION, add_roundabouts
-from linden.authoring.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, Network, Side, Stretch, network_of
+from linden.authoring.lanelet2.stretches import (
+    ROAD,
+    SHOULDER,
+    WALKWAY,
+    Network,
+    Side,
+    Stretch,
+    intersections,
+    network_of,
+)
 from linden.errors import UserError
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
@@ -160,7 +169,10 @@ def _add_junctions(
         if road.is_in_junction and way.tags.get("type") == "road_border":
             corner[road.junction_id].append(way.nodes)
     leads_out = {m.stretch: draft.network.successors[m.stretch] for found in movements.values() for m in found}
+    met = intersections(draft.network)
     for junction, found in movements.items():
+        if junction not in met:
+            continue  # a turning circle, or a street that parts
         entries = dict.fromkeys(n for m in found for n in sorted(m.origins) if _is_outside(draft, n, junction))
         exits = dict.fromkeys(n for m in found for n in leads_out[m.stretch] if _is_outside(draft, n, junction))
         inside = dict.fromkeys(movement.stretch for movement in found)

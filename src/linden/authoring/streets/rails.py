@@ -6,7 +6,7 @@ OpenDRIVE 1.4 has no railroads but those of trams on roads, so they are objects 
 
 from collections.abc import Iterator
 
-from shapely import LineString, Polygon
+from shapely import LineString, MultiLineString, Polygon
 
 from linden.authoring.streets.cross_section import view
 from linden.authoring.streets.curves import Path, Pose, length, moved, pose_at, sampled, seen_from
@@ -25,13 +25,16 @@ def rails(facts: Facts, network: Network) -> tuple[tuple[int, Object], ...]:
         line = LineString(railroad.points)
         bed = line.buffer(BED_HALF_M, cap_style="flat", join_style="mitre")
         nearest = min(roads, key=lambda one: (line.interpolate(0.5, normalized=True).distance(one[1]), one[0]))
-        found.append(_object(network, nearest, bed, ("railroad", railroad)))
-        for edge, road in roads:
-            kerbs = view(network.edges[edge].section, along=True)
+        found.append(_object(network, nearest, bed, ("", railroad)))
+        for edge in network.edges:
+            street = LineString(edge.points)  # from node to node: the crossing may lie in a junction
+            kerbs = view(edge.section, along=True)
             half_m = max(abs(kerbs.kerb_m(right=side)) for side in (False, True))
-            ground = bed.intersection(road.buffer(half_m, cap_style="flat"))
-            if isinstance(ground, Polygon) and not ground.is_empty and line.intersects(road):
-                found.append(_object(network, (edge, road), ground, ("railroadCrossing", railroad)))
+            ground = bed.intersection(street.buffer(half_m, cap_style="flat"))
+            goes_on = isinstance(street.difference(bed), MultiLineString)  # a street that ends at the track has none
+            if goes_on and isinstance(ground, Polygon):
+                beside = min(roads, key=lambda one: (ground.distance(one[1]), one[0]))
+                found.append(_object(network, beside, ground, (edge.street.name, railroad)))
     return tuple(found)
 
 
@@ -40,15 +43,15 @@ def _roads(network: Network) -> Iterator[tuple[int, Path]]:
 
 
 def _object(
-    network: Network, at: tuple[int, LineString], ground: Polygon, kind: tuple[str, Railroad]
+    network: Network, at: tuple[int, LineString], ground: Polygon, what: tuple[str, Railroad]
 ) -> tuple[int, Object]:
-    """Return an object over a piece of ground, its outline in the frame of the road there."""
+    """Return an object over a piece of ground, its outline in the frame of a road; a crossing has its street's name."""
     edge, line = at
     road = network.roads[edge]
     assert road is not None, "only roads that are there are asked"
     simple = ground.simplify(0.05)
     middle = simple.representative_point()
-    s_m = round(min(float(line.project(middle)), length(road)), 3)
+    s_m = round(min(float(line.project(middle)), length(road) - 0.01), 3)
     beside = pose_at(road, s_m)
     t_m = round(seen_from(beside, (middle.x, middle.y))[1], 3)
     origin: Pose = moved(beside, left_m=t_m)
@@ -56,5 +59,6 @@ def _object(
     if not simple.exterior.is_ccw:
         corners.reverse()
     outline = tuple((round(u, 3), round(v, 3)) for u, v in (seen_from(origin, corner) for corner in corners))
-    name = "Railroad" if kind[0] == "railroad" else f"Railroad, {network.edges[edge].street.name}"
-    return edge, Object(0, name, kind[0], s_m, t_m, 0.0, outline, kind[1].confidence)
+    street, railroad = what
+    name, kind = (f"Railroad, {street}", "railroadCrossing") if street else ("Railroad", "railroad")
+    return edge, Object(0, name, kind, s_m, t_m, 0.0, outline, railroad.confidence)

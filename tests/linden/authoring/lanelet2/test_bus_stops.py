@@ -11,11 +11,8 @@ from linden.authoring.lanelet2.model import bounds_of, without_lanelets
 from linden.authoring.lanelet2.osm import osm_bytes
 from linden.authoring.lanelet2.overlap import overlap_share
 from linden.authoring.lanelet2.second_reader import routes_of
-
-
-@pytest.fixture(scope="module")
-def stopped(linden):
-    return convert(linden, Wanted(stops=shuttle_stops(linden.geo_origin), roundabouts=True))
+from linden.maps.opendrive.parse import parse
+from vector_map_town import document, lane, road
 
 
 def _areas(lanelet_map):
@@ -26,15 +23,15 @@ def _areas(lanelet_map):
     }
 
 
-def test_every_stop_of_the_shuttle_has_an_area_with_its_name(stopped) -> None:
-    areas = _areas(stopped.lanelet_map)
+def test_every_stop_of_the_shuttle_has_an_area_with_its_name(linden_everything) -> None:
+    areas = _areas(linden_everything.lanelet_map)
     assert areas.keys() == {"S1", "S2N", "S2S", "S3E", "S3W", "S4"}
-    assert stopped.lanelet_map.ways[areas["S4"]].tags["name"] == "St. Stephen's Community House"
-    assert stopped.lost_stops == ()
+    assert linden_everything.lanelet_map.ways[areas["S4"]].tags["name"] == "St. Stephen's Community House"
+    assert linden_everything.lost_stops == ()
 
 
-def test_an_area_lies_on_the_lanelets_that_refer_to_it_near_the_stop(linden, stopped) -> None:
-    lanelet_map = stopped.lanelet_map
+def test_an_area_lies_on_the_lanelets_that_refer_to_it_near_the_stop(linden, linden_everything) -> None:
+    lanelet_map = linden_everything.lanelet_map
     stops = {stop.id: stop for stop in shuttle_stops(linden.geo_origin)}
     for stop_id, area in _areas(lanelet_map).items():
         ring = lanelet_map.line(area)[:, :2]
@@ -51,33 +48,35 @@ def test_an_area_lies_on_the_lanelets_that_refer_to_it_near_the_stop(linden, sto
         assert sides.max() < LENGTH_M + 0.1
 
 
-def test_a_stop_far_from_any_lane_is_reported(linden) -> None:
-    lost = Stop("X", "nowhere", 50_000.0, 0.0)
-    assert convert(linden, Wanted(stops=(lost,))).lost_stops == (lost,)
+def test_a_stop_far_from_any_lane_is_reported() -> None:
+    near, lost = Stop("A", "near", 20.0, -3.0), Stop("X", "nowhere", 50_000.0, 0.0)
+    converted = convert(parse(document(road(1, 0, 40, [(-1, lane(-1))]))), Wanted(stops=(near, lost)))
+    assert converted.lost_stops == (lost,)
+    assert _areas(converted.lanelet_map).keys() == {"A"}
 
 
-def test_a_roundabout_names_its_lanelets_by_role(linden, stopped) -> None:
-    elements = [one for _, one in stopped.lanelet_map.elements("roundabout")]
+def test_a_roundabout_names_its_lanelets_by_role(linden, linden_everything) -> None:
+    elements = [one for _, one in linden_everything.lanelet_map.elements("roundabout")]
     assert len(elements) == sum("roundabout" in dict(junction.user_data) for junction in linden.junctions) == 2
     for element in elements:
         entry, out, internal = (element.refs(role) for role in ("entry", "exit", "internal"))
         assert min(len(entry), len(out), len(internal)) > 2
         assert not set(internal) & {*entry, *out}
-        tags = [stopped.lanelet_map.relations[number].tags for number in internal]
+        tags = [linden_everything.lanelet_map.relations[number].tags for number in internal]
         assert len({tag["intersection_area"] for tag in tags}) == 1
 
 
-def test_format_2_is_named_in_the_file_only_where_it_is_wanted(stopped, linden_lanelets) -> None:
+def test_format_2_is_named_in_the_file_only_where_it_is_wanted(linden_everything, linden_lanelets) -> None:
     versions = [
         ET.fromstring(osm_bytes(one.lanelet_map)).find("MetaInfo").get("format_version")
-        for one in (stopped, linden_lanelets)
+        for one in (linden_everything, linden_lanelets)
     ]
     assert versions == ["2", "1"]
     assert not list(linden_lanelets.lanelet_map.elements("roundabout"))
 
 
-def test_second_reader_still_finds_the_same_lanes(stopped, linden_lanelets) -> None:
-    routes = routes_of(stopped.lanelet_map)
+def test_second_reader_still_finds_the_same_lanes(linden_everything, linden_lanelets) -> None:
+    routes = routes_of(linden_everything.lanelet_map)
     assert routes.errors == ()
     assert routes.following == routes_of(linden_lanelets.lanelet_map).following
 
