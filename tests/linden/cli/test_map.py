@@ -62,6 +62,18 @@ def test_a_built_in_map_is_known_by_its_name(name: str, capsys: pytest.CaptureFi
     assert "junctions" in capsys.readouterr().out
 
 
+def test_info_names_the_places_of_linden(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "info", "Linden"]) == 0
+    told = capsys.readouterr().out
+    assert "Linden Transit Center, 50 m by 24 m, 8 m high" in told
+    assert "railroad crossings       1" in told
+
+
+def test_list_names_the_built_in_maps(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "list"]) == 0
+    assert capsys.readouterr().out.split() == ["Linden", "Linden_thesis"]
+
+
 def test_export_writes_what_is_seen_as_gltf(good_map: Path, tmp_path: Path, capsys) -> None:
     scene = tmp_path / "map.glb"
     assert main(["map", "export", str(good_map), "-o", str(scene)]) == 0
