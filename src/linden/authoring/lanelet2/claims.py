@@ -55,7 +55,7 @@ def _nominal(movements: list[Movement], met: dict[int, list[Movement]]) -> Claim
 
 
 def _met(movements: list[Movement], rings: dict[int, F64]) -> dict[int, list[Movement]]:
-    """Return the ways that each way meets; those that part at a common lane do not."""
+    """Return the ways that each way meets; ways that part at a common lane do not meet."""
     met: dict[int, list[Movement]] = {way.stretch: [] for way in movements}
     for way, other in permutations(movements, 2):
         is_near = abs(float(way.line[:, 2].mean() - other.line[:, 2].mean())) < _LAYER_M

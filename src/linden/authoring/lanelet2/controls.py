@@ -69,7 +69,7 @@ def _phases(devices: list[Device]) -> dict[int, frozenset[str]]:
 
 
 def _lit(draft: Draft) -> frozenset[int]:
-    """Return the movements (stretches) whose lanelets refer to a light."""
+    """Return the movements (stretches) with a light."""
     lights = {number for number, _ in draft.target.elements("traffic_light")}
     return frozenset(
         number for number, lanelet in enumerate(draft.lanelet_of) if not lights.isdisjoint(draft.elements[lanelet])

@@ -1,7 +1,7 @@
 """Roundabouts as format 2 of autoware_lanelet2_extension has them: one element for each, with its lanelets by role.
 
 A roundabout of the map is one junction, and each way through it is one lanelet from an arm to an arm. So the lanelets
-inside are ``internal``, those that lead in are ``entry`` and those that lead out are ``exit``.
+inside are ``internal``, the lanelets before it ``entry`` and the lanelets behind it ``exit``.
 """
 
 from linden.authoring.lanelet2.draft import Draft

@@ -48,8 +48,9 @@ def _object(
     """Return an object over a piece of ground, its outline in the frame of a road; a crossing has its street's name."""
     edge, line = at
     road = network.roads[edge]
-    assert road is not None, "only roads that are there are asked"
+    assert road is not None, "the search is among the roads that are there"
     simple = ground.simplify(0.05)
+    assert isinstance(simple, Polygon), "a polygon stays one"
     middle = simple.representative_point()
     s_m = round(min(float(line.project(middle)), length(road) - 0.01), 3)
     beside = pose_at(road, s_m)

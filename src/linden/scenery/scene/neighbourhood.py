@@ -61,7 +61,7 @@ def with_house(lots: NDArray[np.void]) -> NDArray[np.intp]:
 
 
 def is_taken(lots: NDArray[np.void]) -> NDArray[np.bool_]:
-    """Return which lots (N,) something else stands on: those that :func:`with_taken` marked."""
+    """Return which lots (N,) something else stands on, as :func:`with_taken` marked them."""
     taken: NDArray[np.bool_] = lots["taken"] if "taken" in (lots.dtype.names or ()) else np.zeros(len(lots), bool)
     return taken
 
