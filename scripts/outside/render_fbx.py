@@ -18,6 +18,7 @@ SIZE_PX = 1400
 TILT_RAD = np.radians(45.0)
 SUN = np.array([-0.4, -0.5, 0.77])
 _GREY = (0.6, 0.6, 0.6)
+_FLAT, _LOW_M = 0.95, 1.5
 
 
 def main() -> None:
@@ -49,7 +50,7 @@ def triangles_of(path: Path, window: list[float]) -> tuple[F64, F64]:
 
 
 def picture(corners: F64, colours: F64, window: list[float]) -> Image.Image:
-    """Return the picture: far triangles first."""
+    """Return the picture: the ground first, then far triangles before near ones."""
     x_m, y_m, side_m = window
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-12)[:, None]
@@ -63,7 +64,8 @@ def picture(corners: F64, colours: F64, window: list[float]) -> Image.Image:
     made = Image.new("RGB", (SIZE_PX, SIZE_PX), (176, 200, 222))
     draw = ImageDraw.Draw(made)
     fill = np.clip(255.0 * colours * shade[:, None], 0, 255).astype(int)
-    for row in np.argsort(-depth.mean(axis=1)).tolist():
+    lies = (np.abs(normal[:, 2]) > _FLAT) & (local[..., 2].max(axis=1) < _LOW_M)  # the ground, in large triangles
+    for row in np.lexsort([-depth.mean(axis=1), ~lies]).tolist():
         draw.polygon([tuple(place) for place in places[row].tolist()], fill=tuple(fill[row].tolist()))
     return made
 
