@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 from linden.cli import map_convert, map_pointcloud
-from linden.cli.map_source import content_of, world_map_of
+from linden.cli.map_source import content_of, opendrive_of, world_map_of
 from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 
@@ -68,10 +68,9 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
     from linden.authoring.lanelet2.convert import convert  # noqa: PLC0415 - see above
     from linden.authoring.lanelet2.osm import osm_bytes, projector_info  # noqa: PLC0415 - see above
     from linden.authoring.output import staged_folder  # noqa: PLC0415 - see above
-    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
 
     source = content_of(arguments.file)
-    opendrive = parse(source)
+    opendrive = opendrive_of(arguments.file)
     converted = convert(opendrive, map_convert.wanted_of(arguments, opendrive))
     vectors = aisan_of(converted.lanelet_map)
     converted = map_convert.written_of(converted, arguments)

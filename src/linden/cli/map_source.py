@@ -16,11 +16,16 @@ def opendrive_of(name: str) -> "OpenDrive":
     """Read a file, or else the built-in map of that name.
 
     Raises:
-        UserError: there is neither, or it cannot be read.
+        UserError: there is neither, or it cannot be read; with the name, and the line where one is to blame.
     """
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
 
-    return parse(content_of(name))
+    content = content_of(name)
+    try:
+        return parse(content)
+    except UserError as error:
+        told = str(error)
+        raise UserError(f"{name}, {told}" if told.startswith("line ") else f"{name}: {told}") from None
 
 
 def world_map_of(name: str) -> "LoadedMap":

@@ -46,7 +46,7 @@ def test_a_file_that_is_no_map_ends_with_2_and_a_sentence(
     file = tmp_path / "none.xodr"
     file.write_text(text)
     assert main(["map", "check", str(file)]) == 2
-    assert capsys.readouterr().err.startswith("linden: line ")
+    assert capsys.readouterr().err.startswith(f"linden: {file}, line ")
 
 
 def test_a_missing_file_is_refused_with_the_built_in_maps(capsys: pytest.CaptureFixture[str]) -> None:

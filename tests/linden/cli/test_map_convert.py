@@ -102,10 +102,13 @@ def test_a_lost_lanelet_is_found(tmp_path, source, capsys):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "line 1"),
-        ("<OpenDRIVE><road", "line 1: this is no well-formed XML"),
+        ("", "bad.xodr, line 1: this is no well-formed XML"),
+        ("<OpenDRIVE><road", "bad.xodr, line 1: this is no well-formed XML"),
         (document(road(1, 0, 40, [(-1, lane(-1, 0.0))])), "no driving lane at least 0.3 m wide"),
-        (document(road(2**40, 0, 40, [(-1, lane(-1))])), "a whole number of 32 bits"),
+        (
+            document(road(2**40, 0, 40, [(-1, lane(-1))])),
+            "bad.xodr, line 3: attribute 'id' of <road> is '1099511627776'; it should be a whole number of 32 bits",
+        ),
         (two_roads().replace("+proj=tmerc", "+proj=merc"), "is no transverse Mercator"),
     ],
 )
