@@ -134,19 +134,19 @@ class Server:
 
     def _wait_s(self) -> float | None:
         """Return how long nothing needs doing unless something arrives; None is for ever."""
-        if any(not self._calls.must_wait(peer) for peer in self._calls.unfinished):
+        if any(not self._calls.order.must_wait(peer) for peer in self._calls.unfinished):
             return 0.0
         now_s = self._clock()
         waits = [
-            self._calls.frame_wait_s(now_s) if self._calls.unfinished else None,
-            self._calls.held_s(now_s),
+            self._calls.order.frame_wait_s(now_s) if self._calls.unfinished else None,
+            self._calls.order.held_s(now_s),
             self._acceptor.wait_s(now_s),
             self._stall_log.untold_s(now_s),
         ]
         settings = self.context.world.settings
         if not settings.synchronous_mode:
             pace_s = self._pace.wait_s(now_s, settings.fixed_delta_seconds)
-            waits.append(pace_s or self._calls.traffic_wait_s(now_s))
+            waits.append(pace_s or self._calls.order.traffic_wait_s(now_s))
         return min((wait_s for wait_s in waits if wait_s is not None), default=None)
 
     def _look_around(self) -> None:
@@ -154,10 +154,10 @@ class Server:
         now_s = self._clock()
         self._acceptor.look(now_s)
         held_up = self._calls.unfinished and any(
-            self._calls.waits_for_subscribers(peer) for peer in self._calls.unfinished
+            self._calls.order.waits_for_subscribers(peer) for peer in self._calls.unfinished
         )
         self._stall_log.for_subscribers(now_s, self._subscribers.congested(now_s) if held_up else ())
-        stands_still = self._calls.is_synchronous() and not held_up
+        stands_still = self._calls.order.is_synchronous() and not held_up
         self._stall_log.for_a_tick(
             now_s, self.context.world.frame, tuple(self._clients) if stands_still else (), self._calls.last_ticker
         )
@@ -171,7 +171,7 @@ class Server:
 
     def _watch(self, peer: Peer) -> None:
         """Let the selector watch for what can be done with a peer now."""
-        busy = isinstance(peer, RpcPeer) and peer.calls and not self._calls.hears(peer)
+        busy = isinstance(peer, RpcPeer) and peer.calls and not self._calls.order.hears(peer)
         reads = not (busy or (isinstance(peer, RpcPeer) and peer.at_end))
         interest = (_READ if reads else 0) | (_WRITE if peer.outgoing.waiting_bytes else 0)
         if interest == peer.interest:
@@ -233,10 +233,10 @@ class Server:
             self._acceptor.has_spoken(peer)
             self._subscribers.add(peer, peer.subscription.stream_id)
             self._calls.joined_s = self._clock()
-            self._calls.expected.came(peer.subscription.stream_id)
+            self._calls.order.expected.came(peer.subscription.stream_id)
             if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # also between two ticks
                 payload = self.context.frames.world_payload(self.context.world)
-                self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.is_synchronous())
+                self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.order.is_synchronous())
 
     # -- calls and frames ----------------------------------------------------------------------------------------
 
@@ -270,13 +270,13 @@ class Server:
         settings = self.context.world.settings
         now_s = self._clock()
         waits = not self.context.frame_is_due and self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0
-        if not settings.synchronous_mode and not waits and self._calls.traffic_wait_s(now_s) > 0.0:
+        if not settings.synchronous_mode and not waits and self._calls.order.traffic_wait_s(now_s) > 0.0:
             return
         self.context.frame_is_due = False
         if settings.synchronous_mode or waits or self.context.waits_for_the_scene():
             return
         try:
-            if self._calls.load_is_due(now_s):
+            if self._calls.load.is_due(now_s):
                 self.context.begin_pending_load()
             self.context.advance()
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session
