@@ -68,6 +68,9 @@ class _Waits:
 
     def until_s(self) -> float | None:
         """Return until when the first answer waits at most; None where none does, or where long work is done first."""
+        ticks = self.cue is not None and bool(self.cue.tick)
+        if not ticks and self.scene is None and self.load is None and not (self.driven and self.driven.waiting):
+            return None
         times = [one.until_s for one in self.driven.waiting] if self.driven is not None else []
         if self.scene is not None:
             times.append(self.scene[1])
@@ -284,5 +287,7 @@ class AnswerOrder:
 
     def _managers(self, peer: RpcPeer) -> int:
         """Return how many Traffic Managers a client runs."""
-        managers = self._context.traffic_managers
-        return sum(owner == peer.number for _, owner in managers.values()) if managers else 0
+        count = 0
+        for _, owner in self._context.traffic_managers.values():
+            count += owner == peer.number
+        return count

@@ -144,20 +144,21 @@ class Server:
 
     def _wait_s(self) -> float | None:
         """Return how long nothing needs doing unless something arrives; None is for ever."""
-        if any(not self._calls.order.must_wait(peer) for peer in self._calls.unfinished):
+        order, unfinished = self._calls.order, self._calls.unfinished
+        if unfinished and any(not order.must_wait(peer) for peer in unfinished):
             return 0.0
         now_s = self._clock()
-        waits = [
-            None if self._has_looked else self._next_look_s - now_s,
-            self._calls.order.frame_wait_s(now_s) if self._calls.unfinished else None,
-            self._calls.order.held_s(now_s),
-            self._acceptor.wait_s(now_s),
-            self._stall_log.untold_s(now_s),
-        ]
+        waits = [order.held_s(now_s)]
+        if unfinished:
+            waits.append(order.frame_wait_s(now_s))
+        if self._has_looked:
+            waits += (self._acceptor.wait_s(now_s), self._stall_log.untold_s(now_s))
+        else:  # it will look then, and find out how long there is nothing else to do
+            waits.append(self._next_look_s - now_s)
         settings = self.context.world.settings
         if not settings.synchronous_mode:
             pace_s = self._pace.wait_s(now_s, settings.fixed_delta_seconds)
-            waits.append(pace_s or self._calls.order.traffic_wait_s(now_s))
+            waits.append(pace_s or order.traffic_wait_s(now_s))
         wait_s = min((wait_s for wait_s in waits if wait_s is not None), default=None)
         return None if wait_s is None else max(0.0, wait_s)
 
