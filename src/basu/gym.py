@@ -238,7 +238,7 @@ class _Preview:
         return table
 
 
-def action_space() -> gymnasium.spaces.Box:
+def action_space() -> gymnasium.spaces.Space[NDArray[np.float32]]:
     """The space of actions: pedals and steer."""
     return gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
 

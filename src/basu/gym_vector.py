@@ -205,7 +205,7 @@ class ShuttleVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
         return dict(sorted(found.items()))
 
     def _replace(self, ended: Sequence[int]) -> None:
-        """Start fresh workers in place of those that have ended.
+        """Start fresh workers in place of ended ones.
 
         Raises:
             SimulatorError: one ends again and again.

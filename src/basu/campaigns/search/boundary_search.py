@@ -1,10 +1,9 @@
 """The search for the boundary of failure: space-filling first, then where the surrogate is the least sure.
 
 The learning function is that of Echard, Gayton, Lemaire 2011, "AK-MCS: an active learning reliability method combining
-Kriging and Monte Carlo simulation": ``|mean| / deviation`` of the latent function is the least where the side of the
-boundary is the least sure. Here its probability counts, by the distance to the nearest drive, so that a round follows
-the boundary. Every fourth proposal is the candidate that is the farthest from all drives, so that a second region of
-failures is met as well.
+Kriging and Monte Carlo simulation". There ``|mean| / deviation`` of the latent function is the least where the side of
+the boundary is the least sure. Here the probability of a side counts, times the distance to the nearest drive. Every
+fourth proposal is the candidate that is the farthest from all drives, so that a second region of failures is met too.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ CANDIDATE_BITS = 12  # 4,096 candidates for proposals, the same in every round
 EXPLORES = 4  # every so-many-th proposal is the farthest from all drives
 APART = 0.01  # of the cube's side: least distance from one drive to the next
 NEAR = 0.15  # of the cube's side: a drive nearer than this makes a candidate worth less
-NEIGHBOURS = 5  # whose judgement says whether a candidate will be judged
+NEIGHBOURS = 5  # their judgement says whether a candidate will be judged
 LEAST_JUDGED = 0.1  # the weight of a candidate among drives that were not judged
 
 
@@ -103,7 +102,7 @@ def _judged_share(
 ) -> NDArray[np.float64]:
     """(M,) the share of judged drives among the nearest, at least ``LEAST_JUDGED``.
 
-    A case whose conflict never came about tells nothing, so a search avoids such places.
+    A case without a conflict tells nothing, so a search avoids such places.
     """
     if judged.all():
         return np.ones(len(candidates))

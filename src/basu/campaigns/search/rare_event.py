@@ -132,8 +132,9 @@ def estimate(
     """The probability of failure from weighted drives (N,), all from one proposal with a share ``plain`` of plain ones.
 
     Owen 2013, "Monte Carlo theory, methods and examples", section 9.1. The interval is that of the logarithm (the delta
-    method), since the estimate of a small probability is skewed. Without a failure the upper end is the rate at which
-    so many drives without one have the probability ``1 - confidence``: each fails with ``plain * rate`` at least.
+    method), since the estimate of a small probability is skewed. Without a failure the upper end is the
+    rate at which so many drives would have none with the probability ``1 - confidence``. Each fails with the
+    probability ``plain * rate`` at least.
     """
     drives, failures = len(failed), int(failed.sum())
     if drives < 2 or failures == 0:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from basu.scenarios.playable import Playable
 
 FINENESS = 1e-4  # of a range: values that are nearer to each other than this are the same drive
-EDGE = 1e-12  # a share stays this far from 0 and 1, whose quantiles are infinite
+EDGE = 1e-12  # a share stays this far from 0 and 1, where quantiles are infinite
 
 
 class Dimension(NamedTuple):
