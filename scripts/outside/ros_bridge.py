@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import re
 import shutil
@@ -31,9 +32,10 @@ import numpy as np
 
 from basu.agents.ros.vehicle_source import control_of, info_message
 from basu.records.motion import motion_of
-from basu.ros.moment import Light, Measurement, Moment, Motion, Mount, Vehicle
+from basu.ros.moment import Actor, Light, Measurement, Moment, Motion, Mount, Vehicle
 from basu.ros.ros1 import Node
 from basu.ros.topics import (
+    LIGHTS,
     Message,
     Topic,
     info_of,
@@ -67,8 +69,10 @@ PACKAGES = {
     "derived_object_msgs": "astuff_sensor_msgs/derived_object_msgs",
     "carla_ackermann_msgs": "ros-bridge/carla_ackermann_msgs",
 }
+UNWANTED = ("CipvTrack", "Lane", "LaneModels")  # they need a radar's messages, and the bridge does not use them
 READY = re.compile(r"linden: ready, rpc port (\d+)")
 LONG_S = 120.0
+STAMP_NS = 1000  # the bridge cuts its sums of steps off, ours rounds them to the microsecond
 TOLERANCE = 2e-4  # absolute, or relative to large values: single precision on the wire
 
 
@@ -96,7 +100,7 @@ def compare(stack: ExitStack, sources: Path, site: Path, ticks: int, with_camera
     """Run both, and yield the lines of the tables."""
     work = Path(stack.enter_context(tempfile.TemporaryDirectory()))
     made = generated_messages(sources, work / "generated")
-    (sources / "ros-bridge/carla_ros_bridge/src/carla_ros_bridge/CARLA_VERSION").write_text("0.9.16")
+    (sources / "ros-bridge/carla_ros_bridge/src/carla_ros_bridge/CARLA_VERSION").write_text("0.9.16\n")
     port = started_server(stack)
     environment = started_roscore(stack, work)
     os.environ.update({name: environment[name] for name in ("ROS_MASTER_URI", "ROS_HOSTNAME")})
@@ -108,6 +112,9 @@ def compare(stack: ExitStack, sources: Path, site: Path, ticks: int, with_camera
     client.set_timeout(60.0)
     world = client.get_world()
     vehicle = ego_of(world)
+    for point in world.get_map().get_spawn_points()[:40:10]:
+        world.try_spawn_actor(world.get_blueprint_library().find("vehicle.audi.tt"), point)
+    world.wait_for_tick()
     listener = Node("comparison")
     stack.callback(listener.close)
     theirs = topics_of(specs)
@@ -154,6 +161,7 @@ class Collector:
         self.described = Vehicle(ROLE, mounts)
         self._lights = sorted(world.get_actors().filter("traffic.traffic_light"), key=lambda light: light.id)
         self._vehicle = vehicle
+        self._others = [other for other in world.get_actors().filter("vehicle.*") if other.id != vehicle.id]
         self._callback: int | None = world.on_tick(self._keep)
 
     def _keep(self, snapshot: carla.WorldSnapshot) -> None:
@@ -171,7 +179,7 @@ class Collector:
 
     def moments(self, vehicle: carla.Vehicle) -> list[Moment]:
         """Return the frames in which every sensor measured."""
-        made = []
+        made, before = [], None
         for frame, (snapshot, control, lights) in sorted(self._snapshots.items()):
             data = self._data.get(frame, {})
             own = snapshot.find(vehicle.id)
@@ -179,8 +187,19 @@ class Collector:
                 continue
             measured = [Measurement(mount, data[mount.id]) for mount in self.described.mounts]
             t_s = snapshot.timestamp.elapsed_seconds
-            made.append(Moment(t_s, frame, Motion(*motion_of(own)), control, lights=lights, measured=measured))
+            others = [_actor(other, snapshot.find(other.id)) for other in self._others]
+            motion, changed = Motion(*motion_of(own)), lights if lights != before else ()
+            made.append(Moment(t_s, frame, motion, control, others, changed, measured))
+            before = lights
         return made
+
+
+def _actor(other: carla.Vehicle, seen: carla.ActorSnapshot) -> Actor:
+    """Another vehicle: the middle of its box."""
+    box, pose, velocity = other.bounding_box, seen.get_transform(), seen.get_velocity()
+    middle, size = pose.transform(box.location), box.extent
+    place = (middle.x, middle.y, middle.z, math.radians(pose.rotation.yaw))
+    return Actor(other.id, other.type_id, *place, velocity.x, velocity.y, size.x, size.y)
 
 
 def published(
@@ -220,7 +239,10 @@ def rows_of(
     for topic in topics:
         a, b = theirs[topic.name], ours[topic.name]
         latched = topic == info_of(ROLE)
-        pairs = [(next(iter(a.values())), b[0])] if latched and a and b else [(a[t], b[t]) for t in a if t in b]
+        if (latched or topic == LIGHTS) and a and b:
+            pairs = [(next(iter(a.values())), next(iter(b.values())))]
+        else:
+            pairs = [(a[t], b[t]) for t in a if t in b]
         differing: dict[str, float] = {}
         equal: set[str] = set()
         for first, second in pairs:
@@ -247,13 +269,15 @@ def differences(a: Any, b: Any, path: str) -> Iterator[tuple[str, float]]:
     elif isinstance(a, np.ndarray):
         yield path, array_difference(np.asarray(a), np.asarray(b), path)
     elif isinstance(a, list):
-        if len(a) != len(b):
-            yield f"{path} (count)", float(abs(len(a) - len(b)))
+        yield f"{path} (count)", float(abs(len(a) - len(b)))
+        a, b = (sorted(each, key=lambda item: getattr(item, "id", 0)) for each in (a, b))
         for first, second in zip(a, b, strict=False):
             yield from differences(first, second, f"{path}[]")
     elif isinstance(a, float):
         away = abs(a - b)
         yield path, 0.0 if away <= TOLERANCE * max(1.0, abs(a)) else away
+    elif path.endswith(".nanosec"):
+        yield path, 0.0 if abs(a - b) <= STAMP_NS else float(abs(a - b))
     else:
         yield path, 0.0 if a == b else float("inf")
 
@@ -314,7 +338,7 @@ def generated_messages(sources: Path, out: Path) -> Path:
     includes += [f"-I{folder.parent.name}:{folder}" for folder in Path("/usr/share").glob("*/msg") if folder.is_dir()]
     for name, place in PACKAGES.items():
         for kind, tool in (("msg", "genmsg_py.py"), ("srv", "gensrv_py.py")):
-            files = sorted((sources / place / kind).glob(f"*.{kind}"))
+            files = [file for file in sorted((sources / place / kind).glob(f"*.{kind}")) if file.stem not in UNWANTED]
             if files:
                 folder = out / name / kind
                 folder.mkdir(parents=True)
