@@ -33,7 +33,7 @@ def open_nothing() -> Iterator[Play]:
 
     def play(job: dict[str, object]) -> Played:
         share = int(str(job["id"])[:8], 16) / 16**8
-        verdict = {"status": "ScenarioEnded", "fault": "nobody", "judged": True, "success": share > 0.1}
+        verdict = {"status": "ScenarioEnded", "fault": "none", "judged": True, "success": share > 0.1}
         return Played({**values, **verdict, "message": "computed", "severity": share, "simulated_s": 20.0})
 
     yield play

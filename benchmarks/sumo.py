@@ -2,15 +2,19 @@
 
 CPU times a tick stand beside them: on a busy machine they say more.
 
-    python benchmarks/sumo.py --folder net/ --vehicles 100 300 --seconds 20 [--picture OUT.png]
+    python benchmarks/sumo.py --folder net/ --vehicles 100 300 --seconds 20 [--picture OUT.png] [--peer DIR]
 
-``net/`` comes from `linden map sumo Linden -o net/`. The server is one of our own.
+``net/`` comes from `linden map sumo Linden -o net/`. The server is one of our own. DIR is CARLA's folder
+``Co-Simulation/Sumo``: its script runs on the same server as a peer, without its sleep (``sumo_peer.py``).
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import queue
+import subprocess
+import sys
 import time
 from pathlib import Path
 from types import SimpleNamespace
@@ -84,6 +88,23 @@ def beside(
     return SimpleNamespace(took_s=took_s, client_s=client_s, server_s=server_s, shown=shown)
 
 
+def peer(port: int, server: psutil.Process, folder: Path, scripts: Path, vehicles: int, ticks: int) -> SimpleNamespace:
+    """The same by CARLA's own script, in a process of its own."""
+    program = Path(__file__).with_name("sumo_peer.py")
+    config = config_in(folder, is_random=True)
+    numbers = (str(port), str(vehicles), str(ticks))
+    server_s = sum(server.cpu_times()[:2])
+    ended = subprocess.run(
+        [sys.executable, str(program), str(scripts), str(config), *numbers],
+        check=True,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    (found,) = [line for line in ended.stdout.splitlines() if line.startswith("{")]  # SUMO prints lines of its own
+    server_s = (sum(server.cpu_times()[:2]) - server_s) * ticks / (ticks + SETTLE_TICKS)
+    return SimpleNamespace(server_s=server_s, **json.loads(found))
+
+
 def look(world: carla.World, bridge: Bridge, path: Path, tick: Callable[[], None]) -> None:
     """A picture of where most vehicles are, from above and behind one of them."""
     places = {name: world.get_actor(actor_id).get_transform() for name, actor_id in bridge.actor_ids.items()}
@@ -111,6 +132,7 @@ def main() -> None:
     parser.add_argument("--vehicles", type=int, nargs="+", default=[100, 300])
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--picture", type=Path)
+    parser.add_argument("--peer", type=Path, metavar="DIR")
     arguments = parser.parse_args()
     ticks = round(arguments.seconds / STEP_S)
     server = OwnServer()
@@ -121,15 +143,21 @@ def main() -> None:
         settings.synchronous_mode, settings.fixed_delta_seconds = True, STEP_S
         world.apply_settings(settings)
         process = psutil.Process(server._process.pid)  # noqa: SLF001 - it has no other name for it
-        heads = ("vehicles", "shown", "libsumo", "beside Linden", "CPU ms: libsumo", "client + SUMO", "server")
+        heads = ("vehicles", "program", "shown", "real time", "CPU ms: client and SUMO", "server")
         print("  ".join(heads))
         for vehicles in arguments.vehicles:
             alone = limit(arguments.folder, vehicles, ticks)
-            found = beside(client, process, arguments.folder, vehicles, ticks)
-            factors = [f"{arguments.seconds / each.took_s:.1f}x" for each in (alone, found)]
-            costs = [f"{1000.0 * each / ticks:.2f}" for each in (alone.cpu_s, found.client_s, found.server_s)]
-            row = (str(vehicles), str(found.shown), *factors, *costs)
-            print("  ".join(each.rjust(len(head)) for each, head in zip(row, heads, strict=True)), flush=True)
+            rows = {
+                "libsumo": SimpleNamespace(took_s=alone.took_s, client_s=alone.cpu_s, server_s=0.0, shown=0),
+                "basu": beside(client, process, arguments.folder, vehicles, ticks),
+            }
+            if arguments.peer is not None:
+                rows["CARLA"] = peer(server.port, process, arguments.folder, arguments.peer, vehicles, ticks)
+                world.apply_settings(settings)
+            for name, found in rows.items():
+                costs = [f"{1000.0 * each / ticks:.2f}" for each in (found.client_s, found.server_s)]
+                row = (str(vehicles), name, str(found.shown), f"{arguments.seconds / found.took_s:.1f}x", *costs)
+                print("  ".join(each.rjust(len(head)) for each, head in zip(row, heads, strict=True)), flush=True)
         if arguments.picture is not None:
             beside(client, process, arguments.folder, arguments.vehicles[-1], 1, arguments.picture)
     finally:

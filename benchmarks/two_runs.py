@@ -50,6 +50,7 @@ def run_alone(options: argparse.Namespace) -> None:
         snapshots = Snapshots(live)
         vehicles = populate(client, world, options.vehicles, options.seed)
         traffic_manager = manager(client, free_port(), hybrid=options.hybrid, seed=options.seed)
+        world.tick()  # ends the Traffic Manager's asynchronous step
         for vehicle in vehicles:
             vehicle.set_autopilot(True, traffic_manager.get_port())
         leaders = crowd(client, world, options.walkers, options.seed)

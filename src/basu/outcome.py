@@ -13,7 +13,7 @@ EXIT_CODES = (
 class Fault(enum.Enum):
     """The party at fault for the end of a run; the value is the exit code."""
 
-    NOBODY = 0
+    NONE = 0
     AGENT = 1
     SETUP = 2
     SIMULATOR = 3
@@ -46,16 +46,16 @@ class Status(enum.Enum):
 
 
 FAULT_OF = {
-    Status.COMPLETED: Fault.NOBODY,
+    Status.COMPLETED: Fault.NONE,
     Status.AGENT_CRASHED: Fault.AGENT,
     Status.AGENT_TIMED_OUT: Fault.AGENT,
     Status.AGENT_INVALID_CONTROL: Fault.AGENT,
     Status.ROUTE_TIMEOUT: Fault.AGENT,
     Status.ROUTE_BLOCKED: Fault.AGENT,
     Status.ROUTE_DEVIATION: Fault.AGENT,
-    Status.SCENARIO_ENDED: Fault.NOBODY,
+    Status.SCENARIO_ENDED: Fault.NONE,
     Status.SCENARIO_TIMEOUT: Fault.AGENT,
-    Status.STOPPED: Fault.NOBODY,
+    Status.STOPPED: Fault.NONE,
     Status.SETUP_FAILED: Fault.SETUP,
     Status.SIMULATOR_FAILED: Fault.SIMULATOR,
     Status.BENCHMARK_FAILED: Fault.BENCHMARK,

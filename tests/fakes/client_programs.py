@@ -37,6 +37,7 @@ TRAFFIC = (
     + """
 manager = client.get_trafficmanager(0)
 manager.set_synchronous_mode(True)
+world.tick()
 for place in range(10):
     vehicle = car(place)
     if vehicle is not None:

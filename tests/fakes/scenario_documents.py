@@ -29,10 +29,10 @@ GROUPS = {
 }
 CHARACTERISTICS = {"atmosphere": "rain", "lighting": "dark", "surface": "wet", "alignment": "straight"}
 VERDICT_FAULTS = {
-    "SUCCESS": "nobody",
-    "FAILURE": "nobody",
+    "SUCCESS": "none",
+    "FAILURE": "none",
     "AGENT_FAULT": "agent",
-    "NOT_EXERCISED": "nobody",
+    "NOT_EXERCISED": "none",
     "SIMULATOR_FAULT": "simulator",
     "SETUP_FAULT": "setup",
     "BENCHMARK_FAULT": "benchmark",
@@ -104,7 +104,7 @@ def case_result(**changes: Any) -> dict[str, Any]:
             {"name": "from", "value": "right", "unit": "", "about": "the side it comes from"},
         ],
         "verdict": "SUCCESS",
-        "fault": "nobody",
+        "fault": "none",
         "status": "Completed",
         "message": "The walker was let by, 1.2 m at the least, and the end of the route was reached.",
         "assessment": assessment("SUCCESS"),

@@ -31,7 +31,7 @@ def _told(playing: Playing, history: History | None, outcome: Outcome) -> dict[s
         "trigger_s_m": round(trigger_s_m, 3),
         "reached": playing.armed_tick is not None,
         "verdict": None,
-        "fault": "nobody",
+        "fault": "none",
         "message": f"it waits at {trigger_s_m:.0f} m of the route, and the run ended before: {outcome.message}",
     }
     if history is None or (playing.armed_tick is None and playing.error is None):

@@ -89,8 +89,10 @@ class TrafficManager(BaseManager):
         try:
             vehicles = self._spawn_vehicles(self._wanted_vehicles(), dice)
             walkers = self._spawn_walkers(self._traffic.walkers, dice)
+            manager = self._synchronous_manager() if vehicles else None
             run.world.tick(run.timeout_s)
-            self._lead_vehicles(vehicles)
+            if manager is not None:
+                self._register(manager, vehicles)
             self._lead_walkers(walkers)
         except RuntimeError as error:
             raise SimulatorError(f"the simulator failed at getting the traffic ready: {error}") from error
@@ -182,17 +184,24 @@ class TrafficManager(BaseManager):
         poses = [carla.Transform(place + carla.Location(z=DROP_M)) for place in drawn]
         return [poses[index] for index in suitable(_places_m(poses), self._route_m, self._ego_m)[:count]]
 
-    def _lead_vehicles(self, vehicles: list[int]) -> None:
-        """Hand the vehicles over to a Traffic Manager of their own."""
-        if not vehicles:
-            return
+    def _synchronous_manager(self) -> carla.TrafficManager:
+        """Return a new Traffic Manager in synchronous mode. One tick must follow before vehicles are registered.
+
+        The Traffic Manager's own thread begins in asynchronous mode. The step that it is in may still take in vehicles
+        after ``set_synchronous_mode``: then they have one step more than in another run of the same seed. The next
+        tick of the world waits for a synchronous step, and so ends the asynchronous one.
+        """
         client_threads.hold()
         self._manager = self._run.client.get_trafficmanager(_free_port())
         self._manager.set_synchronous_mode(True)
         self._manager.set_random_device_seed(self._run.seed)
         self._manager.set_global_distance_to_leading_vehicle(GAP_M)
+        return self._manager
+
+    def _register(self, manager: carla.TrafficManager, vehicles: list[int]) -> None:
+        """Hand vehicles over to the Traffic Manager."""
         for vehicle in self._actors(vehicles):
-            vehicle.set_autopilot(True, self._manager.get_port())
+            vehicle.set_autopilot(True, manager.get_port())
 
     def _lead_walkers(self, walkers: list[int]) -> None:
         """Give each walker a leader that sends it to places of the pavements, one after the other."""

@@ -42,7 +42,7 @@ if TYPE_CHECKING:
 from basu.running.preparation import Job, Plan
 
 SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
-COUNTED = frozenset({Fault.NOBODY.name.lower(), Fault.AGENT.name.lower()})  # what ended otherwise says nothing of it
+COUNTED = frozenset({Fault.NONE.name.lower(), Fault.AGENT.name.lower()})  # what ended otherwise says nothing of it
 
 
 class Series:

@@ -42,7 +42,7 @@ class Verdict(enum.Enum):
     @property
     def fault(self) -> Fault:
         """The party at fault; none where the driving was judged."""
-        return FAULT_OF.get(self, Fault.NOBODY)
+        return FAULT_OF.get(self, Fault.NONE)
 
 
 FAULT_OF = {

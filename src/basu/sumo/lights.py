@@ -26,6 +26,7 @@ class Lights:
         self._links: dict[str, dict[int, str]] = {}  # by SUMO's light: signal of each link
         self._phases: dict[str, list[str]] = {}
         self._shown: dict[str, Any] = {}
+        self._seen: list[carla.TrafficLightState] = []  # of the heads, when SUMO's links were last set
         api = link.api.trafficlight
         with link.answering("naming its lights"):
             for light in sorted(api.getIDList()):
@@ -39,7 +40,11 @@ class Lights:
 
     def to_sumo(self) -> None:
         """Let SUMO's links show what the simulator's heads show."""
-        colours = {signal: head.get_state() for signal, head in self._heads.items()}
+        states = [head.get_state() for head in self._heads.values()]
+        if states == self._seen:
+            return
+        self._seen = states
+        colours = dict(zip(self._heads, states, strict=True))
         for light, links in self._links.items():
             wanted = tuple(LETTERS.get(colours[signal], "r") for signal in links.values())
             if links and self._shown.get(light) != wanted:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from linden.geometry import rotation_matrix
 from linden.physics.columns import finite, twice
@@ -232,6 +232,14 @@ class Bodies(VehicleApi):
         s["walker_direction"][slot] = [finite(x, -1e3, 1e3) for x in control.direction]
         s["walker_speed"][slot] = finite(control.speed, 0.0, 50.0)
         s["jump"][slot] = s["jump_pending"][slot] = bool(control.jump)
+
+    def set_walker_courses(self, slots: NDArray[np.integer], yaws_deg: Sequence[float], speeds_mps: ArrayLike) -> None:
+        """Let many walkers go straight on: (K,) slots, directions as yaws in degrees, and speeds in m/s."""
+        s = self.state
+        yaws_rad = [math.radians(yaw_deg) if math.isfinite(yaw_deg) else 0.0 for yaw_deg in yaws_deg]
+        s["walker_direction"][slots] = [(math.cos(yaw_rad), math.sin(yaw_rad), 0.0) for yaw_rad in yaws_rad]
+        s["walker_speed"][slots] = np.clip(np.nan_to_num(speeds_mps), 0.0, 50.0)
+        s["jump"][slots] = s["jump_pending"][slots] = False
 
     def walker_control(self, slot: int) -> WalkerControl:
         """Return what the walker was told last."""

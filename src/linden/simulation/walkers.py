@@ -15,7 +15,7 @@ from linden.maps.navigation.library import MeshFile, MeshLibrary
 from linden.physics.bodies import Bodies
 from linden.physics.state import PROP, VEHICLE, WALKER
 from linden.protocol.values.control import WalkerControl
-from linden.protocol.values.space import Transform, Vector3D
+from linden.protocol.values.space import Transform
 from linden.simulation.actor_table import ActorRecord, ActorRefusal
 from linden.simulation.state import EpisodeState
 from linden.simulation.surroundings import scenery_of
@@ -56,16 +56,12 @@ class Walkers:
         under_m, _ = episode.map.ground.surfaces_under(feet_m)
         stands = np.abs(under_m - feet_m[:, 2]) <= _FOOTING_M
         feet_m[stands, 2] = under_m[stands]
-        half_m = bodies.half_extent[slots, 2] - bodies.box_centre[slots, 2]
-        for actor_id, slot, pose, foot_m, up_m, speed_mps in zip(
-            actor_ids, slots.tolist(), poses, feet_m.tolist(), half_m.tolist(), speeds_mps.tolist(), strict=True
-        ):
-            if actor_id not in self._before:
-                self._before[actor_id] = np.array([*bodies.position[slot], bodies.rotation[slot, 1]])
-            bodies.set_pose(slot, pose._replace(location=Vector3D(foot_m[0], foot_m[1], foot_m[2] + up_m)))
-            yaw_rad = math.radians(pose.rotation.yaw)
-            direction = Vector3D(math.cos(yaw_rad), math.sin(yaw_rad), 0.0)
-            bodies.set_walker_control(slot, WalkerControl(direction, speed_mps))
+        feet_m[:, 2] += bodies.half_extent[slots, 2] - bodies.box_centre[slots, 2]
+        before = np.column_stack([bodies.position[slots], bodies.rotation[slots, 1]])
+        for actor_id, place in zip(actor_ids, before, strict=True):
+            self._before.setdefault(actor_id, place)
+        bodies.set_poses(slots, np.hstack([feet_m, np.array([pose.rotation for pose in poses])]))
+        bodies.set_walker_courses(slots, [pose.rotation.yaw for pose in poses], speeds_mps)
 
     def refuse_dead(self, actor_id: int) -> None:
         """Refuse to move a walker that is dead.

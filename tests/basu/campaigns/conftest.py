@@ -35,7 +35,7 @@ def play(job):
     time.sleep(float(os.environ.get("DRIVE_S", "0")))
     success = share > (0.5 if job["agent_name"] == "blind" else 0.1)
     row = {
-        "status": "ScenarioEnded", "fault": "nobody", "message": "computed", "judged": True, "success": success,
+        "status": "ScenarioEnded", "fault": "none", "message": "computed", "judged": True, "success": success,
         "severity": 1.0 if not success else share, "driving_score": share, "passengers_comfort_score": share / 2.0,
         "margin_distance_m": 10.0 * share, "simulated_s": 20.0, "wall_s": time.perf_counter(), "cpu_s": 1.0,
         "memory_mb": 500.0, "records_bytes": 1000, "host": "here", "worker": os.getpid(),

@@ -118,6 +118,24 @@ def test_traffic_is_there_from_the_first_step_and_gone_after_the_last(
     assert [actor.type_id for actor in world.get_actors() if actor.type_id.startswith(moving)] == []
 
 
+def test_the_traffic_manager_ends_its_asynchronous_step_before_vehicles_are_registered(
+    simulator: RunningServer, tmp_path: Path, agent: Path, route_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    called: list[str] = []
+
+    def noted(owner: type, name: str) -> None:
+        original = getattr(owner, name)
+        monkeypatch.setattr(owner, name, lambda *arguments: (called.append(name), original(*arguments))[1])
+
+    noted(carla.TrafficManager, "set_synchronous_mode")
+    noted(carla.World, "tick")
+    noted(carla.Vehicle, "set_autopilot")
+    options = ["--routes", str(route_file), "--output", str(tmp_path / "runs"), "--vehicles", "2"]
+    main(["run", str(agent), *address(simulator), *options])
+    begin = called.index("set_synchronous_mode")
+    assert called[begin : begin + 4] == ["set_synchronous_mode", "tick", "set_autopilot", "set_autopilot"]
+
+
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [

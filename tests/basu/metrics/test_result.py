@@ -33,7 +33,7 @@ def document() -> dict[str, Any]:
 def test_the_keys_that_programs_read_are_there() -> None:
     found = document()
     assert found["status"] == "Completed"
-    assert found["fault"] == "nobody"
+    assert found["fault"] == "none"
     assert set(found["scores"]) == {"driving", "infraction", "path_following"}
     assert found["meta"] == META
     assert found["schema_version"] == 3

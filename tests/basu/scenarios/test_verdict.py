@@ -38,7 +38,7 @@ class Says(Criterion):
 
 def test_meeting_every_criterion_is_success() -> None:
     found = judge(CRITERIA, ARRIVED, ENDED, triggered=True)
-    assert (found.verdict, found.fault) == (Verdict.SUCCESS, Fault.NOBODY)
+    assert (found.verdict, found.fault) == (Verdict.SUCCESS, Fault.NONE)
     assert found.message == "safe, completed and exercised: the ego met child"
     assert [one.criterion for one in found.judgements[3:]] == [
         "no near miss",
@@ -105,7 +105,7 @@ def test_an_ego_that_arrives_without_having_triggered_it_met_no_scenario() -> No
 
 def test_a_driver_that_never_comes_to_the_trigger_exercised_nothing() -> None:
     found = judge((NoCollision(),), SHORT, SHORT.outcome, triggered=False)
-    assert (found.verdict, found.fault) == (Verdict.NOT_EXERCISED, Fault.NOBODY)
+    assert (found.verdict, found.fault) == (Verdict.NOT_EXERCISED, Fault.NONE)
     assert found.message == "the ego never came to where the conflict begins"
     assert found.assessment is not None
     assert found.assessment.completed == Finding(False, "not over after 4 s")

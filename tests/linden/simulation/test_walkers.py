@@ -90,6 +90,32 @@ def test_a_jump_to_another_place_is_no_motion(simulation: World, follower: int) 
     assert not row(simulation, follower)["velocity"].any()
 
 
+def test_walkers_led_together_are_where_they_are_when_led_one_after_the_other() -> None:
+    dice = np.random.default_rng(3)
+    states = []
+    for together in (True, False):
+        simulation = World(MAP)
+        episode = simulation.episode
+        ids = [walker(simulation, at(5.0 + 2.0 * nth, 4.25, 2.0)) for nth in range(8)]
+        dice = np.random.default_rng(3)
+        for _ in range(5):
+            places = [
+                Transform(
+                    Vector3D(*dice.uniform((4.0, 4.0, 0.0), (20.0, 4.5, 0.2))), Rotation(*dice.normal(0.0, 300.0, 3))
+                )
+                for _ in ids
+            ]
+            speeds_mps = dice.uniform(0.0, 2.0, len(ids))
+            if together:
+                episode.walkers.lead(episode, ids, places, speeds_mps)
+            else:
+                for nth, actor_id in enumerate(ids):
+                    episode.walkers.lead(episode, [actor_id], places[nth : nth + 1], speeds_mps[nth : nth + 1])
+            simulation.step(DT_S)
+        states.append(episode.bodies.state[: episode.bodies.count].tobytes())
+    assert states[0] == states[1]
+
+
 def test_a_walker_that_is_no_longer_led_stands(simulation: World, follower: int) -> None:
     led(simulation, follower, at(10.0, 4.25, PAVEMENT_M))
     led(simulation, follower, at(10.1, 4.25, PAVEMENT_M))

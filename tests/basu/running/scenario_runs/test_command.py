@@ -86,7 +86,7 @@ def test_a_case_that_goes_well_leaves_its_verdict_and_a_clean_world(
     client.set_timeout(20.0)
     assert run(simulator, tmp_path, "goes_well", "--scenarios", files) == 0
     result = played(tmp_path)["goes_well"]
-    assert (result["verdict"], result["fault"], result["status"]) == ("SUCCESS", "nobody", "ScenarioEnded")
+    assert (result["verdict"], result["fault"], result["status"]) == ("SUCCESS", "none", "ScenarioEnded")
     assert list(result["phases_s"]) == ["setup", "trigger", "conflict", "resolution", "end"]
     assert result["actors"] == [{"id": result["actors"][0]["id"], "role": "walker", "type": "walker.pedestrian.0001"}]
     assert 0.3 < result["margins"]["distance_m"] < 22.0

@@ -7,7 +7,7 @@ import pytest
 from basu.running.scenario_runs.command import worst
 
 
-def document(verdict: str, fault: str = "nobody", *, completed: bool = True) -> dict[str, Any]:
+def document(verdict: str, fault: str = "none", *, completed: bool = True) -> dict[str, Any]:
     """What the exit code reads of a case's result."""
     return {"verdict": verdict, "fault": fault, "assessment": {"completed": {"holds": completed, "sentence": "so"}}}
 

@@ -1,0 +1,94 @@
+"""A sheet of pictures of a recorded drive, from a camera that stands still above the road.
+
+    python scripts/film.py RUN --at 34 --every 1.5 --pictures 6 --output film.jpg
+
+RUN is the folder of a `basu run ... --record` at a simulator of its own. The camera looks along the way of the vehicle
+under test, from behind the place of the vehicle in the middle picture. Each picture bears the s of the recording.
+"""
+
+from __future__ import annotations
+
+import argparse
+import queue
+from pathlib import Path
+
+import carla
+import numpy as np
+from PIL import Image, ImageDraw
+
+from basu.simulator import OwnServer, connect
+
+STEP_S = 0.05
+SIZE = 800, 450
+COLUMNS = 3
+ROLES = ("hero", "ego", "ego_vehicle")
+
+
+def ego_pose(world: carla.World) -> carla.Transform:
+    """The pose of the vehicle under test in a replay."""
+    (ego,) = [actor for actor in world.get_actors().filter("vehicle.*") if actor.attributes.get("role_name") in ROLES]
+    return ego.get_transform()
+
+
+def pictures(log: Path, times_s: list[float], back_m: float, up_m: float) -> list[Image.Image]:
+    """One picture for each time, in s from the beginning of the recording."""
+    server = OwnServer()
+    try:
+        client = connect("127.0.0.1", server.port, 600.0)
+        world = client.get_world()
+        settings = world.get_settings()
+        settings.synchronous_mode, settings.fixed_delta_seconds = True, STEP_S
+        world.apply_settings(settings)
+        client.replay_file(str(log), times_s[len(times_s) // 2], 0.0, 0)
+        world.tick()
+        world.tick()
+        pose = ego_pose(world)
+        ahead = pose.get_forward_vector()
+        at = pose.location + carla.Location(-back_m * ahead.x, -back_m * ahead.y, up_m)
+        blueprint = world.get_blueprint_library().find("sensor.camera.rgb")
+        for name, value in zip(("image_size_x", "image_size_y"), SIZE, strict=True):
+            blueprint.set_attribute(name, str(value))
+        pitch = -float(np.degrees(np.arctan2(up_m, back_m + 8.0)))
+        look = carla.Transform(at, carla.Rotation(pitch, pose.rotation.yaw, 0.0))
+        found = []
+        for time_s in times_s:
+            client.replay_file(str(log), time_s, 0.0, 0)
+            world.tick()
+            world.tick()
+            camera = world.spawn_actor(blueprint, look)
+            images: queue.Queue[carla.Image] = queue.Queue()
+            camera.listen(images.put)
+            world.tick()
+            image = images.get(timeout=120.0)
+            camera.destroy()
+            pixels = np.frombuffer(image.raw_data, np.uint8).reshape(image.height, image.width, 4)
+            picture = Image.fromarray(np.ascontiguousarray(pixels[..., 2::-1]))
+            ImageDraw.Draw(picture).text((8, 6), f"{time_s:.1f} s", fill="white", font_size=22)
+            found.append(picture)
+        return found
+    finally:
+        server.end()
+
+
+def main() -> None:
+    """Write the sheet."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=Path)
+    parser.add_argument("--at", type=float, required=True, metavar="S")
+    parser.add_argument("--every", type=float, default=1.0, metavar="S")
+    parser.add_argument("--pictures", type=int, default=6)
+    parser.add_argument("--back", type=float, default=16.0, metavar="M")
+    parser.add_argument("--up", type=float, default=7.0, metavar="M")
+    parser.add_argument("--output", type=Path, required=True)
+    arguments = parser.parse_args()
+    times_s = [arguments.at + nth * arguments.every for nth in range(arguments.pictures)]
+    found = pictures((arguments.run / "recording.log").resolve(), times_s, arguments.back, arguments.up)
+    rows = -(-len(found) // COLUMNS)
+    sheet = Image.new("RGB", (COLUMNS * SIZE[0], rows * SIZE[1]))
+    for nth, picture in enumerate(found):
+        sheet.paste(picture, (nth % COLUMNS * SIZE[0], nth // COLUMNS * SIZE[1]))
+    sheet.resize((sheet.width // 2, sheet.height // 2), Image.Resampling.LANCZOS).save(arguments.output, quality=85)
+
+
+if __name__ == "__main__":
+    main()
