@@ -33,8 +33,9 @@ def running_roscore(logs: Path) -> Iterator[str]:
     address = f"http://localhost:{port}"
     environment = {**os.environ, "ROS_MASTER_URI": address, "ROS_HOSTNAME": "localhost", "ROS_LOG_DIR": str(logs)}
     command = ["roscore", "-p", str(port)]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
-    with subprocess.Popen(command, env=environment, **pipes) as core:
+    with subprocess.Popen(
+        command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as core:
         assert core.stdout is not None
         lines = []
         for line in core.stdout:
@@ -79,8 +80,14 @@ def starts(master: str) -> Iterator[Starts]:
                 environment["PYTHONPATH"] = os.pathsep.join(sys.path)
             else:
                 environment.pop("PYTHONPATH", None)
-            pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-            process = stack.enter_context(subprocess.Popen([python, str(file), *words], env=environment, **pipes))
+            process = subprocess.Popen(
+                [python, str(file), *words],
+                env=environment,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            stack.enter_context(process)
             stack.callback(process.kill)
             return process
 

@@ -90,7 +90,7 @@ class Node:
         self._arrived: dict[int, deque[bytes]] = {}
         self._peers: dict[int, list[Peer]] = {}
         self._state: tuple[bytes, dict[str, Any]] | None = None
-        self._answer: dict[str, Any] | None = None
+        self._answers: deque[dict[str, Any]] = deque(maxlen=1)
         self._is_latched = in_lockstep
         self._process = _started([name, "sim" if in_lockstep else "wall"])
         self._reader = threading.Thread(target=self._read, name="basu-ros1", daemon=True)
@@ -191,12 +191,12 @@ class Node:
         Raises:
             UserError: the master does not answer any more.
         """
-        self._answer = None
+        self._answers.clear()
         self._send(MASTER, name.encode())
         with self._changed:
-            self._changed.wait_for(lambda: self._answer is not None or self._has_ended, ANSWER_S)
-            answer = self._answer
-        if answer is None or answer["nodes"] is None:
+            self._changed.wait_for(lambda: bool(self._answers) or self._has_ended, ANSWER_S)
+            answer = self._answers[-1] if self._answers else {"nodes": None}
+        if answer["nodes"] is None:
             raise UserError(f"{self.realm} does not answer any more; was roscore ended?")
         return [node for node in answer["nodes"] if node != f"/{self.name}"]
 
@@ -297,7 +297,7 @@ class Node:
         elif kind == PEERS:
             self._peers[number] = [Peer(*each) for each in json.loads(content)]
         elif kind == ANSWER:
-            self._answer = json.loads(content)
+            self._answers.append(json.loads(content))
         elif kind == WARNING:
             self.warnings.append(content.decode())
         else:

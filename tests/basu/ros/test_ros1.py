@@ -29,7 +29,7 @@ from basu.ros.topics import (
     odometry_of,
     vehicle_topics,
 )
-from basu.ros.types import Generation, types_of
+from basu.ros.types import Generation, Types, types_of
 from roscore import SYSTEM_PYTHON, Starts, master, roscore, starts
 
 __all__ = ["master", "roscore", "starts"]
@@ -120,7 +120,7 @@ def test_a_peer_with_another_version_of_a_type_is_no_peer(node: Node) -> None:
     topic = ackermann_of("hero")
     node.listen(topic)
     other = Node("talker")
-    older = ros1.Types(Generation.ROS_1, {topic.type: "float32 speed\n"})
+    older = Types(Generation.ROS_1, {topic.type: "float32 speed\n"})
     other.publish_as(older, Message(topic._replace(is_latched=True), older.message(topic.type, speed=1.0)))
     with node._changed:
         assert node._changed.wait_for(lambda: bool(node.warnings), LONG_S)

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from basu.agents.builtin.perception import VehicleFacts
     from basu.ros.moment import Moment
     from basu.ros.topics import Topic
+    from basu.ros.types import Types
 
 TICK_S = 0.01  # of the clock within a frame, simulated time
 PACE_S = 0.002  # wall time a tick: a message crosses two or three nodes in it
@@ -45,7 +46,8 @@ class AutowareAiAgent(RosAgent):
         """Publish the mission, and wait until an Autoware.AI appears."""
         self.tyre_angle_rad = 0.0
         self._has_commanded = self._localises_itself = False
-        self._tick, self._types = 0, None
+        self._tick = 0
+        self._types: Types | None = None  # in the software's version, once it is known
         self._began_s = self._frame_began_s = time.monotonic()
         super().setup()
 

@@ -138,6 +138,7 @@ class RosAgent(AutonomousAgent):
     def waiting(self, moment: Moment) -> carla.VehicleControl | None:
         """Do what is due while a command is awaited; a control ends the wait."""
         del moment
+        return None
 
     def wanted(self, topic: Topic, message: Any) -> Wanted | carla.VehicleControl:  # noqa: ANN401 - a message
         """Return what a command says.
