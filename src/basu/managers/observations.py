@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 
 from basu.records.history.model import NEAR_M, NEAREST, NO_LIGHT
+from basu.records.placed_motion import PlacedMotion, own_motion
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -130,6 +131,7 @@ class Neighbours:
     def __init__(self, world: carla.World, ego_id: int) -> None:
         self._world, self._ego_id = world, ego_id
         self._shapes: dict[int, _Shape] = {}
+        self._motion = PlacedMotion()
         self._count = -1
         self._last: tuple[Frame | None, list[tuple[float, ...]]] = (None, [])
         self.met: dict[int, str] = {}
@@ -160,7 +162,8 @@ class Neighbours:
             elif at.z + shape.bottom_m < frame.ego.z_m + OVERHEAD_M:
                 things.append((away_m, actor_id, actor))
         chosen = [*sorted(moving)[:NEAREST], *sorted(things)[:NEAREST]]
-        return [self._row(frame.tick, actor_id, actor) for _, actor_id, actor in chosen]
+        t_s = frame.snapshot.timestamp.elapsed_seconds
+        return [self._row(frame.tick, t_s, actor_id, actor) for _, actor_id, actor in chosen]
 
     def counts(self) -> tuple[int, int]:
         """Return how many other vehicles and how many walkers the world has, as of the last look."""
@@ -176,18 +179,20 @@ class Neighbours:
             if actor.id != self._ego_id and actor.type_id.startswith((*MOVING_KINDS, *THING_KINDS))
         }
 
-    def _row(self, tick: int, actor_id: int, actor: carla.ActorSnapshot) -> tuple[float, ...]:
+    def _row(self, tick: int, t_s: float, actor_id: int, actor: carla.ActorSnapshot) -> tuple[float, ...]:
         """One row, in the order of ``history.OTHER``: the place is that of the middle of the box."""
         shape = self._shapes[actor_id]
         if actor_id not in self.met:
             self.met[actor_id] = shape.type_id
             self.sizes[actor_id] = (shape.half_length_m, shape.half_width_m)
-        transform, velocity = actor.get_transform(), actor.get_velocity()
+        transform = actor.get_transform()
+        is_vehicle = shape.type_id.startswith("vehicle.")
+        motion = self._motion.of(actor, transform, t_s) if is_vehicle else own_motion(actor)
         at, yaw_rad = transform.location, math.radians(transform.rotation.yaw)
         cos, sin = math.cos(yaw_rad), math.sin(yaw_rad)
         x_m = at.x + shape.x_m * cos - shape.y_m * sin
         y_m = at.y + shape.x_m * sin + shape.y_m * cos
-        return (tick, actor_id, x_m, y_m, at.z, yaw_rad, velocity.x, velocity.y)
+        return (tick, actor_id, x_m, y_m, at.z, yaw_rad, motion.velocity_x_mps, motion.velocity_y_mps)
 
 
 def _shape(actor: carla.Actor) -> _Shape:

@@ -36,6 +36,8 @@ class Sensor:
 class Snapshot:
     """A world without others."""
 
+    timestamp = SimpleNamespace(elapsed_seconds=0.0)
+
     def __len__(self) -> int:
         return 0
 

@@ -112,10 +112,13 @@ def actor(key: int, type_id: str, x_m: float, *, z_m: float = 0.0, yaw_deg: floa
         bounding_box=box,
         get_transform=lambda: pose,
         get_velocity=carla.Vector3D,
+        get_angular_velocity=carla.Vector3D,
     )
 
 
 class Snapshot(dict[int, Any]):
+    timestamp = SimpleNamespace(elapsed_seconds=0.0)
+
     def find(self, key: int) -> Any:
         return self.get(key)
 

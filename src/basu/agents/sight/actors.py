@@ -9,6 +9,8 @@ import enum
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from basu.records.placed_motion import PlacedMotion, PlanarMotion, own_motion
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -82,6 +84,7 @@ class Census:
     def __init__(self, world: carla.World, own_id: int, radius_m: float) -> None:
         self._world = world
         self._radius_m = radius_m
+        self._motion = PlacedMotion()
         self._shapes: dict[int, _Shape | None] = {own_id: None}  # None: nothing that one could drive into
         self._solid: list[int] = []  # ids of bodies, in the order of the last snapshot that was gone through
         self._count, self._left = -1, 0  # actors in that snapshot, and ticks until the next one is gone through
@@ -91,7 +94,7 @@ class Census:
         if len(snapshot) != self._count or self._left == 0:
             self._go_through(snapshot)
         self._left -= 1
-        shapes, radius_m = self._shapes, self._radius_m
+        shapes, radius_m, t_s = self._shapes, self._radius_m, snapshot.timestamp.elapsed_seconds
         found = []
         for actor_id in self._solid:
             shape, actor = shapes[actor_id], snapshot.find(actor_id)
@@ -100,7 +103,9 @@ class Census:
             pose = actor.get_transform()
             at = pose.location
             if abs(at.x - x_m) < radius_m and abs(at.y - y_m) < radius_m:
-                found.append(_other(actor, pose, shape))
+                is_vehicle = shape.kind is Kind.VEHICLE
+                motion = self._motion.of(actor, pose, t_s) if is_vehicle else own_motion(actor)
+                found.append(_other(actor_id, pose, shape, motion))
         return found
 
     def _go_through(self, snapshot: carla.WorldSnapshot) -> None:
@@ -128,18 +133,16 @@ def _vector(vector: carla.Vector3D) -> tuple[float, float, float]:
     return vector.x, vector.y, vector.z
 
 
-def _other(actor: carla.ActorSnapshot, pose: carla.Transform, shape: _Shape) -> Other:
+def _other(actor_id: int, pose: carla.Transform, shape: _Shape, motion: PlanarMotion) -> Other:
     """Return one actor of a snapshot."""
-    velocity, yaw_rad = actor.get_velocity(), math.radians(pose.rotation.yaw)
+    yaw_rad = math.radians(pose.rotation.yaw)
     return Other(
-        actor.id,
+        actor_id,
         shape.kind,
         pose.location.x + shape.ahead_m * math.cos(yaw_rad),
         pose.location.y + shape.ahead_m * math.sin(yaw_rad),
         yaw_rad,
-        velocity.x,
-        velocity.y,
-        math.radians(actor.get_angular_velocity().z),
+        *motion,
         shape.half_length_m,
         shape.half_width_m,
         pose.location.z + shape.above_m,
