@@ -1,6 +1,6 @@
 """Autoware.AI's nodes drive the shuttle round a route by `basu run autoware-ai`: score, errors, path.
 
-    python scripts/outside/autoware_ai/loop.py OUT CONTENTS TOWN.xodr --routes FILE.xml [--ndt] -o FOLDER [-- OPTIONS]
+    python scripts/outside/autoware_ai/loop.py OUT CONTENTS TOWN.xodr --routes FILE.xml [--ndt] -o FOLDER [OPTIONS]
 
 OUT is the folder of ``build``, CONTENTS that of ``linden map package ... --ros1``; OPTIONS go to `basu run`. Writes
 loop.json, loop.svg and the run folder.
@@ -44,16 +44,17 @@ def main() -> int:
     parser.add_argument("--routes", type=Path, required=True)
     parser.add_argument("--ndt", action="store_true", help="localise by NDT matching instead of the simulator's pose")
     parser.add_argument("-o", "--output", type=Path, required=True)
-    parser.add_argument("options", nargs="*")
-    args = parser.parse_args()
+    parser.add_argument("--rules", action="store_true", help="with lane_rule and lane_stop, which compute for minutes")
+    args, others = parser.parse_known_args()
     if not (args.out / "build" / "pure_pursuit").exists():
         print("skipped: Autoware.AI's nodes are not built; see docs/how-to/ros.md")
         return 0
     args.output.mkdir(parents=True, exist_ok=True)
     with running_stack(args.out, args.output / "logs") as stack:
-        words = ["--routes", str(args.routes), "--output", str(args.output), *args.options]
+        words = ["--routes", str(args.routes), "--output", str(args.output), *others]
         run = subprocess.Popen([sys.executable, "-c", BASU, "run", "autoware-ai", *words])
         options = {"contents": args.contents.resolve(), "town": args.opendrive.stem, "ndt": str(args.ndt).lower()}
+        options["rules"] = str(args.rules).lower()
         stack.start("roslaunch", "roslaunch", str(LAUNCH), *(f"{name}:={value}" for name, value in options.items()))
         truth, found = listened(run)
     history = read_history(args.output / "latest")

@@ -26,8 +26,9 @@ from stack import Stack, running_stack
 
 from basu.ros import frames
 from basu.ros import vehicle_messages as of_vehicle
-from basu.ros.autoware_ai import GOAL, INITIAL_POSE
+from basu.ros.autoware_ai import GOAL, INITIAL_POSE, still_messages
 from basu.ros.frames import Pose
+from basu.ros.moment import Vehicle
 from basu.ros.ros1 import Node
 from basu.ros.topics import Message, Topic
 from basu.routing import plan as joined
@@ -120,6 +121,7 @@ def planned(stack: Stack, asian: Path, start: Place, goal: Place) -> list[tuple[
         node.listen(MAP_STAT, PATHS, any_version=True)
         while node.wait(MAP_STAT, LONG_S) and not any(message.data for message in node.received(MAP_STAT)):
             pass
+        node.publish(*still_messages(types, Vehicle("hero"), 0.0))  # the planner looks up map in world
         words = [f"_{name}:={value}" for name, value in PARAMETERS.items()]
         stack.node("op_global_planner", "__name:=op_global_planner", *words)
         header = of_vehicle.header(types, 0.0, of_vehicle.MAP)
