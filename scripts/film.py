@@ -30,6 +30,13 @@ def ego_pose(world: carla.World) -> carla.Transform:
     return ego.get_transform()
 
 
+def clear(client: carla.Client, world: carla.World) -> None:
+    """Take the actors of a replay away: the next one spawns its own where their recorded ids are taken."""
+    client.stop_replayer(keep_actors=True)
+    actors = [actor for actor in world.get_actors() if actor.type_id.startswith(("vehicle.", "walker."))]
+    client.apply_batch_sync([carla.command.DestroyActor(actor.id) for actor in actors], True)
+
+
 def pictures(log: Path, times_s: list[float], back_m: float, up_m: float) -> list[Image.Image]:
     """One picture for each time, in s from the beginning of the recording."""
     server = OwnServer(recordings=log.parent)
@@ -50,6 +57,7 @@ def pictures(log: Path, times_s: list[float], back_m: float, up_m: float) -> lis
             blueprint.set_attribute(name, str(value))
         pitch = -float(np.degrees(np.arctan2(up_m, back_m + 8.0)))
         look = carla.Transform(at, carla.Rotation(pitch, pose.rotation.yaw, 0.0))
+        clear(client, world)
         found = []
         for time_s in times_s:
             client.replay_file(str(log), time_s, 0.0, 0)
@@ -65,6 +73,7 @@ def pictures(log: Path, times_s: list[float], back_m: float, up_m: float) -> lis
             picture = Image.fromarray(np.ascontiguousarray(pixels[..., 2::-1]))
             ImageDraw.Draw(picture).text((8, 6), f"{time_s:.1f} s", fill="white", font_size=22)
             found.append(picture)
+            clear(client, world)
         return found
     finally:
         server.end()
