@@ -3,6 +3,7 @@
 Both propose drives in rounds. A round is computed from the complete rounds before it. So the order in which workers
 finish does not matter.
 
-``space`` has the parameters, and ``strands`` the state of every search. ``boundary_search`` and ``rare_event`` are the
-two ways to propose. ``surrogate`` is the model of the boundary. ``findings`` has what the report says.
+The parameters are in ``space``. The state of every search is in ``strands``. Two modules propose drives:
+``boundary_search`` and ``rare_event``. The model of the boundary is in ``surrogate``, and what the report says in
+``findings``.
 """
