@@ -1,12 +1,17 @@
 """Lanelet2 and Aisan maps of towns: seconds and memory of one process each, what they hold, and how exact they are.
 
     python benchmarks/map_formats.py Linden path/to/Town01.xodr ...
+    python benchmarks/map_formats.py --validator PROGRAM REQUIREMENTS --commonroad PYTHON Linden ...
+
+``--validator`` adds findings of tier4's map validator (docs/reference/outside-programs.md), ``--commonroad`` the same
+figures of CommonRoad's converter, which runs in the Python that is named.
 
 Seconds are those of the processor, from the file's text to the bytes to be written. ``wall`` is by the clock.
 """
 
 import argparse
 import json
+import re
 import resource
 import subprocess
 import sys
@@ -43,12 +48,21 @@ ROWS = (
     ("missing", ""),
     ("added", ""),
     ("complaints", ""),
+    ("validator's errors", ""),
+    ("validator's warnings", ""),
+    ("CommonRoad seconds", "s"),
+    ("CommonRoad memory", "MB"),
+    ("CommonRoad lanelets", ""),
+    ("CommonRoad, validator's errors", ""),
+    ("CommonRoad, validator's warnings", ""),
 )
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("maps", nargs="*", default=["Linden"])
+    parser.add_argument("--validator", nargs=2, metavar=("PROGRAM", "REQUIREMENTS"), default=())
+    parser.add_argument("--commonroad", metavar="PYTHON", help="a Python that has commonroad-scenario-designer")
     parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
     arguments = parser.parse_args()
     if arguments.one:
@@ -57,11 +71,43 @@ def main() -> None:
     columns = {}
     for name in arguments.maps:
         run = subprocess.run([sys.executable, __file__, "--one", name], capture_output=True, text=True, check=True)
-        columns[Path(name).stem] = json.loads(run.stdout.splitlines()[-1])
+        columns[Path(name).stem] = json.loads(run.stdout.splitlines()[-1]) | findings(arguments.validator, name)
+        if arguments.commonroad:
+            columns[Path(name).stem] |= peer(arguments.commonroad, arguments.validator, name)
     print("| | " + " | ".join(columns) + " |\n|---|" + "---|" * len(columns))
-    for key, unit in ROWS:
-        cells = " | ".join(f"{column[key]:,.2f}" if unit else f"{column[key]:,}" for column in columns.values())
+    found = {key for column in columns.values() for key in column}
+    for key, unit in ((key, unit) for key, unit in ROWS if key in found):
+        values = [column.get(key) for column in columns.values()]
+        cells = " | ".join("" if value is None else f"{value:,.2f}" if unit else f"{value:,.0f}" for value in values)
         print(f"| {key}{f' ({unit})' if unit else ''} | {cells} |")
+
+
+def findings(validator: tuple[str, str], name: str, before: str = "") -> dict[str, float]:
+    """Return how many errors and warnings tier4's validator finds; nothing where it is not named."""
+    if not validator:
+        return {}
+    script = Path(__file__).parents[1] / "scripts" / "outside" / "validate_lanelet2.py"
+    run = subprocess.run([sys.executable, str(script), *validator, name], capture_output=True, text=True, check=False)
+    if run.returncode not in {0, 1}:
+        raise SystemExit(run.stderr)
+    rows = dict(re.findall(r"^\| (errors|warnings) \| (\d+) \|$", run.stdout, re.MULTILINE))
+    return {f"{before}validator's {key}": float(value) for key, value in rows.items()}
+
+
+def peer(python: str, validator: tuple[str, str], name: str) -> dict[str, float]:
+    """Return what CommonRoad's converter makes of a map; it times itself, without its imports."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder) / "map.xodr", Path(folder) / "map.osm"
+        source.write_bytes(content_of(name))
+        script = Path(__file__).with_name("peer_commonroad.py")
+        words = [python, str(script), str(source), str(target)]
+        run = subprocess.run(words, capture_output=True, text=True, check=False)
+        if run.returncode:
+            sys.stderr.write(f"CommonRoad's converter failed on {name}: {run.stderr.splitlines()[-1]}\n")
+            return {}
+        figures = json.loads(run.stdout.splitlines()[-1])
+        told = {f"CommonRoad {key}": float(value) for key, value in figures.items()}
+        return told | findings(validator, str(target), "CommonRoad, ")
 
 
 def measured(name: str) -> dict[str, float]:

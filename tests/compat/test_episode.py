@@ -44,6 +44,20 @@ def test_every_name_of_a_map_loads_it(client: carla.Client) -> None:
         assert client.load_world(name).get_map().name == "Carla/Maps/Linden"
 
 
+def test_the_map_of_the_thesis_has_stop_signs_in_place_of_lights(client: carla.Client) -> None:
+    usual = client.get_world().get_actors()
+    client.set_timeout(120.0)  # the first load derives what a cache holds afterwards
+    world = client.load_world("Linden_thesis")
+    assert world.get_map().name == "Carla/Maps/Linden_thesis"
+    actors = world.get_actors()
+    lights = len(usual.filter("traffic.traffic_light"))
+    assert (lights, len(actors.filter("traffic.traffic_light"))) == (22, 0)
+    assert len(actors.filter("traffic.stop")) == len(usual.filter("traffic.stop")) + lights
+    named = {thing.name for thing in world.get_environment_objects(carla.CityObjectLabel.Buildings)}
+    assert any("LindenTransitCenter" in name for name in named)
+    client.load_world("Linden")
+
+
 def test_a_map_that_is_not_there_is_refused_in_carlas_words(client: carla.Client) -> None:
     with pytest.raises(RuntimeError, match="Map 'Town99' not found"):
         client.load_world("Town99")
@@ -88,7 +102,8 @@ def test_maps_of_a_folder_are_offered_under_their_names(tmp_path: Path) -> None:
     with running_server("--maps", str(tmp_path), "--map", "Plain") as server:
         client = carla.Client("127.0.0.1", server.port)
         client.set_timeout(20.0)
-        assert client.get_available_maps() == ["/Game/Carla/Maps/Linden", "/Game/Carla/Maps/Plain"]
+        names = ("Linden", "Linden_thesis", "Plain")
+        assert client.get_available_maps() == [f"/Game/Carla/Maps/{name}" for name in names]
         assert client.get_world().get_map().name == "Carla/Maps/Plain"
         assert client.load_world("Linden").get_map().name == "Carla/Maps/Linden"
 

@@ -21,7 +21,7 @@ from basu.output.report.documents import make_draft
 from basu.records.carla_log.sources import LOG_FILE
 from basu.running.drive import drive
 from basu.running.preparation import sumo_folder
-from basu.running.run_folder import OWN_ROUTE, run_config, write_run_folder
+from basu.running.run_folder import OWN_ROUTE, import_pictures, run_config, write_run_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -104,6 +104,8 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         observers=observers,
     )
     ground = episode.lay()
+    if session.pictures:
+        import_pictures()
     draft = make_draft(output, name)
     try:
         episode.prepare(job.seed, draft)

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.links import is_forward, lane_links
 from linden.maps.opendrive.model import OpenDrive
-from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE
+from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE, RoadObject
 from linden.maps.opendrive.spawn_points import spawn_points
+from linden.maps.standing import FURNITURE
 from linden.protocol.values.enums import LaneType
 
 
@@ -27,6 +28,9 @@ class Counts(NamedTuple):
     controllers: int
     crosswalks: int
     objects: int
+    buildings: int
+    furniture: int  # benches, bins, mailboxes
+    railroad_crossings: int
     street_names: int
     lanes: int
     spawn_points: int
@@ -70,6 +74,9 @@ def count(opendrive: OpenDrive) -> Counts:
         controllers=len(opendrive.controllers),
         crosswalks=sum(thing.is_crosswalk for thing in objects),
         objects=len(objects),
+        buildings=sum(is_building(thing) for thing in objects),
+        furniture=sum(thing.type == "obstacle" and thing.name in FURNITURE for thing in objects),
+        railroad_crossings=sum(thing.type == "railroadCrossing" for thing in objects),
         street_names=len({road.name for road in opendrive.roads if road.name and not road.is_in_junction}),
         lanes=len(tables.lanes),
         spawn_points=len(spawn_points(opendrive)),
@@ -79,6 +86,21 @@ def count(opendrive: OpenDrive) -> Counts:
         sidewalk_km=float(length_m[kinds == int(LaneType.SIDEWALK)].sum()) / 1000.0,
         **_profile(opendrive),
     )
+
+
+def named_places(opendrive: OpenDrive) -> list[str]:
+    """Return the buildings of a map with a name of their own, in the order of the map, and their sizes."""
+    return [
+        f"{thing.name}, {thing.length_m:.0f} m by {thing.width_m:.0f} m, {thing.height_m:.0f} m high"
+        for road in opendrive.roads
+        for thing in road.objects
+        if is_building(thing) and " " in thing.name
+    ]
+
+
+def is_building(thing: RoadObject) -> bool:
+    """Return whether an object is a building."""
+    return thing.type.lower() == "building"
 
 
 def _profile(opendrive: OpenDrive) -> dict[str, float]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from linden.authoring.output import write_output
 from linden.cli import map_build, map_convert, map_package, map_pointcloud, map_sumo
-from linden.cli.map_source import opendrive_of, world_map_of
+from linden.cli.map_source import built_in_maps, opendrive_of, world_map_of
 
 
 def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -32,6 +32,8 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
     export_parser = _add(actions, "export", export, "write all that stands on a map as glTF, for any 3D viewer")
     _add_file(export_parser)
     export_parser.add_argument("-o", "--output", type=Path, required=True, help="where to write the .glb file")
+
+    _add(actions, "list", list_maps, "print the names of the built-in maps")
 
     info_parser = _add(actions, "info", info, "count roads, junctions, signals, lanes")
     _add_file(info_parser)
@@ -94,11 +96,21 @@ def export(arguments: argparse.Namespace) -> int:
 
 
 def info(arguments: argparse.Namespace) -> int:
-    """Print what the map has, one count a line."""
-    from linden.authoring.statistics import count  # noqa: PLC0415 - the server's start does not pay for it
+    """Print what the map has, one count a line, then its named places."""
+    from linden.authoring.statistics import count, named_places  # noqa: PLC0415 - the server's start does not pay for it
 
-    for name, value in count(opendrive_of(arguments.file))._asdict().items():
+    opendrive = opendrive_of(arguments.file)
+    for name, value in count(opendrive)._asdict().items():
         _say(f"{name.replace('_', ' '):24} {f'{value:.2f}' if isinstance(value, float) else value}")
+    for place in named_places(opendrive):
+        _say(f"{'place':24} {place}")
+    return 0
+
+
+def list_maps(_arguments: argparse.Namespace) -> int:
+    """Print the names of the built-in maps, one a line."""
+    for name in built_in_maps():
+        _say(name)
     return 0
 
 

@@ -33,6 +33,9 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
         "--elevation", type=Path, metavar="FILE", help="lay the streets on measured ground: a GeoTIFF, or LAS or LAZ"
     )
     command.add_argument(
+        "--without-lights", action="store_true", help="put all-way stops in place of lights, as in Linden_thesis"
+    )
+    command.add_argument(
         "--route",
         action="append",
         default=[],
@@ -47,6 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         from linden.authoring.openstreetmap.convert import convert  # noqa: PLC0415 - an optional part, slow to load
         from linden.authoring.streets.build import assembled, off_ground_m  # noqa: PLC0415 - likewise
+        from linden.authoring.streets.controls import without_lights  # noqa: PLC0415 - likewise
         from linden.authoring.streets.routes import xml  # noqa: PLC0415 - likewise
         from linden.authoring.streets.street_facts import read  # noqa: PLC0415 - likewise
         from linden.authoring.streets.terrain import with_terrain  # noqa: PLC0415 - likewise
@@ -62,6 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.facts is not None and imported is None:
         raise UserError("--facts writes the streets of an OpenStreetMap extract; name a .osm file, or leave it out")
     facts = read(_streets(source) if imported is None else imported.streets)
+    facts = without_lights(facts) if arguments.without_lights else facts
     built = assembled(facts if arguments.elevation is None else with_terrain(facts, arguments.elevation))
     wanted = [_route_and_file(given, built.facts.routes) for given in arguments.route]
     files = [(arguments.output, written(built.document))]

@@ -5,12 +5,13 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linden.cli.map_source import bytes_of, opendrive_of
+from linden.cli.map_source import bytes_of, is_built_in, opendrive_of
 from linden.errors import UserError
 
 if TYPE_CHECKING:
-    from linden.authoring.lanelet2.convert import Converted
+    from linden.authoring.lanelet2.convert import Converted, Wanted
     from linden.authoring.lanelet2.model import LaneletMap
+    from linden.maps.opendrive.model import OpenDrive
 
 HELP = "turn a map into Lanelet2 (.osm) or an Aisan vector map (a folder), for Autoware"
 _PROJECTOR = "map_projector_info.yaml"
@@ -24,6 +25,25 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
         "--transverse-mercator",
         action="store_true",
         help="let map_projector_info.yaml name the map's own projection instead of Local",
+    )
+    add_choices(command)
+
+
+def add_choices(command: argparse.ArgumentParser) -> None:
+    """Add what a user can choose of a Lanelet2 map."""
+    command.add_argument(
+        "--stops", type=Path, metavar="FILE", help="a route file; its stops become bus stops (default: Linden's own)"
+    )
+    command.add_argument(
+        "--walkways", action="store_true", help="write sidewalks as lanelets too; Autoware takes these for crossings"
+    )
+    command.add_argument(
+        "--format", type=int, choices=[1, 2], default=1, help="of Autoware's Lanelet2; 2 has roundabouts (default: 1)"
+    )
+    command.add_argument(
+        "--pairwise-priority",
+        action="store_true",
+        help="name every way that yields to another, also where other ways do not",
     )
 
 
@@ -45,11 +65,40 @@ def _to_lanelet2(arguments: argparse.Namespace) -> None:
     from linden.authoring.lanelet2.osm import osm_bytes, projector_info  # noqa: PLC0415 - see above
     from linden.authoring.output import write_file  # noqa: PLC0415 - see above
 
-    converted = convert(opendrive_of(arguments.file))
+    opendrive = opendrive_of(arguments.file)
+    converted = written_of(convert(opendrive, wanted_of(arguments, opendrive)), arguments)
     info = projector_info(converted.lanelet_map, transverse_mercator=arguments.transverse_mercator)
     write_file(arguments.output, osm_bytes(converted.lanelet_map))
     write_file(arguments.output.with_name(_PROJECTOR), info)
     report(arguments.output, converted)
+
+
+def wanted_of(arguments: argparse.Namespace, opendrive: "OpenDrive") -> "Wanted":
+    """Return what the arguments ask for of a map.
+
+    Raises:
+        UserError: the file of stops cannot be read.
+    """
+    from linden.authoring.lanelet2.bus_stops import Stop, shuttle_stops  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.convert import Wanted  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.sumo.bus_stops import read_stops  # noqa: PLC0415 - see `_to_lanelet2`
+
+    stops: tuple[Stop, ...] = ()
+    if arguments.stops is not None:
+        stops = tuple(Stop(one.id, one.name, one.x_m, -one.y_m) for one in read_stops(arguments.stops))
+    elif is_built_in(arguments.file):
+        stops = shuttle_stops(opendrive.geo_origin)
+    return Wanted(arguments.pairwise_priority, arguments.format == 2, stops)
+
+
+def written_of(converted: "Converted", arguments: argparse.Namespace) -> "Converted":
+    """Return what is written of a map: without sidewalks, if they are not wanted."""
+    from linden.authoring.lanelet2.model import without_lanelets  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.stretches import WALKWAY  # noqa: PLC0415 - see `_to_lanelet2`
+
+    if arguments.walkways:
+        return converted
+    return converted._replace(lanelet_map=without_lanelets(converted.lanelet_map, WALKWAY))
 
 
 def lanelets_of(name: str) -> "LaneletMap":
@@ -70,6 +119,8 @@ def _to_aisan(arguments: argparse.Namespace) -> None:
 
     if arguments.transverse_mercator:
         raise UserError("an Aisan vector map has no map_projector_info.yaml; leave --transverse-mercator out")
+    if arguments.walkways or arguments.stops is not None or arguments.format != 1 or arguments.pairwise_priority:
+        raise UserError("--walkways, --stops, --format and --pairwise-priority are for Lanelet2; leave them out")
     vectors = convert(lanelets_of(arguments.file))
     write_folder(arguments.output, vectors.tables.files())
     for name, rows in vectors.tables.rows.items():
@@ -107,6 +158,8 @@ def report(path: Path, converted: "Converted") -> None:
         _say(f"{converted.without_limit} road lanelets have no limit in the map: {UNKNOWN_SPEED_KMH:g} km/h is assumed")
     if converted.lost_links:
         _say(f"{converted.lost_links} links are lost: the lanes' ends lie too far apart; linden map check names them")
+    for stop in converted.lost_stops:
+        _say(f"stop {stop.id} ({stop.name}) is left out: no driving lane is near")
     if converted.signals_without_lane:
         _say(f"{converted.signals_without_lane} signs and lights speak to no driving lane, and are left out")
 

@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 from linden.cli import map_convert, map_pointcloud
-from linden.cli.map_source import content_of, world_map_of
+from linden.cli.map_source import content_of, opendrive_of, world_map_of
 from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 
@@ -29,6 +29,7 @@ def add_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--voxel", default="0.2", metavar="M", help="width of the cloud's cells (default: %(default)s)"
     )
+    map_convert.add_choices(command)
     command.add_argument("--every", default="5.0", metavar="M", help="between two scans (default: %(default)s)")
 
 
@@ -67,12 +68,13 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
     from linden.authoring.lanelet2.convert import convert  # noqa: PLC0415 - see above
     from linden.authoring.lanelet2.osm import osm_bytes, projector_info  # noqa: PLC0415 - see above
     from linden.authoring.output import staged_folder  # noqa: PLC0415 - see above
-    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
 
     source = content_of(arguments.file)
-    converted = convert(parse(source))
+    opendrive = opendrive_of(arguments.file)
+    converted = convert(opendrive, map_convert.wanted_of(arguments, opendrive))
+    vectors = aisan_of(converted.lanelet_map)
+    converted = map_convert.written_of(converted, arguments)
     lanelet_map = converted.lanelet_map
-    vectors = aisan_of(lanelet_map)
     town = Path(arguments.file).name.removesuffix(".xodr")
     layout = folder.ros1_layout(town) if arguments.ros1 else folder.UNIVERSE
     layout.refuse_other_towns(arguments.output)

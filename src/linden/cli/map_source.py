@@ -1,6 +1,5 @@
 """The maps that commands are given: an OpenDRIVE file, or the name of a built-in map."""
 
-from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,16 +9,23 @@ if TYPE_CHECKING:
     from linden.maps.library import LoadedMap
     from linden.maps.opendrive.model import OpenDrive
 
+_PACKAGED = Path(__file__).parent.parent / "data"
+
 
 def opendrive_of(name: str) -> "OpenDrive":
     """Read a file, or else the built-in map of that name.
 
     Raises:
-        UserError: there is neither, or it cannot be read.
+        UserError: there is neither, or it cannot be read; with the name, and the line where one is to blame.
     """
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
 
-    return parse(content_of(name))
+    content = content_of(name)
+    try:
+        return parse(content)
+    except UserError as error:
+        told = str(error)
+        raise UserError(f"{name}, {told}" if told.startswith("line ") else f"{name}: {told}") from None
 
 
 def world_map_of(name: str) -> "LoadedMap":
@@ -48,21 +54,27 @@ def bytes_of(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        built_in = sorted(
-            entry.name.removesuffix(".xodr")
-            for entry in (resources.files("linden") / "data").iterdir()
-            if entry.name.endswith(".xodr")
-        )
         raise UserError(
-            f"cannot read {path}: {error.strerror}; name an existing file"
-            + (f" or a built-in map: {', '.join(built_in)}" if built_in else "")
+            f"cannot read {path}: {error.strerror}; name an existing file or a built-in map: "
+            + ", ".join(built_in_maps())
         ) from None
+
+
+def built_in_maps() -> list[str]:
+    """Return the names of the maps that come with the package."""
+    return sorted(file.stem for file in _PACKAGED.glob("*.xodr"))
 
 
 def content_of(name: str) -> bytes:
     """Return the bytes of a file, or else of the built-in map of that name."""
+    return _built_in(name).read_bytes() if is_built_in(name) else bytes_of(Path(name))
+
+
+def is_built_in(name: str) -> bool:
+    """Return whether a built-in map has this name, and no file has."""
     path = Path(name)
-    built_in = resources.files("linden") / "data" / f"{name.removesuffix('.xodr')}.xodr"
-    if not path.is_file() and path.name == name and built_in.is_file():
-        return built_in.read_bytes()
-    return bytes_of(path)
+    return not path.is_file() and path.name == name and _built_in(name).is_file()
+
+
+def _built_in(name: str) -> Path:
+    return _PACKAGED / f"{name.removesuffix('.xodr')}.xodr"

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from linden.maps.opendrive.model import OpenDrive
 
 HOME_MAP = "Linden"
+HOME_MAPS = frozenset({HOME_MAP, "Linden_thesis"})
+"""Maps of Linden; the second has no traffic lights, as the map of the thesis."""
 GENERATED_MAP = "OpenDriveMap"
 """The name under which CARLA loads what ``generate_opendrive_world`` sent."""
 

@@ -20,7 +20,7 @@ from linden.scenery.roadside.wires import shelters, utility_poles
 from linden.scenery.roadside.yards import fences, hedges, paved_yards, porches
 from linden.scenery.scene.linden_survey import surveyed
 from linden.scenery.scene.objects import Kind, Scene
-from linden.scenery.scene.utility_poles import clear_of
+from linden.scenery.scene.south_linden import free_lots
 from linden.scenery.scene.woodland import far_from_roads
 from linden.scenery.streets.junction_floors import floors
 from linden.scenery.streets.markings import lines
@@ -54,7 +54,7 @@ def _beside(facts: MapFacts, scene: Scene, lawn: Mesh) -> Mesh:
     under = Ground.from_triangles(lawn.vertices_m, lawn.triangles)
     return join(
         [
-            paved_yards(clear_of(facts.lots, line), scene, facts.ground, under),
+            paved_yards(free_lots(facts), scene, facts.ground, under),
             railroad(line, facts.ground, under),
             woods(scene, facts.ground),
         ]

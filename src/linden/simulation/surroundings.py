@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.maps.library import GENERATED_MAP, HOME_MAP, LoadedMap
+from linden.maps.library import GENERATED_MAP, HOME_MAPS, LoadedMap
 from linden.physics.contact.statics import STATIC_BOX, Statics
 from linden.protocol.values.enums import MapLayer
 from linden.protocol.values.episode import LightState
@@ -47,11 +47,11 @@ def scenery_of(world_map: LoadedMap) -> Scenery:
     scene = posts(standing, world_map.ground)
     if len(world_map.walls.feet_m):
         scene = join([scene, walls(*world_map.walls)])
-    if world_map.name == HOME_MAP:
+    if world_map.name in HOME_MAPS:
         scene = join([scene, home(world_map)])
     elif world_map.name != GENERATED_MAP:
         scene = join([scene, plain(world_map)])
-    if world_map.standing and world_map.name not in {HOME_MAP, GENERATED_MAP}:
+    if world_map.standing and world_map.name not in {*HOME_MAPS, GENERATED_MAP}:
         scene = join([scene, mapped(world_map.standing)])
     return Scenery(signals, scene, solid(scene, np.ones(len(scene.boxes), bool)))
 

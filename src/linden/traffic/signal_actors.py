@@ -44,7 +44,7 @@ class Signals(NamedTuple):
     """What the signals of a map come to; nothing in it ever changes, so every episode on the map begins with the same.
 
     Attributes:
-        actors: every light, then every sign, each in the order of the map.
+        actors: every light, then every sign, limits after the others, each in the order of the map.
         plan: which lights change together.
         grid: where a vehicle is under which light.
         rules: the zones of stop and yield signs, and the squares to give way to.
@@ -60,6 +60,7 @@ class Signals(NamedTuple):
         """Make the actors of a map's signals; ``controllers`` and ``give_way`` stand in the order of the file."""
         lights = [signal for signal in placed if signal.is_light]
         signs = [signal for signal in placed if not signal.is_light and signal.name != PAINTED]
+        signs.sort(key=lambda signal: signal.type == SPEED_LIMIT_TYPE)  # limits last: they come and go with the survey
         actors = (
             *(_actor(signal, light) for light, signal in enumerate(lights)),
             *(_actor(signal, NO_LIGHT) for signal in signs),

@@ -2,7 +2,8 @@ from importlib import resources
 
 import pytest
 
-from linden.authoring.lanelet2.convert import convert
+from linden.authoring.lanelet2.bus_stops import shuttle_stops
+from linden.authoring.lanelet2.convert import Wanted, convert
 from linden.maps.opendrive.parse import parse
 
 
@@ -14,3 +15,9 @@ def linden():
 @pytest.fixture(scope="session")
 def linden_lanelets(linden):
     return convert(linden)
+
+
+@pytest.fixture(scope="session")
+def linden_everything(linden):
+    """Linden with all that can be asked for."""
+    return convert(linden, Wanted(pairwise_priority=True, roundabouts=True, stops=shuttle_stops(linden.geo_origin)))

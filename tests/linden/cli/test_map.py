@@ -46,7 +46,7 @@ def test_a_file_that_is_no_map_ends_with_2_and_a_sentence(
     file = tmp_path / "none.xodr"
     file.write_text(text)
     assert main(["map", "check", str(file)]) == 2
-    assert capsys.readouterr().err.startswith("linden: line ")
+    assert capsys.readouterr().err.startswith(f"linden: {file}, line ")
 
 
 def test_a_missing_file_is_refused_with_the_built_in_maps(capsys: pytest.CaptureFixture[str]) -> None:
@@ -60,6 +60,18 @@ def test_a_missing_file_is_refused_with_the_built_in_maps(capsys: pytest.Capture
 def test_a_built_in_map_is_known_by_its_name(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["map", "info", name]) == 0
     assert "junctions" in capsys.readouterr().out
+
+
+def test_info_names_the_places_of_linden(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "info", "Linden"]) == 0
+    told = capsys.readouterr().out
+    assert "Linden Transit Center, 50 m by 24 m, 8 m high" in told
+    assert "railroad crossings       1" in told
+
+
+def test_list_names_the_built_in_maps(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["map", "list"]) == 0
+    assert capsys.readouterr().out.split() == ["Linden", "Linden_thesis"]
 
 
 def test_export_writes_what_is_seen_as_gltf(good_map: Path, tmp_path: Path, capsys) -> None:

@@ -40,7 +40,7 @@ def test_convert_then_check_then_show(tmp_path, source, capsys):
 
 
 def test_aisan_from_both_sources_is_the_same_folder(tmp_path, source):
-    assert main(["map", "convert", str(source), "-o", str(tmp_path / "small.osm")]) == 0
+    assert main(["map", "convert", str(source), "--walkways", "-o", str(tmp_path / "small.osm")]) == 0
     assert main(["map", "convert", str(source), "-o", str(tmp_path / "one")]) == 0
     assert main(["map", "convert", str(tmp_path / "small.osm"), "-o", str(tmp_path / "two")]) == 0
     names = sorted(path.name for path in (tmp_path / "one").iterdir())
@@ -50,6 +50,40 @@ def test_aisan_from_both_sources_is_the_same_folder(tmp_path, source):
     assert main(["map", "check", str(tmp_path / "one")]) == 0
     assert main(["map", "show", str(tmp_path / "one"), "-o", str(tmp_path / "one.svg")]) == 0
     assert '<g id="whiteline"' in (tmp_path / "one.svg").read_text()
+
+
+def test_sidewalks_are_written_on_request(tmp_path, source, capsys):
+    target = tmp_path / "small.osm"
+    assert main(["map", "convert", str(source), "-o", str(target)]) == 0
+    assert 'v="walkway"' not in target.read_text()
+    assert main(["map", "check", str(target), "--against", str(source)]) == 0
+    assert "sidewalks   " not in capsys.readouterr().out
+    assert main(["map", "convert", str(source), "--walkways", "-o", str(target)]) == 0
+    assert 'v="walkway"' in target.read_text()
+    assert main(["map", "check", str(target), "--against", str(source)]) == 0
+    assert "sidewalks   " in capsys.readouterr().out
+
+
+def test_stops_of_a_route_file_become_bus_stops(tmp_path, source, capsys):
+    route, target = tmp_path / "route.xml", tmp_path / "small.osm"
+    route.write_text(
+        '<routes><route><stop id="A" name="Main" x="20" y="3"/><stop id="B" x="900" y="0"/></route></routes>'
+    )
+    assert main(["map", "convert", str(source), "--stops", str(route), "-o", str(target)]) == 0
+    assert "stop B () is left out: no driving lane is near" in capsys.readouterr().out
+    assert target.read_text().count('v="bus_stop_area"') == 2  # the area and its element
+    assert "cannot read the stops of" in _fails(
+        capsys, "convert", source, "--stops", tmp_path / "none.xml", "-o", tmp_path / "other.osm"
+    )
+    assert not (tmp_path / "other.osm").exists()
+
+
+@pytest.mark.parametrize(
+    "words", [["--walkways"], ["--format", "2"], ["--pairwise-priority"], ["--stops", "route.xml"]]
+)
+def test_what_is_for_lanelet2_is_refused_for_aisan(tmp_path, source, capsys, words):
+    assert "are for Lanelet2; leave them out" in _fails(capsys, "convert", source, *words, "-o", tmp_path / "aisan")
+    assert not (tmp_path / "aisan").exists()
 
 
 def test_a_lost_lanelet_is_found(tmp_path, source, capsys):
@@ -68,10 +102,13 @@ def test_a_lost_lanelet_is_found(tmp_path, source, capsys):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("", "line 1"),
-        ("<OpenDRIVE><road", "line 1: this is no well-formed XML"),
+        ("", "bad.xodr, line 1: this is no well-formed XML"),
+        ("<OpenDRIVE><road", "bad.xodr, line 1: this is no well-formed XML"),
         (document(road(1, 0, 40, [(-1, lane(-1, 0.0))])), "no driving lane at least 0.3 m wide"),
-        (document(road(2**40, 0, 40, [(-1, lane(-1))])), "a whole number of 32 bits"),
+        (
+            document(road(2**40, 0, 40, [(-1, lane(-1))])),
+            "bad.xodr, line 3: attribute 'id' of <road> is '1099511627776'; it should be a whole number of 32 bits",
+        ),
         (two_roads().replace("+proj=tmerc", "+proj=merc"), "is no transverse Mercator"),
     ],
 )

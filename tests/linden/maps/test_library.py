@@ -22,7 +22,9 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_names_are_those_of_the_packaged_maps_and_the_users(folder: Path) -> None:
-    assert MapLibrary([folder]).names() == ["/Game/Carla/Maps/Linden", "/Game/Carla/Maps/Street"]
+    assert MapLibrary([folder]).names() == [
+        f"/Game/Carla/Maps/{name}" for name in ("Linden", "Linden_thesis", "Street")
+    ]
 
 
 @pytest.mark.parametrize("name", ["Street", "Carla/Maps/Street", "/Game/Carla/Maps/Street", "Street.xodr"])
@@ -50,11 +52,11 @@ def test_a_sent_map_is_kept_under_carlas_name_until_another_is_sent(folder: Path
     library.keep(first)
     assert library.load("OpenDriveMap") is first
     assert library.from_opendrive(STREET) is not first
-    assert library.names() == ["/Game/Carla/Maps/Linden", "/Game/Carla/Maps/Street"]
+    assert library.names() == [f"/Game/Carla/Maps/{name}" for name in ("Linden", "Linden_thesis", "Street")]
 
 
 def test_a_missing_map_is_refused_with_the_maps_that_exist(folder: Path) -> None:
-    with pytest.raises(Refusal, match=r"Map 'Town10' not found; this server has: Linden, Street"):
+    with pytest.raises(Refusal, match=r"Map 'Town10' not found; this server has: Linden, Linden_thesis, Street"):
         MapLibrary([folder]).load("Town10")
 
 

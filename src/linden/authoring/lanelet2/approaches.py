@@ -32,6 +32,7 @@ class Device(NamedTuple):
     approaches: tuple[int, ...]
     movements: tuple[int, ...]
     road_id: int
+    controllers: frozenset[str] = frozenset()
 
 
 class StopLine(NamedTuple):
@@ -61,7 +62,8 @@ def devices_of(opendrive: OpenDrive, network: Network) -> list[Device]:
         x, y, z = placed.transform.location
         movements, approaches = _lanes(network, by_lane, origins, placed)
         foot = (x, -y, z - signal.z_offset_m)
-        found.append(Device(signal.id, kind, foot, tuple(approaches), tuple(movements), placed.road_id))
+        controllers = frozenset(placed.controllers)
+        found.append(Device(signal.id, kind, foot, tuple(approaches), tuple(movements), placed.road_id, controllers))
     return found
 
 

@@ -10,7 +10,7 @@ from linden.authoring.lanelet2.bounds import edges_of_stretch, evaluate
 from linden.authoring.lanelet2.convert import Converted, convert
 from linden.authoring.lanelet2.model import LaneletMap, bounds_of
 from linden.authoring.lanelet2.second_reader import Routes
-from linden.authoring.lanelet2.stretches import DRIVABLE, ROAD
+from linden.authoring.lanelet2.stretches import BICYCLE, DRIVABLE, ROAD, SHOULDER, WALKWAY, intersections, network_of
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.strips import edges_of, strips_of
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
@@ -55,29 +55,30 @@ def compare(lanelet_map: LaneletMap, opendrive: OpenDrive) -> list[Row]:
     ways = Counter((way.tags.get("type"), way.tags.get("subtype")) for way in lanelet_map.ways.values())
     kinds = Counter(way.tags.get("type") for way in lanelet_map.ways.values())
     walks = sum(thing.is_crosswalk for road in opendrive.roads for thing in road.objects)
-    named = sum(bool(junction.connections) for junction in opendrive.junctions)
     return [
         *_length_rows(tables, lanelet_map),
         Row("traffic lights", "", signals["light"], kinds["traffic_light"]),
         Row("stop signs", "", signals["stop"], ways["traffic_sign", "stop_sign"]),
         Row("yield signs", "", signals["yield"], ways["traffic_sign", "yield_sign"]),
         Row("crosswalks", "", walks, sum(1 for _ in lanelet_map.lanelets("crosswalk"))),
-        Row("junctions with an area", "", named, kinds["intersection_area"]),
+        Row("intersections", "", len(intersections(network_of(opendrive))), kinds["intersection_area"]),
     ]
 
 
 def _length_rows(tables: Tables, lanelet_map: LaneletMap) -> list[Row]:
     middles = {
         subtype: [_middle(lanelet_map, number) for number, _ in lanelet_map.lanelets(subtype)]
-        for subtype in (ROAD, "road_shoulder", "walkway", "bicycle_lane")
+        for subtype in (ROAD, SHOULDER, WALKWAY, BICYCLE)
     }
     rows = []
     for name, types, subtype in (
         ("driving lanes", DRIVABLE, ROAD),
-        ("shoulders outside junctions", LaneType.SHOULDER | LaneType.STOP | LaneType.PARKING, "road_shoulder"),
-        ("sidewalks", LaneType.SIDEWALK, "walkway"),
-        ("bicycle lanes", LaneType.BIKING, "bicycle_lane"),
+        ("shoulders outside junctions", LaneType.SHOULDER | LaneType.STOP | LaneType.PARKING, SHOULDER),
+        ("sidewalks", LaneType.SIDEWALK, WALKWAY),
+        ("bicycle lanes", LaneType.BIKING, BICYCLE),
     ):
+        if subtype == WALKWAY and not middles[subtype]:
+            continue  # a file for Autoware has none
         before, covered = _covered_km(tables, types, middles[subtype])
         rows.append(Row(name, "km", before, covered))
     return rows

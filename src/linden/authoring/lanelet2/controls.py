@@ -13,6 +13,7 @@ from linden.authoring.lanelet2.approaches import (
     painted_stop_lines,
     stop_line,
 )
+from linden.authoring.lanelet2.claims import complete_claims
 from linden.authoring.lanelet2.draft import Draft
 from linden.authoring.lanelet2.model import Member
 from linden.authoring.lanelet2.movements import FREE, LIGHT, STOP, YIELD, Movement, yields
@@ -24,8 +25,13 @@ _BULBS = ("red", "yellow", "green")
 _STRICTEST = (LIGHT, STOP, YIELD, FREE)
 
 
-def add_controls(opendrive: OpenDrive, draft: Draft, movements: dict[int, list[Movement]]) -> int:
-    """Add all of them; return how many signs and lights speak to no lane."""
+def add_controls(
+    opendrive: OpenDrive, draft: Draft, movements: dict[int, list[Movement]], *, pairwise: bool = False
+) -> int:
+    """Add all of them; return how many signs and lights speak to no lane.
+
+    ``pairwise``: name each way that yields to another, not only where :mod:`.claims` finds an element complete.
+    """
     devices = devices_of(opendrive, draft.network)
     heard = [device for device in devices if device.approaches or device.movements]
     lines = _stop_lines(draft, heard)
@@ -33,10 +39,13 @@ def add_controls(opendrive: OpenDrive, draft: Draft, movements: dict[int, list[M
     _add_lights(draft, [device for device in heard if device.kind == LIGHT], lines, ways)
     stops = [device for device in heard if device.kind == STOP]
     _add_stop_signs(draft, stops, lines, ways)
-    controls = _controls(heard)
+    controls, phases, lit = _controls(heard), _phases(heard), _lit(draft)
     for junction, found in movements.items():
         _add_all_way_stop(draft, junction, found, stops, lines, ways)
-        waiting = yields(opendrive.junction_by_id.get(junction), found, controls)
+        waiting = yields(opendrive.junction_by_id.get(junction), found, controls, phases)
+        if not pairwise:
+            rings = {movement.stretch: _ring(draft, movement.stretch) for movement in found}
+            waiting = complete_claims(found, rings, waiting, lit)
         _add_right_of_way(draft, junction, waiting, heard, ways)
     return len(devices) - len(heard)
 
@@ -48,6 +57,29 @@ def _controls(devices: list[Device]) -> dict[int, str]:
         for movement in device.movements:
             found[movement] = min(found.get(movement, FREE), device.kind, key=_STRICTEST.index)
     return found
+
+
+def _phases(devices: list[Device]) -> dict[int, frozenset[str]]:
+    """Return the controllers of the lights before each movement; CARLA shows green to one of a junction at a time."""
+    found: dict[int, frozenset[str]] = {}
+    for device in devices:
+        for movement in device.movements if device.kind == LIGHT else ():
+            found[movement] = found.get(movement, frozenset()) | device.controllers
+    return found
+
+
+def _lit(draft: Draft) -> frozenset[int]:
+    """Return the movements (stretches) with a light."""
+    lights = {number for number, _ in draft.target.elements("traffic_light")}
+    return frozenset(
+        number for number, lanelet in enumerate(draft.lanelet_of) if not lights.isdisjoint(draft.elements[lanelet])
+    )
+
+
+def _ring(draft: Draft, stretch: int) -> F64:
+    """Return the outline (N, 2) of a stretch's lanelet."""
+    bounds = draft.bounds[draft.lanelet_of[stretch]]
+    return np.array([draft.target.nodes[node][:2] for node in (*bounds.left, *bounds.right[::-1])])
 
 
 def _approach_key(draft: Draft, approaches: tuple[int, ...]) -> tuple[int, bool]:

@@ -7,6 +7,7 @@ import numpy as np
 
 from linden.authoring.lanelet2 import bounds as sides_of
 from linden.authoring.lanelet2.areas import ring_of
+from linden.authoring.lanelet2.bus_stops import Stop, add_bus_stops
 from linden.authoring.lanelet2.controls import add_controls
 from linden.authoring.lanelet2.crosswalks import crossed, crosswalks_of
 from linden.authoring.lanelet2.draft import Draft
@@ -14,7 +15,17 @@ from linden.authoring.lanelet2.kerbs import loose_kerbs
 from linden.authoring.lanelet2.markings import KERB, tags_of_sides
 from linden.authoring.lanelet2.model import DIGITS, Bounds, LaneletMap, Member, Node, Relation, Way
 from linden.authoring.lanelet2.movements import Movement, movements_of
-from linden.authoring.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, Network, Side, Stretch, network_of
+from linden.authoring.lanelet2.roundabouts import FORMAT_VERSION, add_roundabouts
+from linden.authoring.lanelet2.stretches import (
+    ROAD,
+    SHOULDER,
+    WALKWAY,
+    Network,
+    Side,
+    Stretch,
+    intersections,
+    network_of,
+)
 from linden.errors import UserError
 from linden.maps.opendrive.evaluate.pieces import F64
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
@@ -35,9 +46,25 @@ class Converted(NamedTuple):
     largest_gap_m: float
     without_limit: int
     signals_without_lane: int
+    lost_stops: tuple[Stop, ...] = ()
 
 
-def convert(opendrive: OpenDrive) -> Converted:
+class Wanted(NamedTuple):
+    """What a user can ask for.
+
+    ``pairwise_priority``: every priority between two ways, not only what Autoware's requirements count as complete.
+    ``roundabouts``: the elements of format 2. ``stops``: bus stops.
+    """
+
+    pairwise_priority: bool = False
+    roundabouts: bool = False
+    stops: tuple[Stop, ...] = ()
+
+
+PLAIN = Wanted()
+
+
+def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> Converted:
     """Return the Lanelet2 map of an OpenDRIVE map.
 
     Raises:
@@ -59,8 +86,12 @@ def convert(opendrive: OpenDrive) -> Converted:
     without_limit = _add_lanelets(draft)
     movements = movements_of(tables, network)
     _add_junctions(opendrive, draft, movements, kerbs)
-    unheard = add_controls(opendrive, draft, movements)
+    unheard = add_controls(opendrive, draft, movements, pairwise=wanted.pairwise_priority)
     _add_crosswalks(draft)
+    if wanted.roundabouts:
+        add_roundabouts(opendrive, draft, movements)
+        draft.target.format_version = FORMAT_VERSION
+    lost_stops = add_bus_stops(draft, wanted.stops)
     _finish(draft)
     draft.target.geo_reference, draft.target.name = opendrive.geo_reference, opendrive.name
     return Converted(
@@ -71,6 +102,7 @@ def convert(opendrive: OpenDrive) -> Converted:
         laid.largest_gap_m,
         without_limit,
         unheard,
+        lost_stops,
     )
 
 
@@ -137,7 +169,10 @@ def _add_junctions(
         if road.is_in_junction and way.tags.get("type") == "road_border":
             corner[road.junction_id].append(way.nodes)
     leads_out = {m.stretch: draft.network.successors[m.stretch] for found in movements.values() for m in found}
+    met = intersections(draft.network)
     for junction, found in movements.items():
+        if junction not in met:
+            continue  # a turning circle, or a street that parts
         entries = dict.fromkeys(n for m in found for n in sorted(m.origins) if _is_outside(draft, n, junction))
         exits = dict.fromkeys(n for m in found for n in leads_out[m.stretch] if _is_outside(draft, n, junction))
         inside = dict.fromkeys(movement.stretch for movement in found)

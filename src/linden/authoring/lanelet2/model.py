@@ -7,7 +7,7 @@ autoware_lanelet2_extension (format 1).
 import hashlib
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from types import MappingProxyType
 from typing import NamedTuple
@@ -70,6 +70,7 @@ class LaneletMap:
     relations: dict[int, Relation] = field(default_factory=dict)
     geo_reference: str = ""
     name: str = ""
+    format_version: str = "1"  # of autoware_lanelet2_extension
 
     def lanelets(self, *subtypes: str) -> Iterator[tuple[int, Relation]]:
         """Yield lanelets by id; those of the given subtypes, or all."""
@@ -87,6 +88,18 @@ class LaneletMap:
     def line(self, way: int) -> F64:
         """Return the points (N, 3) of a way."""
         return np.array([self.nodes[node][:3] for node in self.ways[way].nodes]).reshape(-1, 3)
+
+
+def without_lanelets(lanelet_map: LaneletMap, subtype: str) -> LaneletMap:
+    """Return a map without the lanelets of a subtype, and without the ways and nodes that only these use."""
+    dropped = {number for number, _ in lanelet_map.lanelets(subtype)}
+    relations = {number: one for number, one in lanelet_map.relations.items() if number not in dropped}
+    used = {member.ref for one in relations.values() for member in one.members if member.kind == "way"}
+    theirs = {member.ref for number in dropped for member in lanelet_map.relations[number].members}
+    ways = {number: way for number, way in lanelet_map.ways.items() if number in used or number not in theirs}
+    kept = {node for way in ways.values() for node in way.nodes}
+    nodes = {number: node for number, node in lanelet_map.nodes.items() if number in kept}
+    return replace(lanelet_map, nodes=nodes, ways=ways, relations=relations)
 
 
 class Bounds(NamedTuple):

@@ -98,8 +98,16 @@ def _middles(tables: Tables, network: Network, numbers: list[int]) -> list[tuple
     return found
 
 
-def yields(junction: Junction | None, movements: list[Movement], controls: dict[int, str]) -> dict[int, list[int]]:
-    """Return for each way (stretch) the ways that yield to it; ``controls`` name the sign or light before each way."""
+def yields(
+    junction: Junction | None,
+    movements: list[Movement],
+    controls: dict[int, str],
+    phases: dict[int, frozenset[str]],
+) -> dict[int, list[int]]:
+    """Return for each way (stretch) the ways that yield to it.
+
+    ``controls`` name the sign or light before each way, ``phases`` the controllers of its lights.
+    """
     priorities = set(junction.priorities) if junction else set()
     roundabout = junction is not None and "roundabout" in dict(junction.user_data)
     found: dict[int, list[int]] = defaultdict(list)
@@ -107,7 +115,11 @@ def yields(junction: Junction | None, movements: list[Movement], controls: dict[
         gaps = None if one.origins & other.origins else _gaps(one, other)
         if gaps is None:
             continue
-        first, second = _goes_first(one, other, gaps, priorities, controls, roundabout=roundabout)
+        phase, theirs = (phases.get(way.stretch, frozenset()) for way in (one, other))
+        if phase and theirs and phase.isdisjoint(theirs):
+            first = second = True  # a light holds the one while the other goes
+        else:
+            first, second = _goes_first(one, other, gaps, priorities, controls, roundabout=roundabout)
         if first:
             found[one.stretch].append(other.stretch)
         if second:

@@ -13,7 +13,6 @@ from linden.authoring.osm_xml import osm_root, tags_of
 from linden.errors import UserError
 from linden.maps.opendrive.evaluate.pieces import F64
 
-FORMAT_VERSION = "1"
 _LARGEST_ID = 2**63 - 1
 _MOST_BYTES = 1 << 30
 
@@ -26,7 +25,7 @@ def osm_bytes(lanelet_map: LaneletMap) -> bytes:
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         '<osm version="0.6" generator="linden map convert">',
-        f'  <MetaInfo format_version="{FORMAT_VERSION}" map_version="1"/>',
+        f'  <MetaInfo format_version="{lanelet_map.format_version}" map_version="1"/>',
     ]
     for (number, node), lat, lon in zip(lanelet_map.nodes.items(), latitude, longitude, strict=True):
         lines.append(f'  <node id="{number}" lat="{lat:.11f}" lon="{lon:.11f}">')

@@ -5,6 +5,7 @@ lanelet that refers to them; so a copy without those is read.
 """
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -82,4 +83,4 @@ def without_autoware(lanelet_map: LaneletMap) -> LaneletMap:
         for number, relation in lanelet_map.relations.items()
         if number not in dropped
     }
-    return LaneletMap(lanelet_map.nodes, lanelet_map.ways, kept, lanelet_map.geo_reference, lanelet_map.name)
+    return replace(lanelet_map, relations=kept)

@@ -3,6 +3,7 @@
 A section is cut further where a marking or a speed limit changes, for Lanelet2 has one of each along a bound.
 """
 
+from collections import defaultdict
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple
@@ -83,6 +84,17 @@ class Network(NamedTuple):
 def subtype_of(kind: LaneType) -> str | None:
     """Return the lanelet subtype of a lane type, None where such lanes make no lanelet."""
     return next((subtype for types, subtype in _SUBTYPES if kind & types), None)
+
+
+def intersections(network: Network) -> set[int]:
+    """Return the junctions that traffic enters from two roads or more; ways of one road alone do not meet."""
+    roads: dict[int, set[tuple[int, bool]]] = defaultdict(set)
+    for before, after in zip(network.stretches, network.successors, strict=True):
+        for following in after:
+            junction = network.stretches[following].junction_id
+            if junction >= 0 and before.junction_id != junction and before.subtype == ROAD:
+                roads[junction].add((before.road, before.forward))
+    return {junction for junction, entered in roads.items() if len(entered) > 1}
 
 
 def network_of(opendrive: OpenDrive) -> Network:

@@ -8,6 +8,7 @@ import json
 from pathlib import Path
 
 from linden.authoring.streets.build import assembled
+from linden.authoring.streets.controls import without_lights
 from linden.authoring.streets.routes import xml
 from linden.authoring.streets.street_facts import read
 from linden.authoring.streets.writing import text
@@ -19,8 +20,10 @@ def main() -> None:
     parser.add_argument("streets", type=Path, help="GeoJSON file (docs/reference/maps.md)")
     parser.add_argument("-o", "--output", type=Path, required=True, help="OpenDRIVE file to write")
     parser.add_argument("--route", action="append", default=[], metavar="ROUTE=FILE", help="a route's id, and its file")
+    parser.add_argument("--without-lights", action="store_true", help="put all-way stops in place of lights")
     arguments = parser.parse_args()
-    built = assembled(read(json.loads(arguments.streets.read_text(encoding="utf-8"))))
+    facts = read(json.loads(arguments.streets.read_text(encoding="utf-8")))
+    built = assembled(without_lights(facts) if arguments.without_lights else facts)
     arguments.output.write_bytes(text(built.document))
     for number, (route, path) in enumerate(pair.split("=", 1) for pair in arguments.route):
         Path(path).write_bytes(xml(built, built.facts.routes[route], number))

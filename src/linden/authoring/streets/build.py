@@ -21,6 +21,7 @@ from linden.authoring.streets.document import (
 )
 from linden.authoring.streets.network import End, Leg, Network, nearest_road
 from linden.authoring.streets.network import build as build_network
+from linden.authoring.streets.rails import rails
 from linden.authoring.streets.standing import standing
 from linden.authoring.streets.street_facts import Control, Facts, Intersection, read
 from linden.authoring.streets.writing import text
@@ -102,7 +103,8 @@ class _Assembly:
         self._add_stop_crosswalks()
         self._add_mapped_crosswalks()
         placed = standing(self.facts, self.network)
-        for edge, thing in placed.objects:
+        self._add_speed_signs()
+        for edge, thing in (*placed.objects, *rails(self.facts, self.network)):
             self.objects[edge].append(thing._replace(id=next(self.object_ids)))
         street_roads = tuple(self._street_road(edge) for edge in range(len(self.network.edges)))
         every = [road for road in street_roads if road is not None]
@@ -320,6 +322,20 @@ class _Assembly:
             at_m = min(max(s_m, controls.CROSSWALK_M), length(road) - controls.CROSSWALK_M)
             across = view(self.network.edges[edge].section, along=True)
             self.objects[edge].append(controls.crosswalk_at(next(self.object_ids), across, at_m, confidence))
+
+    def _add_speed_signs(self) -> None:
+        """Put a sign where each street with a posted limit begins, in both directions; last, so that ids stay."""
+        for street in self.facts.streets:
+            if not street.speed_posted:
+                continue
+            edges = [number for number, edge in enumerate(self.network.edges) if edge.street.id == street.id]
+            roads_m = {number: length(road) for number in edges if (road := self.network.roads[number]) is not None}
+            room = [number for number in roads_m if roads_m[number] >= controls.ROOM_FOR_SPEED_SIGN_M]
+            for along, number in ((True, room[0]), (False, room[-1])) if room else ():
+                seen = view(self.network.edges[number].section, along=along)
+                if seen.driving(right=True):
+                    sign = controls.speed_sign(next(self.signal_ids), street, seen, roads_m[number], along=along)
+                    self.signals[number].append(sign)
 
     def _street_road(self, edge: int) -> RoadRecord | None:
         path = self.network.roads[edge]

@@ -4,9 +4,11 @@ from linden.authoring.streets import roundabouts
 from linden.authoring.streets.cross_section import KERB_M, PAVED, View
 from linden.authoring.streets.document import Object, Signal
 from linden.authoring.streets.network import Leg
-from linden.authoring.streets.street_facts import Control, Intersection
+from linden.authoring.streets.street_facts import Control, Facts, Intersection, Street
 
-STOP, YIELD, LIGHT = "206", "205", "1000001"  # LibCarla's SignalType
+STOP, YIELD, LIGHT, SPEED_LIMIT = "206", "205", "1000001", "274"  # LibCarla's SignalType
+SPEED_SIGN_M = 25.0  # from where a road begins; estimated
+ROOM_FOR_SPEED_SIGN_M = 50.0
 LINE_TO_END_M = 0.8  # from the junction to the middle of a stop line without crosswalk
 CROSSWALK_TO_END_M = 0.8
 CROSSWALK_M = 3.0  # 10 ft, a usual width; MUTCD 3B.18 asks for 6 ft at least
@@ -16,6 +18,21 @@ POST_TO_KERB_M = 0.6  # MUTCD 2A.19: 2 ft from the kerb's face
 CLEAR_WIDTHS = 0.7  # LibCarla moves a signal that is nearer to the middle of a lane than this share of its width
 CLEAR_M = 0.05
 ROOM_FOR_CROSSWALK_M = 14.0  # a road that is shorter gets none
+NO_LIGHTS = "made up: all-way stop in place of lights"
+
+
+def without_lights(facts: Facts) -> Facts:
+    """Return facts with an all-way stop wherever they have lights, as in the map of the thesis (section 5.2.1).
+
+    Drivers stop at dark lights and go on by the rules of an all-way stop (Ohio Revised Code 4511.132).
+    """
+    changed = tuple(
+        one._replace(control=Control.ALL_WAY_STOP, control_confidence=NO_LIGHTS)
+        if one.control is Control.SIGNAL
+        else one
+        for one in facts.intersections
+    )
+    return facts._replace(intersections=changed)
 
 
 def control_of(intersections: list[Intersection], intersection: Intersection | None) -> Control:
@@ -62,6 +79,23 @@ def signal(number: int, kind: str, leg: Leg, road_m: float, confidence: str, *, 
         lanes=(min(lanes), max(lanes)),
         confidence=confidence,
         dynamic=kind == LIGHT,
+    )
+
+
+def speed_sign(number: int, street: Street, seen: View, road_m: float, *, along: bool) -> Signal:
+    """Return the sign of a street's limit, right of the kerb, for traffic that enters a road seen in its direction."""
+    lanes = seen.driving(right=True)
+    beside_m = seen.kerb_m(right=True) - max(KERB_M + POST_TO_KERB_M, _clear_of_lanes_m(seen))
+    return Signal(
+        id=number,
+        name=f"Speed limit, {street.name}",
+        s_m=SPEED_SIGN_M if along else road_m - SPEED_SIGN_M,
+        t_m=beside_m if along else -beside_m,
+        kind=SPEED_LIMIT,
+        lanes=(min(lanes), max(lanes)),
+        confidence=dict(street.confidences).get("speed_confidence", "unknown"),
+        value=street.speed_limit_mph,
+        unit="mph",
     )
 
 

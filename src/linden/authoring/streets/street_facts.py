@@ -47,6 +47,7 @@ class Street(NamedTuple):
     sidewalk: str
     confidences: tuple[tuple[str, str], ...]
     lanes_forward: int | None = None
+    speed_posted: bool = False  # whether signs show the limit
 
 
 class Intersection(NamedTuple):
@@ -106,6 +107,13 @@ class Furniture(NamedTuple):
     kind: str
     name: str
     point: Point
+    confidence: str
+
+
+class Railroad(NamedTuple):
+    """The middle of a track."""
+
+    points: tuple[Point, ...]
     confidence: str
 
 
@@ -187,6 +195,7 @@ class Facts(NamedTuple):
     crossings: tuple[Crossing, ...] = ()
     buildings: tuple[Building, ...] = ()
     furniture: tuple[Furniture, ...] = ()
+    railroads: tuple[Railroad, ...] = ()
 
 
 NARROWEST_M = 2.0  # of a lane; a car is 1.8 m wide
@@ -256,6 +265,11 @@ def read(document: object) -> Facts:
         crossings=tuple(_crossing(f, metres(f.lonlats())[0], known) for f in features if f.kind == "crossing"),
         buildings=tuple(_building(f, metres(f.lonlats())) for f in features if f.kind == "building"),
         furniture=tuple(_furniture(f, metres(f.lonlats())[0]) for f in features if f.kind == "furniture"),
+        railroads=tuple(
+            Railroad(metres(f.lonlats()), str(f.properties.get("confidence", "unknown")))
+            for f in features
+            if f.kind == "railroad"
+        ),
     )
 
 
@@ -335,6 +349,7 @@ def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
             (key, str(value)) for key, value in sorted(feature.properties.items()) if key.endswith("confidence")
         ),
         lanes_forward=forward,
+        speed_posted=feature.properties.get("speed_posted") is True,
     )
 
 

@@ -7,36 +7,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.maps.facts import MapFacts
-from linden.maps.records import Standing, StandingBox
+from linden.maps.records import Standing
 from linden.protocol.values.enums import SemanticTag
-from linden.scenery.scene.neighbourhood import furnish
+from linden.scenery.scene.neighbourhood import furnish, is_clear
 from linden.scenery.scene.objects import BOX, THING, Kind, Scene
 
 KIND_OF = {"building": Kind.BUILDING, "bench": Kind.BENCH, "bin": Kind.BIN, "mailbox": Kind.MAILBOX}
 _TAG_OF = {"building": SemanticTag.BUILDINGS}
 _HOUSE_M = ((5.0, 16.0), (5.0, 16.0), (3.8, 9.5))  # least and most length, width and height
-_CLEAR_M = 1.0  # between a footprint and what is drawn on a lot
 
 
 def plain(facts: MapFacts) -> Scene:
     """Return houses, trees and lamps on the lots of a map; no houses where the map has buildings of its own."""
     drawn = furnish(facts.lots, facts.ground)
-    footprints = [box for thing in facts.standing if thing.kind == "building" for box in thing.boxes]
-    if not footprints:
+    if not any(thing.kind == "building" for thing in facts.standing):
         return drawn
-    free = drawn.things["kind"] != Kind.HOUSE
-    for box in footprints:
-        free &= _is_clear(drawn.things["base"], box)
-    return kept(drawn, free)
+    return kept(drawn, (drawn.things["kind"] != Kind.HOUSE) & beside_buildings(drawn, facts.standing))
 
 
-def mapped(standing: Sequence[Standing]) -> Scene:
-    """Return the things that a map says stand beside its roads."""
+def beside_buildings(scene: Scene, standing: Sequence[Standing]) -> NDArray[np.bool_]:
+    """Return which things of a scene (N,) stand outside of a map's buildings."""
+    free = np.ones(len(scene.things), bool)
+    for thing in standing:
+        for box in thing.boxes if thing.kind == "building" else ():
+            free &= is_clear(scene.things["base"][:, :2], box)
+    return free
+
+
+def mapped(standing: Sequence[Standing], *, with_houses: bool = True) -> Scene:
+    """Return the things that a map says stand beside its roads; small buildings are houses, where these are wanted."""
     things = np.zeros(len(standing), THING)
     boxes = np.zeros(sum(len(thing.boxes) for thing in standing), BOX)
     row = 0
     for number, thing in enumerate(standing):
-        things[number] = (_kind(thing), (thing.x_m, thing.y_m, thing.z_m), thing.yaw_rad)
+        kind = _kind(thing) if with_houses else KIND_OF[thing.kind]
+        things[number] = (kind, (thing.x_m, thing.y_m, thing.z_m), thing.yaw_rad)
         for box in thing.boxes:
             tag = _TAG_OF.get(thing.kind, SemanticTag.STATIC)
             boxes[row] = (box[:3], box[3:6], box.yaw_rad, tag, number)
@@ -62,12 +67,3 @@ def _kind(thing: Standing) -> Kind:
 def _label(name: str) -> str:
     """Return a name as a part of an object's name: letters and digits of ASCII alone."""
     return re.sub(r"[^A-Za-z0-9]+", "", name)
-
-
-def _is_clear(places_m: NDArray[np.float64], box: StandingBox) -> NDArray[np.bool_]:
-    """Return which places (N, 3) lie outside of a box in plan, and some way off."""
-    offset = places_m[:, :2] - (box.x_m, box.y_m)
-    cos, sin = np.cos(box.yaw_rad), np.sin(box.yaw_rad)
-    along, across = offset @ (cos, sin), offset @ (-sin, cos)
-    clear: NDArray[np.bool_] = (np.abs(along) > box.half_x_m + _CLEAR_M) | (np.abs(across) > box.half_y_m + _CLEAR_M)
-    return clear

@@ -5,11 +5,13 @@ neighbourhood: frame houses of one and a half to two storeys and bungalows, 6 to
 apart, about one lot in five vacant (Linden Community Plan 2018: 22 % of dwellings; median house 94 m²).
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.maps.ground import Ground
-from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M
+from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M, LOTS, Standing, StandingBox
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
 
@@ -18,6 +20,7 @@ F64 = NDArray[np.float64]
 SEED = 614  # any number does; the houses stand where they do because of it
 VACANT = 0.2
 BUNGALOWS = 0.35
+_CLEAR_M = 1.0  # between a footprint and what is drawn on a lot
 SETBACK_M = (6.0, 8.0)
 HOUSE_WIDTH_M = (7.0, 8.8)
 HOUSE_DEPTH_M = (8.0, 11.5)
@@ -54,17 +57,52 @@ def _draw(lots: NDArray[np.void]) -> F64:
 
 def with_house(lots: NDArray[np.void]) -> NDArray[np.intp]:
     """Return the lots that houses stand on, in the order of the houses."""
-    return np.flatnonzero(_draw(lots)[:, 0] >= VACANT)
+    return np.flatnonzero((_draw(lots)[:, 0] >= VACANT) & ~is_taken(lots))
+
+
+def is_taken(lots: NDArray[np.void]) -> NDArray[np.bool_]:
+    """Return which lots (N,) something else stands on, as :func:`with_taken` marked them."""
+    taken: NDArray[np.bool_] = lots["taken"] if "taken" in (lots.dtype.names or ()) else np.zeros(len(lots), bool)
+    return taken
+
+
+def with_taken(lots: NDArray[np.void], standing: Sequence[Standing]) -> NDArray[np.void]:
+    """Return lots, marked where a building of the map reaches into them.
+
+    They stay in the table, so that what is drawn for the other lots does not change.
+    """
+    marked = np.zeros(len(lots), [*LOTS.descr, ("taken", "?")])
+    for name in LOTS.names or ():
+        marked[name] = lots[name]
+    cosine, sine = np.cos(lots["yaw_rad"]), np.sin(lots["yaw_rad"])
+    for inwards_m in np.linspace(0.0, LOT_DEPTH_M, 6):
+        for aside_m in np.linspace(-0.5, 0.5, 4) * LOT_WIDTH_M:
+            x = lots["front_m"][:, 0] + cosine * inwards_m - sine * aside_m
+            y = lots["front_m"][:, 1] + sine * inwards_m + cosine * aside_m
+            places = np.column_stack([x, y])
+            for thing in standing:
+                for box in thing.boxes if thing.kind == "building" else ():
+                    marked["taken"] |= ~is_clear(places, box)
+    return marked
+
+
+def is_clear(places_m: F64, box: StandingBox) -> NDArray[np.bool_]:
+    """Return which places (N, 2) lie outside of a box in plan, and some way off."""
+    offset = places_m - (box.x_m, box.y_m)
+    cos, sin = np.cos(box.yaw_rad), np.sin(box.yaw_rad)
+    along, across = offset @ (cos, sin), offset @ (-sin, cos)
+    clear: NDArray[np.bool_] = (np.abs(along) > box.half_x_m + _CLEAR_M) | (np.abs(across) > box.half_y_m + _CLEAR_M)
+    return clear
 
 
 def tree_side(lots: NDArray[np.void]) -> F64:
     """Return for each lot on which hand its tree stands (1 right, -1 left), 0 where it has none."""
     draw = _draw(lots)
-    return np.where(draw[:, 6] < WITH_TREE, np.sign(draw[:, 7] - 0.5), 0.0)
+    return np.where((draw[:, 6] < WITH_TREE) & ~is_taken(lots), np.sign(draw[:, 7] - 0.5), 0.0)
 
 
 def _houses(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
-    built = draw[:, 0] >= VACANT
+    built = with_house(lots)
     lots, draw = lots[built], draw[built]
     width, depth = between(HOUSE_WIDTH_M, draw[:, 1]), between(HOUSE_DEPTH_M, draw[:, 2])
     height = np.where(
@@ -77,7 +115,7 @@ def _houses(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
 
 
 def _trees(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
-    planted = draw[:, 6] < WITH_TREE
+    planted = (draw[:, 6] < WITH_TREE) & ~is_taken(lots)
     lots, draw = lots[planted], draw[planted]
     aside = (draw[:, 7] - 0.5) * (LOT_WIDTH_M - 3.0)
     things = things_with(Kind.TREE, on_lots(lots, ground, between(TREE_DEPTH_M, draw[:, 8]), aside), lots["yaw_rad"])

@@ -16,13 +16,15 @@ import networkx as nx
 import pytest
 from lxml import etree
 
-from linden.authoring.streets.build import Built
+from linden.authoring.streets.build import Built, assembled
+from linden.authoring.streets.controls import without_lights
 from linden.authoring.streets.routes import drive, xml
 from linden.authoring.streets.writing import text
 from linden.geometry import from_opendrive
 
 SEED = 20200205  # the shuttle's first day
 MAP = Path(str(resources.files("linden").joinpath("data/Linden.xodr")))
+THESIS_MAP = MAP.with_name("Linden_thesis.xodr")
 ROUTES = Path(str(resources.files("basu"))) / "routes"
 LaneKey = tuple[int, int]
 
@@ -42,6 +44,52 @@ def test_the_shipped_map_is_what_the_shipped_streets_build(linden_built: Built) 
     assert MAP.read_bytes() == text(linden_built.document)
 
 
+def test_the_shipped_variant_is_what_the_streets_build_without_lights(linden_built: Built) -> None:
+    built = assembled(without_lights(linden_built.facts))
+    assert THESIS_MAP.read_bytes() == text(built.document)
+    ours, theirs = (
+        {signal.kind for road in one.document.roads for signal in road.signals} for one in (linden_built, built)
+    )
+    assert ours - theirs == {"1000001"}
+    assert not built.document.controllers
+    for road, other in zip(linden_built.document.roads, built.document.roads, strict=True):
+        plain = road._replace(signals=(), objects=(), references=())
+        assert plain == other._replace(signals=(), objects=(), references=())
+    lit = {signal.id: signal.lanes for road in linden_built.document.roads for signal in road.signals if signal.dynamic}
+    stops = {s.id: s.lanes for road in built.document.roads for s in road.signals if s.kind == "206"}
+    assert lit.items() <= stops.items()  # every approach with lights has a stop sign with the same number
+
+
+def test_linden_has_its_named_places_and_the_railroad(linden_built: Built) -> None:
+    things = [thing for road in linden_built.document.roads for thing in road.objects]
+    names = {thing.name for thing in things if thing.kind == "building"}
+    assert linden_built.left_out == ()
+    for name in (
+        "Linden Transit Center",
+        "St. Stephen's Community House",
+        "Douglas Community Recreation Center",
+        "Rosewind Resident Council",
+        "Windsor STEM Academy",
+        "Linden-McKinley STEM Academy",
+    ):
+        assert name in names
+    assert sum("Cleveland Ave" in name for name in names) == 12
+    assert [thing.name for thing in things if thing.kind == "railroadCrossing"] == ["Railroad, E 17th Ave"]
+    assert sum(thing.kind == "railroad" for thing in things) == 1
+    furniture = Counter(thing.name for thing in things if thing.kind == "obstacle")
+    assert furniture == {"bench": 6, "bin": 6, "mailbox": 6}
+
+
+def test_limits_stand_where_streets_with_sourced_limits_begin(linden_built: Built) -> None:
+    signs = [(road, s) for road in linden_built.document.roads for s in road.signals if s.kind == "274"]
+    assert {(sign.value, sign.unit) for _, sign in signs} == {(25.0, "mph"), (35.0, "mph")}
+    for road, sign in signs:
+        assert sign.value == road.speed_mph
+        assert "one source" in sign.confidence
+        before_m = sign.s_m if sign.lanes[0] < 0 else sum(piece.length_m for piece in road.path) - sign.s_m
+        assert before_m == pytest.approx(25.0)
+
+
 @pytest.mark.parametrize(("route", "file"), [("leap_primary", "linden_leap.xml"), ("short_ab", "linden_short.xml")])
 def test_the_shipped_routes_are_what_the_shipped_streets_build(linden_built: Built, route: str, file: str) -> None:
     number = ["leap_primary", "short_ab"].index(route)
@@ -57,7 +105,7 @@ def test_libcarla_reads_the_map_without_a_word() -> None:
 def test_libcarla_counts_what_was_built(town: Any, linden_built: Built) -> None:
     kinds = Counter(signal.kind for road in linden_built.document.roads for signal in road.signals)
     assert {kind: len({mark.id for mark in town.get_all_landmarks_of_type(kind)}) for kind in kinds} == kinds
-    assert kinds.keys() == {"206", "205", "1000001"}
+    assert kinds == {"206": 157, "205": 8, "1000001": 22, "274": 10}
     things = Counter(thing.kind for road in linden_built.document.roads for thing in road.objects)
     corners = town.get_crosswalks()
     assert len(corners) == 5 * things["crosswalk"]

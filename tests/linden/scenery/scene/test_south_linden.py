@@ -5,12 +5,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+from home_map import home_map
+from linden.maps.library import LoadedMap
 from linden.physics.contact.boxes import overlap
 from linden.protocol.values.enums import LaneType
 from linden.scenery.scene.linden_survey import surveyed
+from linden.scenery.scene.neighbourhood import furnish
 from linden.scenery.scene.objects import Kind, Scene
-from linden.scenery.scene.south_linden import home
+from linden.scenery.scene.south_linden import free_lots, home
 from linden.scenery.scene.utility_poles import RAILROAD_CLEAR_M
 
 HIGH_M = 1e9
@@ -19,7 +21,7 @@ LARGEST_HALF_M = (5.14, 1.97)  # of vehicle.mitsubishi.fusorosa
 
 @pytest.fixture(scope="module")
 def linden() -> LoadedMap:
-    return MapLibrary().load(HOME_MAP)
+    return home_map()
 
 
 @pytest.fixture(scope="module")
@@ -125,3 +127,33 @@ def test_no_house_stands_on_the_railroad(linden: LoadedMap, scene: Scene) -> Non
 def test_the_origin_of_the_map_is_where_its_first_streets_cross(linden: LoadedMap) -> None:
     stop = surveyed(linden.geo_origin_deg).stops_m[0]  # 32 m east of the transit center, which is 50 m from the origin
     assert 60.0 < np.hypot(*stop) < 130.0
+
+
+def test_named_places_have_bodies_and_stand_in_no_house_tree_or_road(linden: LoadedMap, scene: Scene) -> None:
+    buildings = of_kinds(scene, Kind.BUILDING)
+    assert len(buildings) == sum(len(thing.boxes) for thing in linden.standing if thing.kind == "building") >= 22
+    assert (lanes_under(linden, corners(buildings)) < 0).all()
+    others = as_columns(of_kinds(scene, Kind.HOUSE, Kind.TREE, Kind.PORCH, Kind.PARKED_CAR))
+    for building in as_columns(buildings):
+        near = np.hypot(*(others[:, :2] - building[:2]).T) < 75.0
+        assert not [other for other in others[near] if overlap(building, other)[0] > 0.0]
+    names = [name for name in scene.thing_names if name.startswith("Building")]
+    assert any("LindenTransitCenter" in name for name in names)
+    assert any("StStephensCommunityHouse" in name for name in names)
+
+
+def test_benches_bins_and_mailboxes_are_objects_of_their_own(linden: LoadedMap, scene: Scene) -> None:
+    kinds = (Kind.BENCH, Kind.BIN, Kind.MAILBOX)
+    assert [int((scene.things["kind"] == kind).sum()) for kind in kinds] == [6, 6, 6]
+    lanes = lanes_under(linden, scene.things["base"][np.isin(scene.things["kind"], kinds)][:, :2])
+    assert (linden.lanes["type_bits"][lanes[lanes >= 0]] != LaneType.DRIVING).all()
+
+
+def test_the_lots_beside_a_named_place_look_as_they_did(linden: LoadedMap) -> None:
+    lots = free_lots(linden)
+    assert 10 < lots["taken"].sum() < 100
+    houses = of_kinds(furnish(lots, linden.ground), Kind.HOUSE)["centre"]
+    plain = lots.copy()
+    plain["taken"] = False
+    before = of_kinds(furnish(plain, linden.ground), Kind.HOUSE)["centre"]
+    assert {tuple(place) for place in houses.tolist()} < {tuple(place) for place in before.tolist()}
