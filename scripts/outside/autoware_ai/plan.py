@@ -104,10 +104,11 @@ def pairs(carla_map: carla.Map, count: int, seed: int) -> list[tuple[Place, Plac
 
 
 def ends_of(carla_map: carla.Map, file: Path) -> tuple[Place, Place]:
-    """The first and the last point of a route."""
+    """The first point of a route, and its last; of a round, the point farthest from the first."""
     route = joined(carla_map, read_routes(file)[0])
     rows = [Place(*point, yaw) for point, yaw in zip(route.points_m.tolist(), route.yaw_rad.tolist(), strict=True)]
-    return rows[0], rows[-1]
+    is_round = math.dist(rows[0][:2], rows[-1][:2]) < NEAR_M
+    return rows[0], max(rows, key=lambda row: math.dist(rows[0][:2], row[:2])) if is_round else rows[-1]
 
 
 def place_of(waypoint: carla.Waypoint) -> Place:
