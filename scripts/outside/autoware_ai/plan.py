@@ -36,7 +36,7 @@ from basu.routing.route_file import read_routes
 
 PATHS = Topic("/global_waypoints_rviz", "visualization_msgs/msg/MarkerArray")
 MAP_STAT = Topic("/vmap_stat", "std_msgs/msg/Bool")
-LONG_S = 90.0
+LONG_S = 240.0
 NEAR_M = 5.0
 PARAMETERS = {
     "pathDensity": "0.75", "enableSmoothing": "true", "enableLaneChange": "false", "enableRvizInput": "true",
@@ -61,6 +61,7 @@ def main() -> int:
     parser.add_argument("opendrive", type=Path)
     parser.add_argument("--pairs", type=int, default=8)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", nargs="*", metavar="NAME", help="plan these missions alone, such as 'pair 3'")
     parser.add_argument("--route", type=Path, help="a route whose start and end are planned as well")
     parser.add_argument("-o", "--output", type=Path, required=True)
     args = parser.parse_args()
@@ -72,6 +73,8 @@ def main() -> int:
     missions = [(f"pair {number}", *pair) for number, pair in enumerate(pairs(carla_map, args.pairs, args.seed), 1)]
     if args.route is not None:
         missions.append(("the route's ends", *ends_of(carla_map, args.route)))
+    if args.only:
+        missions = [mission for mission in missions if mission[0] in args.only]
     args.output.mkdir(parents=True, exist_ok=True)
     plans = []
     for name, start, goal in missions:
@@ -81,10 +84,11 @@ def main() -> int:
         plans.append({"name": name, "start": start, "goal": goal, "points": points, **told})
         print({key: value for key, value in plans[-1].items() if key != "points"}, flush=True)
     found = sum(plan["planned"] for plan in plans if plan["name"].startswith("pair"))
-    print(f"{found} of {args.pairs} pairs planned")
+    wanted = sum(plan["name"].startswith("pair") for plan in plans)
+    print(f"{found} of {wanted} pairs planned")
     (args.output / "plans.json").write_text(json.dumps(plans), encoding="utf-8")
     draw(carla_map, plans, args.output / "plan.svg")
-    return 0 if found == args.pairs else 1
+    return 0 if found == wanted else 1
 
 
 def pairs(carla_map: carla.Map, count: int, seed: int) -> list[tuple[Place, Place]]:
@@ -100,10 +104,11 @@ def pairs(carla_map: carla.Map, count: int, seed: int) -> list[tuple[Place, Plac
 
 
 def ends_of(carla_map: carla.Map, file: Path) -> tuple[Place, Place]:
-    """The first and the last point of a route."""
+    """The first point of a route, and its last; of a round, the point farthest from the first."""
     route = joined(carla_map, read_routes(file)[0])
     rows = [Place(*point, yaw) for point, yaw in zip(route.points_m.tolist(), route.yaw_rad.tolist(), strict=True)]
-    return rows[0], rows[-1]
+    is_round = math.dist(rows[0][:2], rows[-1][:2]) < NEAR_M
+    return rows[0], max(rows, key=lambda row: math.dist(rows[0][:2], row[:2])) if is_round else rows[-1]
 
 
 def place_of(waypoint: carla.Waypoint) -> Place:

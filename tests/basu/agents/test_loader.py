@@ -86,7 +86,7 @@ def test_one_of_several_agents_is_named_behind_a_colon(tmp_path: Path) -> None:
     ("name", "sentence"),
     [
         ("basik", "no agent called 'basik'; did you mean 'basic'"),
-        ("zzz", "there are autoware, basic, behavioral, .*, forward, human, .*or name a Python file"),
+        ("zzz", "there are autoware, autoware-ai, basic, behavioral, .*, forward, human, .*or name a Python file"),
         ("behavioral-careful", "did you mean 'behavioral-cautious'"),
         ("nowhere.py", "file nowhere.py does not exist"),
     ],

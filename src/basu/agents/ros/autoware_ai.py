@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 TICK_S = 0.01  # of the clock within a frame, simulated time
 PACE_S = 0.002  # wall time a tick: a message crosses two or three nodes in it
 OLDEST_S = 0.2  # simulated time: two scans of a lidar at 10 Hz, which a localisation answers one late
+GRACE_S = 0.04  # wall time that a frame waits for a fresh command before it takes the one of a frame before
 STARTING_S = 0.5  # wall time that a frame waits for the very first command
 
 
@@ -47,6 +48,7 @@ class AutowareAiAgent(RosAgent):
         self.tyre_angle_rad = 0.0
         self._has_commanded = self._localises_itself = False
         self._tick = 0
+        self._latest: Any = None  # the last command
         self._types: Types | None = None  # in the software's version, once it is known
         self._began_s = self._frame_began_s = time.monotonic()
         super().setup()
@@ -107,13 +109,14 @@ class AutowareAiAgent(RosAgent):
         return facts.body.rear_axle_m
 
     def belongs(self, message: Any, moment: Moment) -> bool:  # noqa: ANN401 - a message
-        """Return whether a command answers a frame: one that is a little older does at the end of the frame."""
-        if is_answer(message, moment.t_s):
-            return True
-        return self._is_over and is_answer(message, moment.t_s - OLDEST_S)
+        """Return whether a command answers a frame at once; an older one is kept for the end of the frame."""
+        self._latest = message
+        return is_answer(message, moment.t_s)
 
     def waiting(self, moment: Moment) -> carla.VehicleControl | None:
-        """Let the clock run on within the frame; before the first command, brake after a while and let time pass.
+        """Let the clock run on within the frame, then take a command that is a little older.
+
+        Before the first command, brake after a while and let time pass.
 
         Raises:
             AgentTimedOutError: the software has not commanded once.
@@ -124,6 +127,10 @@ class AutowareAiAgent(RosAgent):
             self.node.publish(Message(CLOCK, of_vehicle.clock(self.node.types, t_s)))
             return None
         now_s = time.monotonic()
+        if self._latest is not None and is_answer(self._latest, moment.t_s - OLDEST_S):
+            if now_s < self._frame_began_s + GRACE_S:
+                return None
+            return self._control(self.wanted(ai.COMMAND, self._latest), moment)
         if self._has_commanded or now_s < self._frame_began_s + STARTING_S:
             return None
         if now_s > self._began_s + self.appears_s:
