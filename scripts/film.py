@@ -32,7 +32,7 @@ def ego_pose(world: carla.World) -> carla.Transform:
 
 def pictures(log: Path, times_s: list[float], back_m: float, up_m: float) -> list[Image.Image]:
     """One picture for each time, in s from the beginning of the recording."""
-    server = OwnServer()
+    server = OwnServer(recordings=log.parent)
     try:
         client = connect("127.0.0.1", server.port, 600.0)
         world = client.get_world()
