@@ -31,8 +31,8 @@ def ring_of(
     """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways.
 
     First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone, their convex
-    hull, and the convex hull of the ways. ``entries`` are the lanelets that lead into the junction. ``exits`` lead out of
-    it, and ``ways`` lie inside; all are given by their sides. The ring is empty where there is no area.
+    hull, and the convex hull of the ways. ``entries`` are the lanelets that lead into the junction. ``exits``
+    lead out of it, and ``ways`` lie inside; all are given by their sides. The ring is empty where there is no area.
     """
     legs = _legs(target, entries, exits) if entries or exits else []
     ends = [node for leg in legs for node in leg.nodes]
