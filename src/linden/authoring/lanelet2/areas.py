@@ -30,9 +30,9 @@ def ring_of(
 ) -> tuple[int, ...]:
     """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways.
 
-    First the ends of the legs and the kerbs round the corners between them, then the ends alone, then their convex
-    hull, last the convex hull of the ways. ``entries`` are the lanelets that lead into the junction, ``exits`` those
-    that lead out of it, ``ways`` those inside, all by their sides. Empty where there is no area.
+    First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone, their convex
+    hull, and the convex hull of the ways. ``entries`` are the lanelets that lead into the junction. ``exits``
+    lead out of it, and ``ways`` lie inside; all are given by their sides. The ring is empty where there is no area.
     """
     legs = _legs(target, entries, exits) if entries or exits else []
     ends = [node for leg in legs for node in leg.nodes]

@@ -9,10 +9,10 @@ Autoware leaves the yielding lanelets of the element out of what a vehicle on th
 """
 
 import math
-from itertools import permutations
+from itertools import combinations
 
 from linden.authoring.lanelet2.movements import Movement
-from linden.authoring.lanelet2.overlap import overlap_share
+from linden.authoring.lanelet2.overlap import area_m2, overlap_m2
 from linden.maps.opendrive.evaluate.pieces import F64
 
 MET_SHARE = 0.01
@@ -57,12 +57,15 @@ def _nominal(movements: list[Movement], met: dict[int, list[Movement]]) -> Claim
 def _met(movements: list[Movement], rings: dict[int, F64]) -> dict[int, list[Movement]]:
     """Return the ways that each way meets; ways that part at a common lane do not meet."""
     met: dict[int, list[Movement]] = {way.stretch: [] for way in movements}
-    for way, other in permutations(movements, 2):
+    areas_m2 = {stretch: area_m2(ring) for stretch, ring in rings.items()}
+    for way, other in combinations(movements, 2):
         is_near = abs(float(way.line[:, 2].mean() - other.line[:, 2].mean())) < _LAYER_M
         if way.origins & other.origins or not is_near:
             continue
-        if overlap_share(rings[way.stretch], rings[other.stretch]) >= MET_SHARE:
-            met[way.stretch].append(other)
+        shared_m2 = overlap_m2(rings[way.stretch], rings[other.stretch])
+        for one, against in ((way, other), (other, way)):
+            if shared_m2 > 0.0 and shared_m2 >= MET_SHARE * areas_m2[one.stretch]:
+                met[one.stretch].append(against)
     return met
 
 

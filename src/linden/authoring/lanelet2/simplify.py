@@ -10,8 +10,8 @@ I64 = NDArray[np.int64]
 def kept_points(points: F64, first: I64, tolerance_m: float) -> NDArray[np.bool_]:
     """Return which points (N, 3) of consecutive polylines stay; ``first`` are the indices of their first points.
 
-    The method is that of Douglas and Peucker (1973), one level of all polylines in each pass: every stretch between
-    two kept points with a farthest point beyond the tolerance is cut there.
+    The method is that of Douglas and Peucker (1973), one level of all polylines in each pass. A stretch between two
+    kept points with a farthest point beyond the tolerance is cut there.
     """
     count = len(points)
     kept = np.zeros(count, dtype=np.bool_)

@@ -230,8 +230,8 @@ class _Assembly:
     def _add_controllers(self, legs: tuple[Leg, ...]) -> tuple[int, ...]:
         """Return the ids of the controllers of a junction with lights: one for each approach.
 
-        So have CARLA's towns: the approaches take turns, and no vehicle turns left through oncoming traffic, which its
-        Traffic Manager cannot do without now and then blocking a junction for good.
+        So have CARLA's towns: the approaches take turns, and no vehicle turns left through oncoming traffic. CARLA's
+        Traffic Manager cannot do that without now and then blocking a junction for good.
         """
         ids = []
         for leg in legs:

@@ -39,7 +39,7 @@ def test_lanes_that_cross_overlap_as_much_as_shapely_finds() -> None:
     for _ in range(200):
         one, other = _bent_lane(draw), _bent_lane(draw)
         exact = Polygon(one).intersection(Polygon(other)).area / Polygon(one).area
-        assert overlap_share(one, other) == pytest.approx(exact, abs=3e-3)
+        assert overlap_share(one, other) == pytest.approx(exact, abs=5e-3)
         assert area_m2(one) == pytest.approx(Polygon(one).area)
         met += exact > 0.01
     assert met > 100
