@@ -27,6 +27,8 @@ SILENT_S = 360.0
 """Longer than any test may take by the time-out in pyproject.toml; a process that says nothing for so long is stuck."""
 LAST_WORDS_S = 15.0
 TRIES = 2
+MEASURED = {**os.environ, "COVERAGE_OF_SERVERS": str(ROOT / "pyproject.toml")}
+"""The client's process runs nothing of ours, so that the coverage of its servers alone is measured."""
 NO_TESTS = 5
 """Of pytest, where options such as ``-k`` leave none in a file."""
 
@@ -90,7 +92,7 @@ def told(name: str, options: list[str]) -> Ended:
     again: list[str] = []
     code = 0
     for number in range(TRIES):
-        code, said = run([sys.executable, "-m", "coverage", "run", "-m", "pytest", "--no-header", name, *options])
+        code, said = run([sys.executable, "-m", "pytest", "--no-header", name, *options])
         with SHOWING:
             print(f"{name}{' once more' * (number > 0)}", flush=True)
             sys.stdout.buffer.write(said)
@@ -112,7 +114,7 @@ def run(command: list[str], silent_s: float = SILENT_S) -> tuple[int, bytes]:
     """Run a command; return its code, minus the signal that ended it, or STUCK, and what it said."""
     said: list[bytes] = []
     with subprocess.Popen(
-        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True
+        command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True, env=MEASURED
     ) as process:
         stuck = not _heard(process, said, silent_s)
         if stuck:

@@ -3,15 +3,19 @@
 The hypothesis profile is repeatable and has no deadlines, because kernels compile on first use.
 """
 
+import functools
+import gc
+import itertools
 import os
 import signal
-from collections.abc import Generator
-from contextlib import nullcontext
+from collections.abc import Callable, Generator
+from contextlib import ExitStack
 from pathlib import Path
 
 import hypothesis
 import pytest
 
+from processor_time import measured
 from tracing import save, untraced
 
 LONGEST = (
@@ -34,6 +38,9 @@ LONGEST = (
 )
 """Files of tests that take longest, longest first: they start first, so that no worker idles at the end."""
 
+TRACED_EXAMPLES = 20
+"""Of hypothesis in a test, with coverage; a test has a hundred."""
+
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell that starts us in the background leaves it so
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
@@ -55,11 +62,38 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: places.get(item.path, len(LONGEST)))
 
 
+def pytest_collection_finish() -> None:
+    """Take all that the collection made out of the garbage collector's sight: it stays until the end."""
+    gc.collect()
+    gc.freeze()
+
+
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
-    """Measure no coverage in slow tests: they drive long ways through lines that quick tests reach."""
-    with untraced() if item.get_closest_marker("slow") else nullcontext():
+    """Measure no coverage in slow tests: they drive long ways through lines that quick tests reach.
+
+    Of the examples of hypothesis the first ones are measured: the others take the same lines.
+    """
+    with measured(item.nodeid), ExitStack() as stack:
+        if item.get_closest_marker("slow"):
+            stack.enter_context(untraced())
+        elif (random := getattr(getattr(item, "obj", None), "hypothesis", None)) is not None:
+            stack.callback(setattr, random, "inner_test", random.inner_test)
+            random.inner_test = traced_first(random.inner_test, stack)
         return (yield)
+
+
+def traced_first(test: Callable[..., object], stack: ExitStack) -> Callable[..., object]:
+    """Return a test of hypothesis that stops the coverage until ``stack`` ends after its first examples."""
+    numbers = itertools.count(1)
+
+    @functools.wraps(test)
+    def counted(*arguments: object, **options: object) -> object:
+        if next(numbers) == TRACED_EXAMPLES + 1:
+            stack.enter_context(untraced())
+        return test(*arguments, **options)
+
+    return counted
 
 
 @pytest.hookimpl(trylast=True)

@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from tracing import of_servers
+
 READY = re.compile(r"linden: ready, rpc port (\d+), streaming port (\d+)")
 PR_SET_PDEATHSIG = 1
 """Of prctl(2)."""
@@ -53,6 +55,7 @@ def running_server(*options: str, program: tuple[str, ...] = SERVE) -> Iterator[
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,
+                env=of_servers(),
                 preexec_fn=_end_with_parent,  # noqa: PLW1509 - one prctl call, no lock
             )
         try:

@@ -6,7 +6,9 @@ from contextlib import contextmanager
 
 import coverage
 
-CONFIGURED = ("COVERAGE_PROCESS_CONFIG", "COVERAGE_PROCESS_START")
+OF_SERVERS = "COVERAGE_OF_SERVERS"
+"""Names the configuration for servers where the process of tests itself is not measured (scripts/run_compat.py)."""
+CONFIGURED = ("COVERAGE_PROCESS_CONFIG", "COVERAGE_PROCESS_START", OF_SERVERS)
 """What tells a new Python process to measure its coverage."""
 
 
@@ -23,6 +25,12 @@ def untraced() -> Iterator[None]:
         os.environ.update(kept)
         if measured is not None:
             measured.start()
+
+
+def of_servers() -> dict[str, str]:
+    """Return the environment in which a server measures its coverage, if it is to."""
+    configuration = os.environ.get(OF_SERVERS)
+    return {**os.environ} if configuration is None else {**os.environ, CONFIGURED[1]: configuration}
 
 
 def save() -> None:

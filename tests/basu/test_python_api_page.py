@@ -13,9 +13,12 @@ PAGE = Path(__file__).parents[2] / "docs" / "how-to" / "python-api.md"
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_every_block_of_the_page_runs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, route_file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    """The short route is a shorter one here: a file in the folder goes before the one that comes with BASU."""
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "routes").mkdir()
+    route_file.rename(tmp_path / "routes" / "linden_short.xml")
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     assert len(blocks) >= 6
     try:
@@ -23,5 +26,7 @@ def test_every_block_of_the_page_runs(
             exec(compile(block, str(PAGE), "exec"), {"__name__": "page"})
     finally:
         basu.close_simulator()
-    assert capsys.readouterr().out.startswith("Completed 0.9")
+    status, score, *_ = capsys.readouterr().out.split()
+    assert status == "Completed"
+    assert 0.9 <= float(score) <= 1.0
     assert (tmp_path / "speeds.png").exists()

@@ -1,10 +1,14 @@
 """README and the pages of docs/, with the code blocks and the inline code that they show."""
 
 import re
+import runpy
 import shlex
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
+
+import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").rglob("*.md"))]
@@ -57,3 +61,14 @@ def command_in(line: str) -> tuple[str, ...]:
     except ValueError:  # an apostrophe of a sentence: a line of output
         return ()
     return (words[0].removeprefix(".venv/bin/"), *words[1:])
+
+
+def run_script(patch: pytest.MonkeyPatch, name: str, *arguments: str) -> object:
+    """Run one of ``scripts`` as a program, in this process and from the root; return its exit code."""
+    file = ROOT / "scripts" / name
+    patch.chdir(ROOT)
+    patch.syspath_prepend(file.parent)
+    patch.setattr(sys, "argv", [str(file), *arguments])
+    with pytest.raises(SystemExit) as ended:
+        runpy.run_path(str(file), run_name="__main__")
+    return ended.value.code

@@ -1,12 +1,11 @@
 """The pages are up to date: generated parts, commands, paths and modules that they name."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from docs.pages import ROOT, run_script
+
 SCRIPTS = [
     "make_supported.py",
     "make_options_tables.py",
@@ -17,11 +16,10 @@ SCRIPTS = [
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_the_generated_parts_are_up_to_date(script: str) -> None:
-    done = subprocess.run(
-        [sys.executable, f"scripts/{script}", "--check"], cwd=ROOT, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
+def test_the_generated_parts_are_up_to_date(
+    script: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_script(monkeypatch, script, "--check") == 0, capsys.readouterr().err
 
 
 def test_no_page_names_a_place_on_this_machine() -> None:

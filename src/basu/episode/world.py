@@ -15,7 +15,7 @@ from basu.managers.world_changes import taken_away
 from basu.routing import lane_graph
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     import numpy as np
     from numpy.typing import NDArray
@@ -55,23 +55,25 @@ class Towns:
     """The towns of one simulator. Each is read once, where no other program can change it meanwhile."""
 
     def __init__(self, simulator: Simulator) -> None:
-        """Ask the simulator for the names of its towns.
-
-        Raises:
-            SimulatorError: it does not answer.
-        """
+        """Read no town yet."""
         self._simulator = simulator
-        with asking("naming its towns"):
-            self.names = towns_of(simulator)
         self._read: dict[str, Town] = {}
         self._loaded: str | None = None  # the town that we have loaded last
-        self._lanes: dict[str, tuple[LaneGraph, list[NDArray[np.float64]]]] = {}  # by OpenDRIVE text
+
+    def names(self, wanted: Collection[str]) -> frozenset[str]:
+        """Return the names of the simulator's towns as far as it takes to find ``wanted`` among them.
+
+        Raises:
+            SimulatorError: the simulator does not answer.
+        """
+        with asking("naming its towns"):
+            return towns_of(self._simulator, wanted)
 
     def load(self, name: str, *, reload: bool | None = None) -> tuple[carla.World, Town]:
         """Return the world with the town ``name`` in it, and the town.
 
-        ``reload`` begins the world anew. By default a simulator of our own does so from its second episode on, and
-        another one never does: its world may hold other programs' actors.
+        ``reload`` begins the world anew. By default a simulator of our own does so from its second episode on.
+        Another one never does: its world may hold other programs' actors.
 
         Raises:
             SimulatorError: the simulator does not load it.
@@ -82,19 +84,13 @@ class Towns:
             if again:
                 client.reload_world(reset_settings=False)
             known = self._loaded == name and (own or again)
-            world = client.get_world() if known else world_of(self._simulator, name)
             self._loaded = name
-            if not known or name not in self._read:
-                self._read[name] = self._town(world.get_map())
-        return world, self._read[name]
-
-    def _town(self, carla_map: carla.Map) -> Town:
-        """The lanes of a map; two maps with one OpenDRIVE text share them."""
-        text = carla_map.to_opendrive()
-        if text not in self._lanes:
+            if known and name in self._read:
+                return client.get_world(), self._read[name]
+            world, carla_map = world_with(self._simulator, name)
             lanes = lane_graph.build(carla_map)
-            self._lanes[text] = (lanes, lanes.streets())
-        return Town(carla_map, *self._lanes[text])
+            self._read[name] = Town(carla_map, lanes, lanes.streets())
+        return world, self._read[name]
 
 
 def check_towns(names: frozenset[str], wanted: Iterable[str]) -> None:
@@ -112,18 +108,31 @@ def check_towns(names: frozenset[str], wanted: Iterable[str]) -> None:
         )
 
 
-def towns_of(simulator: Simulator) -> frozenset[str]:
-    """The towns that a simulator has, the loaded one and the one that BASU sent among them."""
+def towns_of(simulator: Simulator, wanted: Collection[str]) -> frozenset[str]:
+    """Return the towns that a simulator has: those it offers, the one that BASU sent, and the loaded one.
+
+    The name of the loaded one stands in its map, which the client reads in 0.3 s. So it is left out where the others
+    hold all that are ``wanted``.
+    """
     client = simulator.client
-    names = {_short(client.get_world().get_map().name), *map(_short, client.get_available_maps())}
-    return frozenset(names if simulator.uploaded is None else names | {simulator.uploaded})
+    names = frozenset(map(_short, client.get_available_maps()))
+    if simulator.uploaded is not None:
+        names |= {simulator.uploaded}
+    return names if names.issuperset(wanted) else names | {_short(client.get_world().get_map().name)}
 
 
-def world_of(simulator: Simulator, town: str) -> carla.World:
-    """The world with ``town`` in it, loaded where another one is."""
+def world_with(simulator: Simulator, town: str) -> tuple[carla.World, carla.Map]:
+    """Return the world with ``town`` in it, loaded where another one is, and its map.
+
+    The client reads the map again at a second call of ``get_map``, so there is one.
+    """
     client, name = simulator.client, simulator.map_name(town)
     world = client.get_world()
-    return world if _short(world.get_map().name) == name else client.load_world(name, reset_settings=False)
+    carla_map = world.get_map()
+    if _short(carla_map.name) != name:
+        world = client.load_world(name, reset_settings=False)
+        carla_map = world.get_map()
+    return world, carla_map
 
 
 def _short(map_name: str) -> str:

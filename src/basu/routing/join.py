@@ -10,7 +10,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import networkx as nx
 import numpy as np
 
 from basu.errors import UserError
@@ -156,6 +155,8 @@ def _reachable(
     following = set(lanes.graph.successors(start))
     if not following:
         return {}, {}
+    import networkx as nx  # noqa: PLC0415 - a quarter of the imports of an agent's process, which joins no route
+
     found: Any = nx.multi_source_dijkstra(lanes.graph, following, cutoff=limit_m)  # its stubs join two overloads
     return found[0], found[1]
 

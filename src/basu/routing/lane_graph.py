@@ -11,7 +11,6 @@ from bisect import bisect_right
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-import networkx as nx
 import numpy as np
 from lxml import etree
 
@@ -19,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     import carla
+    import networkx as nx
     from numpy.typing import NDArray
 
 
@@ -115,9 +115,26 @@ def key_of(waypoint: carla.Waypoint) -> LaneKey:
     return LaneKey(waypoint.road_id, waypoint.section_id, waypoint.lane_id)
 
 
+_KEPT = 4  # maps with their lanes, the newest
+_built: dict[str, LaneGraph] = {}  # by OpenDRIVE text
+
+
 def build(carla_map: carla.Map) -> LaneGraph:
-    """Make the graph of a ``carla.Map``; some tenths of a second for a city quarter."""
-    roads = read_roads(carla_map.to_opendrive())
+    """Return the graph of a ``carla.Map``, the same one for maps with one OpenDRIVE text.
+
+    Making it takes some tenths of a second for a city quarter. No caller changes it.
+    """
+    text = carla_map.to_opendrive()
+    if text not in _built:
+        while len(_built) >= _KEPT:
+            del _built[next(iter(_built))]
+        _built[text] = _graph_of(carla_map, text)
+    return _built[text]
+
+
+def _graph_of(carla_map: carla.Map, opendrive: str) -> LaneGraph:
+    """Make the graph of a ``carla.Map`` with this OpenDRIVE text."""
+    roads = read_roads(opendrive)
     keys: dict[LaneKey, int] = {}
     key_of_sample, s_m, poses = [], [], []
     for waypoint in carla_map.generate_waypoints(SAMPLE_SPACING_M):
@@ -140,6 +157,8 @@ def build(carla_map: carla.Map) -> LaneGraph:
 
 def _connections(carla_map: carla.Map, roads: dict[int, Road]) -> nx.DiGraph[LaneKey]:
     """Edges from the client's topology, and from the lane ends that the topology passes over."""
+    import networkx as nx  # noqa: PLC0415 - a quarter of the imports of an agent's process, which makes no graph
+
     graph: nx.DiGraph[LaneKey] = nx.DiGraph()
     known: dict[LaneKey, None] = {}
 

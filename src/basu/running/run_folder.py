@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import importlib
+import threading
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
 from basu.files import places, write_bytes
 from basu.metrics.result import judge
 from basu.options import STEP_S, RunOptions
-from basu.output.report import path_picture
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, RunRecord, write_json
-from basu.output.report.html.page import write_report
 from basu.output.report.streets import around, write_streets
 from basu.records.carla_log.sources import LOG_FILE
 from basu.records.history.files import write_history
@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 
 OWN_ROUTE = "-own"  # behind the id of a route that the agent has planned itself
 ROUTE_WEATHER = "of the route file"
+PICTURES = ("basu.output.report.path_picture", "basu.output.report.html.page")
+"""Modules that take a third of all the imports, and that a run needs only at its end."""
 
 
 def run_config(
@@ -174,25 +176,34 @@ def write_run_folder(
     }
     result = judge(driven.outcome, history, scoring, meta, scenarios=scenarios, own=own)
     document = result.document()
-    text, lanes_m = table(result), lanes.streets()
+    text = table(result)
     if not quiet:
         print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
+    streets = [] if history is None else around(lanes.streets(), history)
     if history is not None:
         write_history(folder, history)
         title = f"{_heading(config)}: {document['status']}"
         if pictures:
-            path_picture.draw(folder / PICTURE_FILE, history, lanes_m, title, scoring)
-    streets = [] if history is None else around(lanes_m, history)
+            from basu.output.report import path_picture  # noqa: PLC0415 - see PICTURES
+
+            path_picture.draw(folder / PICTURE_FILE, history, streets, title, scoring)
     write_streets(folder, streets)
     if pictures:
+        from basu.output.report.html.page import write_report  # noqa: PLC0415 - see PICTURES
+
         run = RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets)
         write_report(folder, run)
     if config["recording"] is not None and not quiet:
         print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return result
+
+
+def import_pictures() -> None:
+    """Import what pictures and reports need, in a thread: a drive mostly waits for its simulator and its agent."""
+    threading.Thread(target=lambda: [*map(importlib.import_module, PICTURES)], name="imports", daemon=True).start()
 
 
 def _heading(config: dict[str, Any]) -> str:

@@ -92,7 +92,8 @@ def runs(session: Session, jobs: Sequence[Job], series: Series | None = None) ->
         SimulatorError: the simulator failed before a run began.
     """
     options, prepared = session.options, session.plan
-    check_towns(session.towns.names, (job.description.town for job in jobs))
+    wanted = {job.description.town for job in jobs}
+    check_towns(session.towns.names(wanted), wanted)
     for nth, job in enumerate(jobs):
         is_prepared = nth == 0 and job.seed == options.seed
         agents = prepared.agents if is_prepared else new_agents(prepared.loaded, options, job.seed)

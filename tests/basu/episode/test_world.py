@@ -32,6 +32,13 @@ class OneTown:
 
 
 def test_all_towns_that_are_missing_are_reported_at_once() -> None:
-    check_towns(towns_of(OneTown()), ["Linden", "OpenDriveMap", "Linden"])
+    here = ["Linden", "OpenDriveMap", "Linden"]
+    check_towns(towns_of(OneTown(), here), here)
+    elsewhere = ["Town13", "Linden", "Town12", "Town13"]
     with pytest.raises(UserError, match=r"routes are in Town12, Town13, which .* it has Linden, OpenDriveMap: name"):
-        check_towns(towns_of(OneTown()), ["Town13", "Linden", "Town12", "Town13"])
+        check_towns(towns_of(OneTown(), elsewhere), elsewhere)
+
+
+def test_no_map_is_read_where_the_simulator_offers_all_towns(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(OneTown, "get_world")
+    assert towns_of(OneTown(), ["Linden"]) == {"Linden"}

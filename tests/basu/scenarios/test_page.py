@@ -1,24 +1,15 @@
 """Claims about docs/reference/scenarios.md: its tables and files are what the code says, and its ids mean cases."""
 
 import re
-import subprocess
-import sys
-from pathlib import Path
+
+import pytest
 
 from basu.scenarios.cases import by_id
+from docs.pages import ROOT, run_script
 
-ROOT = Path(__file__).parents[3]
 
-
-def test_the_page_is_what_the_code_says() -> None:
-    done = subprocess.run(
-        [sys.executable, "scripts/make_scenarios_page.py", "--check"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
+def test_the_page_is_what_the_code_says(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_script(monkeypatch, "make_scenarios_page.py", "--check") == 0, capsys.readouterr().err
 
 
 def test_every_id_on_the_page_means_a_case() -> None:

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from home_map import home_map
 from linden.maps.ground import Ground
-from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+from linden.maps.library import LoadedMap
 from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.map_mesh import standing
@@ -22,7 +23,7 @@ UP_M = np.array([0.0, 0.0, NEAR_M])
 
 @pytest.fixture(scope="module")
 def linden() -> LoadedMap:
-    return MapLibrary().load(HOME_MAP)
+    return home_map()
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from home_map import home_map
 from linden.maps.cache import MapCache
 from linden.maps.facts import derive
-from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+from linden.maps.library import LoadedMap
 from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import SemanticTag
@@ -35,7 +36,7 @@ SLIGHT_M = 0.3
 
 @pytest.fixture(scope="module")
 def linden() -> LoadedMap:
-    return MapLibrary().load(HOME_MAP)
+    return home_map()
 
 
 @pytest.fixture(scope="module")

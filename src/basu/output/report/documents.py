@@ -12,8 +12,6 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import jsonschema
-
 from basu.errors import UserError
 from basu.files import PACKAGE_FOLDER, read_json, write_bytes
 from basu.metrics.result import Result
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
     from datetime import datetime
     from pathlib import Path
 
+    import jsonschema
     from jsonschema.protocols import Validator
 
     from basu.output.report.streets import Line
@@ -155,6 +154,8 @@ def read_schema(name: str) -> dict[str, Any]:
 
 def mistakes(document: object, schema: Mapping[str, Any]) -> Iterator[str]:
     """What is wrong with a document, each place in a sentence; nothing where it is as the schema says."""
+    import jsonschema  # noqa: PLC0415 - a tenth of a second, and a drive reads no document
+
     validator: Validator = jsonschema.Draft202012Validator(schema)
     for error in sorted(validator.iter_errors(document), key=lambda error: [str(part) for part in error.absolute_path]):
         yield _sentence(error)

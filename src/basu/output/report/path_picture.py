@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 from basu.files import write_bytes
 from basu.metrics.score import infractions
+from basu.output.report.streets import bounds_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,47 +23,57 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.metrics.scoring import Scoring
+    from basu.output.report.streets import Line
     from basu.records.history import History
 
 
 CROWDED_M = 60.0  # stops nearer to each other than this have their names one below the other
-MARGIN_M = 40.0  # of street map around the route
-WIDTH_INCHES, DPI = 10.0, 130
+MOST_INCHES = np.array([9.0, 14.0])  # of the map: width, height
+LEAST_INCHES, DPI = 7.0, 130  # of the picture's width, which the legend needs
+LEFT_INCHES, RIGHT_INCHES, TITLE_INCHES, LEGEND_INCHES = 0.75, 0.2, 0.4, 0.85
 STREET, PLANNED, DRIVEN, MARK = "#d9d9d9", "#3182bd", "#e6550d", "#a50f15"
 
 
 def draw(
     path: Path,
     history: History,
-    streets: Sequence[NDArray[np.float64]],
+    streets: Sequence[Line] | Sequence[NDArray[np.float64]],
     title: str,
     scoring: Scoring | None = None,
 ) -> None:
     """Write the picture, with the infractions that ``scoring`` makes of the drive.
 
-    ``streets`` are the lanes' centre lines, each (K, 2) in m, CARLA frame.
+    ``streets`` are the centre lines of the lanes around, each (K, 2) in m, CARLA frame.
     """
-    route, frames = history.facts.route, history.frames
-    low = np.minimum(route.points_m[:, :2].min(axis=0), [frames["x_m"].min(), frames["y_m"].min()]) - MARGIN_M
-    high = np.maximum(route.points_m[:, :2].max(axis=0), [frames["x_m"].max(), frames["y_m"].max()]) + MARGIN_M
-    spread = high - low
-    height_inches = float(np.clip(WIDTH_INCHES * spread[1] / spread[0], 4.0, 14.0)) + 0.6
-    figure = Figure(figsize=(WIDTH_INCHES, height_inches), layout="constrained")
-    axes = figure.add_subplot()
+    bounds = bounds_of(history)
+    figure, axes = _sheet(np.array([bounds.width_m, bounds.height_m]))
     axes.add_collection(LineCollection(list(streets), colors=STREET, linewidths=2.0, zorder=1))
     _paths(axes, history)
     _marks(axes, history, scoring)
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(high[1], low[1])  # CARLA's y points south: north is up
+    axes.set_xlim(bounds.west_m, bounds.east_m)
+    axes.set_ylim(bounds.south_m, bounds.north_m)  # CARLA's y points south: north is up
     axes.set_aspect("equal")
     axes.set_xlabel("x (east) in m")
     axes.set_ylabel("y (south) in m")
     axes.set_title(title)
-    figure.legend(loc="outside lower center", ncols=5, frameon=False)
+    figure.legend(loc="lower center", ncols=5, frameon=False)
     buffer = io.BytesIO()
-    with mpl.rc_context({"savefig.bbox": "tight"}):
+    with mpl.rc_context({"savefig.bbox": None}):
         figure.savefig(buffer, format="png", dpi=DPI, metadata={"Software": None})
     write_bytes(path, buffer.getvalue())
+
+
+def _sheet(spread_m: NDArray[np.float64]) -> tuple[Figure, Axes]:
+    """Return a figure and axes in it for a map of this width and height.
+
+    Its margins are fixed. A layout that matplotlib finds by itself draws everything twice more.
+    """
+    width, height = spread_m * (MOST_INCHES / spread_m).min()
+    whole = max(width + LEFT_INCHES + RIGHT_INCHES, LEAST_INCHES), height + LEGEND_INCHES + TITLE_INCHES
+    figure = Figure(figsize=whole)
+    left = LEFT_INCHES + (whole[0] - width - LEFT_INCHES - RIGHT_INCHES) / 2.0
+    axes = figure.add_axes((left / whole[0], LEGEND_INCHES / whole[1], width / whole[0], height / whole[1]))
+    return figure, axes
 
 
 def _paths(axes: Axes, history: History) -> None:

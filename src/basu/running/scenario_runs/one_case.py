@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.episode import Episode, case_spec
 from basu.episode.spec import description_of
-from basu.episode.world import asking, towns_of, weather_called, world_of
+from basu.episode.world import asking, towns_of, weather_called, world_with
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
 from basu.managers.placed_scenario import call_scenario, place_scenario
@@ -131,7 +131,7 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
     try:
         agents = new_agents(loaded, options.run_options(loaded.name), options.drive_seed)
         sensors = _sensors(agents, loaded)
-        check_town(playable.case, session.towns.names)
+        check_town(playable.case, session.towns.names([playable.case.town]))
         spec = case_spec(playable, vehicle=options.vehicle, timeout_s=options.timeout_s)
         if session.weather is not None:
             spec = replace(spec, weather=weather_called(session.weather))
@@ -185,8 +185,8 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
     with simulator_for(options.run_options("basic")) as simulator, asking(f"loading {case.town}"):
-        check_town(case, towns_of(simulator))
-        carla_map = world_of(simulator, case.town).get_map()
+        check_town(case, towns_of(simulator, [case.town]))
+        _, carla_map = world_with(simulator, case.town)
         route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))
         placed = place_scenario(playable, route, carla_map, own=True)
         return call_scenario(case.name, partial(draw, placed.scenario, form))

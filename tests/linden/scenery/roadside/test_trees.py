@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from linden.maps.library import HOME_MAP, MapLibrary
+from home_map import home_map
 from linden.scenery.roadside.trees import woods
 from linden.scenery.scene.south_linden import home
 
 
 def test_woods_stand_away_from_all_roads_and_things() -> None:
-    linden = MapLibrary().load(HOME_MAP)
+    linden = home_map()
     scene = home(linden)
     mesh = woods(scene, linden.ground)
     middles = mesh.vertices_m[mesh.triangles].mean(axis=1)[::20, :2]  # of each clump, a face
@@ -22,7 +22,7 @@ def test_woods_stand_away_from_all_roads_and_things() -> None:
 
 
 def test_the_same_map_has_the_same_woods() -> None:
-    linden = MapLibrary().load(HOME_MAP)
+    linden = home_map()
     scene = home(linden)
     first, second = woods(scene, linden.ground), woods(scene, linden.ground)
     np.testing.assert_array_equal(first.vertices_m, second.vertices_m)

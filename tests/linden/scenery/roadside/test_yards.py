@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from home_map import home_map
 from linden.maps.ground import Ground
-from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+from linden.maps.library import LoadedMap
 from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.parse import parse
 from linden.protocol.values.enums import SemanticTag
@@ -22,7 +23,7 @@ HIGH_M = 1e6
 
 @pytest.fixture(scope="module")
 def linden() -> LoadedMap:
-    ready = MapLibrary().load(HOME_MAP)
+    ready = home_map()
     return replace(ready, lots=ready.lots[:120])
 
 

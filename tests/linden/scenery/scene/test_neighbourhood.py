@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+from home_map import home_map
+from linden.maps.library import LoadedMap
 from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M
 from linden.physics.contact.boxes import overlap
 from linden.scenery.scene.neighbourhood import SETBACK_M, VACANT, furnish
@@ -16,7 +17,7 @@ HIGH_M = 1e9
 
 @pytest.fixture(scope="module")
 def linden() -> LoadedMap:
-    return MapLibrary().load(HOME_MAP)
+    return home_map()
 
 
 @pytest.fixture(scope="module")

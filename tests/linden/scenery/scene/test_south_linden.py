@@ -5,7 +5,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+from home_map import home_map
+from linden.maps.library import LoadedMap
 from linden.physics.contact.boxes import overlap
 from linden.protocol.values.enums import LaneType
 from linden.scenery.scene.linden_survey import surveyed
@@ -20,7 +21,7 @@ LARGEST_HALF_M = (5.14, 1.97)  # of vehicle.mitsubishi.fusorosa
 
 @pytest.fixture(scope="module")
 def linden() -> LoadedMap:
-    return MapLibrary().load(HOME_MAP)
+    return home_map()
 
 
 @pytest.fixture(scope="module")

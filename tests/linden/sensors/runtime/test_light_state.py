@@ -1,6 +1,6 @@
 """What shines is found anew when a lamp, a light or the sun changes, and only then."""
 
-from linden.maps.library import HOME_MAP, MapLibrary
+from home_map import home_map
 from linden.protocol.values.episode import CLEAR_NOON, EpisodeSettings
 from linden.scenery.mesh import LampOf
 from linden.sensors.runtime.light_state import LightStateCache
@@ -10,7 +10,7 @@ LIGHTS = 1 << LampOf.TRAFFIC_RED | 1 << LampOf.TRAFFIC_YELLOW | 1 << LampOf.TRAF
 
 
 def test_what_shines_is_found_anew_when_something_changes() -> None:
-    episode, shining = World(MapLibrary().load(HOME_MAP), EpisodeSettings()).episode, LightStateCache()
+    episode, shining = World(home_map(), EpisodeSettings()).episode, LightStateCache()
     day = shining.of(episode)
     assert shining.of(episode) is day
     assert not (day.lights | LIGHTS != LIGHTS).any()

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from fakes.solids import box, described, floor
+from home_map import home_map
 from linden.background import checkpoint
 from linden.blueprints.library import BlueprintLibrary
 from linden.geometry import compose, rotation_matrix
-from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+from linden.maps.library import LoadedMap, MapLibrary
 from linden.protocol.values.enums import TrafficLightState
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Rotation, Transform, Vector3D
@@ -25,7 +26,7 @@ STEP_S = 0.05
 
 @pytest.fixture(scope="module")
 def world_map() -> LoadedMap:
-    return MapLibrary().load(HOME_MAP)
+    return home_map()
 
 
 @pytest.fixture(scope="module")

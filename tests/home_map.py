@@ -1,0 +1,12 @@
+"""The built-in map as a server has it: derived once on a machine, read once in a process of tests."""
+
+from functools import cache
+
+from linden.maps.cache import MapCache
+from linden.maps.library import HOME_MAP, LoadedMap, MapLibrary
+
+
+@cache
+def home_map() -> LoadedMap:
+    """Return Linden's map; no test changes it. tests/linden/maps/test_cache.py compares it with one derived anew."""
+    return MapLibrary((), MapCache.of_user().facts_of).load(HOME_MAP)
