@@ -35,6 +35,8 @@ WITH_WALLS = [2.0, 50.0, 1.0, 0.6, True, True, True]
 GREEDY = {"channels": "4096", "points_per_second": "20000000"}
 LONGEST_TICK_S = 0.1
 """What no work of another client may exceed: twice a tick of 20 Hz."""
+LONGEST_TICK_OF_MANY_OBJECTS_S = 0.25
+"""What work may take of a tick that makes hundreds of thousands of objects: Python collects garbage among them once."""
 GONE = (EOFError, OSError, UnicodeDecodeError)
 
 on_linux = pytest.mark.skipif(
@@ -108,7 +110,7 @@ def test_work_that_holds_the_lock_is_seen_in_the_worst_tick() -> None:
         Meanwhile(server) as others,
     ):
         raw.call("copy_opendrive_to_file", ONE_ROAD, WITHOUT_WALLS)
-    assert others.worst_s > 2.0 * LONGEST_TICK_S
+    assert others.worst_s > LONGEST_TICK_OF_MANY_OBJECTS_S
 
 
 @on_linux
@@ -277,7 +279,7 @@ def test_a_recording_of_a_hundred_thousand_frames_is_read_beside_the_ticks_of_ot
         ("show_recorder_file_info", "long.log", False),
         ("replay_file", "long.log", -1.0, 0.0, 0, False, AT_ORIGIN),
     ):
-        assert worst_tick_s(server, partial(raw.call, *call)) < LONGEST_TICK_S
+        assert worst_tick_s(server, partial(raw.call, *call)) < LONGEST_TICK_OF_MANY_OBJECTS_S
     raw.call("stop_replayer", False)
     path.unlink()
 
