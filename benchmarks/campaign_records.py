@@ -74,10 +74,17 @@ def main() -> None:
     table = DriveTable(folder, schema_of(plan.parameters()), arguments.block, arguments.jobs)
     pool = Pool(Processes(PlayerSpec(f"{Path(__file__).stem}:open_nothing")), arguments.workers)
     memory, began_s, began_cpu_s, done = [], time.perf_counter(), time.process_time(), 0
+    given: dict[int, dict[str, object]] = {}  # jobs in work, as a campaign's command holds them
+
+    def jobs() -> Iterator[Job]:
+        for number in table.pending(arguments.jobs):
+            given[number] = plan.job(number)
+            yield Job(number, given[number])
+
     try:
-        for answer in pool.play(Job(number, plan.job(number)) for number in table.pending(arguments.jobs)):
+        for answer in pool.play(jobs()):
             assert isinstance(answer, Done)
-            job = plan.job(answer.number)
+            job = given.pop(answer.number)
             names = ("id", "kind", "subject", "identity", "town", "weather", "vehicles", "walkers", "seed")
             row = {"number": answer.number, "agent": job["agent_name"], **{name: job[name] for name in names}}
             table.add({**row, **{f"parameter_{k}": v for k, v in job["parameters"].items()}, **answer.value})

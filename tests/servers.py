@@ -37,15 +37,21 @@ class RunningServer:
         return self.log_file.read_text("utf-8")
 
 
+SERVE = ("-m", "linden.cli", "serve")
+
+
 @contextmanager
-def running_server(*options: str) -> Iterator[RunningServer]:
-    """Start ``linden serve --port 0`` with these options; end it at the end of the block."""
+def running_server(*options: str, program: tuple[str, ...] = SERVE) -> Iterator[RunningServer]:
+    """Start ``linden serve --port 0`` with these options; end it at the end of the block.
+
+    ``program`` are the arguments of Python in its place.
+    """
     with tempfile.TemporaryDirectory() as folder:
         log_file = Path(folder) / "stderr.txt"
         began_s = time.monotonic()
         with log_file.open("w", encoding="utf-8") as log:
             process = subprocess.Popen(
-                [sys.executable, "-m", "linden.cli", "serve", "--port", "0", *options],
+                [sys.executable, *program, "--port", "0", *options],
                 stdout=subprocess.PIPE,
                 stderr=log,
                 text=True,

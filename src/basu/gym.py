@@ -1,6 +1,7 @@
 """A gymnasium environment on the benchmark's own episode.
 
-After ``import basu.gym``, ``gymnasium.make("basu/Linden-v0")`` makes one.
+After ``import basu.gym``, ``gymnasium.make("basu/Linden-v0")`` makes one, and ``gymnasium.make_vec`` several at once:
+each in a process with a simulator of its own (`basu.gym_vector`).
 
 Action, ``Box(2)`` in -1..1: ``[pedals, steer]``. Positive pedals are the throttle, negative ones the brake; positive
 steer turns right. One step is 0.05 s of simulated time.
@@ -114,8 +115,8 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
             self._spec = _route_spec(
                 routes, route_id, vehicle, Traffic(vehicles, walkers), weather, timeout_s, with_scenarios=with_scenarios
             )
-        self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
-        self.observation_space: gymnasium.spaces.Space[Any] = gymnasium.spaces.Dict({**_boxes()})
+        self.action_space = action_space()
+        self.observation_space: gymnasium.spaces.Space[Any] = observation_space()
         self._resources = contextlib.ExitStack()
         simulator: Simulator = self._resources.enter_context(simulator_for(options))
         self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
@@ -237,6 +238,16 @@ class _Preview:
         return table
 
 
+def action_space() -> gymnasium.spaces.Space[NDArray[np.float32]]:
+    """The space of actions: pedals and steer."""
+    return gymnasium.spaces.Box(-1.0, 1.0, (2,), np.float32)
+
+
+def observation_space() -> gymnasium.spaces.Dict:
+    """The space of observations that the module's docstring describes."""
+    return gymnasium.spaces.Dict({**_boxes()})
+
+
 def _clipped(values: NDArray[np.float64], box: gymnasium.spaces.Box) -> NDArray[np.float32]:
     """The values within the bounds of their box."""
     clipped: NDArray[np.float32] = np.clip(values.astype(np.float32), box.low, box.high)
@@ -292,7 +303,11 @@ def _route_spec(
     )
 
 
-gymnasium.register(id="basu/Linden-v0", entry_point="basu.gym:ShuttleEnv")
+VECTOR = "basu.gym_vector:ShuttleVectorEnv"
+gymnasium.register(id="basu/Linden-v0", entry_point="basu.gym:ShuttleEnv", vector_entry_point=VECTOR)
 gymnasium.register(
-    id="basu/LindenTraffic-v0", entry_point="basu.gym:ShuttleEnv", kwargs={"vehicles": 20, "walkers": 10}
+    id="basu/LindenTraffic-v0",
+    entry_point="basu.gym:ShuttleEnv",
+    vector_entry_point=VECTOR,
+    kwargs={"vehicles": 20, "walkers": 10},
 )

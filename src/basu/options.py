@@ -358,6 +358,14 @@ class RunOptions(Settings):
             repeats=False,
         ),
     ] = False
+    ros1: Annotated[
+        bool,
+        Option(
+            help="publish the run on ROS 1 while it lasts, at the roscore of ROS_MASTER_URI",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
     output: Output = Path("runs")
     series: Annotated[
         str | None,

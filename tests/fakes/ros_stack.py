@@ -1,16 +1,16 @@
-"""ROS 2 software that drives `basu run ros` badly: each kind of failure after some good commands. Run as a process."""
+"""ROS software that drives `basu run ros` or `ros1` badly: each kind of failure after some good commands. A process."""
 
 import sys
 
-from basu.ros.dds import Node
+from basu.ros import dds, ros1
 from basu.ros.topics import Message, control_of, odometry_of
 
 GOOD = 5  # commands before the failure
 LONGEST_S = 60.0
 
 
-def main(kind: str) -> None:
-    node = Node("stack")
+def main(kind: str, generation: str = "ros2") -> None:
+    node = ros1.Node("stack") if generation == "ros1" else dds.Node("stack")
     seen, told = odometry_of("hero"), control_of("hero")
     node.listen(seen)
     node.announce(told)

@@ -22,6 +22,7 @@ from basu.files import module_of
 
 BUILT_IN = {
     "autoware": "basu.agents.ros.autoware:AutowareAgent",
+    "autoware-ai": "basu.agents.ros.autoware_ai:AutowareAiAgent",
     "basic": "basu.agents.builtin.basic:BasicAgent",
     "behavioral": "basu.agents.builtin.behavioral:BehavioralAgent",
     "behavioral-cautious": "basu.agents.builtin.behavioral:CautiousAgent",
@@ -34,6 +35,7 @@ BUILT_IN = {
     "human": "basu.agents.builtin.basic:HumanAgent",
     "incident": "basu.agents.builtin.incident",
     "ros": "basu.agents.ros.lockstep:RosAgent",
+    "ros1": "basu.agents.ros.ros1:Ros1Agent",
 }
 
 LOAD_LIMIT_S = 120.0  # of wall time: what an agent imports may be large

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
 
-from basu.campaigns.campaign_folder import PROGRESS_FILE, SCRATCH, STOP_FILE, begin, locked
+from basu.campaigns.campaign_folder import CAMPAIGN_FILE, PROGRESS_FILE, SCRATCH, STOP_FILE, begin, locked
 from basu.campaigns.columns import schema_of
 from basu.campaigns.drive_table import DriveTable, journal_rows, open_drives
 from basu.campaigns.looks import Looks
@@ -18,6 +18,8 @@ from basu.campaigns.plan import CampaignPlan, plan_of
 from basu.campaigns.player import DriveDone, PlayerSettings, drive_player
 from basu.campaigns.records import Records
 from basu.campaigns.settings import read_campaign
+from basu.campaigns.storage import Mirror, Store, fetch
+from basu.errors import UserError
 from basu.jobs.job import Done, Job, Lost, versions
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from basu.campaigns.search.strands import Strands
     from basu.jobs.job import PlayerSpec
     from basu.jobs.pool import Backend
 
@@ -39,7 +42,8 @@ class RunSettings:
     """How a campaign is worked off; nothing of it changes a result."""
 
     file: Path
-    output: Path  # the parent of the campaign's folder
+    output: Path  # the parent of the campaign's folder on this machine
+    store: str | None = None  # the address of the parent on a store, to which results are copied
     resume: bool = False
     workers: int | None = None  # None: one for each processor
     drives: int | None = None  # only the first so many
@@ -56,10 +60,14 @@ def run_campaign(settings: RunSettings) -> int:
     plan = plan_of(read_campaign(settings.file), settings.file)
     folder = settings.output / plan.campaign.name
     schema = schema_of(plan.parameters(), plan.metric_files)
+    store = None if settings.store is None else Store(f"{settings.store.rstrip('/')}/{plan.campaign.name}")
     with locked(folder):
+        if store is not None:
+            _take_up_store(store, folder, resume=settings.resume)
         backend, workers = _backend(settings, drive_player(_player_settings(plan, folder, settings)))
         begin(folder, plan, settings.file, resume=settings.resume)
-        run = _Run(plan, folder, DriveTable(folder, schema, plan.campaign.block, plan.size), settings)
+        table = DriveTable(folder, schema, plan.campaign.block, plan.size)
+        run = _Run(plan, folder, table, settings, None if store is None else Mirror(folder, store))
         pool = Pool(
             backend,
             max(1, min(workers, run.limit - run.table.number)),
@@ -80,9 +88,13 @@ def describe(file: Path) -> str:
     for part in plan.parts:
         names = list(dict.fromkeys(subject.name for subject in part.subjects))
         shown = ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")
+        over = f"{len(part.traffic)} traffics, {part.seeds.number} seeds"
+        if part.search is not None:
+            numbers = ", ".join(dict.fromkeys(each.name for space in part.search.spaces for each in space))
+            over = f"{part.seeds.number} seeds, {sum(part.search.sizes)} drives of a search over {numbers}"
         lines.append(
-            f"drives    {shown}: {len(part.subjects)} variants, {len(part.weather)} weathers, "
-            f"{len(part.traffic)} traffics, {part.seeds.number} seeds: {part.size} conditions"
+            f"drives    {shown}: {len(part.subjects)} variants, {len(part.weather)} weathers, {over}: "
+            f"{part.size} conditions"
         )
     return "\n".join([*lines, f"in all    {plan.conditions} conditions, {plan.size} drives"])
 
@@ -119,15 +131,20 @@ def _backend(settings: RunSettings, player: PlayerSpec) -> tuple[Backend[Any], i
 class _Run:
     """One command at work on a campaign."""
 
-    def __init__(self, plan: CampaignPlan, folder: Path, table: DriveTable, settings: RunSettings) -> None:
+    def __init__(
+        self, plan: CampaignPlan, folder: Path, table: DriveTable, settings: RunSettings, mirror: Mirror | None
+    ) -> None:
+        self._mirror = mirror
         self.plan, self.folder, self.table, self._settings = plan, folder, table, settings
         self.limit = plan.size if settings.drives is None else min(plan.size, settings.drives)
         names = [agent.name for agent in plan.agents]
         self._records = Records(folder, plan.campaign.keep)
+        self._strands = _strands(plan, folder)
         self._looks = Looks(plan.campaign.until, names, plan.campaign.confidence, plan.campaign.block)
         self._failures = dict.fromkeys(names, 0)
         self._began_s, self._written_s = time.monotonic(), 0.0
         self._driven = 0  # by this command
+        self._given: dict[int, dict[str, Any]] = {}  # jobs in work
 
     def drive(self, pool: Pool[Any]) -> int:
         """Drive what is left; the exit code.
@@ -155,6 +172,8 @@ class _Run:
                 self._stop(self._looks.stopped_after)
             self.table.close()
             self._progress(at_once=True)
+            if self._mirror is not None:
+                self._mirror.copy(with_journals=True)
         print(self._words(interrupted=interrupted))
         return Fault.USER.value if interrupted else 0
 
@@ -162,7 +181,7 @@ class _Run:
         """Count what earlier commands have left."""
         open_rows = {row["number"]: row for row in journal_rows(self.folder)}
         if any((self.folder / "drives").glob("*/block-*.parquet")):
-            columns = ["number", "agent", "judged", "success"]
+            columns = ["number", "agent", "judged", "success", "fault", "severity"]
             for batch in open_drives(self.folder).to_batches(columns=columns):
                 for row in batch.to_pylist():
                     if row["number"] not in open_rows:
@@ -176,18 +195,27 @@ class _Run:
 
     def _count(self, row: dict[str, Any]) -> None:
         self._looks.count(row)
+        if self._strands is not None:
+            self._strands.count(row)
         if row["success"] is False:
             self._failures[row["agent"]] += 1
 
-    def _jobs(self) -> Iterator[Job]:
-        """The jobs that are left, made one by one."""
+    def _jobs(self) -> Iterator[Job | None]:
+        """The jobs that are left, made one by one; None while a search waits for what came of others."""
         for number in self.table.pending(self.limit):
-            job = self.plan.job(number)
+            while (values := self._values(number)) is None:
+                yield None
+            job = self.plan.job(number, values)
+            self._given[number] = job
             yield Job(number, {**job, "bar": self._records.bar(job["agent_name"])})
+
+    def _values(self, number: int) -> dict[str, float] | None:
+        """What a job's search has chosen; None while it has not."""
+        return {} if self._strands is None else self._strands.values(number)
 
     def _take(self, answer: Done | Lost) -> None:
         """Write the row of a drive, and its folder before that."""
-        job = self.plan.job(answer.number)
+        job = self._given.pop(answer.number)
         row = {
             "number": answer.number,
             **{name: job[name] for name in ("id", "kind", "subject", "identity", "town", "weather", "seed")},
@@ -208,6 +236,8 @@ class _Run:
         self._count(row)
         if block is not None:
             self._looks.complete(block)
+            if self._mirror is not None:
+                self._mirror.copy()
         self._driven += 1
         self._progress()
 
@@ -234,16 +264,44 @@ class _Run:
     def _words(self, *, interrupted: bool) -> str:
         """How it ended."""
         done, left = self.table.number, self.limit - self.table.number
-        folder = f"campaign folder   {self.folder}"
+        where = self.folder if self._mirror is None else self._mirror.store.address
+        folder = f"campaign folder   {where}"
         if interrupted:
-            again = f"basu campaign run {self._settings.file} --output {self._settings.output} --resume"
+            output = self._settings.store or self._settings.output
+            work = f" --work {self._settings.output}" if self._settings.store else ""
+            again = f"basu campaign run {self._settings.file} --output {output}{work} --resume"
             return f"interrupted after {done} of {self.limit} drives; go on with `{again}`\n{folder}"
         if self._looks.stopped_after is not None:
             until = self.plan.campaign.until
             assert until is not None, "only a rule stops a campaign"
             said = f"every agent's success rate is known within {until.width:g}; {left} drives were not needed"
             return f"{done} drives: {said}\n{folder}"
-        return f"{done} drives\n{folder}\nreport            basu campaign report {self.folder}"
+        return f"{done} drives\n{folder}\nreport            basu campaign report {where}"
+
+
+def _take_up_store(store: Store, folder: Path, *, resume: bool) -> None:
+    """Fetch a campaign that goes on where this machine has no folder of it.
+
+    Raises:
+        UserError: the store has a campaign already, or none to go on with, or refuses.
+    """
+    is_there = CAMPAIGN_FILE in store.names()
+    if is_there and not resume:
+        raise UserError(
+            f"{store.address} holds a campaign already; add --resume to go on with it, or name another place with "
+            "--output"
+        )
+    if is_there and not (folder / CAMPAIGN_FILE).exists():
+        fetch(store, folder)
+
+
+def _strands(plan: CampaignPlan, folder: Path) -> Strands | None:
+    """The searches of a campaign; None where it has none, so that it needs no surrogate."""
+    if all(part.search is None for part in plan.parts):
+        return None
+    from basu.campaigns.search.strands import Strands  # noqa: PLC0415 - scipy and scikit-learn, an extra
+
+    return Strands(plan, folder)
 
 
 def lost_row(sentence: str) -> dict[str, Any]:

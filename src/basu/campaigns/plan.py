@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.agents.process.remote_agent import find_agent
+from basu.campaigns.search.part import SearchPart, SearchPlace, StrandKey
 from basu.campaigns.settings import AS_GIVEN, Campaign, OtherTraffic, Seeds
 from basu.campaigns.shuffle import Shuffle
 from basu.episode.world import weather_called
@@ -65,24 +66,40 @@ class Part:
     traffic: tuple[OtherTraffic, ...]
     seeds: Seeds
     has_scenarios: bool
+    search: SearchPart | None = None  # then the subjects are its cases
 
     @property
     def size(self) -> int:
         """The number of conditions."""
+        if self.search is not None:
+            return self.search.size
         return math.prod((len(self.subjects), len(self.weather), len(self.traffic), self.seeds.number))
 
     def digest(self) -> str:
         """SHA-256 of what decides over the conditions; paths of files do not."""
         subjects = [(each.kind, each.identity, each.digest) for each in self.subjects]
         others = [model.model_dump() for model in (*self.traffic, self.seeds)]
-        return digest_of([subjects, self.weather, others, self.has_scenarios])
+        found = [subjects, self.weather, others, self.has_scenarios]
+        return digest_of(found if self.search is None else [*found, self.search.decides()])
 
-    def condition(self, number: int) -> dict[str, Any]:
-        """The condition of a number; subjects change fastest and seeds slowest, so a beginning has all subjects."""
+    def condition(self, number: int, values: Mapping[str, float]) -> dict[str, Any]:
+        """The condition of a number; subjects change fastest and seeds slowest, so a beginning has all subjects.
+
+        ``values`` are what a search has chosen; empty without one.
+        """
+        if self.search is not None:
+            strand, _ = self.search.place(number)
+            _, weather, seed = self.search.chosen(strand)
+            return self._condition(_case(self.search.playable(strand, values)), weather, self.traffic[0], seed)
         rest, subject = divmod(number, len(self.subjects))
-        rest, weather = divmod(rest, len(self.weather))
-        seed, traffic = divmod(rest, len(self.traffic))
-        chosen, others = self.subjects[subject], self.traffic[traffic]
+        rest, at_weather = divmod(rest, len(self.weather))
+        at_seed, traffic = divmod(rest, len(self.traffic))
+        return self._condition(
+            self.subjects[subject], self.weather[at_weather], self.traffic[traffic], self.seeds.first + at_seed
+        )
+
+    def _condition(self, chosen: Subject, weather: str, others: OtherTraffic, seed: int) -> dict[str, Any]:
+        """A condition as plain values."""
         return {
             "kind": chosen.kind,
             "subject": chosen.name,
@@ -91,11 +108,11 @@ class Part:
             "town": chosen.town,
             "parameters": chosen.parameters,
             "scenarios": self.has_scenarios,
-            "weather": self.weather[weather],
+            "weather": weather,
             "vehicles": others.vehicles,
             "walkers": others.walkers,
             "density_per_km": others.density_per_km,
-            "seed": self.seeds.first + seed,
+            "seed": seed,
             "digest": chosen.digest,
         }
 
@@ -122,16 +139,13 @@ class CampaignPlan:
         """The number of jobs."""
         return self.conditions * len(self.agents)
 
-    def job(self, number: int) -> dict[str, Any]:
-        """The job of a number as plain data, with its id."""
+    def job(self, number: int, values: Mapping[str, float] | None = None) -> dict[str, Any]:
+        """The job of a number as plain data, with its id; ``values`` are what its search has chosen."""
         place, agent = divmod(number, len(self.agents))
         if self.campaign.order == "shuffled":
             place = Shuffle(self.conditions, self.campaign.shuffle_seed)(place)
-        for part in self.parts:
-            if place < part.size:
-                break
-            place -= part.size
-        condition, chosen = part.condition(place), self.agents[agent]
+        index, place = self._part(place)
+        condition, chosen = self.parts[index].condition(place, values or {}), self.agents[agent]
         fixed = {
             **{key: value for key, value in condition.items() if key not in {"file", "parameters"}},
             "agent": [chosen.name, chosen.digest],
@@ -139,6 +153,31 @@ class CampaignPlan:
         }
         condition.pop("digest")
         return {"id": digest_of(fixed)[:ID_DIGITS], "agent": chosen.typed, "agent_name": chosen.name, **condition}
+
+    def search_place(self, number: int) -> SearchPlace | None:
+        """The place of a job in its search; None where it is in none."""
+        place, agent = divmod(number, len(self.agents))
+        index, place = self._part(place)
+        search = self.parts[index].search
+        if search is None:
+            return None
+        strand, within = search.place(place)
+        return SearchPlace(index, StrandKey(strand, agent), within)
+
+    def search_number(self, place: SearchPlace) -> int:
+        """The number of the job at a place of a search."""
+        search = self.parts[place.part].search
+        assert search is not None, "the place is one of a search"
+        before = sum(part.size for part in self.parts[: place.part])
+        return (before + search.number(place.key.strand, place.place)) * len(self.agents) + place.key.agent
+
+    def _part(self, place: int) -> tuple[int, int]:
+        """The part of a condition, and its place there."""
+        for index, part in enumerate(self.parts):
+            if place < part.size:
+                return index, place
+            place -= part.size
+        raise AssertionError("the number is one of the campaign")
 
     def parameters(self) -> dict[str, type]:
         """The names of all parameters with their types, in alphabetical order."""
@@ -224,11 +263,33 @@ def _part(drives: Drives, campaign: Campaign, source: Path, scenario_files: Sequ
         if name != AS_GIVEN:
             weather_called(name)
     traffic = drives.traffic or campaign.traffic
+    if drives.is_adaptive:
+        return _search(drives, campaign, weather, scenario_files)
     if drives.cases:
         subjects, traffic = _cases(drives, scenario_files), (OtherTraffic(),)
     else:
         subjects = _routes(drives, source)
     return Part(subjects, weather, traffic, drives.seeds or campaign.seeds, drives.scenarios)
+
+
+def _search(drives: Drives, campaign: Campaign, weather: tuple[str, ...], scenario_files: Sequence[Path]) -> Part:
+    """A [[drives]] with a search or an estimate.
+
+    Raises:
+        UserError: a parameter cannot be searched over, or the extra is not installed.
+    """
+    from basu.campaigns.search.space import space_of  # noqa: PLC0415 - numpy, which other campaigns need later
+    from basu.campaigns.search.strands import proposer_of  # noqa: PLC0415 - scipy and scikit-learn, an extra
+
+    fixed = tuple((name, str(value)) for name, value in drives.fixed.items())
+    cases = varied(cases_of(drives.cases, scenario_files), Variation(fixed=fixed))
+    normal = {} if drives.estimate is None else drives.estimate.normal
+    spaces = tuple(space_of(case, drives.vary, drives.fixed, normal) for case in cases)
+    seeds = drives.seeds or campaign.seeds
+    part = SearchPart(cases, spaces, fixed, weather, seeds, drives.search, drives.estimate, ())
+    part = replace(part, sizes=proposer_of(part, 0).sizes)
+    subjects = tuple(_case(case) for case in cases)
+    return Part(subjects, weather, (OtherTraffic(),), seeds, drives.scenarios, part)
 
 
 def _routes(drives: Drives, source: Path) -> tuple[Subject, ...]:

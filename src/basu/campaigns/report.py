@@ -15,6 +15,7 @@ from basu.campaigns.conclusions import breakdown, costs, means, pairs, rates, se
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.plan import CASE
 from basu.campaigns.records import FAILURE, FAULT, SAMPLE, folder_of, kept_in
+from basu.campaigns.search.part import SEARCH
 from basu.errors import UserError
 from basu.files import read_json, write_bytes
 from basu.output.report.documents import read_run
@@ -32,6 +33,8 @@ from basu.output.report.templates import render
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
     from xml.etree.ElementTree import Element
+
+    from markupsafe import Markup
 
     from basu.campaigns.records import Kept
 
@@ -60,7 +63,7 @@ def write_campaign_report(folder: Path) -> Path:
 def campaign_page(folder: Path, document: dict[str, Any], table: pa.Table) -> bytes:
     """The page of a campaign with this document and these rows."""
     agents, confidence = document["agents"], document["settings"]["confidence"]
-    parts = breakdown(table, agents, confidence)
+    parts, search = breakdown(table, agents, confidence), _search(folder, table, confidence)
     body = render(
         "templates/campaign.j2",
         name=document["name"],
@@ -68,11 +71,12 @@ def campaign_page(folder: Path, document: dict[str, Any], table: pa.Table) -> by
         remarks=list(_remarks(folder, document, table)),
         confidence=confidence,
         agents=agents,
+        search=search,
         rates=rates(table, agents, confidence),
-        pairs=pairs(table, agents),
+        pairs=pairs(table, agents) if search is None else [],
         breakdown=parts[:MOST_ROWS],
         left_out=max(0, len(parts) - MOST_ROWS),
-        studies=_shown(studies_of(table, agents)),
+        studies=_shown(studies_of(table, agents)) if search is None else [],
         worst=_worst(folder, agents),
         means=means(table, agents, confidence),
         services=services(table, agents, confidence),
@@ -81,6 +85,31 @@ def campaign_page(folder: Path, document: dict[str, Any], table: pa.Table) -> by
     )
     style = f"{card_style()}\n{STYLE_FILE.read_text(encoding='utf-8')}"
     return page(f"Campaign {document['name']}", body, style=style)
+
+
+def _search(folder: Path, table: pa.Table, confidence: float) -> Markup | None:
+    """The sections of searches and estimates; None where the campaign has none."""
+    if not (folder / SEARCH).is_dir():
+        return None
+    from basu.campaigns.search.boundary_map import boundary_map  # noqa: PLC0415 - scikit-learn, an extra
+    from basu.campaigns.search.findings import boundary_in, rare_in, searches_in  # noqa: PLC0415 - likewise
+
+    found = searches_in(folder, table)
+    boundaries = [boundary_in(drives) for drives in found if drives.about["kind"] == "search"]
+    return render(
+        "templates/campaign_search.j2",
+        boundaries=[
+            {
+                "title": each.drives.title,
+                "sentences": each.sentences,
+                "picture": boundary_map(each),
+                "reach": each.reach,
+            }
+            for each in boundaries
+        ],
+        estimates=[rare_in(drives, confidence) for drives in found if drives.about["kind"] == "estimate"],
+        confidence=confidence,
+    )
 
 
 def _summary(document: dict[str, Any], table: pa.Table) -> str:

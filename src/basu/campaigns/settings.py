@@ -43,8 +43,50 @@ class Seeds(Table):
     number: Annotated[int, Field(ge=1)] = 1
 
 
+class Search(Table):
+    """Adaptive drives towards the boundary between success and failure, for each case and agent."""
+
+    drives: Annotated[int, Field(ge=8, le=1_000)]
+    first: Annotated[int | None, Field(ge=4)] = None  # space-filling ones; None: a third of all
+    batch: Annotated[int, Field(ge=1, le=100)] = 8  # proposals from one state of knowledge
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    @model_validator(mode="after")
+    def _has_room(self) -> Search:
+        if self.first is not None and self.first > self.drives:
+            raise ValueError("first is more than drives; leave some drives for the search")
+        return self
+
+    @property
+    def space_filling(self) -> int:
+        """The number of drives in the first round."""
+        return max(4, self.drives // 3) if self.first is None else self.first
+
+
+class Normal(Table):
+    """A normal distribution, cut off at the ends of its parameter's range."""
+
+    mean: float
+    deviation: Annotated[float, Field(gt=0.0)]
+
+
+class Estimate(Table):
+    """Weighted drives that estimate the probability of a rare failure, for each case and agent."""
+
+    drives: Annotated[int, Field(ge=10, le=1_000_000)]  # in the estimate
+    learn: Annotated[int, Field(ge=0, le=10_000)] = 0  # drives before, which move the proposal to the failures
+    batch: Annotated[int, Field(ge=10, le=10_000)] = 50  # drives from one state of knowledge
+    elite: Annotated[float, Field(gt=0.0, le=0.5)] = 0.1  # share of the most severe drives that moves the proposal
+    plain: Annotated[float, Field(ge=0.01, le=1.0)] = 0.1  # share of drives from the distribution itself
+    normal: dict[str, Normal] = {}  # by parameter; all others are uniform over their range
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
 Weathers = Annotated[tuple[str, ...], Field(min_length=1)]
 Traffics = Annotated[tuple[OtherTraffic, ...], Field(min_length=1)]
+
+
+DESIGNS = ("sweep", "grid", "search", "estimate")
 
 
 class Drives(Table):
@@ -58,6 +100,8 @@ class Drives(Table):
     sweep: Annotated[int | None, Field(ge=1)] = None  # samples of each case, a Latin hypercube
     sweep_seed: Annotated[int, Field(ge=0)] = 0
     grid: Annotated[int | None, Field(ge=2)] = None  # values of every number
+    search: Search | None = None  # towards the boundary of failure
+    estimate: Estimate | None = None  # of the probability of failure
     vary: tuple[str, ...] = ()  # the parameters to sample; empty: all
     weather: Weathers | None = None  # None: that of the campaign
     traffic: Traffics | None = None
@@ -69,11 +113,17 @@ class Drives(Table):
             raise ValueError("name either routes = FILE or cases = [...]")
         if self.cases and (self.route_ids or self.traffic is not None):
             raise ValueError("route_ids and traffic are for routes; a case has its own place and road users")
-        if self.routes and (self.fixed or self.sweep or self.grid or self.vary):
-            raise ValueError("set, sweep, grid and vary are for cases; a route has no parameters")
-        if self.sweep is not None and self.grid is not None:
-            raise ValueError("sweep and grid are two designs; choose one")
+        designs = [name for name in DESIGNS if getattr(self, name) is not None]
+        if self.routes and (self.fixed or designs or self.vary):
+            raise ValueError("set, sweep, grid, search, estimate and vary are for cases; a route has no parameters")
+        if len(designs) > 1:
+            raise ValueError(f"{' and '.join(designs)} are two designs; choose one")
         return self
+
+    @property
+    def is_adaptive(self) -> bool:
+        """Whether drives depend on what came of others."""
+        return self.search is not None or self.estimate is not None
 
 
 class Until(Table):
@@ -122,6 +172,18 @@ class Campaign(Table):
     keep: Keep = Keep()
     work: Work = Work()
 
+    @model_validator(mode="after")
+    def _adaptive_alone(self) -> Campaign:
+        adaptive = [drives.is_adaptive for drives in self.drives]
+        if any(adaptive) and not all(adaptive):
+            raise ValueError(
+                "drives of a search lie where failures are, so their rates mean nothing beside others; put them into a "
+                "campaign of their own"
+            )
+        if any(adaptive) and (self.order != "given" or self.until is not None):
+            raise ValueError("a search chooses its order and its end; leave out order and [until]")
+        return self
+
     @property
     def block(self) -> int:
         """Drives in a block: from one look to the next, where there are looks."""
@@ -168,7 +230,7 @@ def _sentence(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
     if kind == "too_short":
         return f"{place} is empty, so there is nothing to drive; name at least one"
     if kind == "value_error":
-        return f"{place}: {mistake['ctx']['error']}"
+        return f"{place}: {mistake['ctx']['error']}".removeprefix(": ")
     return f"{place} is {mistake['input']!r}; {mistake['msg'][0].lower()}{mistake['msg'][1:]}"
 
 
@@ -178,5 +240,7 @@ _TABLES: dict[str, type[Table]] = {
     "work": Work,
     "seeds": Seeds,
     "traffic": OtherTraffic,
+    "search": Search,
+    "estimate": Estimate,
     "drives": Drives,
 }

@@ -18,7 +18,7 @@ def add_campaign(campaign: argparse.ArgumentParser) -> None:
         ("report", report_command, "write campaign.html: what may be concluded from the drives so far"),
     ):
         one = actions.add_parser(name, help=text, description=command.__doc__)
-        one.add_argument("folder", type=Path, metavar="DIR", help="of a campaign, such as campaigns/NAME")
+        one.add_argument("folder", metavar="DIR", help="of a campaign, such as campaigns/NAME or s3://BUCKET/NAME")
         one.set_defaults(command=command)
 
 
@@ -27,10 +27,16 @@ def _add_run(run: argparse.ArgumentParser) -> None:
     run.add_argument("file", type=Path, metavar="FILE", help="campaign.toml; docs/how-to/campaigns.md has every key")
     run.add_argument(
         "--output",
+        default="campaigns",
+        metavar="DIR",
+        help="parent of the folder, also an address such as s3://BUCKET (default: %(default)s)",
+    )
+    run.add_argument(
+        "--work",
         type=Path,
         default=Path("campaigns"),
         metavar="DIR",
-        help="parent of the folder (default: %(default)s)",
+        help="parent of the folder on this machine where --output is an address (default: %(default)s)",
     )
     run.add_argument("--resume", action="store_true", help="go on with a campaign that was interrupted or killed")
     run.add_argument("--workers", type=int, metavar="N", help="drives at the same time (default: one a processor)")
@@ -53,9 +59,13 @@ def run_command(arguments: argparse.Namespace) -> int:
     if arguments.dry_run:
         print(describe(arguments.file))
         return 0
+    from basu.campaigns.storage import is_address  # noqa: PLC0415 - likewise
+
+    is_remote = is_address(arguments.output)
     settings = RunSettings(
         file=arguments.file,
-        output=arguments.output,
+        output=arguments.work if is_remote else Path(arguments.output),
+        store=arguments.output if is_remote else None,
         resume=arguments.resume,
         workers=arguments.workers,
         drives=arguments.drives,
@@ -68,14 +78,18 @@ def run_command(arguments: argparse.Namespace) -> int:
 def status_command(arguments: argparse.Namespace) -> int:
     """Show how far a campaign has come: drives, success of each agent, the time left."""
     from basu.campaigns.status import status  # noqa: PLC0415 - pyarrow, which `--help` does not need
+    from basu.campaigns.storage import local_copy  # noqa: PLC0415 - likewise
 
-    print(status(arguments.folder))
+    with local_copy(arguments.folder) as (folder, _):
+        print(status(folder))
     return 0
 
 
 def report_command(arguments: argparse.Namespace) -> int:
     """Write campaign.html into the folder of a campaign."""
     from basu.campaigns.report import write_campaign_report  # noqa: PLC0415 - the plots, likewise
+    from basu.campaigns.storage import local_copy, written_page  # noqa: PLC0415 - likewise
 
-    print(f"report  {write_campaign_report(arguments.folder)}")
+    with local_copy(arguments.folder) as (folder, store):
+        print(f"report  {written_page(store, write_campaign_report(folder))}")
     return 0

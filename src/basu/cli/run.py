@@ -117,10 +117,14 @@ def run_agent(arguments: argparse.Namespace) -> int:
         from basu.ros.dds_types import require as require_dds  # noqa: PLC0415 - an extra
 
         require_dds()
-    if options.rosbag is not None or options.ros2:
+    if options.rosbag is not None or options.ros2 or options.ros1:
         from basu.ros.bag_file import require as require_rosbags  # noqa: PLC0415 - an extra
 
         require_rosbags()
+    if options.ros1:
+        from basu.ros.ros1 import require as require_roscore  # noqa: PLC0415 - rosbags, an extra
+
+        require_roscore()
     scoring = scoring_of(arguments, config.scoring)
     from basu.metrics.registry import user_metrics  # noqa: PLC0415 - numpy, likewise
 

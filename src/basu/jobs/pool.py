@@ -70,8 +70,10 @@ class Pool(Generic[W]):
         self._failed_starts = 0
         self._ready_once: set[W] = set()
 
-    def play(self, jobs: Iterable[Job]) -> Iterator[Done | Lost]:
+    def play(self, jobs: Iterable[Job | None]) -> Iterator[Done | Lost]:
         """Play all jobs; what comes of each, in the order in which they end.
+
+        ``jobs`` may yield None where the next job depends on an answer; it is continued after the next answers.
 
         Raises:
             UserError, SimulatorError: a worker cannot work.
@@ -99,7 +101,7 @@ class Pool(Generic[W]):
         self._workers.clear()
         self._backend.close()
 
-    def _next(self, waiting: Iterator[Job]) -> tuple[Job, int] | None:
+    def _next(self, waiting: Iterator[Job | None]) -> tuple[Job, int] | None:
         """The next job with the number of its attempt; None where there is none at present."""
         if self._again:
             return self._again.popleft()

@@ -1,5 +1,6 @@
-"""ROS from the benchmark: messages, frames, bags and DDS, without an installation of ROS.
+"""ROS from the benchmark: messages, frames, bags and DDS without ROS, and ROS 1 where rospy is installed.
 
 ``frames`` turns CARLA's left-handed values into ROS's; ``types`` makes messages from their definitions. The modules of
-sensors and vehicles fill messages, and ``topics`` names the topics. ``bag_file`` writes bags, ``dds`` publishes.
+sensors and vehicles fill messages, and ``topics`` names the topics. ``bag_file`` writes bags. ``dds`` and ``ros1``
+publish.
 """

@@ -54,6 +54,9 @@ def is_local() -> bool:
 class Node:
     """A node of ROS 2 on a domain: it publishes messages of any of our types and keeps what it receives."""
 
+    kind, settings = "ROS 2", "ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY"
+    missed_s = 12.0  # a killed node's lease lasts 10 s
+
     def __init__(self, name: str, domain: int | None = None) -> None:
         """Join a domain, by default that of the environment.
 
@@ -68,6 +71,7 @@ class Node:
         self.types = types_of(Generation.ROS_2)
         self.name = name
         self.domain = domain_of_environment() if domain is None else domain
+        self.realm = f"the domain {self.domain}"
         self._writers: dict[str, Any] = {}
         self._readers: dict[str, tuple[Topic, Any]] = {}
         self._waits: dict[tuple[Topic, ...], Any] = {}

@@ -12,6 +12,8 @@ import numpy as np
 from basu.errors import UserError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from rosbags.typesys.store import Typestore
 
 DEFINITIONS = Path(__file__).parent / "definitions"
@@ -28,8 +30,8 @@ class Generation(enum.Enum):
 class Types:
     """The message types of one generation: those of Noetic or Humble, CARLA's, Autoware's and Ackermann's."""
 
-    def __init__(self, generation: Generation) -> None:
-        """Read all definitions.
+    def __init__(self, generation: Generation, foreign: Mapping[str, str] | None = None) -> None:
+        """Read all definitions; ``foreign`` are definitions of other versions, with all that they hold, by type.
 
         Raises:
             UserError: rosbags is not installed.
@@ -42,9 +44,12 @@ class Types:
         is_first = generation is Generation.ROS_1
         self.store: Typestore = get_typestore(Stores.ROS1_NOETIC if is_first else Stores.ROS2_HUMBLE)
         own: dict[str, Any] = {}
+        for name, text in (foreign or {}).items():
+            found = get_types_from_msg(text, name)
+            own.update({each: found[each] for each in found if each not in self.store.fielddefs})
         for file in sorted(DEFINITIONS.glob("*/*.msg")):
             name = f"{file.parent.name}/msg/{file.stem}"
-            if name not in self.store.fielddefs:
+            if name not in self.store.fielddefs and name not in own:
                 own.update(get_types_from_msg(file.read_text(encoding="utf-8"), name))
         self.store.register(own)
 

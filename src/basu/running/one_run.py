@@ -77,7 +77,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     spec = _spec(session, agents, job)
     recording: list[RecordingManager] = []
     options = session.options
-    shown = options.hud is not None or options.viewer or options.ros2 or options.rosbag is not None
+    shown = options.hud is not None or options.viewer or options.ros2 or options.ros1 or options.rosbag is not None
     watched = shown or agents.person is not None
 
     def observers(live: Live) -> Sequence[BaseManager]:
@@ -183,13 +183,19 @@ def _viewer(options: RunOptions, live: Live) -> list[BaseManager]:
 
 
 def _ros(session: Session, live: Live) -> list[BaseManager]:
-    """The managers that publish the run on ROS 2 and write it as a bag, where ``--ros2`` and ``--rosbag`` are given."""
+    """The managers that publish the run and write it as a bag: for ``--ros2``, ``--ros1`` and ``--rosbag``."""
     options, say = session.options, (lambda _: None) if session.quiet else print
     managers: list[BaseManager] = []
     if options.ros2:
         from basu.output.ros.publish_manager import PublishManager  # noqa: PLC0415 - DDS, which is an extra
+        from basu.ros.dds import Node as Ros2Node  # noqa: PLC0415 - likewise
 
-        managers.append(PublishManager(live, say))
+        managers.append(PublishManager(live, Ros2Node, say))
+    if options.ros1:
+        from basu.output.ros.publish_manager import PublishManager  # noqa: PLC0415 - rosbags, which is an extra
+        from basu.ros.ros1 import Node as Ros1Node  # noqa: PLC0415 - likewise
+
+        managers.append(PublishManager(live, Ros1Node, say))
     if options.rosbag is not None:
         from basu.output.ros.bag_manager import BagManager  # noqa: PLC0415 - rosbags, which is an extra
         from basu.ros.types import Generation  # noqa: PLC0415 - likewise

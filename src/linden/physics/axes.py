@@ -13,6 +13,12 @@ def plane_axes(pitch_rad: float, yaw_rad: float, roll_rad: float) -> tuple[Axis,
     sp, cp = math.sin(pitch_rad), math.cos(pitch_rad)
     sy, cy = math.sin(yaw_rad), math.cos(yaw_rad)
     sr, cr = math.sin(roll_rad), math.cos(roll_rad)
+    return turned_axes(sp, cp, sy, cy, sr, cr)
+
+
+@kernel
+def turned_axes(sp: float, cp: float, sy: float, cy: float, sr: float, cr: float) -> tuple[Axis, Axis]:
+    """Return :func:`plane_axes` of the sines and cosines of pitch, yaw and roll."""
     return (cp * cy, cp * sy, sp), (cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, -cp * sr)
 
 

@@ -177,6 +177,8 @@ VEHICLE_WORK = np.dtype(
         ("along_turn_m", "f8", WHEELS),  # what a yaw rate adds to the contact's speed along the wheel
         ("across_turn_m", "f8", WHEELS),  # and across it
         ("brake_nm", "f8", WHEELS),
+        ("spin_nms", "f8", WHEELS),  # inertia over the step, N·m/(rad/s)
+        ("drag_nms", "f8", WHEELS),  # that and the wheel's damping
         # of the wheels, now
         ("along_mps", "f8", WHEELS),  # speed of the contact along the wheel
         ("across_mps", "f8", WHEELS),
@@ -186,6 +188,7 @@ VEHICLE_WORK = np.dtype(
         ("share", "f8", WHEELS),  # of the clutch's torque
         ("grip_nspm", "f8", WHEELS),  # what the tyre's push grows by with its sliding; 0 where the tyre lags
         ("ease", "f8", WHEELS),  # one over the resistance to a change of spin, rad/s/(N·m)
+        ("free_nm", "f8", WHEELS),  # torque without drive and brake
         # of the driver
         ("wants_to_go", "?"),  # throttle without brakes, in gear
         ("hand_braked", "?"),

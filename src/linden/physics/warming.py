@@ -27,7 +27,9 @@ def warm_up() -> None:
     ground = Ground.from_triangles(corners, [[0, 1, 2]])
     surface_under(ground, 0.1, 0.1, 0.0)
     ground.surfaces_under([[0.1, 0.1, 0.0]])
-    advance(Bodies(), ground, Statics.none(), 0.01)
+    bodies = Bodies()
+    advance(bodies, ground, Statics.none(), 0.01)
+    bodies.set_controls(np.empty(0, np.int32), np.empty((0, 7)))
 
 
 def compile_driving() -> None:

@@ -82,6 +82,8 @@ class Acceptor:
 
     def wait_s(self, now_s: float) -> float | None:
         """Return how long there is nothing to do by the clock, None where that is for ever."""
+        if self._closed_until_s is None and not self._silent[StreamPeer]:
+            return None
         due = [] if self._closed_until_s is None else [self._closed_until_s]
         due += (came_s + SILENT_SUBSCRIBER_S for came_s in islice(self._silent[StreamPeer].values(), 1))
         return max(0.0, min(due) - now_s) if due else None

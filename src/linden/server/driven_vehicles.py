@@ -52,6 +52,8 @@ class DrivenVehicles:
     waiting: list[HeldAnswer] = field(default_factory=list)
     """In the order in which the cars were destroyed."""
     _until_s: float | None = None  # how long the next frame waits at most
+    _last_ids: bytes = b""
+    _last: frozenset[int] = frozenset()  # the same
 
     def shown(self) -> None:
         """Note that a frame was published: the thread begins a step, at once or after that which it is at."""
@@ -59,7 +61,7 @@ class DrivenVehicles:
 
     def batch(self, commands: object) -> list[bytes]:
         """Note a batch, which ends a step, and return the answers that need not wait any longer."""
-        actor_ids = _actor_ids(commands)
+        actor_ids = self._ids_of(commands)
         if not actor_ids:
             return []
         self.actor_ids, self.steps = actor_ids, max(0, self.steps - 1)
@@ -67,6 +69,15 @@ class DrivenVehicles:
         return self._release(
             [one for one in self.waiting if one.actor_id not in actor_ids or (idle and not one.for_frame)]
         )
+
+    def _ids_of(self, commands: object) -> frozenset[int]:
+        """Return the actors of a batch; that of a Traffic Manager names the same ones in nearly every step."""
+        if not isinstance(commands, Controls):
+            return _actor_ids(commands)
+        packed = commands.actor_ids.tobytes()
+        if packed != self._last_ids:
+            self._last_ids, self._last = packed, frozenset(commands.actor_ids.tolist())
+        return self._last
 
     def destroyed(self, actor_id: object, answer: bytes, now_s: float, *, frames_come: bool) -> bool:
         """Return whether the answer to a destruction has to wait, and keep it where it has."""
@@ -102,8 +113,6 @@ class DrivenVehicles:
 
 def _actor_ids(commands: Any) -> frozenset[int]:  # noqa: ANN401 - as it came
     """Return the actors of a batch as it came; none where it is not a Traffic Manager's."""
-    if isinstance(commands, Controls):
-        return frozenset(commands.actor_ids.tolist())
     try:
         if any(command[0][0] in _OF_PROGRAMS for command in commands):
             return frozenset()

@@ -1,4 +1,4 @@
-"""The order of answers round a load, for a client that runs Traffic Managers.
+"""The order of answers round a load: when it begins, and what a client that runs Traffic Managers is answered when.
 
 When its load is answered, LibCarla's ``Simulator::LoadEpisode`` drops its ``Episode``, asks for the version and for
 ``get_episode_info``, and makes another. A Traffic Manager in asynchronous mode has a thread that goes on meanwhile and
@@ -8,10 +8,14 @@ and those calls are answered only when the client has its new episode.
 """
 
 import enum
+import math
 from dataclasses import dataclass
 
+from linden.protocol.wire.rpc import Call
 from linden.server.peers import RpcPeer
+from linden.server.rpc.context import Context
 
+LOAD = "load_new_episode"
 OF_A_LOAD = ("version", "get_episode_info")
 """What the loading thread calls between the answer to its load and its new episode; the last makes that episode."""
 
@@ -21,6 +25,8 @@ ASKING_S = 2.0
 """How long the calls of Traffic Managers wait for the episode to be asked for."""
 SETTLING_S = 0.005
 """What the client needs from the last answer to its new episode, with a margin: it is a few instructions."""
+LOADING_S = 0.5
+"""How long an answered load waits for its client to ask which episode there is."""
 
 
 class Phase(enum.Enum):
@@ -59,3 +65,41 @@ class LoadAnswers:
         if method == OF_A_LOAD[-1]:
             self.phase, self.until_s = Phase.SETTLING, now_s + SETTLING_S
         return method is not None
+
+
+class AnsweredLoad:
+    """Begins the load that has been answered, before a call or frame that has to find the new episode."""
+
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._until_s = math.inf  # when it begins in any case
+
+    def answered(self) -> None:
+        """Note that a load is about to be answered: the wait for its client begins anew."""
+        self._until_s = math.inf
+
+    def begin_before(self, peer: RpcPeer, call: Call, now_s: float) -> None:
+        """Begin an answered load before a call that has to find the new episode.
+
+        The client that loads asks for the version and the present episode first. Others go on in that episode
+        meanwhile, but not for long.
+        """
+        pending = self._context.pending_load
+        if pending is None:
+            return
+        is_due = self.is_due(now_s)
+        if peer.number != pending.client:
+            if is_due:
+                self._context.begin_pending_load()
+        elif call.method not in OF_A_LOAD:
+            self._context.begin_pending_load()
+        elif call.method == OF_A_LOAD[-1]:
+            self._until_s = now_s
+
+    def is_due(self, now_s: float) -> bool:
+        """Return whether an answered load begins before the next frame that is made by the clock."""
+        if self._context.pending_load is None:
+            return False
+        if self._until_s == math.inf:
+            self._until_s = now_s + LOADING_S
+        return now_s >= self._until_s

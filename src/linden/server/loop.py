@@ -42,6 +42,9 @@ SWITCH_S = 0.001
 """How long work in the background keeps Python's lock when this thread wants it; a call wants it some times, and by
 default it would have to wait 5 ms each time."""
 
+LOOKS_EACH_S = 0.02
+"""How often a busy server looks for what is due by the clock and is no frame. All of it is a matter of seconds."""
+
 COARSE_S = 0.002
 """Waits shorter than this end on time. The selector counts whole milliseconds; a tick's answer waits one at most."""
 
@@ -73,6 +76,8 @@ class Server:
         self._calls = Calls(self.context, self._subscribers, self._clock, self._watch, self._close, self._wake)
         self._wake_reader, self._wake_writer = socket.socketpair()
         self._stopping = False
+        self._next_look_s = 0.0
+        self._has_looked = False  # since the last thing was done
         simulation.sensor_scene.when_built = self._wake
         self._wake_reader.settimeout(0.0)
         self._wake_writer.settimeout(0.0)
@@ -124,40 +129,47 @@ class Server:
         if wait_s is not None and 0.0 < wait_s < COARSE_S and self._fine_files:
             select.select(self._fine_files, (), (), wait_s)
             wait_s = 0.0
-        for key, events in self._selector.select(wait_s):
+        happened = self._selector.select(wait_s)
+        for key, events in happened:
             key.data(events)
         for peer in tuple(self._calls.unfinished):
             self._calls.carry_out(peer)
         self._calls.send_overdue()
         self._make_due_frame()
-        self._look_around()
+        now_s = self._clock()
+        self._has_looked = not happened or now_s >= self._next_look_s
+        if self._has_looked:
+            self._look_around(now_s)
+            self._next_look_s = now_s + LOOKS_EACH_S
 
     def _wait_s(self) -> float | None:
         """Return how long nothing needs doing unless something arrives; None is for ever."""
-        if any(not self._calls.must_wait(peer) for peer in self._calls.unfinished):
+        order, unfinished = self._calls.order, self._calls.unfinished
+        if unfinished and any(not order.must_wait(peer) for peer in unfinished):
             return 0.0
         now_s = self._clock()
-        waits = [
-            self._calls.frame_wait_s(now_s) if self._calls.unfinished else None,
-            self._calls.held_s(now_s),
-            self._acceptor.wait_s(now_s),
-            self._stall_log.untold_s(now_s),
-        ]
+        waits = [order.held_s(now_s)]
+        if unfinished:
+            waits.append(order.frame_wait_s(now_s))
+        if self._has_looked:
+            waits += (self._acceptor.wait_s(now_s), self._stall_log.untold_s(now_s))
+        else:  # it will look then, and find out how long there is nothing else to do
+            waits.append(self._next_look_s - now_s)
         settings = self.context.world.settings
         if not settings.synchronous_mode:
             pace_s = self._pace.wait_s(now_s, settings.fixed_delta_seconds)
-            waits.append(pace_s or self._calls.traffic_wait_s(now_s))
-        return min((wait_s for wait_s in waits if wait_s is not None), default=None)
+            waits.append(pace_s or order.traffic_wait_s(now_s))
+        wait_s = min((wait_s for wait_s in waits if wait_s is not None), default=None)
+        return None if wait_s is None else max(0.0, wait_s)
 
-    def _look_around(self) -> None:
+    def _look_around(self, now_s: float) -> None:
         """Do what is due by the clock and is no frame."""
-        now_s = self._clock()
         self._acceptor.look(now_s)
         held_up = self._calls.unfinished and any(
-            self._calls.waits_for_subscribers(peer) for peer in self._calls.unfinished
+            self._calls.order.waits_for_subscribers(peer) for peer in self._calls.unfinished
         )
         self._stall_log.for_subscribers(now_s, self._subscribers.congested(now_s) if held_up else ())
-        stands_still = self._calls.is_synchronous() and not held_up
+        stands_still = self._calls.order.is_synchronous() and not held_up
         self._stall_log.for_a_tick(
             now_s, self.context.world.frame, tuple(self._clients) if stands_still else (), self._calls.last_ticker
         )
@@ -171,7 +183,7 @@ class Server:
 
     def _watch(self, peer: Peer) -> None:
         """Let the selector watch for what can be done with a peer now."""
-        busy = isinstance(peer, RpcPeer) and peer.calls and not self._calls.hears(peer)
+        busy = isinstance(peer, RpcPeer) and peer.calls and not self._calls.order.hears(peer)
         reads = not (busy or (isinstance(peer, RpcPeer) and peer.at_end))
         interest = (_READ if reads else 0) | (_WRITE if peer.outgoing.waiting_bytes else 0)
         if interest == peer.interest:
@@ -195,7 +207,8 @@ class Server:
             if data is not None:
                 if isinstance(peer, RpcPeer):
                     self._called(peer, data)
-                elif isinstance(peer, StreamPeer):
+                    return  # its calls being carried out, the selector watches for the right things
+                if isinstance(peer, StreamPeer):
                     self._subscribed(peer, data)
         except ProtocolError as error:
             log.warning("%s is closed: %s", peer, error)
@@ -233,10 +246,10 @@ class Server:
             self._acceptor.has_spoken(peer)
             self._subscribers.add(peer, peer.subscription.stream_id)
             self._calls.joined_s = self._clock()
-            self._calls.expected.came(peer.subscription.stream_id)
+            self._calls.order.expected.came(peer.subscription.stream_id)
             if peer.subscription.stream_id == WORLD_OBSERVER_ID:  # also between two ticks
                 payload = self.context.frames.world_payload(self.context.world)
-                self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.is_synchronous())
+                self._subscribers.send(peer, payload, self._clock(), may_drop=not self._calls.order.is_synchronous())
 
     # -- calls and frames ----------------------------------------------------------------------------------------
 
@@ -268,15 +281,18 @@ class Server:
     def _make_due_frame(self) -> None:
         """Make a frame by the clock, or because something new is to be shown; in asynchronous mode only."""
         settings = self.context.world.settings
+        if settings.synchronous_mode:
+            self.context.frame_is_due = False
+            return
         now_s = self._clock()
         waits = not self.context.frame_is_due and self._pace.wait_s(now_s, settings.fixed_delta_seconds) > 0.0
-        if not settings.synchronous_mode and not waits and self._calls.traffic_wait_s(now_s) > 0.0:
+        if not waits and self._calls.order.traffic_wait_s(now_s) > 0.0:
             return
         self.context.frame_is_due = False
-        if settings.synchronous_mode or waits or self.context.waits_for_the_scene():
+        if waits or self.context.waits_for_the_scene():
             return
         try:
-            if self._calls.load_is_due(now_s):
+            if self._calls.load.is_due(now_s):
                 self.context.begin_pending_load()
             self.context.advance()
         except Exception as error:  # noqa: BLE001 - a bug of ours must not end everybody's session

@@ -137,9 +137,9 @@ class Episode(EpisodeState):
             bodies.position, bodies.rotation, bodies.velocity, bodies.angular_velocity, bodies.acceleration,
             self._motion,
         )  # fmt: skip
-        actors.rows.view(_MOTION)["motion"][:count] = self._motion[:count]
+        self._motion_of_rows[:count] = self._motion[:count]
         if self.light_ids:
-            self.traffic.write(actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows])
+            self.traffic.write(self._rows_of_lights)
         if len(self._vehicle_slots):
             self._observe_vehicles()
         if len(self._walker_slots):
@@ -172,6 +172,8 @@ class Episode(EpisodeState):
         )
         self._row_bytes: NDArray[np.uint8] = self.actors.rows.view(np.uint8).reshape(-1, ROW.itemsize)
         self._motion = np.zeros((len(self.actors.rows), 15), np.float32)
+        self._motion_of_rows: NDArray[np.float32] = self.actors.rows.view(_MOTION)["motion"]
+        self._rows_of_lights: NDArray[np.void] = self.actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows]
         self._seen_version = self.actors.version
 
     def _embodied(self, kind: Kind) -> tuple[list[int], NDArray[np.int32], NDArray[np.int32]]:

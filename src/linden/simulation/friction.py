@@ -59,6 +59,8 @@ class RoadFriction:
     def __init__(self) -> None:
         self._triggers: dict[int, Trigger] = {}
         self._inside: dict[int, tuple[int, int]] = {}
+        self._weather: WeatherParameters | None = None  # under which the bodies have their friction
+        self._version = -1  # of the actors that have it
 
     def add(self, actor_id: int, made: Trigger) -> None:
         """Take a new trigger into account."""
@@ -70,14 +72,19 @@ class RoadFriction:
 
     def update(self, episode: EpisodeState) -> None:
         """Give every vehicle the friction of its place; wakes vehicles with changed friction."""
+        if episode.weather is not self._weather or episode.actors.version != self._version:
+            self._weather, self._version = episode.weather, episode.actors.version
+            self._apply_weather(episode)
+        if self._triggers or self._inside:
+            self._apply_triggers(episode)
+
+    def _apply_weather(self, episode: EpisodeState) -> None:
         bodies = episode.bodies
         here = road_friction(episode.weather)
         changed = np.flatnonzero(bodies.alive & (bodies.road_friction != here))
         if changed.size:
             bodies.road_friction[changed] = here
             bodies.state["resting"][changed] = False
-        if self._triggers or self._inside:
-            self._apply_triggers(episode)
 
     def _apply_triggers(self, episode: EpisodeState) -> None:
         bodies = episode.bodies

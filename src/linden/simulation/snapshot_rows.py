@@ -74,6 +74,7 @@ def gather_motion(
 ) -> None:  # pragma: no cover - compiled
     """Bring ``pose`` up to date for the first ``count`` actors and write ``motion`` (N, 15) for the snapshot.
 
+    Angles of bodies are in (-180, 180] degrees, as Unreal's ``FRotator::NormalizeAxis`` has them.
     ``pose``, ``relative``: (N, 6) m and degrees. The rest are columns of the bodies, (M, 3), SI with radians, read
     where ``slot`` is not negative. Parents stand further up than their children, so one pass is enough.
     """
@@ -84,7 +85,7 @@ def gather_motion(
             for axis in range(3):
                 pose[row, axis] = position[body, axis]
                 degrees = math.degrees(rotation[body, axis])
-                pose[row, 3 + axis] = degrees - 360.0 * math.floor((degrees + 180.0) / 360.0)
+                pose[row, 3 + axis] = degrees - 360.0 * math.ceil((degrees - 180.0) / 360.0)
                 motion[row, 6 + axis] = velocity[body, axis]
                 motion[row, 9 + axis] = math.degrees(angular_velocity[body, axis])
                 motion[row, 12 + axis] = acceleration[body, axis]

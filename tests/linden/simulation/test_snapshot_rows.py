@@ -67,3 +67,10 @@ def test_a_body_is_copied_in_degrees_with_its_yaw_wrapped() -> None:
 def test_an_actor_without_body_and_parent_stays_and_stands_still() -> None:
     motion = gather(np.array([[9.0, 8.0, 7.0, 1.0, 2.0, 3.0]]), np.zeros((1, 6)), [-1], [-1], no_bodies())
     np.testing.assert_array_equal(motion[0], [9, 8, 7, 1, 2, 3] + [0] * 9)
+
+
+@pytest.mark.parametrize("yaw_deg", [180.0, -180.0, 540.0])
+def test_a_body_that_looks_west_has_a_yaw_of_plus_180_as_in_unreal(yaw_deg: float) -> None:
+    bodies = tuple(np.radians([[0.0, yaw_deg, 0.0]]) if column == 1 else np.zeros((1, 3)) for column in range(5))
+    motion = gather(np.zeros((1, 6)), np.zeros((1, 6)), [-1], [0], bodies)
+    assert motion[0, 4] == 180.0

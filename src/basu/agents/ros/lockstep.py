@@ -1,4 +1,4 @@
-"""``basu run ros``: ROS 2 software on CARLA's topics drives; simulated time waits for its command in each step.
+"""``basu run ros`` and ``basu run ros1``: ROS software on CARLA's topics drives; simulated time waits for its commands.
 
 The agent publishes the frame and the clock. Then it waits for a command of the same time, or of no time at all. A
 command that does not come within the limit of a step is the agent's time-out.
@@ -41,10 +41,10 @@ if TYPE_CHECKING:
 
     from basu.agents.builtin.perception import VehicleFacts
     from basu.ros.moment import Moment
+    from basu.ros.node import RosNode
 
 APPEARS_S = SETUP_LIMIT_S - 20.0  # wall time for the software to appear on the domain: it may load maps and networks
 SLICE_S = 0.02  # of waiting: in between, the step's time limit can interrupt
-MISSED_S = 12.0  # wall time after which DDS has missed a node that was killed: its lease is 10 s
 NODE = "basu"
 
 
@@ -53,12 +53,15 @@ class RosAgent(AutonomousAgent):
 
     facts: VehicleFacts | None = None
     appears_s = APPEARS_S
+    slice_s = SLICE_S
+    first_s = 0.0  # the time of the first frame
+    node: RosNode
 
     def setup(self) -> None:
         """Publish what does not move, and wait until software that commands appears on the domain."""
         file = self.config_values.get("sensors")
         specs = () if file is None else read_sensors(find(str(file), "sensor file"))
-        self._source = VehicleSource(self.world, self.vehicle, specs, self.time_step_s)
+        self._source = VehicleSource(self.world, self.vehicle, specs, self.time_step_s, self.first_s)
         self._applied = BRAKED
         self._ackermann: AckermannControl | None = None
         self.facts = None
@@ -66,7 +69,7 @@ class RosAgent(AutonomousAgent):
         mounts = tuple(self._source.mounts.values())
         self.described = Vehicle(role, mounts, self.time_step_s)
         topics = self.topics()
-        self.node = Node(NODE)
+        self.node = self.new_node()
         self.node.listen(*self.commands())
         self.node.announce(*topics)
         self.node.publish(*self.beginning())
@@ -80,8 +83,7 @@ class RosAgent(AutonomousAgent):
         if self.facts is None:
             self.facts = read_facts(self.vehicle, self.vehicle.get_transform())
             self.described = self.described._replace(rear_axle_m=self.axle_m(self.facts))
-            still = first_messages(self.node.types, self.described, moment.t_s)
-            self.node.publish(*still, info_message(self.node.types, self.vehicle))
+            self.node.publish(*self.still(moment.t_s), info_message(self.node.types, self.vehicle))
         if self.node.readers_of(objects_of(self.described.role)):
             moment = moment._replace(others=[actor_of(other) for other in self.visible_actors()])
         self._check_alone()
@@ -101,6 +103,10 @@ class RosAgent(AutonomousAgent):
 
     # -- what differs from stack to stack
 
+    def new_node(self) -> RosNode:
+        """Return a node where the software is looked for."""
+        return Node(NODE)
+
     def topics(self) -> Sequence[Topic]:
         """Return the topics that are published."""
         return [*vehicle_topics(self.described), path_of(self.described.role)]
@@ -111,8 +117,11 @@ class RosAgent(AutonomousAgent):
 
     def beginning(self) -> Sequence[Message]:
         """Return what is published before the first frame: transforms, and the route as a path."""
-        first = first_messages(self.node.types, self.described, 0.0)
-        return [*first, path_message(self.node.types, self.described.role, self.way())]
+        return [*self.still(self.first_s), path_message(self.node.types, self.described.role, self.way())]
+
+    def still(self, t_s: float) -> Sequence[Message]:
+        """Return the transforms that never move."""
+        return first_messages(self.node.types, self.described, t_s)
 
     def messages(self, moment: Moment) -> Sequence[Message]:
         """Return what is published in a frame."""
@@ -121,6 +130,15 @@ class RosAgent(AutonomousAgent):
     def axle_m(self, _facts: VehicleFacts) -> float:
         """Return how far base_link lies behind the vehicle's origin."""
         return 0.0
+
+    def belongs(self, message: Any, moment: Moment) -> bool:  # noqa: ANN401 - a message
+        """Return whether a command answers a frame."""
+        return is_answer(message, moment.t_s)
+
+    def waiting(self, moment: Moment) -> carla.VehicleControl | None:
+        """Do what is due while a command is awaited; a control ends the wait."""
+        del moment
+        return None
 
     def wanted(self, topic: Topic, message: Any) -> Wanted | carla.VehicleControl:  # noqa: ANN401 - a message
         """Return what a command says.
@@ -154,8 +172,8 @@ class RosAgent(AutonomousAgent):
             if time.monotonic() > until_s:
                 names = " or ".join(topic.name for topic in self.commands())
                 raise AgentTimedOutError(
-                    f"no ROS 2 node publishes on {names} in the domain {self.node.domain} within {self.appears_s:g} s; "
-                    "start the software, and give both the same ROS_DOMAIN_ID and ROS_LOCALHOST_ONLY"
+                    f"no {self.node.kind} node of {self.node.realm} publishes on {names} within {self.appears_s:g} s; "
+                    f"start the software, and give both the same {self.node.settings}"
                 )
             time.sleep(SLICE_S)  # discovery has no event that this could wait for
 
@@ -165,12 +183,12 @@ class RosAgent(AutonomousAgent):
         Raises:
             AgentCrashedError: several do.
         """
-        until_s = time.monotonic() + MISSED_S
+        until_s = time.monotonic() + self.node.missed_s
         try:
             while sum(self.node.writers_of(topic) for topic in self.commands()) > 1:
                 if time.monotonic() > until_s:
                     raise self._several()
-                time.sleep(SLICE_S)  # DDS has no event for it that could be waited for together with a time limit
+                time.sleep(SLICE_S)  # there is no event for it that could be waited for together with a time limit
         except OverrunError:
             raise self._several() from None
 
@@ -178,7 +196,9 @@ class RosAgent(AutonomousAgent):
         """The failure of several drivers."""
         writers = {topic.name: self.node.writers_of(topic) for topic in self.commands()}
         found = ", ".join(f"{count} on {name}" for name, count in writers.items() if count)
-        return AgentCrashedError(f"several ROS 2 nodes command the vehicle ({found}); one may drive: end the others")
+        return AgentCrashedError(
+            f"several {self.node.kind} nodes command the vehicle ({found}); one may drive: end the others"
+        )
 
     def _command(self, moment: Moment) -> Wanted | carla.VehicleControl:
         """The command that belongs to a frame.
@@ -189,20 +209,24 @@ class RosAgent(AutonomousAgent):
         try:
             while True:
                 for topic in self.commands():
-                    fresh = [each for each in self.node.received(topic) if _belongs(each, moment.t_s)]
+                    fresh = [each for each in self.node.received(topic) if self.belongs(each, moment)]
                     if fresh:
                         return self.wanted(topic, fresh[-1])
                 if not any(self.node.writers_of(topic) for topic in self.commands()):
                     raise AgentTimedOutError(
-                        f"the ROS 2 software left the domain {self.node.domain} before it answered frame "
+                        f"the {self.node.kind} software left {self.node.realm} before it answered frame "
                         f"{moment.frame}; see its own output"
                     )
-                self.node.wait_any(self.commands(), SLICE_S)
+                control = self.waiting(moment)
+                if control is not None:
+                    return control
+                self.node.wait_any(self.commands(), self.slice_s)
         except OverrunError:
             names = " or ".join(topic.name for topic in self.commands())
             raise AgentTimedOutError(
-                f"the ROS 2 software gave no command on {names} for frame {moment.frame} ({moment.t_s:.2f} s) within "
-                "the limit of a step; it is still on the domain: see its own output, or give it more with --step-limit"
+                f"the {self.node.kind} software gave no command on {names} for frame {moment.frame} ({moment.t_s:.2f} "
+                "s) within the limit of a step; it is still there: see its own output, or give it more with "
+                "--step-limit"
             ) from None
 
     def _control(self, wanted: Wanted | carla.VehicleControl, moment: Moment) -> carla.VehicleControl:
@@ -217,8 +241,8 @@ class RosAgent(AutonomousAgent):
         return self._ackermann.step(wanted, speed, int(self.vehicle.get_control().gear))
 
 
-def _belongs(message: Any, t_s: float) -> bool:  # noqa: ANN401 - a message
-    """Whether a command is an answer to the frame of ``t_s``: it has that time or a later one, or no time at all."""
+def is_answer(message: Any, t_s: float) -> bool:  # noqa: ANN401 - a message
+    """Return whether a command has the time ``t_s`` of a frame or a later one, or no time at all."""
     header = getattr(message, "header", message)
     stamp = getattr(header, "stamp", None)
     if stamp is None:

@@ -29,11 +29,18 @@ BRAKED = Control(brake=1.0)  # what the vehicle has before its first control
 
 
 class VehicleSource:
-    """Makes moments of an agent's frames; time runs from 0 at the first of them."""
+    """Makes moments of an agent's frames; time runs from ``first_s`` at the first of them."""
 
-    def __init__(self, world: carla.World, vehicle: carla.Vehicle, specs: Sequence[SensorSpec], step_s: float) -> None:
+    def __init__(
+        self,
+        world: carla.World,
+        vehicle: carla.Vehicle,
+        specs: Sequence[SensorSpec],
+        step_s: float,
+        first_s: float = 0.0,
+    ) -> None:
         """Look up the traffic lights; ``specs`` are the agent's sensors."""
-        self._world, self._vehicle, self._step_s = world, vehicle, step_s
+        self._world, self._vehicle, self._step_s, self._first_s = world, vehicle, step_s, first_s
         self.mounts = {spec.id: mount_of(spec) for spec in specs}
         self._lights = sorted(world.get_actors().filter("traffic.traffic_light"), key=lambda light: light.id)
         self._last_lights: tuple[Light, ...] = ()
@@ -52,7 +59,7 @@ class VehicleSource:
         lights = tuple(Light(light.id, int(light.get_state())) for light in self._lights)
         changed, self._last_lights = lights != self._last_lights, lights
         return Moment(
-            t_s=frame * self._step_s,
+            t_s=self._first_s + frame * self._step_s,
             frame=frame,
             motion=Motion(*motion_of(own)),
             control=control,

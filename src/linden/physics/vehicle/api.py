@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.physics.columns import Columns, finite
-from linden.physics.state import BODY, VEHICLE
+from linden.physics.state import VEHICLE
+from linden.physics.vehicle.controls import set_controls
 from linden.physics.vehicle.parameters import (
     HULL_INERTIA,
     centre_of_mass,
@@ -30,18 +31,6 @@ from linden.protocol.values.control import (
 from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
 
 F64 = NDArray[np.float64]
-
-_LEAST_PEDALS = np.array([0.0, -1.0, 0.0])
-assert BODY.fields is not None
-_FEET_AND_HANDS = np.dtype(
-    {
-        "names": ["pedals", "switches"],
-        "formats": [("f8", (3,)), ("?", (3,))],
-        "offsets": [BODY.fields["throttle"][1], BODY.fields["hand_brake"][1]],
-        "itemsize": BODY.itemsize,
-    }
-)
-"""Throttle, steer and brake, which lie side by side, as one column; hand brake, reverse and manual as another."""
 
 
 class VehicleApi(Columns):
@@ -74,16 +63,7 @@ class VehicleApi(Columns):
 
     def set_controls(self, slots: NDArray[np.integer], controls: F64) -> None:
         """Set many at once: ``controls`` (K, 7) in the order of VehicleControl's fields; the last of a slot holds."""
-        s = self.state
-        feet_and_hands = s.view(_FEET_AND_HANDS)
-        pedals = controls[:, :3]
-        if not np.isfinite(pedals).all():
-            pedals = np.nan_to_num(pedals, nan=0.0)
-        feet_and_hands["pedals"][slots] = np.minimum(np.maximum(pedals, _LEAST_PEDALS), 1.0)
-        feet_and_hands["switches"][slots] = controls[:, 3:6] != 0.0
-        s["gear_command"][slots] = np.minimum(np.maximum(controls[:, 6], -1.0), 99.0)
-        s["ackermann_on"][slots] = False
-        s["controlled"][slots] = True
+        set_controls(self.state, slots.astype(np.int32, copy=False), np.ascontiguousarray(controls))
 
     def control(self, slot: int) -> VehicleControl:
         """Return the control in force; ``gear`` is the one engaged, -1 in reverse, 0 while the gearbox changes."""

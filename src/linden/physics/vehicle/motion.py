@@ -4,11 +4,11 @@ import math
 
 from linden.compiled import kept_part, part
 from linden.maps.ground import Ground
-from linden.physics.axes import plane_axes, within_turn
+from linden.physics.axes import turned_axes, within_turn
 from linden.physics.state import SOURCES, Body, Spec, Work
 from linden.physics.vehicle.chassis import move_body, push_tyres, stands, stop
 from linden.physics.vehicle.driver import BRAKE, HAND_BRAKE, THROTTLE, follow_inputs
-from linden.physics.vehicle.powertrain import change_gear, pedal, turn_wheels_and_engine
+from linden.physics.vehicle.powertrain import change_gear, pedal, turn_wheels_and_engine, weigh_wheels
 from linden.physics.vehicle.suspension import find_footing, settle
 from linden.physics.vehicle.tyre import slip_tangent
 from linden.physics.vehicle.wheels import load_wheels, prepare_wheels, steer_wheels
@@ -41,13 +41,18 @@ def advance_vehicle(v: Body, spec: Spec, w: Work, ground: Ground, gravity_mps2: 
     steps = math.ceil(dt_s / LONGEST_STEP_S - 1e-9) * (1 if abs(ahead) > SLOW_MPS else SLOW_STEPS)
     rise = v.velocity[2] - v.heave_mps
     gained_x, gained_y = 0.0, 0.0
+    weigh_wheels(spec, w, dt_s / steps)
+    on_ground = v.support_mps2 > 0.0
+    pitch, roll = v.footing[1] if on_ground else 0.0, v.footing[2] if on_ground else 0.0
+    tilt = math.sin(pitch), math.cos(pitch), math.sin(roll), math.cos(roll)  # of the plane: the same in all steps
     for _ in range(steps):
-        rise, pushed_x, pushed_y = _roll_on(v, spec, w, gravity_mps2, rise, dt_s / steps)
+        rise, pushed_x, pushed_y, cosine, sine = _roll_on(
+            v, spec, w, gravity_mps2, rise, dt_s / steps, tilt, cosine, sine
+        )
         gained_x, gained_y = gained_x + pushed_x / steps, gained_y + pushed_y / steps
     v.felt_mps2[0], v.felt_mps2[1] = gained_x, gained_y
     if left == 0:
         _report_wheels(v, spec, w)
-    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
     find_footing(v, spec, w, ground, cosine, sine)
     settle(v, spec, w.speeds[0], w.speeds[1], gravity_mps2, dt_s)
     v.heave_mps = v.velocity[2] - rise
@@ -57,16 +62,23 @@ def advance_vehicle(v: Body, spec: Spec, w: Work, ground: Ground, gravity_mps2: 
 
 @part
 def _roll_on(
-    v: Body, spec: Spec, w: Work, gravity_mps2: float, rise_mps: float, dt_s: float
-) -> tuple[float, float, float]:
+    v: Body,
+    spec: Spec,
+    w: Work,
+    gravity_mps2: float,
+    rise_mps: float,
+    dt_s: float,
+    tilt: tuple[float, float, float, float],
+    cosine: float,
+    sine: float,
+) -> tuple[float, float, float, float, float]:
     """Advance motion, place and heading in the plane of the road, wheels and engine with them.
 
-    ``rise_mps``: the vertical speed that goes with the plane. Returned: that afterwards, and the tyres' force over
-    the mass, forward and to the right, m/s².
+    ``rise_mps``: the vertical speed that goes with the plane. ``tilt``: sine and cosine of the plane's pitch, then of
+    its roll. ``cosine``, ``sine``: those of the yaw. Returned: the vertical speed afterwards, the tyres' force over
+    the mass, forward and to the right, m/s², and cosine and sine of the new yaw.
     """
-    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
-    on_ground = v.support_mps2 > 0.0
-    nose, side = plane_axes(v.footing[1] if on_ground else 0.0, v.rotation[1], v.footing[2] if on_ground else 0.0)
+    nose, side = turned_axes(tilt[0], tilt[1], sine, cosine, tilt[2], tilt[3])
     arm_x, arm_y = _arm(v, cosine, sine)
     turn = max(-FASTEST_TURN_RADPS, min(FASTEST_TURN_RADPS, v.angular_velocity[2]))
     velocity_x, velocity_y = v.velocity[0] - turn * arm_y, v.velocity[1] + turn * arm_x  # of the centre of mass
@@ -85,7 +97,8 @@ def _roll_on(
     ahead, across, turn = w.speeds[0], w.speeds[1], w.speeds[2]
     velocity_x, velocity_y = ahead * nose[0] + across * side[0], ahead * nose[1] + across * side[1]
     v.rotation[1] = within_turn(v.rotation[1] + turn * dt_s)
-    new_x, new_y = _arm(v, math.cos(v.rotation[1]), math.sin(v.rotation[1]))
+    cosine, sine = math.cos(v.rotation[1]), math.sin(v.rotation[1])
+    new_x, new_y = _arm(v, cosine, sine)
     v.position[0] += velocity_x * dt_s + arm_x - new_x
     v.position[1] += velocity_y * dt_s + arm_y - new_y
     v.velocity[0], v.velocity[1] = velocity_x + turn * new_y, velocity_y - turn * new_x
@@ -94,6 +107,8 @@ def _roll_on(
         ahead * nose[2] + across * side[2],
         felt_x - w.pull[0] / v.mass_kg,
         felt_y - w.pull[1] / v.mass_kg,
+        cosine,
+        sine,
     )
 
 

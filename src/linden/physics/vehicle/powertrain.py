@@ -136,6 +136,14 @@ def _split(first_radps: float, second_radps: float, share: float) -> float:
 
 
 @part
+def weigh_wheels(spec: Spec, w: Work, dt_s: float) -> None:
+    """Fill the scratch columns of the wheels' inertia that stay fixed for steps of ``dt_s``."""
+    for k in range(spec.wheel_count):
+        w.spin_nms[k] = spec.wheel_inertia_kgm2[k] / dt_s
+        w.drag_nms[k] = w.spin_nms[k] + spec.wheel_damping_nms[k]
+
+
+@part
 def turn_wheels_and_engine(v: Body, spec: Spec, w: Work, throttle: float, dt_s: float) -> None:
     """Advance the spins of wheels and engine by one step under tyres, brakes and throttle.
 
@@ -158,16 +166,15 @@ def turn_wheels_and_engine(v: Body, spec: Spec, w: Work, throttle: float, dt_s: 
     for k in range(spec.wheel_count):
         weight = _mean_share(spec, w, k)
         w.grip_nspm[k] = 0.0 if spec.tyres_lag else _grip(v, spec, w, k)
-        w.ease[k] = 1.0 / (
-            spec.wheel_inertia_kgm2[k] / dt_s + spec.wheel_damping_nms[k] + spec.wheel_radius_m[k] ** 2 * w.grip_nspm[k]
-        )
-        mean += weight * w.ease[k] * (_free_nm(v, spec, w, k, dt_s) - _brake_nm(v, w, k))
+        w.ease[k] = 1.0 / (w.drag_nms[k] + spec.wheel_radius_m[k] ** 2 * w.grip_nspm[k])
+        w.free_nm[k] = _free_nm(v, spec, w, k)
+        mean += weight * w.ease[k] * (w.free_nm[k] - _brake_nm(v, w, k))
         eased += weight * w.ease[k] * w.share[k]
     slipping = clutch * (pushed / own - (1.0 - clutch / own) * ratio * mean)
     clutch_nm = slipping / (1.0 + clutch * (1.0 - clutch / own) * ratio * ratio * eased)
     mean += ratio * clutch_nm * eased
     for k in range(spec.wheel_count):
-        _turn_wheel(v, spec, w, k, ratio * w.share[k] * clutch_nm, dt_s)
+        _turn_wheel(v, spec, w, k, ratio * w.share[k] * clutch_nm)
     radps = max(0.0, min(spec.engine_max_radps, (pushed + clutch * ratio * mean) / own))
     v.engine_rpm = radps * RPM_PER_RADPS if radps > 0.01 else 0.0
 
@@ -190,11 +197,11 @@ def _grip(v: Body, spec: Spec, w: Work, k: int) -> float:
 
 
 @part
-def _free_nm(v: Body, spec: Spec, w: Work, k: int, dt_s: float) -> float:
+def _free_nm(v: Body, spec: Spec, w: Work, k: int) -> float:
     """Return the right side of a wheel's equation without drive and brake, N·m."""
     radius = spec.wheel_radius_m[k]
     tyre_nm = radius * (w.grip_nspm[k] * w.along_mps[k] if w.grip_nspm[k] > 0.0 else -w.push_x_n[k])
-    return float(spec.wheel_inertia_kgm2[k] / dt_s * v.wheel_omega[k] + tyre_nm)
+    return float(w.spin_nms[k] * v.wheel_omega[k] + tyre_nm)
 
 
 @part
@@ -205,14 +212,14 @@ def _brake_nm(v: Body, w: Work, k: int) -> float:
 
 
 @part
-def _turn_wheel(v: Body, spec: Spec, w: Work, k: int, drive_nm: float, dt_s: float) -> None:
+def _turn_wheel(v: Body, spec: Spec, w: Work, k: int, drive_nm: float) -> None:
     """Write a wheel's new spin, the torque of engine less brake, and the tyre's push that goes with it.
 
     A braked wheel that would turn back stands. It stands as long as the brake is not released where ``tyres_lag``
     says so (PhysX: a locked wheel brakes with all its friction, more than the brake's torque), else as long as the
     brake can hold it.
     """
-    free_nm = _free_nm(v, spec, w, k, dt_s) + drive_nm
+    free_nm = w.free_nm[k] + drive_nm
     brake_nm = _brake_nm(v, w, k)
     omega = w.ease[k] * (free_nm - brake_nm)
     if w.brake_nm[k] > 0.0 and omega * v.wheel_omega[k] <= 0.0:

@@ -33,8 +33,12 @@ REQUEST, RESPONSE = 0, 1
 OF_PIXELS = ("apply_color_texture_to_objects", "apply_float_color_texture_to_objects")
 """What has an array for each pixel, 2 Mi in 1920 x 1080; nothing reads them, so no objects are made of them."""
 
+_OF_PIXELS = b"_color_texture_to_objects"
+"""What stands in both names."""
 _ARRAYS = bytes((*range(0x80, 0xA0), 0xDC, 0xDD, 0xDE, 0xDF))
 """The first bytes of arrays and maps in msgpack."""
+_HEAD, _NO_ERROR = b"\x94\x01", b"\xc0"  # an array of four, RESPONSE; nil
+_ONE_VALUE = b"\x91\x92\x01"  # ((1, value),) up to the value
 _HEAD_BYTES = 64 * 1024  # method and names of objects
 _FIRST_BUFFER_BYTES = 4096  # what a buffer starts with; it grows
 _UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
@@ -49,6 +53,15 @@ class Call(NamedTuple):
     args: list[Any]
     """As msgpack has them; the commands of a batch of plain controls are ``Controls`` (see ``packed``)."""
     is_async: bool
+
+
+class Packed(bytes):
+    """A result as msgpack's bytes, for results that come again and again."""
+
+
+def packed_result(result: object) -> Packed:
+    """Return a result as :func:`value` and :func:`bare` take it without packing it again."""
+    return Packed(_pack(result))
 
 
 class Reply(Enum):
@@ -151,7 +164,7 @@ class RpcConnection:
 
 def _of_pixels(data: bytes) -> Call | None:
     """Return the call that ``data`` begins with, where it is one of :data:`OF_PIXELS`; its pixels are None."""
-    if not any(name.encode() in data[:64] for name in OF_PIXELS):
+    if data.find(_OF_PIXELS, 0, 64) < 0:
         return None
     head = msgpack.Unpacker(unicode_errors="surrogateescape", max_array_len=MAX_ARRAY_ITEMS, max_map_len=0)
     head.feed(data[:_HEAD_BYTES])
@@ -179,6 +192,8 @@ def _call(message: object) -> Call:
 
 def value(call: Call, result: object) -> bytes:
     """Encode the result of a function that has one."""
+    if type(result) is Packed:
+        return b"".join((_HEAD, _pack(call.id), _NO_ERROR, _ONE_VALUE, result))
     answer: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
     return answer
 
@@ -191,6 +206,8 @@ def void(call: Call) -> bytes:
 
 def bare(call: Call, result: object) -> bytes:
     """Encode a result that carries its own wrapping: the answers to a batch."""
+    if type(result) is Packed:
+        return b"".join((_HEAD, _pack(call.id), _NO_ERROR, result))
     answer: bytes = _pack((RESPONSE, call.id, None, result))
     return answer
 

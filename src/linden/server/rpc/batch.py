@@ -1,6 +1,7 @@
 """Batches of commands, carried out in their order. Source: LibCarla 0.9.16, ``carla/rpc/Command.h``."""
 
 from collections.abc import Callable
+from functools import lru_cache
 from itertools import groupby
 from typing import Any, TypeAlias
 
@@ -11,6 +12,7 @@ from linden.protocol.values.enums import AttachmentType
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.protocol.wire import commands as cmd
 from linden.protocol.wire.controls import Controls, Transforms
+from linden.protocol.wire.rpc import Packed, packed_result
 from linden.server.rpc import actors, vehicles, walkers
 from linden.server.rpc import traffic_lights as lights
 from linden.server.rpc import unreal as other_physics
@@ -51,8 +53,18 @@ RUN: dict[type[cmd.Command], Callable[..., object]] = {
 
 
 @method("apply_batch", bare=True, advances=True)
-def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answer]:  # noqa: FBT001 - the wire's order
+def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answer] | Packed:  # noqa: FBT001 - the wire's order
     """Carry out commands in their order; one that fails says so in its own answer and stops none of the others."""
+    answers: list[Answer] | Packed | None = _driven(context, batch[0]) if len(batch) == 1 else None
+    if answers is None:
+        answers = _carry_out(context, batch)
+    if do_tick:
+        context.advance()
+    return answers
+
+
+def _carry_out(context: Context, batch: cmd.Batch) -> list[Answer]:
+    """Carry out commands in their order and return their answers."""
     answers: list[Answer] = []
     for kind, group in groupby(batch, type):
         run: list[Any] = list(group)
@@ -67,9 +79,25 @@ def apply_batch(context: Context, batch: cmd.Batch, do_tick: bool) -> list[Answe
             answers += _lead(context, run)
         else:
             answers += [_answer(context, command) for command in run]
-    if do_tick:
-        context.advance()
     return answers
+
+
+def _driven(context: Context, controls: object) -> Packed | None:
+    """Set controls that all vehicles can take, and return the answers; None where one cannot, or these are others."""
+    if type(controls) is not Controls:
+        return None
+    episode = context.world.episode
+    slots = episode.vehicles(controls.actor_ids)
+    if slots is None:
+        return None
+    episode.bodies.set_controls(slots, controls.fields)
+    return _all_done(controls.actor_ids.tobytes())
+
+
+@lru_cache(maxsize=8)
+def _all_done(actor_ids: bytes) -> Packed:
+    """Return the answers for these actors, as int64: a Traffic Manager sends the same in nearly every step."""
+    return packed_result([cmd.done(actor_id) for actor_id in np.frombuffer(actor_ids, np.int64).tolist()])
 
 
 def _drive(context: Context, controls: Controls) -> list[Answer]:

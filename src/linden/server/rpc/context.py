@@ -8,6 +8,7 @@ from typing import NamedTuple, Protocol
 
 from linden.maps.library import MapLibrary
 from linden.maps.navigation.library import MeshLibrary
+from linden.protocol.wire.rpc import Packed
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.replay.file.folder import RecordingFolder
 from linden.server.rpc.warning_log import WarningLog
@@ -55,6 +56,8 @@ class Context:
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
     pending_load: PendingLoad | None = None
     """The load that has been answered and has not begun; see ``handlers.session.load_new_episode``."""
+    lamps: tuple[list[tuple[int, int]], Packed] | None = None
+    """The lamps of all vehicles as they were packed last."""
     frame_is_due: bool = False
     """Whether asynchronous mode's next frame shall not wait for the clock."""
     warnings: WarningLog = field(default_factory=WarningLog)

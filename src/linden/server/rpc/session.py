@@ -7,12 +7,15 @@ import logging
 from functools import partial
 from typing import NamedTuple
 
+import numpy as np
+
 from linden import CARLA_VERSION
 from linden.errors import Refusal
 from linden.maps.library import LoadedMap
 from linden.maps.navigation.library import MeshFile
 from linden.protocol.values.enums import MapLayer
 from linden.protocol.values.episode import EpisodeSettings, MapInfo, OpendriveGenerationParameters
+from linden.protocol.values.space import Transform
 from linden.protocol.wire.decode import U16, U32
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, Token
 from linden.server.rpc.context import Context, PendingLoad
@@ -21,6 +24,8 @@ from linden.simulation.walkers import mesh_file
 from linden.world import World
 
 log = logging.getLogger("linden")
+
+_HALF_TURN_DEG = 180.0
 
 MAX_FIXED_DELTA_S = 10.0
 """Longest fixed step accepted; CARLA sets none, but a step of minutes can only be a unit mixed up."""
@@ -85,7 +90,14 @@ def copy_opendrive_to_file(context: Context, opendrive: str, parameters: Opendri
 @method("get_map_info")
 def get_map_info(context: Context) -> MapInfo:
     """Return the map's name as CARLA writes it, and the recommended spawn points."""
-    return MapInfo(context.world.map_name, context.world.spawn_points)
+    return MapInfo(context.world.map_name, tuple(map(_in_unreals_turn, context.world.spawn_points)))
+
+
+def _in_unreals_turn(point: Transform) -> Transform:
+    """Return a spawn point with a yaw of 180 where it is -180 in the client's 32 bits, as snapshots have it."""
+    if np.float32(point.rotation.yaw) != -_HALF_TURN_DEG:
+        return point
+    return point._replace(rotation=point.rotation._replace(yaw=_HALF_TURN_DEG))
 
 
 @method("get_map_data")

@@ -9,6 +9,7 @@ from linden.protocol.values.control import AckermannControl, AckermannSettings, 
 from linden.protocol.values.space import Vector3D
 from linden.protocol.wire.controls import ClientControl
 from linden.protocol.wire.decode import U8, U32
+from linden.protocol.wire.rpc import Packed, packed_result
 from linden.server.rpc.context import Context
 from linden.server.rpc.registry import method
 from linden.simulation.episode import Episode
@@ -98,9 +99,12 @@ def set_light_bits(context: Context, actor_id: int, bits: int) -> None:
 
 
 @method("get_vehicle_light_states")
-def get_vehicle_light_states(context: Context) -> list[tuple[int, int]]:
+def get_vehicle_light_states(context: Context) -> Packed:
     """Return (id, lamps) of every vehicle."""
-    return context.world.episode.actors.lamps()
+    lamps = context.world.episode.actors.lamps()
+    if context.lamps is None or context.lamps[0] is not lamps:
+        context.lamps = lamps, packed_result(lamps)
+    return context.lamps[1]
 
 
 @method("set_actor_autopilot")

@@ -14,7 +14,7 @@ from basu.agents.ros.commands import (
     autoware_command,
     carla_command,
 )
-from basu.agents.ros.lockstep import _belongs
+from basu.agents.ros.lockstep import is_answer
 from basu.errors import AgentInvalidControlError
 from basu.ros.types import Generation, types_of
 
@@ -84,12 +84,12 @@ def test_what_is_no_number_is_the_agent_s_failure(value: float) -> None:
         ackermann_command(TYPES.message("ackermann_msgs/msg/AckermannDrive", speed=value))
 
 
-def test_a_command_belongs_to_a_frame_by_its_time() -> None:
+def test_a_commandis_answer_to_a_frame_by_its_time() -> None:
     def command(sec: int, nanosec: int) -> object:
         stamp = TYPES.message("builtin_interfaces/msg/Time", sec=sec, nanosec=nanosec)
         return TYPES.message("autoware_control_msgs/msg/Control", stamp=stamp)
 
-    assert [_belongs(command(*each), 1.5) for each in ((0, 0), (1, 500_000_000), (2, 0), (1, 499_000_000))] == [
+    assert [is_answer(command(*each), 1.5) for each in ((0, 0), (1, 500_000_000), (2, 0), (1, 499_000_000))] == [
         True, True, True, False,
     ]  # fmt: skip
-    assert _belongs(TYPES.message("ackermann_msgs/msg/AckermannDrive"), 1.5)
+    assert is_answer(TYPES.message("ackermann_msgs/msg/AckermannDrive"), 1.5)

@@ -1,25 +1,21 @@
 """Whole runs that ROS 2 software in another process drives, over real DDS, and what becomes of software that fails."""
 
 import itertools
-import json
 import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from basu.agents.ros.lockstep import RosAgent
-from basu.cli import main
 from basu.records.history.files import read_history
+from ros_runs import FOLLOWER, STACK, run
 from servers import RunningServer
 
-ROOT = Path(__file__).parents[4]
-FOLLOWER, STACK = ROOT / "examples" / "ros_follower.py", ROOT / "tests" / "fakes" / "ros_stack.py"
 DOMAINS = itertools.count(1)
 Starts = Callable[..., "subprocess.Popen[bytes]"]
 
@@ -40,15 +36,6 @@ def starts(monkeypatch: pytest.MonkeyPatch) -> Iterator[Starts]:
         yield start
 
 
-def run(
-    agent: str, simulator: RunningServer, route_file: Path, output: Path, *options: str
-) -> tuple[int, dict[str, Any], Path]:
-    address = ["--host", "127.0.0.1", "--port", str(simulator.port), "--in-process", "--output", str(output)]
-    code = main(["run", agent, *address, "--routes", str(route_file), *options])
-    result = output / "latest" / "result.json"
-    return code, json.loads(result.read_text()) if result.exists() else {}, output / "latest"
-
-
 @pytest.mark.parametrize(("agent", "kind"), [("ros", "ackermann"), ("autoware", "autoware")])
 def test_a_follower_drives_along_the_route(
     agent: str, kind: str, simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
@@ -66,8 +53,8 @@ def test_a_follower_drives_along_the_route(
     ("kind", "status", "says"),
     [
         ("nan", "AgentInvalidControl", "commands throttle = nan; it must be a finite number"),
-        ("dies", "AgentTimedOut", "left the domain"),
-        ("stalls", "AgentTimedOut", "within the limit of a step; it is still on the domain"),
+        ("dies", "AgentTimedOut", "the ROS 2 software left the domain"),
+        ("stalls", "AgentTimedOut", "within the limit of a step; it is still there"),
     ],
 )
 def test_software_that_fails_is_the_agent_s_failure_and_the_record_is_kept(
@@ -97,5 +84,5 @@ def test_software_that_never_appears_is_a_time_out_with_a_sentence(
     monkeypatch.setattr(RosAgent, "appears_s", 0.3)
     _, result, _ = run("ros", simulator, route_file, tmp_path)
     assert (result["status"], result["fault"]) == ("AgentTimedOut", "agent")
-    assert "no ROS 2 node publishes on /carla/hero/vehicle_control_cmd or /carla/hero/ackermann" in result["message"]
+    assert "publishes on /carla/hero/vehicle_control_cmd or /carla/hero/ackermann_cmd within" in result["message"]
     assert "give both the same ROS_DOMAIN_ID" in result["message"]

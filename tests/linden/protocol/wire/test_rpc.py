@@ -152,6 +152,9 @@ def test_answers_are_wrapped_as_the_client_reads_them() -> None:
     assert unpacked(rpc.value(CALL, 5)) == [1, 7, None, [[1, 5]]]
     assert unpacked(rpc.void(CALL)) == [1, 7, None, [[False]]]
     assert unpacked(rpc.bare(CALL, [((1, 5),)])) == [1, 7, None, [[[1, 5]]]]
+    lamps = [(3, 0), (70_000, 5)]
+    assert rpc.value(CALL, rpc.packed_result(lamps)) == rpc.value(CALL, lamps)
+    assert rpc.bare(CALL, rpc.packed_result([((1, 5),)])) == rpc.bare(CALL, [((1, 5),)])
     assert unpacked(rpc.refusal(CALL, "no", Reply.VALUE)) == [1, 7, None, [[0, ["no"]]]]
     assert unpacked(rpc.refusal(CALL, "no", Reply.VOID)) == [1, 7, None, [[True, ["no"]]]]
     assert unpacked(rpc.refusal(CALL, "no", Reply.BARE)) == [1, 7, "no", None]

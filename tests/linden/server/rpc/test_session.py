@@ -7,6 +7,7 @@ import pytest
 from fakes.simulation import EMPTY_MAP, FakeFrames, FakeMaps, FakeSimulation
 from linden.errors import Refusal
 from linden.protocol.values.episode import EpisodeSettings, OpendriveGenerationParameters
+from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.protocol.wire.stream import StreamTable, token_bytes
 from linden.server.rpc import session
 from linden.server.rpc.context import Context
@@ -39,6 +40,14 @@ def test_a_frame_is_put_into_the_outbox_of_subscribers_only(context: Context) ->
     context.streams.subscribe(2)
     assert session.tick_cue(context) == 2
     assert [stream for stream, _ in context.outbox] == [1, 2]
+
+
+@pytest.mark.parametrize(("yaw_deg", "told_deg"), [(-180.0, 180.0), (-179.9999999, 180.0), (-179.9, -179.9)])
+def test_a_spawn_point_that_looks_west_has_the_yaw_that_its_actor_will_have(
+    context: Context, yaw_deg: float, told_deg: float
+) -> None:
+    context.world.spawn_points = (Transform(Vector3D(), Rotation(0.0, yaw_deg, 0.0)),)
+    assert session.get_map_info(context).spawn_points[0].rotation.yaw == told_deg
 
 
 def test_tokens_name_the_real_streaming_port(context: Context) -> None:
