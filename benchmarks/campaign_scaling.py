@@ -2,8 +2,8 @@
 
     python benchmarks/campaign_scaling.py [--workers 1 2 4] [--raylets 1 2 4 --cpus 4] [--drives-a-worker 24]
 
-Every row has as many drives for each worker. All rows take equally long where workers do not disturb each other. The share
-of linear is that of the first row's drives a second for each worker. A row's time includes the start of its workers.
+Every row has as many drives for each worker. All rows take equally long where workers do not disturb each other. The
+share of linear is that of the first row's drives a second for each worker. A row's time includes the start of its workers.
 """
 
 from __future__ import annotations

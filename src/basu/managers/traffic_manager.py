@@ -187,9 +187,9 @@ class TrafficManager(BaseManager):
     def _synchronous_manager(self) -> carla.TrafficManager:
         """Return a new Traffic Manager in synchronous mode. One tick must follow before vehicles are registered.
 
-        The Traffic Manager's own thread begins in asynchronous mode. The step that it is in may still take in vehicles
-        after ``set_synchronous_mode``: then they have one step more than in another run of the same seed. The next
-        tick of the world waits for a synchronous step, and so ends the asynchronous one.
+        The Traffic Manager's own thread begins in asynchronous mode. Its present step may outlast
+        ``set_synchronous_mode`` and take in vehicles. They would have one step more than in another run of the seed.
+        The next tick of the world waits for a synchronous step, and so ends the asynchronous one.
         """
         client_threads.hold()
         self._manager = self._run.client.get_trafficmanager(_free_port())
