@@ -132,6 +132,7 @@ def test_collisions_keep_momentum_and_make_no_energy(seed: int) -> None:
     assert met > 0
 
 
+@slow_uncompiled
 def test_a_wall_stops_a_car_and_says_with_what_impulse() -> None:
     bodies, car = one(slick())
     bodies.set_control(car, NEUTRAL)
@@ -157,6 +158,7 @@ def test_a_car_pressed_against_a_wall_stays_outside_it() -> None:
     assert bodies.position[car, 0] < 9.5 - BOX.extent.x + 0.1
 
 
+@slow_uncompiled
 def test_a_heavy_car_pushes_a_light_one_and_not_the_other_way_round() -> None:
     bodies = Bodies()
     heavy = bodies.add_vehicle(slick(mass=6000.0), at(), BOX, OFFSETS)
@@ -203,6 +205,7 @@ def test_wheels_roll_over_low_things_on_a_hill_too() -> None:
     assert bodies.position[slot][0] > ahead_m + 5.0
 
 
+@slow_uncompiled
 def test_without_collisions_bodies_pass_through_each_other() -> None:
     bodies, car = one(slick())
     bodies.collides[car] = False

@@ -57,14 +57,8 @@ def test_coasting_slows_by_drag() -> None:
     assert bodies.velocity[car, 0] == pytest.approx(expected, rel=0.005)
 
 
-@pytest.mark.parametrize(
-    ("v_mps", "friction"),
-    [
-        (10.0, 0.8),
-        pytest.param(20.0, 0.8, marks=slow_uncompiled),
-        pytest.param(30.0, 0.4, marks=slow_uncompiled),
-    ],
-)
+@slow_uncompiled
+@pytest.mark.parametrize(("v_mps", "friction"), [(10.0, 0.8), (20.0, 0.8), (30.0, 0.4)])
 def test_braking_distance_of_locked_wheels_is_v_squared_over_two_mu_g(v_mps: float, friction: float) -> None:
     locking = wheels(damping_rate=0.0, tire_friction=friction, max_brake_torque=1e5)
     bodies, car = launched(v_mps, VehicleControl(manual_gear_shift=True, brake=1.0), wheels=locking)
@@ -75,6 +69,7 @@ def test_braking_distance_of_locked_wheels_is_v_squared_over_two_mu_g(v_mps: flo
     assert bodies.position[car, 0] - start == pytest.approx(v_mps**2 / (2.0 * slowing), rel=0.03)
 
 
+@slow_uncompiled
 def test_brakes_slow_by_their_torque_while_the_wheels_turn() -> None:
     bodies, car = launched(40.0, VehicleControl(manual_gear_shift=True, brake=0.5))
     run(bodies, 0.5)
@@ -84,6 +79,7 @@ def test_brakes_slow_by_their_torque_while_the_wheels_turn() -> None:
     assert before - bodies.velocity[car, 0] == pytest.approx(4 * 400.0 / 0.355 / WITH_WHEELS_KG, rel=0.02)
 
 
+@slow_uncompiled
 def test_a_wheel_that_has_locked_stays_locked_until_the_brake_is_released() -> None:
     for lags in (True, False):  # CARLA's wheels; those that the road turns again when it is stronger than the brake
         bodies, car = launched(10.0, VehicleControl(manual_gear_shift=True, brake=0.2))
@@ -96,6 +92,7 @@ def test_a_wheel_that_has_locked_stays_locked_until_the_brake_is_released() -> N
         assert (bodies.wheel_omega[car] > 0.0).all()
 
 
+@slow_uncompiled
 def test_light_wheels_that_lag_are_locked_by_a_brake_that_alone_could_not() -> None:
     slowest = []
     for lags in (True, False):
@@ -112,6 +109,7 @@ def test_light_wheels_that_lag_are_locked_by_a_brake_that_alone_could_not() -> N
     assert slowest[1] == pytest.approx(4 * 800.0 / 0.355 / WITH_WHEELS_KG, rel=0.1)
 
 
+@slow_uncompiled
 def test_a_car_spawned_is_in_neutral_and_leaves_it_when_the_engine_turns_up() -> None:
     bodies, car = one()
     bodies.set_control(car, VehicleControl(throttle=1.0))
@@ -147,6 +145,7 @@ def test_the_steady_turn_has_the_radius_of_the_understeer_gradient(front: float,
     assert v / turn == pytest.approx((WHEELBASE_M + gradient * v * v) / math.tan(middle), rel=0.03)
 
 
+@slow_uncompiled
 def test_free_fall_is_half_g_t_squared() -> None:
     bodies, car = one(pose=at(z=50.0))
     run(bodies, 2.0)
@@ -154,6 +153,7 @@ def test_free_fall_is_half_g_t_squared() -> None:
     assert bodies.velocity[car, 2] == pytest.approx(-G * 2.0)
 
 
+@slow_uncompiled
 def test_a_dropped_car_lands_and_stands_still() -> None:
     bodies, car = one(pose=at(z=1.0))
     run(bodies, 5.0)
@@ -220,6 +220,7 @@ def test_the_automatic_goes_through_its_gears_with_a_pause_in_each_change() -> N
     assert max(visited) == len(RATIOS)
 
 
+@slow_uncompiled
 def test_the_automatic_waits_after_a_change_before_it_looks_again() -> None:
     eager = tuple(Gear(1.0, 0.1, 0.11) for _ in range(6))  # wants up, always
     bodies, car = one(sedan(forward_gears=eager, gear_switch_time=0.05))
@@ -257,6 +258,7 @@ def test_engine_braking_slows_more_in_a_low_gear() -> None:
     assert slowed[0] > 1.5 * slowed[1] > 0.5
 
 
+@slow_uncompiled
 def test_load_moves_forward_in_braking_and_outward_in_a_bend() -> None:
     bodies, car = launched(20.0, VehicleControl(manual_gear_shift=True, brake=0.6))
     run(bodies, 1.2)
@@ -303,6 +305,7 @@ def test_the_hand_brake_locks_the_rear_wheels_only() -> None:
     assert (bodies.wheel_omega[car, 2:] == 0.0).all()
 
 
+@slow_uncompiled
 def test_ackermann_control_reaches_its_speed_and_angle() -> None:
     bodies, car = one()
     bodies.set_ackermann(car, AckermannControl(steer=0.05, speed=8.0))
@@ -315,6 +318,7 @@ def test_ackermann_control_reaches_its_speed_and_angle() -> None:
     assert bodies.control(car).brake == 1.0
 
 
+@slow_uncompiled
 def test_constant_velocity_is_held_and_can_be_steered() -> None:
     bodies, car = one(pose=at(yaw=90.0))
     bodies.enable_constant_velocity(car, (6.0, 0.0, 0.0))
@@ -329,6 +333,7 @@ def test_constant_velocity_is_held_and_can_be_steered() -> None:
     assert speed_mps(bodies, car) == 0.0
 
 
+@slow_uncompiled
 def test_a_two_wheeler_stays_up_and_leans_into_the_bend() -> None:
     two = (wheels()[0]._replace(max_steer_angle=40.0), wheels()[2])
     bodies = Bodies()

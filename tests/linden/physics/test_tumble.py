@@ -47,6 +47,7 @@ def test_a_vehicle_put_on_its_roof_stays_there_and_is_reported_after_five_second
     assert not bodies.velocity[car].any()
 
 
+@slow_uncompiled
 def test_a_vehicle_put_back_on_its_wheels_has_no_failure_and_drives_on() -> None:
     bodies, car = one(pose=put(180.0, ROOF_M))
     run(bodies, 6.0, 0.05)
@@ -75,9 +76,8 @@ def test_a_vehicle_that_lands_a_little_askew_comes_down_on_its_wheels() -> None:
     assert bodies.position[car, 2] == pytest.approx(0.0, abs=0.02)
 
 
-@pytest.mark.parametrize(
-    ("gained_mps", "falls"), [(1.0, False), (3.0, True), pytest.param(5.0, True, marks=slow_uncompiled)]
-)
+@slow_uncompiled
+@pytest.mark.parametrize(("gained_mps", "falls"), [(1.0, False), (3.0, True), (5.0, True)])
 def test_a_push_at_the_roof_tips_a_vehicle_if_it_is_hard_enough(gained_mps: float, *, falls: bool) -> None:
     bodies, car = standing()
     bodies.add_impulse(car, (0.0, MASS_KG * gained_mps, 0.0), (0.0, 0.0, 1.4))
@@ -170,6 +170,7 @@ def test_a_vehicle_without_weight_keeps_turning_about_its_centre_of_mass() -> No
     assert turned == pytest.approx(math.degrees(1.05), abs=0.5)
 
 
+@slow_uncompiled
 def test_a_two_wheeler_that_leans_in_the_air_is_not_upset_and_one_that_lies_is() -> None:
     two = (wheels()[0], wheels()[2])
     offsets = (Vector3D(0.7, 0.0, 0.0), Vector3D(-0.7, 0.0, 0.0))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fleet import BOX, at, run, sedan, wheels
+from fleet import BOX, at, run, sedan, slow_uncompiled, wheels
 from linden.errors import Refusal
 from linden.physics.bodies import Bodies
 from linden.physics.vehicle.parameters import axle_wheel
@@ -42,6 +42,7 @@ def test_two_halves_side_by_side_make_the_wheel() -> None:
     assert axle_wheel(rear, rear) == REAR
 
 
+@slow_uncompiled
 def test_four_wheels_in_pairs_drive_as_the_two_that_they_stand_for() -> None:
     two, four = bike(of_two()), bike(of_four())
     for bodies, slot in (two, four):

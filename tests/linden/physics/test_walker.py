@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fleet import BOX, FLAT, NOTHING, OFFSETS, at, run, slick, wall
+from fleet import BOX, FLAT, NOTHING, OFFSETS, at, run, slick, slow_uncompiled, wall
 from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
 from linden.protocol.values.control import VehicleControl, WalkerControl
@@ -48,6 +48,7 @@ def test_a_kerb_is_climbed_and_a_wall_is_not() -> None:
         assert bodies.position[who, 2] == pytest.approx(0.93 + (height_m if climbed else 0.0), abs=1e-6)
 
 
+@slow_uncompiled
 def test_a_building_stops_a_walker() -> None:
     bodies, who = pedestrian()
     bodies.set_walker_control(who, WalkerControl(Vector3D(1.0, 0.0, 0.0), 2.0))
@@ -74,6 +75,7 @@ def test_a_walker_spawned_high_falls_onto_its_feet() -> None:
     assert bodies.position[who, 2] == pytest.approx(0.93)
 
 
+@slow_uncompiled
 def test_a_walker_is_pushed_by_a_car_and_hardly_slows_it() -> None:
     bodies, who = pedestrian()
     car = bodies.add_vehicle(slick(), at(x=-6.0), BOX, OFFSETS)

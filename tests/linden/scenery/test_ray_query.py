@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from fleet import slow_uncompiled
 from linden.geometry import rotation_matrix
 from linden.maps.ground import Ground
 from linden.protocol.values.space import Rotation
@@ -63,6 +64,7 @@ def test_every_triangle_on_the_way_is_met_once_or_twice_at_its_place() -> None:
 
 
 @pytest.mark.parametrize(("start", "end"), ways(12))
+@slow_uncompiled
 def test_the_terrain_is_met_wherever_the_way_passes_through_it(start: np.ndarray, end: np.ndarray) -> None:
     found = [at for at, _ in hits(crossings(GROUND, NO_BOXES, NOBODY, start, end), Surface.TERRAIN)]
     expected = naive.terrain(GROUND, start, end)

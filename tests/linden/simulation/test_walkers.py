@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from fleet import slow_uncompiled
 from linden.maps.facts import derive
 from linden.maps.library import LoadedMap
 from linden.physics.step import CONTACT
@@ -162,6 +163,7 @@ def test_an_invincible_one_is_pushed_and_lives(simulation: World) -> None:
     assert episode.transform(victim).rotation.pitch == pytest.approx(0.0)
 
 
+@slow_uncompiled
 def test_a_shove_kills_no_walker(simulation: World) -> None:
     victim = walker(simulation, at(20.0, 1.75, 1.0), invincible=False)
     strike(simulation, 1.5)
