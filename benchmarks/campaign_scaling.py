@@ -3,7 +3,7 @@
     python benchmarks/campaign_scaling.py [--workers 1 2 4] [--raylets 1 2 4 --cpus 4] [--drives-a-worker 24]
 
 Every row has as many drives for each worker. All rows take equally long where workers do not disturb each other.
-"Share of linear" compares drives a second and worker with the first row. A row's time includes the start of its workers.
+"Share of linear" compares drives a second and worker with the first row. A row's time includes the workers' start.
 """
 
 from __future__ import annotations
