@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import kernel
+from linden.compiled import unlocked
 from linden.scenery.mesh import Material, Mesh
 
 F32 = NDArray[np.float32]
@@ -69,7 +69,7 @@ def _differ(normals: F32) -> NDArray[np.bool_]:
     return either
 
 
-@kernel
+@unlocked
 def _corner_normals(vertices: F32, triangles: NDArray[np.int64], crease: F32) -> F32:
     count = len(triangles)
     flat = np.empty((count, 3), np.float32)
