@@ -33,6 +33,7 @@ from basu.ros.rospy_process import (
     PUBLISH,
     READY,
     REFUSED,
+    VERSION,
     WARNING,
 )
 from basu.ros.types import Generation, Types, types_of
@@ -89,6 +90,7 @@ class Node:
         self._topics: list[Topic] = []
         self._arrived: dict[int, deque[bytes]] = {}
         self._peers: dict[int, list[Peer]] = {}
+        self._definitions: dict[str, str] = {}  # of the versions that messages had, by MD5 sum
         self._state: tuple[bytes, dict[str, Any]] | None = None
         self._answers: deque[dict[str, Any]] = deque(maxlen=1)
         self._is_latched = in_lockstep
@@ -138,12 +140,12 @@ class Node:
         self._check_alive()
         number = self._numbers[topic.name]
         with self._changed:
-            data, peers = list(self._arrived[number]), {peer.md5: peer for peer in self._peers.get(number, [])}
+            data = list(self._arrived[number])
             self._arrived[number].clear()
         found = []
         for each in data:
             md5 = each[:MD5_BYTES].decode()
-            types = self._types_of(topic.type, md5, peers)
+            types = self._types_of(topic.type, md5)
             found.append(types.parsed(each[MD5_BYTES:], topic.type))
         return found
 
@@ -239,11 +241,11 @@ class Node:
         }
         self._send(kind, json.dumps(wanted).encode(), number)
 
-    def _types_of(self, name: str, md5: str, peers: dict[str, Peer]) -> Types:
-        """The types that a peer has: ours, or those of its own definition."""
-        if _definition(self.types, name)[1] == md5 or md5 not in peers:
+    def _types_of(self, name: str, md5: str) -> Types:
+        """The types that a peer has: ours, or those of the definition that came before its first message."""
+        if _definition(self.types, name)[1] == md5:
             return self.types
-        return _foreign_types(name, peers[md5].definition)
+        return _foreign_types(name, self._definitions[md5])
 
     def _send(self, kind: bytes, content: bytes | memoryview, number: int = 0) -> None:
         """Write a frame to rospy's process."""
@@ -294,6 +296,9 @@ class Node:
         """Take in a frame."""
         if kind == MESSAGE:
             self._arrived[number].append(content)
+        elif kind == VERSION:
+            md5, definition = json.loads(content)
+            self._definitions[md5] = definition
         elif kind == PEERS:
             self._peers[number] = [Peer(*each) for each in json.loads(content)]
         elif kind == ANSWER:

@@ -18,12 +18,13 @@ import sys
 import threading
 import time
 import traceback
-from typing import Any, BinaryIO, Dict, List, Optional, Tuple
+from typing import Any, BinaryIO, Dict, List, Optional, Set, Tuple
 from xmlrpc.client import Error, ServerProxy
 
 HEAD = struct.Struct("<cHI")
 ANNOUNCE, LISTEN, PUBLISH, MASTER = b"A", b"L", b"P", b"Q"  # from BASU
 READY, REFUSED, MESSAGE, PEERS, ANSWER, WARNING, ENDED = b"O", b"E", b"M", b"C", b"R", b"W", b"X"  # to BASU
+VERSION = b"V"  # to BASU: MD5 sum and definition of a type, before the first message of this version
 EVERY_S = 0.01  # between two looks at the connections; rospy has no event for those of a subscriber
 PATIENCE_S = 5.0  # of the first question to the master
 SIM_TIME = "/use_sim_time"
@@ -72,6 +73,7 @@ class Bridge:
         self._topics: Dict[int, Any] = {}
         self._classes: Dict[int, Any] = {}
         self._told: Dict[int, List[Tuple[str, ...]]] = {}
+        self._versions: Set[str] = set()
 
     def announce(self, number: int, wanted: Dict[str, Any]) -> None:
         """Make a publisher. Its messages are bytes."""
@@ -111,8 +113,12 @@ class Bridge:
 
     def _hear(self, message: Any, number: int) -> None:
         """Pass a message on."""
-        md5 = message._connection_header["md5sum"].encode()
-        self._pipe.send(MESSAGE, md5 + message._buff, number)
+        header = message._connection_header
+        md5 = header["md5sum"]
+        if md5 not in self._versions:
+            self._pipe.send(VERSION, json.dumps([md5, header.get("message_definition", "")]).encode(), number)
+            self._versions.add(md5)
+        self._pipe.send(MESSAGE, md5.encode() + message._buff, number)
 
 
 def _peer(connection: Any) -> Tuple[str, ...]:

@@ -5,6 +5,7 @@ import logging
 import time
 from collections.abc import Iterator
 
+import psutil
 import pytest
 
 from basu.errors import UserError
@@ -47,7 +48,10 @@ def test_a_node_that_is_removed_loses_no_job_and_counts_none_twice(player: str) 
         assert all(isinstance(answer, Done) for answer in answers)
     finally:
         ray.shutdown()
+        children = psutil.Process().children(recursive=True)
+        of_ray = [each for each in children if each.name() in ("gcs_server", "raylet")]
         cluster.shutdown()
+        psutil.wait_procs(of_ray, timeout=60.0)  # `auto` would find a cluster that is about to end
 
 
 def test_a_cluster_that_is_not_there_is_one_sentence() -> None:

@@ -104,7 +104,7 @@ WRONG = {
     "stumbles": "the scenario stumbles raised ZeroDivisionError: stumbled (line ",
     "dozes": "never triggered",
     "leads": "leads speaks of 'absent', and no actor has this name; there are hero, walker",
-    "elsewhere": "elsewhere is in Town05, which this simulator does not have (it has Linden)",
+    "elsewhere": "elsewhere is in Town05, which this simulator does not have (it has Linden, Linden_thesis)",
     "indoors": "indoors puts 'walker' at (294.2, 136.1), which is inside a house; move it",
 }
 
