@@ -1,4 +1,4 @@
-"""``linden serve`` with a fault: reading an OpenDRIVE text holds Python's lock for half a second and more."""
+"""``linden serve`` with a fault: reading an OpenDRIVE text holds Python's lock for a second and more."""
 
 import sys
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from linden.cli import main as linden
 from linden.maps.library import LoadedMap, MapLibrary
 
-HELD = 40_000_000
+HELD = 100_000_000
 """Numbers that one call of C adds up; the interpreter has no turn meanwhile."""
 
 read = MapLibrary.from_opendrive
