@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 import carla
 import psutil
+from live import STEP_S, synchronous_world
 
 from basu.simulator import OwnServer, connect
 from basu.sumo.bridge import Bridge
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
     from basu.sumo.link import Link
 
-STEP_S = 0.05
 SETTLE_TICKS = 40  # until all are spawned
 
 
@@ -138,10 +138,7 @@ def main() -> None:
     server = OwnServer()
     try:
         client = connect("127.0.0.1", server.port, 600.0)
-        world = client.get_world()
-        settings = world.get_settings()
-        settings.synchronous_mode, settings.fixed_delta_seconds = True, STEP_S
-        world.apply_settings(settings)
+        synchronous_world(client)
         process = psutil.Process(server._process.pid)  # noqa: SLF001 - it has no other name for it
         heads = ("vehicles", "program", "shown", "real time", "CPU ms: client and SUMO", "server")
         print("  ".join(heads))
@@ -153,7 +150,7 @@ def main() -> None:
             }
             if arguments.peer is not None:
                 rows["CARLA"] = peer(server.port, process, arguments.folder, arguments.peer, vehicles, ticks)
-                world.apply_settings(settings)
+                synchronous_world(client)  # CARLA's script leaves asynchronous mode behind
             for name, found in rows.items():
                 costs = [f"{1000.0 * each / ticks:.2f}" for each in (found.client_s, found.server_s)]
                 row = (str(vehicles), name, str(found.shown), f"{arguments.seconds / found.took_s:.1f}x", *costs)

@@ -16,6 +16,7 @@ import carla
 import numpy as np
 from PIL import Image, ImageDraw
 
+from basu.episode.world import ticked_by_us
 from basu.simulator import OwnServer, connect
 
 STEP_S = 0.05
@@ -37,46 +38,54 @@ def clear(client: carla.Client, world: carla.World) -> None:
     client.apply_batch_sync([carla.command.DestroyActor(actor.id) for actor in actors], True)
 
 
+def show(client: carla.Client, world: carla.World, log: Path, time_s: float) -> None:
+    """Let the world be as it was at a time of the recording."""
+    client.replay_file(str(log), time_s, 0.0, 0)
+    world.tick()
+    world.tick()
+
+
 def pictures(log: Path, times_s: list[float], back_m: float, up_m: float) -> list[Image.Image]:
     """One picture for each time, in s from the beginning of the recording."""
     server = OwnServer(recordings=log.parent)
     try:
         client = connect("127.0.0.1", server.port, 600.0)
         world = client.get_world()
-        settings = world.get_settings()
-        settings.synchronous_mode, settings.fixed_delta_seconds = True, STEP_S
-        world.apply_settings(settings)
-        client.replay_file(str(log), times_s[len(times_s) // 2], 0.0, 0)
-        world.tick()
-        world.tick()
-        pose = ego_pose(world)
-        ahead = pose.get_forward_vector()
-        at = pose.location + carla.Location(-back_m * ahead.x, -back_m * ahead.y, up_m)
-        blueprint = world.get_blueprint_library().find("sensor.camera.rgb")
-        for name, value in zip(("image_size_x", "image_size_y"), SIZE, strict=True):
-            blueprint.set_attribute(name, str(value))
-        pitch = -float(np.degrees(np.arctan2(up_m, back_m + 8.0)))
-        look = carla.Transform(at, carla.Rotation(pitch, pose.rotation.yaw, 0.0))
-        clear(client, world)
-        found = []
-        for time_s in times_s:
-            client.replay_file(str(log), time_s, 0.0, 0)
-            world.tick()
-            world.tick()
-            camera = world.spawn_actor(blueprint, look)
-            images: queue.Queue[carla.Image] = queue.Queue()
-            camera.listen(images.put)
-            world.tick()
-            image = images.get(timeout=120.0)
-            camera.destroy()
-            pixels = np.frombuffer(image.raw_data, np.uint8).reshape(image.height, image.width, 4)
-            picture = Image.fromarray(np.ascontiguousarray(pixels[..., 2::-1]))
-            ImageDraw.Draw(picture).text((8, 6), f"{time_s:.1f} s", fill="white", font_size=22)
-            found.append(picture)
-            clear(client, world)
+        with ticked_by_us(world, STEP_S):
+            show(client, world, log, times_s[len(times_s) // 2])
+            look = behind(ego_pose(world), back_m, up_m)
+            found = []
+            for time_s in times_s:
+                clear(client, world)
+                show(client, world, log, time_s)
+                found.append(taken(world, look))
+                ImageDraw.Draw(found[-1]).text((8, 6), f"{time_s:.1f} s", fill="white", font_size=22)
         return found
     finally:
         server.end()
+
+
+def behind(pose: carla.Transform, back_m: float, up_m: float) -> carla.Transform:
+    """The pose of a camera behind and above a vehicle, which looks at the road ahead of it."""
+    ahead = pose.get_forward_vector()
+    at = pose.location + carla.Location(-back_m * ahead.x, -back_m * ahead.y, up_m)
+    pitch_deg = -float(np.degrees(np.arctan2(up_m, back_m + 8.0)))
+    return carla.Transform(at, carla.Rotation(pitch_deg, pose.rotation.yaw, 0.0))
+
+
+def taken(world: carla.World, look: carla.Transform) -> Image.Image:
+    """The picture of a camera in the next frame."""
+    blueprint = world.get_blueprint_library().find("sensor.camera.rgb")
+    for name, value in zip(("image_size_x", "image_size_y"), SIZE, strict=True):
+        blueprint.set_attribute(name, str(value))
+    camera = world.spawn_actor(blueprint, look)
+    images: queue.Queue[carla.Image] = queue.Queue()
+    camera.listen(images.put)
+    world.tick()
+    image = images.get(timeout=120.0)
+    camera.destroy()
+    pixels = np.frombuffer(image.raw_data, np.uint8).reshape(image.height, image.width, 4)
+    return Image.fromarray(np.ascontiguousarray(pixels[..., 2::-1]))
 
 
 def main() -> None:

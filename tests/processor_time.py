@@ -18,7 +18,7 @@ TICKS_PER_S = os.sysconf("SC_CLK_TCK")
 
 
 def used_s() -> float:
-    """Processor time in s of this process, of its living descendants, and of those that they have waited for.
+    """Processor time in s of this process, its living descendants, and ended ones that a parent has waited for.
 
     Linux: fields 14 to 17 of /proc/PID/stat, proc(5). A process that leaves its parent no longer counts.
     """

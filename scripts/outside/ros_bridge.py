@@ -310,7 +310,7 @@ def stamp_ns(topic: Topic, message: Any) -> int:
 
 
 def mount_of(spec: dict[str, Any]) -> Mount:
-    """A sensor of ours as the bridge was told to spawn it."""
+    """A sensor of ours, by the description that the bridge spawns it from."""
     return Mount(str(spec["id"]), str(spec["type"]), float(spec.get("x", 0.0)), 0.0, float(spec.get("z", 0.0)))
 
 

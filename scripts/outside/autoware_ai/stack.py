@@ -10,7 +10,7 @@ from pathlib import Path
 TABLES = (
     "area", "dtlane", "intersection", "lane", "line", "node", "point", "roadsign", "stopline", "vector", "wayarea",
 )  # fmt: skip
-"""The CSV files that carla-autoware loads; those that a map lacks are left out."""
+"""The CSV files that carla-autoware loads; a file that the map lacks is left out."""
 
 
 class Stack:

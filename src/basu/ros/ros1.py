@@ -60,10 +60,9 @@ INSTALL = (
 
 
 class Peer(NamedTuple):
-    """A node on the other side of a topic: its name, and the version of the type that it has."""
+    """A node on the other side of a topic: its name, and the definition of the type that it has."""
 
     name: str
-    md5: str
     definition: str
 
 

@@ -122,9 +122,9 @@ class Bridge:
 
 
 def _peer(connection: Any) -> Tuple[str, ...]:
-    """Name of a peer, and MD5 sum and definition of its type where it publishes."""
+    """Name of a peer, and the definition of its type where it publishes."""
     header = getattr(connection, "header", None) or {"callerid": connection.endpoint_id}
-    return tuple(str(header.get(key, "")) for key in ("callerid", "md5sum", "message_definition"))
+    return tuple(str(header.get(key, "")) for key in ("callerid", "message_definition"))
 
 
 def _read(stream: BinaryIO, count: int) -> Optional[bytes]:

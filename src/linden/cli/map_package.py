@@ -5,7 +5,7 @@ import shutil
 from pathlib import Path
 
 from linden.cli import map_convert, map_pointcloud
-from linden.cli.map_source import content_of, opendrive_of, world_map_of
+from linden.cli.map_source import content_of, parsed, world_map_of
 from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 
@@ -70,7 +70,7 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
     from linden.authoring.output import staged_folder  # noqa: PLC0415 - see above
 
     source = content_of(arguments.file)
-    opendrive = opendrive_of(arguments.file)
+    opendrive = parsed(arguments.file, source)
     converted = convert(opendrive, map_convert.wanted_of(arguments, opendrive))
     vectors = aisan_of(converted.lanelet_map)
     converted = map_convert.written_of(converted, arguments)

@@ -18,9 +18,17 @@ def opendrive_of(name: str) -> "OpenDrive":
     Raises:
         UserError: there is neither, or it cannot be read; with the name, and the line where one is to blame.
     """
+    return parsed(name, content_of(name))
+
+
+def parsed(name: str, content: bytes) -> "OpenDrive":
+    """Return the map that a file's bytes describe; ``name`` is for the sentence.
+
+    Raises:
+        UserError: they cannot be read; see :func:`opendrive_of`.
+    """
     from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - `linden --help` does not pay for it
 
-    content = content_of(name)
     try:
         return parse(content)
     except UserError as error:

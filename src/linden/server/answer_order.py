@@ -243,7 +243,7 @@ class AnswerOrder:
         return self.is_synchronous() and call.method not in OF_TRAFFIC
 
     def sent_with(self, peer: RpcPeer, call: Call, answer: bytes) -> bytes | None:
-        """Return what goes out for a call that is done: its answer, those that it sets free, or nothing yet.
+        """Return what goes out for a call that is done: its answer with the answers that it sets free, or nothing yet.
 
         Only cars that a Traffic Manager of the client drives make a difference; see ``driven_vehicles``.
         """

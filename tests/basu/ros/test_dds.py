@@ -6,7 +6,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace as Fake
 
 import numpy as np
 import pytest
@@ -14,7 +13,6 @@ import pytest
 from basu.errors import UserError
 from basu.ros.dds import Node, domain_of_environment, is_local
 from basu.ros.dds_types import dds_name, dds_type
-from basu.ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
 from basu.ros.topics import (
     TF_STATIC,
     Topic,
@@ -25,10 +23,8 @@ from basu.ros.topics import (
     vehicle_topics,
 )
 from basu.ros.types import Generation, Types, types_of
+from fakes.ros_vehicle import CLOUD, VEHICLE, moment
 
-LIDAR = Mount("LIDAR", "sensor.lidar.ray_cast", 0.0, 0.0, 2.4)
-VEHICLE = Vehicle("hero", [LIDAR])
-CLOUD = Topic("/carla/hero/LIDAR", "sensor_msgs/msg/PointCloud2")
 PEER = Path(__file__).parents[2] / "fakes" / "plain_dds_peer.py"
 
 
@@ -40,12 +36,6 @@ def node(monkeypatch: pytest.MonkeyPatch) -> Iterator[Node]:
     made = Node("basu")
     yield made
     made.close()
-
-
-def moment(points: int) -> Moment:
-    rows = np.arange(4 * points, dtype=np.float32)
-    motion = Motion(12.5, 7.0, *([0.0] * 13))
-    return Moment(1.0, 20, motion, Control(), measured=[Measurement(LIDAR, Fake(raw_data=rows.tobytes()))])
 
 
 def test_a_plain_peer_hears_us_and_its_command_reaches_us(node: Node) -> None:

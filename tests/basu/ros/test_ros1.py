@@ -1,4 +1,4 @@
-"""ROS 1 over a real roscore, with peers in processes of their own, and what is said where ROS 1 is absent."""
+"""ROS 1 over a real roscore, with peers in processes of their own, and the sentences where ROS 1 is absent."""
 
 import json
 import os
@@ -8,7 +8,6 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import SimpleNamespace as Fake
 
 import numpy as np
 import pytest
@@ -16,7 +15,6 @@ import pytest
 from basu.errors import UserError
 from basu.ros import ros1
 from basu.ros.autoware_ai import COMMAND, old_types
-from basu.ros.moment import Control, Measurement, Moment, Motion, Mount, Vehicle
 from basu.ros.ros1 import INSTALL, Node, master_uri
 from basu.ros.topics import (
     TF_STATIC,
@@ -30,12 +28,10 @@ from basu.ros.topics import (
     vehicle_topics,
 )
 from basu.ros.types import Generation, Types, types_of
+from fakes.ros_vehicle import CLOUD, VEHICLE, moment
 from roscore import SYSTEM_PYTHON, Starts, master, roscore, starts
 
 __all__ = ["master", "roscore", "starts"]
-LIDAR = Mount("LIDAR", "sensor.lidar.ray_cast", 0.0, 0.0, 2.4)
-VEHICLE = Vehicle("hero", [LIDAR])
-CLOUD = Topic("/carla/hero/LIDAR", "sensor_msgs/msg/PointCloud2")
 PEER = Path(__file__).parents[2] / "fakes" / "plain_rospy_peer.py"
 LONG_S = 30.0
 
@@ -46,12 +42,6 @@ def node(master: str) -> Iterator[Node]:
     made = Node("basu")
     yield made
     made.close()
-
-
-def moment(points: int) -> Moment:
-    rows = np.arange(4 * points, dtype=np.float32)
-    motion = Motion(12.5, 7.0, *([0.0] * 13))
-    return Moment(1.0, 20, motion, Control(), measured=[Measurement(LIDAR, Fake(raw_data=rows.tobytes()))])
 
 
 def test_a_plain_rospy_node_hears_us_and_its_command_reaches_us(node: Node, starts: Starts) -> None:

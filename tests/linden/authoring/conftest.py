@@ -19,5 +19,5 @@ def linden_lanelets(linden):
 
 @pytest.fixture(scope="session")
 def linden_everything(linden):
-    """Linden with all that can be asked for."""
+    """Linden with every choice of a Lanelet2 map."""
     return convert(linden, Wanted(pairwise_priority=True, roundabouts=True, stops=shuttle_stops(linden.geo_origin)))

@@ -4,31 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from basu.agents.builtin.perception import SHUTTLE
+from basu.agents.ros.autoware_base import AutowareBase
 from basu.agents.ros.commands import REVERSE, Wanted, autoware_command
-from basu.agents.ros.lockstep import RosAgent
 from basu.ros import autoware
 from basu.ros.topics import TF_STATIC, Message, first_messages, path_message, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.builtin.perception import VehicleFacts
     from basu.ros.moment import Moment
     from basu.ros.topics import Topic
 
 
-class AutowareAgent(RosAgent):
+class AutowareAgent(AutowareBase):
     """Autoware's topics: sensing, vehicle status, localisation and goal out, ``control_cmd`` in."""
-
-    def config(self) -> dict[str, str]:
-        """The shuttle on its round, with a lidar."""
-        return {
-            "routes": "routes/linden_leap.xml",
-            "sensors": "config/autoware_sensors.json",
-            "vehicle": SHUTTLE,
-            "weather": "ClearNoon",
-        }
 
     def topics(self) -> Sequence[Topic]:
         """Return Autoware's topics, and the route as a path for planners that take one."""
@@ -48,10 +37,6 @@ class AutowareAgent(RosAgent):
     def messages(self, moment: Moment) -> Sequence[Message]:
         """Return what Autoware's interfaces publish in a frame."""
         return list(autoware.autoware_messages(self.node.types, self.described, moment, self.tyre_angle_rad))
-
-    def axle_m(self, facts: VehicleFacts) -> float:
-        """Return how far the rear axle, Autoware's base_link, lies behind the vehicle's origin."""
-        return facts.body.rear_axle_m
 
     def wanted(self, topic: Topic, message: Any) -> Wanted:  # noqa: ANN401 - a message
         """Return what a control command wants; in the reverse gear its speed is backwards."""

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import carla
 
-from basu.agents.builtin.perception import SHUTTLE
+from basu.agents.ros.autoware_base import AutowareBase
 from basu.agents.ros.commands import STANDS_MPS, Wanted, finite
-from basu.agents.ros.lockstep import NODE, RosAgent, is_answer
+from basu.agents.ros.lockstep import NODE, is_answer
 from basu.agents.ros.ros1 import FIRST_S
 from basu.errors import AgentTimedOutError
 from basu.ros import autoware_ai as ai
@@ -24,7 +24,6 @@ from basu.ros.topics import CLOCK, Message, odometry_of, path_message, path_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from basu.agents.builtin.perception import VehicleFacts
     from basu.ros.moment import Moment
     from basu.ros.topics import Topic
     from basu.ros.types import Types
@@ -36,7 +35,7 @@ GRACE_S = 0.04  # wall time that a frame waits for a fresh command before it tak
 STARTING_S = 0.5  # wall time that a frame waits for the very first command
 
 
-class AutowareAiAgent(RosAgent):
+class AutowareAiAgent(AutowareBase):
     """Autoware.AI's topics: sensing, vehicle status, goal, localisation if it has none; ``/vehicle_cmd`` in."""
 
     first_s = FIRST_S
@@ -52,15 +51,6 @@ class AutowareAiAgent(RosAgent):
         self._types: Types | None = None  # in the software's version, once it is known
         self._began_s = self._frame_began_s = time.monotonic()
         super().setup()
-
-    def config(self) -> dict[str, str]:
-        """The shuttle on its round, with a lidar."""
-        return {
-            "routes": "routes/linden_leap.xml",
-            "sensors": "config/autoware_sensors.json",
-            "vehicle": SHUTTLE,
-            "weather": "ClearNoon",
-        }
 
     def new_node(self) -> Node:
         """Return a node at the master that takes commands of any version."""
@@ -103,10 +93,6 @@ class AutowareAiAgent(RosAgent):
         if not self._localises_itself:
             sent.extend(ai.localisation_messages(types, vehicle, moment))
         return [*sent, Message(CLOCK, of_vehicle.clock(types, moment.t_s))]
-
-    def axle_m(self, facts: VehicleFacts) -> float:
-        """Return how far the rear axle, Autoware's base_link, lies behind the vehicle's origin."""
-        return facts.body.rear_axle_m
 
     def belongs(self, message: Any, moment: Moment) -> bool:  # noqa: ANN401 - a message
         """Return whether a command answers a frame at once; an older one is kept for the end of the frame."""

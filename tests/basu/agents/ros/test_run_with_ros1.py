@@ -6,13 +6,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from basu.agents.ros.ros1 import Ros1Agent
 from basu.cli import main
-from basu.records.history.files import read_history
-from ros_runs import FOLLOWER, STACK, run
+from ros_runs import FOLLOWER, STACK, has_failed, has_followed_the_route, run
 from roscore import SYSTEM_PYTHON, Starts, master, roscore, starts
 from servers import RunningServer
 
@@ -28,11 +26,7 @@ def test_a_follower_drives_along_the_route(
 ) -> None:
     starts(FOLLOWER, kind)
     _, result, folder = run(agent, simulator, route_file, tmp_path, "--stop-after", "6")
-    assert result["status"] == "Stopped", result["message"]
-    frames = read_history(folder).frames
-    assert frames["route_s_m"][-1] > 8.0
-    assert np.abs(frames["lateral_m"]).max() < 1.0
-    assert len(frames) == 121
+    has_followed_the_route(result, folder)
 
 
 @pytest.mark.parametrize(
@@ -47,10 +41,7 @@ def test_software_that_fails_is_the_agent_s_failure_and_the_record_is_kept(
     kind: str, status: str, says: str, simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
 ) -> None:
     starts(STACK, kind, "ros1")
-    code, result, folder = run("ros1", simulator, route_file, tmp_path, "--step-limit", "5")
-    assert (code, result["status"], result["fault"]) == (1, status, "agent"), result["message"]
-    assert says in result["message"]
-    assert 5 <= len(read_history(folder).frames) <= 6
+    has_failed(run("ros1", simulator, route_file, tmp_path, "--step-limit", "5"), status, says)
 
 
 def test_two_drivers_at_one_wheel_are_refused(

@@ -99,7 +99,7 @@ class TestLinden:
         assert len(town["stopline"]) >= 179
         assert len(town["roadsign"]) == 157
         assert len(town["signaldata"]) == 3 * 22
-        assert len(town["intersection"]) == 120  # of 131 junctions: those that traffic enters from two roads or more
+        assert len(town["intersection"]) == 120  # of 131 junctions: traffic enters them from two roads or more
         assert (_column(town, "crosswalk", "Type") == 0).sum() == 40
 
     def test_every_lane_of_the_opendrive_map_is_there(self, town):
