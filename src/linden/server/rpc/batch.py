@@ -84,14 +84,19 @@ def _carry_out(context: Context, batch: cmd.Batch) -> list[Answer]:
 
 def _driven(context: Context, controls: object) -> Packed | None:
     """Set controls that all vehicles can take, and return the answers; None where one cannot, or these are others."""
-    if type(controls) is not Controls:
+    if type(controls) is not Controls or not _set_together(context, controls):
         return None
+    return _all_done(controls.actor_ids.tobytes())
+
+
+def _set_together(context: Context, controls: Controls) -> bool:
+    """Set controls, and return whether all vehicles could take them; else none has taken any."""
     episode = context.world.episode
     slots = episode.vehicles(controls.actor_ids)
     if slots is None:
-        return None
+        return False
     episode.bodies.set_controls(slots, controls.fields)
-    return _all_done(controls.actor_ids.tobytes())
+    return True
 
 
 @lru_cache(maxsize=8)
@@ -102,12 +107,10 @@ def _all_done(actor_ids: bytes) -> Packed:
 
 def _drive(context: Context, controls: Controls) -> list[Answer]:
     """Set the controls of many vehicles at once: what a script for traffic sends every tick."""
-    episode = context.world.episode
     actor_ids = controls.actor_ids.tolist()
-    slots = episode.vehicles(controls.actor_ids)
-    if slots is not None:
-        episode.bodies.set_controls(slots, controls.fields)
-        return [((1, actor_id),) for actor_id in actor_ids]
+    if _set_together(context, controls):
+        return [cmd.done(actor_id) for actor_id in actor_ids]
+    episode = context.world.episode
     answers: list[Answer] = []
     for nth, actor_id in enumerate(actor_ids):
         try:
