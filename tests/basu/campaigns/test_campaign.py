@@ -1,7 +1,6 @@
 """Claims about campaigns as a whole, with a player that computes rows: nothing is lost or counted twice."""
 
 import importlib
-import logging
 import os
 import signal
 import subprocess
@@ -23,6 +22,7 @@ from basu.campaigns.records import kept_in
 from basu.campaigns.report import write_campaign_report
 from basu.campaigns.status import status
 from basu.errors import UserError
+from ray_clusters import connected_cluster
 
 Write = Callable[..., Path]
 DRIVER = (
@@ -193,15 +193,8 @@ def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_campaign_on_a_cluster_equals_one_of_processes(run: Callable[..., Path], campaign: Write) -> None:
-    ray = pytest.importorskip("ray")
-    from ray.cluster_utils import Cluster  # noqa: PLC0415 - behind the check for Ray
-
+    pytest.importorskip("ray")
     file = campaign(("number = 3", "number = 1"))
-    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 2, "object_store_memory": 80_000_000})
-    try:
-        ray.init(address=cluster.address, logging_level=logging.ERROR, log_to_driver=False)
+    with connected_cluster(cpus=2):
         on_cluster = run(file, "cluster", ray="auto")
-    finally:
-        ray.shutdown()
-        cluster.shutdown()
     assert steady(on_cluster).equals(steady(run(file)))

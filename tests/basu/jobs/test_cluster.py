@@ -1,30 +1,25 @@
 """Claims about workers on a Ray cluster: a lost node costs no job, and a cluster that is not there is named."""
 
 import itertools
-import logging
 import time
 from collections.abc import Iterator
 
-import psutil
 import pytest
 
 from basu.errors import UserError
 from basu.jobs.job import Done, Job, Lost, PlayerSpec
 from basu.jobs.pool import Pool
+from ray_clusters import connected_cluster, no_other_cluster
 
-ray = pytest.importorskip("ray")
+pytest.importorskip("ray")
 
-from ray.cluster_utils import Cluster  # noqa: E402 - likewise
-
-from basu.jobs.cluster import RayBackend  # noqa: E402 - behind the check for Ray
+from basu.jobs.cluster import RayBackend
 
 
 @pytest.mark.slow
 def test_a_node_that_is_removed_loses_no_job_and_counts_none_twice(player: str) -> None:
-    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "object_store_memory": 80_000_000})
-    try:
+    with connected_cluster(cpus=1) as cluster:
         node = cluster.add_node(num_cpus=1, object_store_memory=80_000_000)
-        ray.init(address=cluster.address, logging_level=logging.ERROR, log_to_driver=False)
         backend = RayBackend(PlayerSpec(player, ()), "auto")
         assert backend.processors() == 2
         pool = Pool(backend, 2)
@@ -46,12 +41,6 @@ def test_a_node_that_is_removed_loses_no_job_and_counts_none_twice(player: str) 
         assert removed, "one of the nodes has played no job in two minutes"
         assert sorted(answer.number for answer in answers) == list(range(len(answers)))
         assert all(isinstance(answer, Done) for answer in answers)
-    finally:
-        ray.shutdown()
-        children = psutil.Process().children(recursive=True)
-        of_ray = [each for each in children if each.name() in ("gcs_server", "raylet")]
-        cluster.shutdown()
-        psutil.wait_procs(of_ray, timeout=60.0)  # `auto` would find a cluster that is about to end
 
 
 def test_a_cluster_that_is_not_there_is_one_sentence() -> None:
@@ -63,5 +52,5 @@ def test_a_cluster_that_is_not_there_is_one_sentence() -> None:
 
 def test_without_a_cluster_on_this_machine_auto_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("RAY_ADDRESS", raising=False)
-    with pytest.raises(UserError, match="no Ray cluster answers at auto"):
+    with no_other_cluster(), pytest.raises(UserError, match="no Ray cluster answers at auto"):
         RayBackend(PlayerSpec("none:none", ()), "auto")
