@@ -140,12 +140,18 @@ def report(path: Path, converted: "Converted") -> None:
     """Print what a Lanelet2 map has, what was left out, and what was assumed."""
     from linden.authoring.lanelet2.bounds import STATED_ERROR_M  # noqa: PLC0415 - see `_to_lanelet2`
     from linden.authoring.lanelet2.convert import UNKNOWN_SPEED_KMH, counts  # noqa: PLC0415 - see `_to_lanelet2`
+    from linden.authoring.lanelet2.shared import NEAR_M  # noqa: PLC0415 - see `_to_lanelet2`
 
     lanelet_map = converted.lanelet_map
     _say(
         f"{path}: {len(lanelet_map.nodes):,} nodes, {len(lanelet_map.ways):,} ways, "
         f"{len(lanelet_map.relations):,} relations; bounds within {100 * STATED_ERROR_M:g} cm of the OpenDRIVE curves"
     )
+    if converted.shared:
+        _say(
+            f"{len(converted.shared)} edges of ways through junctions are {len(converted.shared) // 2} shared bounds, "
+            f"within {100 * NEAR_M / 2:g} cm"
+        )
     for name, count in sorted(counts(lanelet_map).items()):
         _say(f"{count:8,} {name}")
     for reason, count in sorted(converted.network.left_out.items()):
