@@ -1,6 +1,6 @@
 """Drives a campaign for a while and shows its memory over time, its drives a second, and its processor time.
 
-    python benchmarks/campaign_watch.py campaign.toml --seconds 500 --every 30 [-- OPTIONS OF basu campaign run]
+    python benchmarks/campaign_watch.py --seconds 500 --every 30 -- campaign.toml [OPTIONS OF basu campaign run]
 
 A row has the drives so far and the resident memory, in MB, of the command (the driver) and the largest of its workers,
 simulators and agents. After ``--seconds`` the command gets Ctrl-C, so it can go on with ``--resume``.
@@ -77,13 +77,14 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=500.0)
     parser.add_argument("--every", type=float, default=30.0)
     parser.add_argument("--output", type=Path, default=Path("campaigns"))
-    parser.add_argument("options", nargs="*", help="of basu campaign run, behind --")
+    parser.add_argument("options", nargs="*", help="of basu campaign run")
     given = parser.parse_args()
     folder = given.output / plan_of(read_campaign(given.campaign), given.campaign).campaign.name
     before = read_drives(folder).num_rows if folder.exists() else 0
     print(f"{len(os.sched_getaffinity(0))} processors for it, load {os.getloadavg()[0]:.1f}")
     print("".join(name.rjust(8) for name in ("s", "drives")) + "".join(name.rjust(11) for name in ("driver", *ROLES)))
     words = [*BASU, "campaign", "run", str(given.campaign), "--output", str(given.output), *given.options]
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a script's shell ignores it for commands with &
     command = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     took_s, cpu_s = watch(command, folder, given.seconds, given.every)
     rows = read_drives(folder, ["simulated_s", "cpu_s", "fault"])
