@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.cli.run import SIMULATOR, options_of
 from basu.errors import UserError
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.settings.command_line import add_options
 
 if TYPE_CHECKING:
