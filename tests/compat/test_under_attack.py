@@ -35,9 +35,8 @@ WITHOUT_WALLS = [2.0, 50.0, 0.0, 0.6, True, True, True]
 WITH_WALLS = [2.0, 50.0, 1.0, 0.6, True, True, True]
 GREEDY = {"channels": "4096", "points_per_second": "20000000"}
 LONGEST_TICK_S = 0.1
-"""What no work of another client may exceed in each of three tries: 20 to 65 ms were seen beside walls round Linden, and
-5 to 30 ms beside a recording of 100,000 frames, at loads of 1 to 17 on two cores (docs/decisions/0095). The longest are
-single collections of garbage."""
+"""What no work of another client may exceed in each of three tries. Seen at loads of 1 to 17 on two cores: 15 to 65 ms
+beside walls round Linden, 3 to 37 ms beside a recording of 100,000 frames (docs/decisions/0095)."""
 GONE = (EOFError, OSError, UnicodeDecodeError)
 
 on_linux = pytest.mark.skipif(
