@@ -59,8 +59,9 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(environment: Path, folder: Path, *command: str) -> "subprocess.CompletedProcess[str]":
-    """Run a command of the environment in a folder, without a word of the checkout."""
-    names = {"PATH": os.defpath, "HOME": str(folder), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", "")}
+    """Run a command of the environment in a folder, without a word of the checkout; what maps give is kept already."""
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    names = {"PATH": os.defpath, "HOME": str(folder), "XDG_CACHE_HOME": cache}
     program, *options = command
     return subprocess.run(
         [str(environment / "bin" / program), *options],
