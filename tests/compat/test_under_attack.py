@@ -293,6 +293,20 @@ def test_a_recording_of_a_hundred_thousand_frames_is_read_beside_the_ticks_of_ot
 
 
 @on_linux
+def test_the_scene_of_a_map_is_made_beside_the_ticks_of_others(server: RunningServer, raw: RawClient) -> None:
+    def look_at_linden() -> None:
+        for town in ("OpenDriveMap", "Linden"):
+            raw.call("load_new_episode", town, True, 0xFFFF)
+            camera = raw.call("spawn_actor", [0, "sensor.camera.rgb", []], AT_ORIGIN)
+            for _ in range(12):  # each answer waits a while for the scene
+                raw.call("version")
+            assert raw.call("destroy_actor", camera[0]) is True
+
+    raw.call("copy_opendrive_to_file", ONE_ROAD, WITHOUT_WALLS)
+    assert worst_tick_s(server, look_at_linden) < LONGEST_TICK_S
+
+
+@on_linux
 def test_a_server_without_memory_refuses_and_goes_on() -> None:
     with running_server("--sync") as server, RawClient(server.port, 120.0) as raw, RawClient(server.port) as other:
         for step_s in (0.05, 10.0):
