@@ -103,7 +103,7 @@ def table(found: list[Findings]) -> str:
     """Return a table in Markdown: checks by row, maps by column."""
     checks = sorted({key for each in found for key in each.counts})
     lines = ["| | " + " | ".join(each.map for each in found) + " |", "|---|" + "---|" * len(found)]
-    for severity in ("Error", "Warning", "Info"):
+    for severity in ("Error", "Warning", "info"):  # as the validator spells them
         sums = [sum(n for (kind, _), n in each.counts.items() if kind == severity) for each in found]
         lines.append(f"| {severity.lower()}s | " + " | ".join(map(str, sums)) + " |")
     lines += [
