@@ -20,6 +20,7 @@ from xmlrpc.client import ServerProxy
 import matplotlib as mpl
 
 mpl.use("Agg")
+import ndt_settings
 import numpy as np
 from matplotlib import pyplot as plt
 from numpy.typing import NDArray
@@ -34,16 +35,6 @@ from basu.ros.topics import CLOCK, TF_STATIC, Message, Topic, odometry_of
 from basu.ros.types import Generation, Types
 from basu.ros.vehicle_messages import NS_PER_S
 
-VOXEL = Topic("/config/voxel_grid_filter", "autoware_config_msgs/msg/ConfigVoxelGridFilter", is_latched=True, depth=1)
-MATCHING = Topic("/config/ndt", "autoware_config_msgs/msg/ConfigNDT", is_latched=True, depth=1)
-VERSIONS = {
-    VOXEL.type: "float32 voxel_leaf_size\nfloat32 measurement_range\n",
-    MATCHING.type: "Header header\nint32 init_pos_gnss\nfloat32 x\nfloat32 y\nfloat32 z\nfloat32 roll\nfloat32 pitch\n"
-    "float32 yaw\nint32 use_predict_pose\nfloat32 error_threshold\nfloat32 resolution\nfloat32 step_size\n"
-    "float32 trans_epsilon\nint32 max_iterations\n",
-}
-"""The fields of the settings that Autoware.AI's user interface sends; its nodes have no parameters for them."""
-RANGE_M, STEP_M, EPSILON, ITERATIONS = 200.0, 0.1, 0.01, 30  # the nodes' own defaults
 MAP_STAT = Topic("/pmap_stat", "std_msgs/msg/Bool")
 TIME = Topic("/time_ndt_matching", "std_msgs/msg/Float32", depth=10)
 LONG_S = 300.0  # wall time: the cloud of a route is read and made into cells
@@ -77,8 +68,12 @@ def main() -> int:
     parser.add_argument("bag", type=Path)
     parser.add_argument("--sensor", default="top", help="ID of the lidar in the bag")
     parser.add_argument("--height", type=float, default=2.9, help="of the lidar above the ground, m")
-    parser.add_argument("--leaf", type=float, default=2.0, help="of the scan's voxel grid, m (default: Autoware.AI's)")
-    parser.add_argument("--resolution", type=float, default=1.0, help="of NDT's cells, m (default: Autoware.AI's)")
+    parser.add_argument(
+        "--leaf", type=float, default=ndt_settings.LEAF_M, help="of the scan's voxel grid, m (default: Autoware.AI's)"
+    )
+    parser.add_argument(
+        "--resolution", type=float, default=ndt_settings.RESOLUTION_M, help="of NDT's cells, m (default: Autoware.AI's)"
+    )
     parser.add_argument("--every", type=int, default=1, help="take every Nth scan")
     parser.add_argument("--until", type=float, default=math.inf, metavar="S", help="end of the drive that is taken")
     parser.add_argument("-o", "--output", type=Path, required=True)
@@ -113,18 +108,9 @@ def started(stack: Stack, args: argparse.Namespace) -> Node:
     stack.node("voxel_grid_filter", "__name:=voxel_grid_filter", "_points_topic:=/points_raw")
     words = ("_method_type:=1", "_use_gnss:=1", "_use_odom:=false", "_use_imu:=false", "_offset:=linear")
     stack.node("ndt_matching", "__name:=ndt_matching", *words)
-    types = Types(Generation.ROS_1, VERSIONS)
-    voxel = types.message(VOXEL.type, voxel_leaf_size=args.leaf, measurement_range=RANGE_M)
-    matching = types.message(
-        MATCHING.type,
-        init_pos_gnss=1,
-        resolution=args.resolution,
-        step_size=STEP_M,
-        trans_epsilon=EPSILON,
-        max_iterations=ITERATIONS,
-    )
-    node.publish_as(types, Message(VOXEL, voxel), Message(MATCHING, matching))
-    for topic in (VOXEL, MATCHING, POINTS, GNSS_POSE):
+    types = ndt_settings.types()
+    node.publish_as(types, ndt_settings.voxel(types, args.leaf), ndt_settings.matching(types, args.resolution))
+    for topic in (ndt_settings.VOXEL, ndt_settings.MATCHING, POINTS, GNSS_POSE):
         if not node.wait_for_peers(topic, LONG_S):
             raise UserError(f"no node of Autoware.AI listens on {topic.name}; see {args.output / 'logs'}")
     # The cloud comes after the settings, for the cells are made once, with the resolution of that moment.

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from basu.ros.moment import Moment, Mount, Vehicle
 
+Place = tuple[float, float, float, float]
+"""x, y, z in m and yaw in rad, in CARLA's axes."""
+
 WORLD = "world"
 MPS_TO_KMPH = 3.6
 AUTO = 1  # VehicleStatus: MODE_AUTO
@@ -125,17 +128,21 @@ def still_messages(types: Types, vehicle: Vehicle, t_s: float) -> list[Message]:
     return [Message(TF_STATIC, of_vehicle.transforms(types, t_s, tree))]
 
 
-def mission(types: Types, way: list[tuple[float, float, float, float]], t_s: float) -> list[Message]:
-    """Return start, goal and the order to drive; ``way`` gives x, y, z in m and yaw in rad in CARLA's axes."""
-    poses = [Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)) for x, y, z, yaw in (way[0], way[-1])]
-    start, goal = (of_vehicle.pose_message(types, pose) for pose in poses)
+def mission(types: Types, start: Place, goal: Place, t_s: float) -> list[Message]:
+    """Return start, goal and the order to drive."""
     header = of_vehicle.header(types, t_s, of_vehicle.MAP)
-    covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=start)
+    covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=_pose_at(types, start))
     return [
         Message(INITIAL_POSE, types.message(INITIAL_POSE.type, header=header, pose=covered)),
-        Message(GOAL, types.message(GOAL.type, header=header, pose=goal)),
+        goal_message(types, goal, t_s),
         Message(STATE_COMMAND, types.message(STATE_COMMAND.type, data="engage")),
     ]
+
+
+def goal_message(types: Types, goal: Place, t_s: float) -> Message:
+    """Return a goal."""
+    header = of_vehicle.header(types, t_s, of_vehicle.MAP)
+    return Message(GOAL, types.message(GOAL.type, header=header, pose=_pose_at(types, goal)))
 
 
 def sensing_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator[Message]:
@@ -198,6 +205,12 @@ def _first_mounts(vehicle: Vehicle) -> list[Mount]:
     """The first sensor of each topic."""
     first = {topics[0]: mount for mount in reversed(vehicle.mounts) if (topics := sensor_topics(mount))}
     return [mount for mount in vehicle.mounts if mount in first.values()]
+
+
+def _pose_at(types: Types, place: Place) -> Any:  # noqa: ANN401 - a message
+    """The pose of a place."""
+    x, y, z, yaw = place
+    return of_vehicle.pose_message(types, Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)))
 
 
 def _pose(types: Types, vehicle: Vehicle, moment: Moment) -> Any:  # noqa: ANN401 - a message

@@ -96,7 +96,7 @@ def test_the_tyre_angle_drives_the_circle() -> None:
 
 def test_the_mission_starts_with_the_route_and_engages() -> None:
     way = [(1.0, 2.0, 0.0, 0.0), (10.0, 5.0, 0.0, math.pi / 2)]
-    start, goal, engage = ai.mission(NEW, way, 1.0)
+    start, goal, engage = ai.mission(NEW, *way, 1.0)
     assert (start.topic.name, start.content.pose.pose.position.y) == ("/initialpose", -2.0)
     assert (goal.topic.name, goal.content.pose.position.x) == ("/move_base_simple/goal", 10.0)
     assert (engage.topic.name, engage.content.data) == ("/state_cmd", "engage")
