@@ -3,7 +3,7 @@
     python scripts/outside/autoware_ai/loop.py OUT CONTENTS TOWN.xodr --routes FILE.xml [--ndt] -o FOLDER [OPTIONS]
 
 OUT is the folder of ``build``, CONTENTS that of ``linden map package ... --ros1``; OPTIONS go to `basu run`. Writes
-loop.json, loop.svg and the run folder.
+loop.json, loop.jpg and the run folder.
 """
 # ruff: noqa: ANN401 - messages of ROS
 
@@ -56,6 +56,7 @@ def main() -> int:
     with running_stack(args.out, args.output / "logs") as stack:
         words = ["--routes", str(args.routes), "--output", str(args.output), *others]
         run = subprocess.Popen([sys.executable, "-c", BASU, "run", "autoware-ai", *words])
+        stack.adopt(run)
         options = {"contents": args.contents.resolve(), "town": args.opendrive.stem, "ndt": str(args.ndt).lower()}
         options.update(rules=str(args.rules).lower(), round=str(args.round).lower())
         stack.start("roslaunch", "roslaunch", str(LAUNCH), *(f"{name}:={value}" for name, value in options.items()))
@@ -84,7 +85,7 @@ def main() -> int:
         }
     print(json.dumps(told, indent=1))
     (args.output / "loop.json").write_text(json.dumps(told, indent=1), encoding="utf-8")
-    draw(history, errors, args.output / "loop.svg")
+    draw(history, errors, args.output / "loop.jpg")
     return 0
 
 
@@ -141,7 +142,7 @@ def draw(history: Any, errors: list[tuple[float, float]], file: Path) -> None:
     graph.set_xlabel("time, s")
     graph.set_ylabel("cm")
     graph.legend()
-    figure.savefig(file, bbox_inches="tight")
+    figure.savefig(file, dpi=110, bbox_inches="tight")
 
 
 if __name__ == "__main__":

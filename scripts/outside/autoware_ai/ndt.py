@@ -4,7 +4,7 @@
 
 OUT is the folder of ``build``, BAG one that `basu run ... --rosbag` wrote with a lidar. Each scan is published when the
 pose of the one before has come, so no scan is dropped. The first pose is the true one; every other is NDT's own work.
-Writes ndt.json and ndt.svg.
+Writes ndt.json and ndt.jpg.
 """
 # ruff: noqa: ANN401 - messages of ROS
 
@@ -92,7 +92,7 @@ def main() -> int:
     told = {"leaf_m": args.leaf, "resolution_m": args.resolution, **summary(matches)}
     print(json.dumps(told, indent=1))
     (args.output / "ndt.json").write_text(json.dumps(told, indent=1), encoding="utf-8")
-    draw(matches, args.output / "ndt.svg")
+    draw(matches, args.output / "ndt.jpg")
     return 0 if told["p95_cm"] < GOAL_CM else 1
 
 
@@ -250,7 +250,7 @@ def draw(matches: list[Match], file: Path) -> None:
     axes.set_xlabel("time, s")
     axes.set_ylabel("error of NDT matching, cm")
     axes.legend()
-    figure.savefig(file, bbox_inches="tight")
+    figure.savefig(file, dpi=110, bbox_inches="tight")
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 TICK_S = 0.01  # of the clock within a frame, simulated time
 PACE_S = 0.002  # wall time a tick: a message crosses two or three nodes in it
 SLOWEST_S = 0.04  # the same where the nodes do not keep up: on a machine with other work, for example
-SLOWER, FASTER = 1.5, 0.95  # factors of the wall time a tick: after a frame with an old command, and after each frame
+SLOWER, FASTER = 2.0, 0.98  # factors of the wall time a tick: after a frame with an old command, and after each frame
 OLDEST_S = 0.2  # simulated time: two scans of a lidar at 10 Hz, which a localisation answers one late
 GRACE_S = 0.04  # wall time that a frame waits for a fresh command before it takes the one of a frame before
 PATIENCE_S = 0.5  # wall time after which a frame takes an even older command: with a clock that stands no loop wakes
