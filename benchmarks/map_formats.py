@@ -26,7 +26,7 @@ from linden.authoring.lanelet2.convert import convert
 from linden.authoring.lanelet2.osm import osm_bytes
 from linden.authoring.lanelet2.second_reader import routes_of
 from linden.authoring.output import write_folder
-from linden.cli.map_source import content_of
+from linden.cli.map_files import content_of
 from linden.maps.opendrive.parse import parse
 
 ROWS = (
@@ -43,6 +43,7 @@ ROWS = (
     ("covered", "%"),
     ("plan", "mm"),
     ("height", "mm"),
+    ("shared", "mm"),
     ("load errors", ""),
     ("pairs", ""),
     ("missing", ""),
@@ -129,7 +130,7 @@ def measured(name: str) -> dict[str, float]:
     routes = routes_of(converted.lanelet_map)
     pairs = reach(opendrive, routes, converted)
     driving = compare(converted.lanelet_map, opendrive)[0]
-    plan_m, height_m = worst_error_m(opendrive, converted)
+    worst = worst_error_m(opendrive, converted)
     return {
         "parse": marks[1] - marks[0],
         "lanelet2": marks[2] - marks[1],
@@ -142,8 +143,9 @@ def measured(name: str) -> dict[str, float]:
         "osm": len(osm) / 1e6,
         "rows": len(vectors.tables.rows["lane"]),
         "covered": 100.0 * driving.after / driving.before,
-        "plan": 1000.0 * plan_m,
-        "height": 1000.0 * height_m,
+        "plan": 1000.0 * worst.plan_m,
+        "height": 1000.0 * worst.height_m,
+        "shared": 1000.0 * worst.shared_m,
         "load errors": len(routes.errors),
         "pairs": pairs.both,
         "missing": len(pairs.missing),

@@ -55,6 +55,12 @@ def pytest_report_header() -> str:
     return f"hypothesis profile: {os.environ.get('HYPOTHESIS_PROFILE', 'repeatable')}"
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection() -> None:
+    """Have the garbage collector rest while the tests are collected: all of it stays, and it would look at it often."""
+    gc.disable()
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the longest files first; a file's tests keep their order."""
     here = Path(__file__).parent
@@ -66,6 +72,7 @@ def pytest_collection_finish() -> None:
     """Take all that the collection made out of the garbage collector's sight: it stays until the end."""
     gc.collect()
     gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(wrapper=True)

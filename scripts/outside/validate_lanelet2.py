@@ -22,7 +22,8 @@ from linden.authoring.lanelet2.model import without_lanelets
 from linden.authoring.lanelet2.osm import osm_bytes, read_osm
 from linden.authoring.lanelet2.projection import NOWHERE, projection_of
 from linden.authoring.lanelet2.stretches import WALKWAY
-from linden.cli.map_source import is_built_in, opendrive_of
+from linden.cli.map_files import is_built_in
+from linden.cli.map_source import opendrive_of
 
 
 class Findings(NamedTuple):
@@ -102,7 +103,7 @@ def table(found: list[Findings]) -> str:
     """Return a table in Markdown: checks by row, maps by column."""
     checks = sorted({key for each in found for key in each.counts})
     lines = ["| | " + " | ".join(each.map for each in found) + " |", "|---|" + "---|" * len(found)]
-    for severity in ("Error", "Warning", "Info"):
+    for severity in ("Error", "Warning", "info"):  # as the validator spells them
         sums = [sum(n for (kind, _), n in each.counts.items() if kind == severity) for each in found]
         lines.append(f"| {severity.lower()}s | " + " | ".join(map(str, sums)) + " |")
     lines += [

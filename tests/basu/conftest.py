@@ -12,6 +12,7 @@ import pytest
 from basu.agents.adapters.replacement_modules import step_back
 from basu.agents.process import agent_process
 from servers import RunningServer, running_server
+from shared_client import shared_client
 from tracing import untraced
 
 SHORT_ROUTE = Path(__file__).parents[2] / "src" / "basu" / "routes" / "linden_short.xml"
@@ -70,6 +71,7 @@ def simulator() -> Iterator[RunningServer]:
     with ExitStack() as stack:
         with untraced():  # tests/compat and tests/linden measure the server's coverage
             running = stack.enter_context(running_server())
+        stack.enter_context(shared_client(running.port))
         yield running
 
 

@@ -41,10 +41,19 @@ class StandingBox(NamedTuple):
     yaw_rad: float
 
 
-class Standing(NamedTuple):
-    """A thing that the map says stands beside a road: a building (named, where the map names it), or furniture.
+STREET_NAME_SIGN = "street_name_sign"
+NAMES_BETWEEN = " / "
+BLADE_LETTER_M = 0.1
+"""Capitals of 4 in are the least for streets of 25 mph (Manual on Uniform Traffic Control Devices, section 2D.43)."""
+ADVANCE = 0.76
+"""From letter to letter on a blade, for letters of height 1."""
 
-    ``kind`` is building, bench, bin or mailbox. The place is that of its foot, in CARLA's frame.
+
+class Standing(NamedTuple):
+    """A thing that the map says stands beside a road: a building (named, where the map names it), furniture, or a sign.
+
+    ``kind`` is building, bench, bin, mailbox or street_name_sign. A sign's name joins its streets' names by " / ", and
+    its boxes are the post and one blade for each of them. The place is that of its foot, in CARLA's frame.
     """
 
     kind: str

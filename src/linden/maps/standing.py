@@ -1,4 +1,4 @@
-"""What an OpenDRIVE map says of the things beside its roads: buildings on their footprints, benches, bins, mailboxes.
+"""What an OpenDRIVE map says of the things beside its roads: buildings on their footprints, furniture, name signs.
 
 A footprint becomes upright boxes: it is cut into strips across its longest side, at each of its corners. For a
 footprint of right angles, which most buildings have, the boxes are exact; an oblique wall becomes steps.
@@ -15,12 +15,28 @@ from linden.maps.opendrive.evaluate.tables import tables_of
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.outlines import outline_of
 from linden.maps.opendrive.roadside import RoadObject
-from linden.maps.records import Standing, StandingBox
+from linden.maps.records import (
+    ADVANCE,
+    BLADE_LETTER_M,
+    NAMES_BETWEEN,
+    STREET_NAME_SIGN,
+    Standing,
+    StandingBox,
+)
 
 F64 = NDArray[np.float64]
 
 FURNITURE = frozenset({"bench", "bin", "mailbox"})
 """Names of objects of the type ``obstacle`` that are known."""
+
+STREET_NAME = "streetName"
+"""Code of an object's ``userData``: a blade of a street-name sign, its turn against the road in rad, and the name."""
+
+BLADE_HALF_HEIGHT_M = 0.075
+BLADE_HALF_THICKNESS_M = 0.006
+MARGIN_M = 0.06
+MOST_BLADES = 4
+LONGEST_NAME = 30
 
 MOST_STANDING = 20_000
 MOST_STRIPS = 24
@@ -46,9 +62,33 @@ def standing_on(opendrive: OpenDrive, ground: Ground) -> tuple[Standing, ...]:
                 continue
             middle = outline.mean(axis=0)
             heights, _ = ground.surfaces_under(np.array([[*middle, _HIGH_M]]))
-            base_m = float(heights[0]) + thing.z_offset_m
-            found.append(_standing(kind, thing, boxes, (float(middle[0]), float(middle[1]), base_m)))
+            place = (float(middle[0]), float(middle[1]), float(heights[0]) + thing.z_offset_m)
+            if kind == STREET_NAME_SIGN:
+                s_m = min(max(thing.s_m, 0.0), float(tables.road_length_m[index]))
+                heading = tables.curves.pose(np.array([index]), np.array([s_m])).heading_rad
+                found.append(_name_sign(thing, boxes[0], place, float(heading[0])))
+            else:
+                found.append(_standing(kind, thing, boxes, place))
     return tuple(found)
+
+
+def blades_of(thing: RoadObject) -> tuple[tuple[float, str], ...]:
+    """Return the blades of a street-name sign: turn against the road in rad, and name; what is no such is left out."""
+    found = []
+    for code, value in thing.user_data:
+        turn, _, name = value.partition(" ")
+        try:
+            turn_rad = float(turn)
+        except ValueError:
+            continue
+        if code == STREET_NAME and math.isfinite(turn_rad) and name.strip():
+            found.append((turn_rad, name.strip()[:LONGEST_NAME]))
+    return tuple(found[:MOST_BLADES])
+
+
+def blade_half_length_m(name: str) -> float:
+    """Return half the length of a blade: as long as its name in capitals, which are as far apart as they are wide."""
+    return 0.5 * BLADE_LETTER_M * ADVANCE * len(name) + MARGIN_M
 
 
 def footprint_boxes(outline: F64) -> list[tuple[float, float, float, float, float]]:
@@ -97,6 +137,8 @@ def _kind(thing: RoadObject) -> str | None:
         return None
     if thing.type.lower() == "building":
         return "building"
+    if thing.type.lower() == "pole" and blades_of(thing):
+        return STREET_NAME_SIGN
     return thing.name if thing.type.lower() == "obstacle" and thing.name in FURNITURE else None
 
 
@@ -119,3 +161,23 @@ def _standing(
         boxes[0][4],
         tuple(StandingBox(x, y, base_m[2] + half_z, u, v, half_z, yaw) for x, y, u, v, yaw in boxes),
     )
+
+
+def _name_sign(
+    thing: RoadObject,
+    post: tuple[float, float, float, float, float],
+    place_m: tuple[float, float, float],
+    heading_rad: float,
+) -> Standing:
+    """Return a street-name sign: its post, and its blades on top of each other, the first one at the post's top."""
+    x_m, y_m, base_m = place_m
+    blades = blades_of(thing)
+    half_z = 0.5 * _height_m(thing)
+    boxes = [StandingBox(post[0], post[1], base_m + half_z, post[2], post[3], half_z, post[4])]
+    for nth, (turn_rad, name) in enumerate(blades):
+        middle_m = base_m + _height_m(thing) - (2 * nth + 1) * BLADE_HALF_HEIGHT_M
+        yaw_rad = -math.remainder(heading_rad + turn_rad, math.tau)  # CARLA's frame is left-handed
+        half = blade_half_length_m(name), BLADE_HALF_THICKNESS_M, BLADE_HALF_HEIGHT_M
+        boxes.append(StandingBox(x_m, y_m, middle_m, *half, yaw_rad))
+    names = NAMES_BETWEEN.join(name for _, name in blades)
+    return Standing(STREET_NAME_SIGN, names, x_m, y_m, base_m, post[4], tuple(boxes))

@@ -8,12 +8,14 @@ from linden.maps.facts import MapFacts
 from linden.maps.ground import Ground
 from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.model import OpenDrive
+from linden.maps.records import NAMES_BETWEEN, STREET_NAME_SIGN
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
 from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes
 from linden.scenery.roadside.buildings import buildings, furniture
 from linden.scenery.roadside.houses import houses, plans
 from linden.scenery.roadside.parked_cars import parked_cars
+from linden.scenery.roadside.name_signs import blades_with_names, posts
 from linden.scenery.roadside.signal_posts import signs, street_lamps, traffic_lights
 from linden.scenery.roadside.trees import Planted, trees, woods
 from linden.scenery.roadside.wires import shelters, utility_poles
@@ -185,6 +187,19 @@ def _mailboxes(of: _Of) -> Mesh:
     return furniture("mailbox", of.frames, of.half_m(0), of.box(0))
 
 
+def _name_signs(of: _Of) -> Mesh:
+    signed = [thing.name.split(NAMES_BETWEEN) for thing in of.facts.standing if thing.kind == STREET_NAME_SIGN]
+    names = [name for sign in signed for name in sign]
+    is_blade = of.boxes["tag"] == SemanticTag.TRAFFIC_SIGNS
+    blades = Frames(of.boxes["centre"][is_blade], of.boxes["yaw_rad"][is_blade])
+    return join(
+        [
+            posts(of.frames, of.half_m(0), of.box(0)),
+            blades_with_names(blades, of.boxes["half"][is_blade], of.every_box[is_blade], names),
+        ]
+    )
+
+
 _MAKERS = {
     Kind.TRAFFIC_LIGHT: _lights,
     Kind.TRAFFIC_SIGN: _signs,
@@ -202,4 +217,5 @@ _MAKERS = {
     Kind.BENCH: _benches,
     Kind.BIN: _bins,
     Kind.MAILBOX: _mailboxes,
+    Kind.STREET_NAME_SIGN: _name_signs,
 }

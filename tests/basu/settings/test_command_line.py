@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from basu.cli import parser
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
-from basu.options import SUMO_DEMAND, SUMO_OFF, SUMO_RANDOM, RunOptions
+from basu.options.run import RunOptions
+from basu.options.sumo import SUMO_DEMAND, SUMO_OFF, SUMO_RANDOM
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import typed, words_of
 from basu.settings.forms import choices

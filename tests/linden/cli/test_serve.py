@@ -17,6 +17,7 @@ import pytest
 
 from fakes.raw_client import RawClient, RawSubscriber
 from linden.cli import main
+from opendrive_texts import PLAIN_ROAD
 from servers import START_LIMIT_S, running_server
 
 
@@ -28,9 +29,12 @@ def test_a_signal_ends_it_cleanly(number: signal.Signals) -> None:
         assert server.log() == ""
 
 
-def test_an_idle_server_is_light() -> None:
+def test_an_idle_server_is_light_and_listens_on_loopback_only() -> None:
     with running_server() as server:
         process = psutil.Process(server.process.pid)
+        listening = [each for each in process.net_connections("tcp") if each.status == psutil.CONN_LISTEN]
+        assert {each.laddr.port for each in listening} == {server.port, server.streaming_port}
+        assert {each.laddr.ip for each in listening} == {"127.0.0.1"}
         assert process.memory_info().rss < 300e6
         before = process.cpu_times()
         with pytest.raises(psutil.TimeoutExpired):
@@ -39,22 +43,22 @@ def test_an_idle_server_is_light() -> None:
         assert (after.user + after.system - before.user - before.system) / 3.0 < 0.2
 
 
-def test_the_first_start_keeps_what_it_derived_of_the_map(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def street(tmp_path: Path) -> tuple[str, ...]:
+    """Options for a server of one street: what it derives of its map takes no time, which of Linden's takes 8 s."""
+    folder = tmp_path / "maps"
+    folder.mkdir()
+    (folder / "Street.xodr").write_text(PLAIN_ROAD, "utf-8")
+    return "--maps", str(folder), "--map", "Street"
+
+
+def test_the_first_start_keeps_what_it_derived_of_the_map(
+    tmp_path: Path, street: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    with running_server() as server:
+    with running_server(*street) as server:
         assert len(list((tmp_path / "linden" / "maps").glob("*.npz"))) == 1
         assert server.log() == ""
-
-
-def test_it_listens_on_loopback_only() -> None:
-    with running_server() as server:
-        listening = [
-            connection
-            for connection in psutil.Process(server.process.pid).net_connections("tcp")
-            if connection.status == psutil.CONN_LISTEN
-        ]
-        assert {connection.laddr.port for connection in listening} == {server.port, server.streaming_port}
-        assert {connection.laddr.ip for connection in listening} == {"127.0.0.1"}
 
 
 def test_a_port_in_use_is_a_sentence(capsys: pytest.CaptureFixture[str]) -> None:
@@ -132,11 +136,13 @@ def until_it_answers(port: int) -> None:
             return
 
 
-def test_a_cache_that_cannot_be_written_stops_no_server(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_cache_that_cannot_be_written_stops_no_server(
+    tmp_path: Path, street: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "linden").write_text("a file where the folder should be")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    with running_server() as server, RawClient(server.port) as client:
-        assert client.call("get_map_info")[0] == "Carla/Maps/Linden"
+    with running_server(*street) as server, RawClient(server.port) as client:
+        assert client.call("get_map_info")[0] == "Carla/Maps/Street"
         line = next(line for line in server.log().splitlines() if "derived cannot be kept" in line)
         assert line.startswith(f"linden: WARNING: what was compiled and derived cannot be kept in {tmp_path}")
         assert "set XDG_CACHE_HOME to a folder that can be written" in line
@@ -187,8 +193,8 @@ def test_it_listens_on_ipv6_too() -> None:  # the official client looks for IPv4
             pass
 
 
-def test_the_official_client_finds_it_by_name() -> None:
-    with running_server() as server:
+def test_the_official_client_finds_it_by_name(street: tuple[str, ...]) -> None:
+    with running_server(*street) as server:
         client = carla.Client("localhost", server.port)
         client.set_timeout(20.0)
-        assert client.get_world().get_map().name == "Carla/Maps/Linden"
+        assert client.get_world().get_map().name == "Carla/Maps/Street"

@@ -8,10 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.authoring.lanelet2.model import Bounds, LaneletMap
+from linden.authoring.lanelet2.overlap import overlap_share
 from linden.maps.opendrive.evaluate.pieces import F64
 
 _KERB_REACH_M = 5.0
 """Between the outermost lane of a leg and the kerb round its corner: a parking lane, and the kerb's own set-back."""
+_WHOLE = 0.991
+"""The share of a lanelet that has to lie inside; the validator wants 0.99."""
+_SLICES = 512  # of a lanelet, so that its share is exact to 0.001
+_TOUCH_M = 1e-3
 
 
 class Leg(NamedTuple):
@@ -28,32 +33,29 @@ def ring_of(
     ways: list[Bounds],
     kerbs: list[tuple[int, ...]],
 ) -> tuple[int, ...]:
-    """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways.
+    """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways whole.
 
     First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone, their convex
-    hull, and the convex hull of the ways. ``entries`` are the lanelets that lead into the junction. ``exits``
+    hull, that of ends and kerbs, and that of the ways. ``entries`` are the lanelets that lead into the junction. ``exits``
     lead out of it, and ``ways`` lie inside; all are given by their sides. The ring is empty where there is no area.
     """
     legs = _legs(target, entries, exits) if entries or exits else []
     ends = [node for leg in legs for node in leg.nodes]
-    middles = np.array([_middle(target, way) for way in ways])
-    for ring in (_ring(target, legs, kerbs), _ring(target, legs, []), _hull(target, ends)):
+    outlines = [_places(target, (*way.left, *way.right[::-1])) for way in ways]
+    corners = [node for kerb in kerbs for node in kerb]
+    for ring in (
+        _ring(target, legs, kerbs),
+        _ring(target, legs, []),
+        _hull(target, ends),
+        _hull(target, [*ends, *corners]),
+    ):
         places = _places(target, ring)
-        if len(ring) > 2 and _is_simple(places) and inside(places, middles).all():
+        if len(ring) < 3 or not _is_simple(places):
+            continue
+        if all(overlap_share(outline, places, _SLICES) >= _WHOLE for outline in outlines):
             return ring
     ring = _hull(target, [node for way in ways for side in way for node in side])
     return ring if len(ring) > 2 else ()
-
-
-def _middle(target: LaneletMap, way: Bounds) -> F64:
-    """Return the place halfway along a lanelet."""
-    halves = []
-    for side in way:
-        line = _places(target, side)
-        length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-        halves.append([np.interp(0.5 * length[-1], length, line[:, axis]) for axis in range(2)])
-    middle: F64 = np.mean(halves, axis=0)
-    return middle
 
 
 def _legs(target: LaneletMap, entries: list[Bounds], exits: list[Bounds]) -> list[Leg]:
@@ -102,9 +104,9 @@ def _places(target: LaneletMap, ring: tuple[int, ...]) -> F64:
 
 
 def _is_simple(ring: F64) -> bool:
-    """Return whether a ring turns to the left as a whole and no two of its edges cross."""
+    """Return whether a ring turns to the left as a whole, and no two of its edges cross or touch but at common ends."""
     a, b = ring, np.roll(ring, -1, axis=0)
-    if _area(ring) <= 0.0:
+    if _area(ring) <= 0.0 or _touches(a, b):
         return False
 
     def side(p: F64, q: F64, r: F64) -> F64:
@@ -116,6 +118,15 @@ def _is_simple(ring: F64) -> bool:
     p, q, r, s = a[:, None], b[:, None], a[None], b[None]
     crossed = (side(p, q, r) * side(p, q, s) < 0.0) & (side(r, s, p) * side(r, s, q) < 0.0)
     return not bool(crossed.any())
+
+
+def _touches(a: F64, b: F64) -> bool:
+    """Return whether a corner (N, 2) lies on an edge from ``a`` to ``b`` that it does not end."""
+    along, away = (b - a)[None], a[:, None] - a[None]
+    share = np.clip((away * along).sum(axis=2) / np.maximum((along**2).sum(axis=2), 1e-12), 0.0, 1.0)
+    gap_m = np.linalg.norm(away - share[..., None] * along, axis=2)
+    corner, edge = np.nonzero(gap_m < _TOUCH_M)
+    return bool(((corner != edge) & (corner != (edge + 1) % len(a))).any())
 
 
 def _area(ring: F64) -> float:

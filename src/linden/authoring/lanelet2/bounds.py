@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linden.authoring.lanelet2.model import Ids, LaneletMap, Node, Way
+from linden.authoring.lanelet2.shared import one_line
 from linden.authoring.lanelet2.simplify import kept_points
 from linden.authoring.lanelet2.stretches import Network, Side, Stretch
 from linden.maps.opendrive.evaluate.pieces import F64, I64
@@ -40,8 +41,10 @@ class Laid(NamedTuple):
     """Sides as ways of a map."""
 
     way_of: dict[Side, int]
+    nodes_of: dict[Side, tuple[int, ...]]  # in ascending s
     lost_links: tuple[tuple[int, int], ...]  # pairs of stretches with ends too far apart
     largest_gap_m: float  # that was closed
+    shared: frozenset[Side]  # sides of two ways through a junction that became one
 
 
 class _Places(NamedTuple):
@@ -166,18 +169,25 @@ def lay(tables: Tables, network: Network, kerbs: dict[Side, tuple[Edge, ...]], t
     index = {side: number for number, side in enumerate(specs)}
     joints, lost, gap_m = _join(network, index, lines)
     _close(joints, lines)
+    same = one_line(network, index, lines, joints.find)
     kept = kept_points(
         np.concatenate(lines) if lines else np.empty((0, 3)),
         np.cumsum([0, *(len(line) for line in lines[:-1])]) if lines else np.empty(0, np.int64),
         TOLERANCE_M,
     )
     way_of: dict[Side, int] = {}
+    nodes_of: dict[Side, tuple[int, ...]] = {}
     node_of: dict[int, int] = {}
-    begin = 0
+    begin, sides = 0, list(index)
     for (side, number), line in zip(index.items(), lines, strict=True):
         key = side_key(tables, side)
         chosen = line[kept[begin : begin + len(line)]]
         begin += len(line)
+        if number in same:
+            first = sides[same[number].number]
+            way_of[side], along = way_of[first], nodes_of[first]
+            nodes_of[side] = along[::-1] if same[number].turned else along
+            continue
         nodes = []
         for nth, point in enumerate(chosen.tolist()):
             end = 2 * number if nth == 0 else 2 * number + 1 if nth == len(chosen) - 1 else -1
@@ -192,8 +202,9 @@ def lay(tables: Tables, network: Network, kerbs: dict[Side, tuple[Edge, ...]], t
             nodes.append(node)
         way = ids.new("way", key)
         target.ways[way] = Way(tuple(nodes if forward[side] else nodes[::-1]), {})
-        way_of[side] = way
-    return Laid(way_of, lost, gap_m)
+        way_of[side], nodes_of[side] = way, tuple(nodes)
+    shared = frozenset(sides[each] for number, other in same.items() for each in (number, other.number))
+    return Laid(way_of, nodes_of, lost, gap_m, shared)
 
 
 def side_key(tables: Tables, side: Side) -> str:

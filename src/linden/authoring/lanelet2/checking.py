@@ -171,22 +171,35 @@ def _lane_pair(tables: Tables, pair: tuple[int, int]) -> str:
     return " to ".join(names)
 
 
-def worst_error_m(opendrive: OpenDrive, converted: Converted) -> tuple[float, float]:
-    """Return how far the lanes' edges lie from their bounds at most: in plan, and in height at the nearest place."""
+class Worst(NamedTuple):
+    """How far the lanes' edges lie from their bounds at most, in m: in plan, and in height at the nearest place.
+
+    ``shared_m`` is the worst in plan where two ways through a junction share the mean of their edges as a bound.
+    """
+
+    plan_m: float
+    height_m: float
+    shared_m: float
+
+
+def worst_error_m(opendrive: OpenDrive, converted: Converted) -> Worst:
+    """Return the worst errors of a converted map."""
     tables = tables_of(opendrive)
     before = np.cumsum([0, *(len(road.sections) for road in tables.roads)])
-    specs, ways = [], []
+    specs, ways, is_shared = [], [], []
     for lanelet, stretch in zip(converted.lanelet_of, converted.network.stretches, strict=True):
         relation = converted.lanelet_map.relations[lanelet]
         for side, edges in edges_of_stretch(before, stretch).items():
             role = "left" if side == stretch.left else "right"
             specs.append(edges)
             ways.append(relation.refs(role)[0])
-    plan_m = height_m = 0.0
-    for line, way in zip(evaluate(tables, specs), ways, strict=True):
+            is_shared.append(side in converted.shared)
+    plan_m = height_m = shared_m = 0.0
+    for line, way, both in zip(evaluate(tables, specs), ways, is_shared, strict=True):
         away, rise = _from_polyline(line, converted.lanelet_map.line(way))
-        plan_m, height_m = max(plan_m, away), max(height_m, rise)
-    return plan_m, height_m
+        plan_m, height_m = max(plan_m, 0.0 if both else away), max(height_m, rise)
+        shared_m = max(shared_m, away if both else 0.0)
+    return Worst(plan_m, height_m, shared_m)
 
 
 def _from_polyline(points: F64, line: F64) -> tuple[float, float]:

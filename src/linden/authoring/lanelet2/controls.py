@@ -118,7 +118,8 @@ def _device_way(draft: Draft, device: Device) -> int:
     else:
         tags = {"type": "traffic_sign", "subtype": "stop_sign" if device.kind == STOP else "yield_sign"}
     tags["height"] = f"{2.0 * half[2]:g}"
-    way = draft.add_line(edge, tags, device.kind, device.road_id, device.signal_id)
+    key = device.kind, device.road_id, device.signal_id
+    way = draft.add_line(edge, tags, *key, small_id=device.kind == LIGHT)
     if device.kind == LIGHT:
         _add_bulbs(draft, device, bottom, way)
     return way

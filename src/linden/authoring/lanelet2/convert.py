@@ -47,6 +47,7 @@ class Converted(NamedTuple):
     without_limit: int
     signals_without_lane: int
     lost_stops: tuple[Stop, ...] = ()
+    shared: frozenset[Side] = frozenset()  # sides of two ways through a junction that are one way of the map
 
 
 class Wanted(NamedTuple):
@@ -77,10 +78,12 @@ def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> Converted:
     draft = Draft(tables, network)
     kerbs = loose_kerbs(tables, network)
     laid = sides_of.lay(tables, network, kerbs, draft.target, draft.ids)
-    draft.way_of = laid.way_of
+    draft.way_of, draft.nodes_of = laid.way_of, laid.nodes_of
     ways = draft.target.ways
     for side, tags in tags_of_sides(tables, network).items():
-        ways[laid.way_of[side]] = ways[laid.way_of[side]]._replace(tags=tags)
+        way = laid.way_of[side]
+        if not ways[way].tags or ways[way].tags["type"] == "virtual":  # a boundary of two ways may be a kerb for one
+            ways[way] = ways[way]._replace(tags=tags)
     for side in kerbs:
         ways[laid.way_of[side]] = ways[laid.way_of[side]]._replace(tags=KERB)
     without_limit = _add_lanelets(draft)
@@ -103,6 +106,7 @@ def convert(opendrive: OpenDrive, wanted: Wanted = PLAIN) -> Converted:
         without_limit,
         unheard,
         lost_stops,
+        laid.shared,
     )
 
 
@@ -134,17 +138,9 @@ def _add_lanelets(draft: Draft) -> int:
 
 
 def _nodes_along(draft: Draft, stretch: Stretch, side: Side) -> tuple[int, ...]:
-    """Return a side's nodes in the direction of travel; ways lie forward where any lanelet at them goes forward."""
-    nodes = draft.target.ways[draft.way_of[side]].nodes
-    places = [draft.target.nodes[node] for node in (nodes[0], nodes[-1])]
-    piece = stretch.pieces[0 if stretch.forward else -1]
-    s_m = piece.start_m if stretch.forward else piece.end_m
-    pose = draft.tables.curves.pose(
-        np.array([stretch.road]), np.array([s_m]), np.array([(piece.start_m + piece.end_m) / 2])
-    )
-    x, y, heading = (float(value[0]) for value in pose)
-    away = [abs((place.x_m - x) * np.cos(heading) + (place.y_m - y) * np.sin(heading)) for place in places]
-    return nodes if away[0] <= away[1] else nodes[::-1]
+    """Return a side's nodes in the direction of travel."""
+    nodes = draft.nodes_of[side]
+    return nodes if stretch.forward else nodes[::-1]
 
 
 def _limits_kmh(tables: Tables, network: Network) -> list[float]:
@@ -179,7 +175,7 @@ def _add_junctions(
         ring = ring_of(
             draft.target, _sides(draft, entries), _sides(draft, exits), _sides(draft, inside), corner[junction]
         )
-        area = draft.ids.new("area", "junction", junction)
+        area = draft.ids.small("area", "junction", junction)
         if ring:
             tags = {"type": "intersection_area", "area": "yes"}
             name = opendrive.junction_by_id[junction].name if junction in opendrive.junction_by_id else ""

@@ -19,16 +19,17 @@ class Draft:
         self.lanelet_of: list[int] = []
         self.bounds: dict[int, Bounds] = {}  # of each lanelet
         self.way_of: dict[Side, int] = {}
+        self.nodes_of: dict[Side, tuple[int, ...]] = {}  # in ascending s
         self.bulbs_of: dict[int, int] = {}  # of each light
 
-    def add_line(self, points: F64, tags: dict[str, str], *key: object) -> int:
-        """Add a way of its own nodes, and return its id."""
+    def add_line(self, points: F64, tags: dict[str, str], *key: object, small_id: bool = False) -> int:
+        """Add a way of its own nodes, and return its id; a small one where tags name it."""
         nodes = []
         for nth, point in enumerate(points.tolist()):
             node = self.ids.new("node", *key, nth)
             self.target.nodes[node] = Node(*point)
             nodes.append(node)
-        way = self.ids.new("way", *key)
+        way = (self.ids.small if small_id else self.ids.new)("way", *key)
         self.target.ways[way] = Way(tuple(nodes), tags)
         return way
 

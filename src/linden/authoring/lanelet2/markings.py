@@ -5,7 +5,7 @@ as Autoware wants them there (vm-03-03).
 """
 
 from linden.authoring.lanelet2.model import Tags
-from linden.authoring.lanelet2.stretches import ROAD, WALKWAY, Network, Side, Stretch
+from linden.authoring.lanelet2.stretches import ROAD, SHOULDER, WALKWAY, Network, Side, Stretch
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import Lane, RoadMark
 
@@ -45,6 +45,8 @@ def _tags(tables: Tables, side: Side, users: list[Stretch]) -> Tags:
         return {**KERB, **shared}
     if users[0].junction_id >= 0:
         return {"type": "virtual", **shared}
+    if [user.subtype for user in users] == [SHOULDER, SHOULDER] and users[0].forward != users[1].forward:
+        return {"type": "road_border", **shared}  # each ends there, as Autoware wants it (vm-01-16)
     if len(users) == 1 and (users[0].subtype != ROAD or mark.type not in _PAINT):
         return {"type": "road_border", **shared}
     if mark.type not in _PAINT:

@@ -22,6 +22,9 @@ ID_BITS = 48
 """Ids are positive, fit 64 bits with a sign, and a double keeps them exactly."""
 
 
+SMALL_ID_BITS = 31
+"""Ids that tags name: Autoware reads ``intersection_area`` with C's atoi, and ``traffic_light_id`` into an int."""
+
 DIGITS = 4
 """Of a place in m: a tenth of a millimetre, in memory as in files, so that both are the same map."""
 
@@ -140,13 +143,17 @@ class Ids:
     def __init__(self) -> None:
         self._taken: set[int] = set()
 
-    def new(self, *key: object) -> int:
+    def small(self, *key: object) -> int:
+        """Return the id of a key, for a thing that tags name."""
+        return self.new(*key, bits=SMALL_ID_BITS)
+
+    def new(self, *key: object, bits: int = ID_BITS) -> int:
         """Return the id of a key; a second request for a key gets a second id."""
         text = "/".join(map(str, key))
         attempt = 0
         while True:
             digest = hashlib.blake2b(f"{text}#{attempt}".encode(), digest_size=8).digest()
-            number = int.from_bytes(digest, "big") >> (64 - ID_BITS)
+            number = int.from_bytes(digest, "big") >> (64 - bits)
             if number and number not in self._taken:
                 self._taken.add(number)
                 return number

@@ -8,19 +8,19 @@ _SLICES = 64
 """The area is summed over so many slices: the share of lanelets is within 0.005 of the exact one."""
 
 
-def overlap_share(ring: F64, other: F64) -> float:
+def overlap_share(ring: F64, other: F64, slices: int = _SLICES) -> float:
     """Return the share of a ring's area, (N, 2), that lies inside of another ring, (M, 2); both are simple."""
     area = area_m2(ring)
-    return overlap_m2(ring, other) / area if area > 0.0 else 0.0
+    return overlap_m2(ring, other, slices) / area if area > 0.0 else 0.0
 
 
-def overlap_m2(ring: F64, other: F64) -> float:
+def overlap_m2(ring: F64, other: F64, slices: int = _SLICES) -> float:
     """Return the area that lies inside of two rings (N, 2) and (M, 2)."""
     low, high = np.maximum(ring.min(axis=0), other.min(axis=0)), np.minimum(ring.max(axis=0), other.max(axis=0))
     if (high <= low).any():
         return 0.0
-    step = (high[1] - low[1]) / _SLICES
-    at = low[1] + step * (np.arange(_SLICES) + 0.5)
+    step = (high[1] - low[1]) / slices
+    at = low[1] + step * (np.arange(slices) + 0.5)
     end = max(float(ring[:, 0].max()), float(other[:, 0].max()))
     of_ring, of_other = _crossings(ring, at, end), _crossings(other, at, end)
     places = np.concatenate([of_ring, of_other], axis=1)

@@ -28,6 +28,7 @@ _SUBTYPES = (
 
 SHORTEST_CUT_M = 2.0
 """A marking that changes nearer than this to a section's end, or to another change, makes no lanelet of its own."""
+ALONE = "shoulders beside no lane"
 NARROWEST_M = 0.3
 """A lane that is nowhere wider makes no lanelet."""
 SHORTEST_M = 0.05
@@ -106,8 +107,31 @@ def network_of(opendrive: OpenDrive) -> Network:
     for reason in refusals:
         if reason is not None:
             left_out[reason] = left_out.get(reason, 0) + 1
+    for nth in _alone(found, refusals):
+        refusals[nth] = ALONE
+        left_out[ALONE] = left_out.get(ALONE, 0) + 1
     chosen = [nth for nth, stretch in enumerate(found) if refusals[nth] is None or stretch.subtype == ROAD]
     return _joined(opendrive, tables, [(found[nth], refusals[nth] is None) for nth in chosen], left_out)
+
+
+def _alone(found: list[Stretch], refusals: list[str | None]) -> list[int]:
+    """Return the shoulders that share no side with a lanelet of their direction; Autoware wants none (vm-01-16)."""
+    users: dict[Side, list[int]] = defaultdict(list)
+    for nth, stretch in enumerate(found):
+        if refusals[nth] is None:
+            users[stretch.left].append(nth)
+            users[stretch.right].append(nth)
+    return [
+        nth
+        for nth, stretch in enumerate(found)
+        if stretch.subtype == SHOULDER
+        and refusals[nth] is None
+        and not any(
+            other != nth and found[other].forward == stretch.forward
+            for side in (stretch.left, stretch.right)
+            for other in users[side]
+        )
+    ]
 
 
 def _refused(stretch: Stretch, width_m: float) -> str | None:
@@ -215,6 +239,8 @@ def _of_road(tables: Tables, index: int, road: Road) -> Iterator[Stretch]:
 def _stretch(index: int, road: Road, subtype: str, pieces: tuple[Piece, ...]) -> Stretch:
     lane_id = pieces[0].lane_id
     forward = is_forward(road, lane_id)
+    if subtype == SHOULDER and _is_across_the_axis(road.sections[pieces[0].section], lane_id):
+        forward = not forward
     family = "walkway" if subtype == WALKWAY else "road"
     inward = -1 if lane_id > 0 else 1
     inner, outer = (
@@ -224,6 +250,13 @@ def _stretch(index: int, road: Road, subtype: str, pieces: tuple[Piece, ...]) ->
     on_left = (lane_id > 0) == forward  # whether the outer edge lies to the left of the traffic
     left, right = (outer, inner) if on_left else (inner, outer)
     return Stretch(index, subtype, pieces, forward, road.junction_id, left, right)
+
+
+def _is_across_the_axis(section: LaneSection, lane_id: int) -> bool:
+    """Return whether a shoulder belongs to the traffic across the axis, as the left one of a carriageway does."""
+    beside, across = (section.lane(other) for other in (2 * lane_id, -lane_id))
+    kinds = [subtype_of(lane.type) if lane is not None else None for lane in (beside, across)]
+    return abs(lane_id) == 1 and kinds[1] == ROAD and kinds[0] != ROAD
 
 
 def _chain(road: Road, number: int, lane: Lane) -> list[tuple[int, int]]:

@@ -19,6 +19,7 @@ from linden.authoring.streets.document import (
     SignalReference,
     value,
 )
+from linden.authoring.streets.name_signs import name_signs
 from linden.authoring.streets.network import End, Leg, Network, nearest_road
 from linden.authoring.streets.network import build as build_network
 from linden.authoring.streets.rails import rails
@@ -104,7 +105,8 @@ class _Assembly:
         self._add_mapped_crosswalks()
         placed = standing(self.facts, self.network)
         self._add_speed_signs()
-        for edge, thing in (*placed.objects, *rails(self.facts, self.network)):
+        signs = name_signs(self.facts, self.network)
+        for edge, thing in (*placed.objects, *rails(self.facts, self.network), *signs):
             self.objects[edge].append(thing._replace(id=next(self.object_ids)))
         street_roads = tuple(self._street_road(edge) for edge in range(len(self.network.edges)))
         every = [road for road in street_roads if road is not None]

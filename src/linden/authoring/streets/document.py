@@ -89,7 +89,10 @@ class SignalReference(NamedTuple):
 
 
 class Object(NamedTuple):
-    """A painted or built thing beside or on a road; the outline is in its own frame (u along the road, v left)."""
+    """A painted or built thing beside or on a road; the outline is in its own frame (u along the road, v left).
+
+    ``notes`` are further facts, written as ``userData``.
+    """
 
     id: int
     name: str
@@ -100,6 +103,7 @@ class Object(NamedTuple):
     outline: tuple[Point, ...]
     confidence: str
     height_m: float = 0.0
+    notes: tuple[tuple[str, str], ...] = ()
 
 
 class RoadRecord(NamedTuple):

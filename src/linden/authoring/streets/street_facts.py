@@ -180,7 +180,11 @@ class AnyGround(Protocol):
 
 
 class Facts(NamedTuple):
-    """All that a map is built from. ``turning_circles``: whether traffic can turn where a street leaves the map."""
+    """All that a map is built from.
+
+    ``turning_circles``: whether traffic can turn where a street leaves the map. ``street_name_signs``: how sure it is
+    that signs at junctions name the streets; empty where there are to be none.
+    """
 
     name: str
     longitude_deg: float
@@ -196,6 +200,7 @@ class Facts(NamedTuple):
     buildings: tuple[Building, ...] = ()
     furniture: tuple[Furniture, ...] = ()
     railroads: tuple[Railroad, ...] = ()
+    street_name_signs: str = ""
 
 
 NARROWEST_M = 2.0  # of a lane; a car is 1.8 m wide
@@ -270,6 +275,7 @@ def read(document: object) -> Facts:
             for f in features
             if f.kind == "railroad"
         ),
+        street_name_signs=str(metadata.get("street_name_signs", "")),
     )
 
 

@@ -195,7 +195,7 @@ def _add_object(parent: etree._Element, thing: Object) -> None:
     outline = _add(element, "outline")
     for u_m, v_m in thing.outline:
         _add(outline, "cornerLocal", u=_metres(u_m), v=_metres(v_m), z=0, height=_metres(thing.height_m))
-    _add_notes(element, (("confidence", thing.confidence),))
+    _add_notes(element, (("confidence", thing.confidence), *thing.notes))
 
 
 def _add_signal(parent: etree._Element, signal: Signal) -> None:

@@ -7,13 +7,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.maps.facts import MapFacts
-from linden.maps.records import Standing
+from linden.maps.records import STREET_NAME_SIGN, Standing
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import furnish, is_clear
 from linden.scenery.scene.objects import BOX, THING, Kind, Scene
 
-KIND_OF = {"building": Kind.BUILDING, "bench": Kind.BENCH, "bin": Kind.BIN, "mailbox": Kind.MAILBOX}
-_TAG_OF = {"building": SemanticTag.BUILDINGS}
+KIND_OF = {
+    "building": Kind.BUILDING,
+    "bench": Kind.BENCH,
+    "bin": Kind.BIN,
+    "mailbox": Kind.MAILBOX,
+    STREET_NAME_SIGN: Kind.STREET_NAME_SIGN,
+}
 _HOUSE_M = ((5.0, 16.0), (5.0, 16.0), (3.8, 9.5))  # least and most length, width and height
 
 
@@ -42,9 +47,8 @@ def mapped(standing: Sequence[Standing], *, with_houses: bool = True) -> Scene:
     for number, thing in enumerate(standing):
         kind = _kind(thing) if with_houses else KIND_OF[thing.kind]
         things[number] = (kind, (thing.x_m, thing.y_m, thing.z_m), thing.yaw_rad)
-        for box in thing.boxes:
-            tag = _TAG_OF.get(thing.kind, SemanticTag.STATIC)
-            boxes[row] = (box[:3], box[3:6], box.yaw_rad, tag, number)
+        for nth, box in enumerate(thing.boxes):
+            boxes[row] = (box[:3], box[3:6], box.yaw_rad, _tag(thing.kind, nth), number)
             row += 1
     labels = tuple((number, _label(thing.name)) for number, thing in enumerate(standing) if _label(thing.name))
     return Scene(things, boxes, labels)
@@ -55,6 +59,13 @@ def kept(scene: Scene, wanted: NDArray[np.bool_]) -> Scene:
     boxes = scene.boxes[wanted[scene.boxes["thing"]]].copy()
     boxes["thing"] = (np.cumsum(wanted) - 1)[boxes["thing"]]
     return Scene(scene.things[wanted], boxes)
+
+
+def _tag(kind: str, nth: int) -> SemanticTag:
+    """Return the tag of the nth box of a thing; the first one of a sign is its post."""
+    if kind == STREET_NAME_SIGN:
+        return SemanticTag.TRAFFIC_SIGNS if nth else SemanticTag.POLES
+    return SemanticTag.BUILDINGS if kind == "building" else SemanticTag.STATIC
 
 
 def _kind(thing: Standing) -> Kind:

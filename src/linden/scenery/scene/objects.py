@@ -36,6 +36,7 @@ class Kind(IntEnum):
     BENCH = 13
     BIN = 14
     MAILBOX = 15
+    STREET_NAME_SIGN = 16
 
 
 _NAMES = {
@@ -55,6 +56,7 @@ _NAMES = {
     Kind.BENCH: "Bench",
     Kind.BIN: "Bin",
     Kind.MAILBOX: "Mailbox",
+    Kind.STREET_NAME_SIGN: "StreetNameSign",
 }
 _TAG_NAMES: dict[int, str] = {SemanticTag.POLES: "Poles", SemanticTag.TRAFFIC_LIGHT: "TrafficLight"}
 """How CARLA writes the tags of a traffic light's parts into their names (Tagger.cpp, GetTagAsString)."""
@@ -76,6 +78,7 @@ LAYER = {
     Kind.BENCH: MapLayer.PROPS,
     Kind.BIN: MapLayer.PROPS,
     Kind.MAILBOX: MapLayer.PROPS,
+    Kind.STREET_NAME_SIGN: MapLayer.PROPS,
 }
 """The layer that a thing is loaded and unloaded with."""
 

@@ -5,11 +5,13 @@ import numpy as np
 import pytest
 
 from linden.authoring.lanelet2.areas import inside
+from linden.authoring.lanelet2.bounds import TOLERANCE_M
 from linden.authoring.lanelet2.checking import compare, reach, worst_error_m
 from linden.authoring.lanelet2.convert import convert
 from linden.authoring.lanelet2.model import bounds_of
 from linden.authoring.lanelet2.osm import osm_bytes
 from linden.authoring.lanelet2.second_reader import routes_of
+from linden.authoring.lanelet2.shared import NEAR_M
 from linden.authoring.lanelet2.stretches import intersections
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
@@ -171,9 +173,10 @@ class TestLinden:
         }
 
     def test_bounds_keep_the_stated_error(self, linden, linden_lanelets):
-        plan_m, height_m = worst_error_m(linden, linden_lanelets)
-        assert plan_m < 0.02
-        assert height_m < 0.02
+        worst = worst_error_m(linden, linden_lanelets)
+        assert worst.plan_m < 0.02
+        assert worst.height_m < 0.02
+        assert worst.shared_m < NEAR_M / 2 + TOLERANCE_M  # the mean of a left turn and the right turn back
         assert linden_lanelets.largest_gap_m < 0.001
 
     def test_every_road_lanelet_in_an_intersection_has_a_turn_and_an_area(self, linden_lanelets):
