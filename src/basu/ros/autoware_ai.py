@@ -128,21 +128,24 @@ def still_messages(types: Types, vehicle: Vehicle, t_s: float) -> list[Message]:
     return [Message(TF_STATIC, of_vehicle.transforms(types, t_s, tree))]
 
 
-def mission(types: Types, start: Place, goal: Place, t_s: float) -> list[Message]:
-    """Return start, goal and the order to drive."""
-    header = of_vehicle.header(types, t_s, of_vehicle.MAP)
-    covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=_pose_at(types, start))
-    return [
-        Message(INITIAL_POSE, types.message(INITIAL_POSE.type, header=header, pose=covered)),
-        goal_message(types, goal, t_s),
-        Message(STATE_COMMAND, types.message(STATE_COMMAND.type, data="engage")),
-    ]
+def mission(types: Types, goal: Place, t_s: float) -> list[Message]:
+    """Return the goal and the order to drive."""
+    return [goal_message(types, goal, t_s), Message(STATE_COMMAND, types.message(STATE_COMMAND.type, data="engage"))]
+
+
+def initial_pose(types: Types, vehicle: Vehicle, moment: Moment) -> Message:
+    """Return the pose of base_link, from which a localisation starts."""
+    stamped = _pose(types, vehicle, moment)
+    covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=stamped.pose)
+    return Message(INITIAL_POSE, types.message(INITIAL_POSE.type, header=stamped.header, pose=covered))
 
 
 def goal_message(types: Types, goal: Place, t_s: float) -> Message:
     """Return a goal."""
+    x, y, z, yaw = goal
+    pose = of_vehicle.pose_message(types, Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)))
     header = of_vehicle.header(types, t_s, of_vehicle.MAP)
-    return Message(GOAL, types.message(GOAL.type, header=header, pose=_pose_at(types, goal)))
+    return Message(GOAL, types.message(GOAL.type, header=header, pose=pose))
 
 
 def sensing_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator[Message]:
@@ -205,12 +208,6 @@ def _first_mounts(vehicle: Vehicle) -> list[Mount]:
     """The first sensor of each topic."""
     first = {topics[0]: mount for mount in reversed(vehicle.mounts) if (topics := sensor_topics(mount))}
     return [mount for mount in vehicle.mounts if mount in first.values()]
-
-
-def _pose_at(types: Types, place: Place) -> Any:  # noqa: ANN401 - a message
-    """The pose of a place."""
-    x, y, z, yaw = place
-    return of_vehicle.pose_message(types, Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)))
 
 
 def _pose(types: Types, vehicle: Vehicle, moment: Moment) -> Any:  # noqa: ANN401 - a message

@@ -79,12 +79,12 @@ class AutowareAiAgent(AutowareBase):
         return ai.still_messages(self.node.types, self.described, t_s)
 
     def beginning(self) -> Sequence[Message]:
-        """Return transforms, start, the first goal, the order to drive, and the route as a path."""
+        """Return transforms, the first goal, the order to drive, and the route as a path."""
         types, way = self.node.types, self.way()
         route = path_message(types, self.described.role, way)
         assert self.route is not None, "it has a way"
         self._legs = Legs(self.route)
-        return [*self.still(self.first_s), *ai.mission(types, way[0], way[self._legs.goal], self.first_s), route]
+        return [*self.still(self.first_s), *ai.mission(types, way[self._legs.goal], self.first_s), route]
 
     def messages(self, moment: Moment) -> Sequence[Message]:
         """Return what Autoware.AI's nodes take in a frame, the clock last: its loops then find what they wait for."""
@@ -100,6 +100,8 @@ class AutowareAiAgent(AutowareBase):
             self._types = ai.old_types() if ai.is_old(peers[0].definition) else types
         if self._types is not None:
             self.node.publish_as(self._types, ai.status_message(self._types, vehicle, moment, self.tyre_angle_rad))
+        if moment.frame == 0:
+            sent.append(ai.initial_pose(types, vehicle, moment))
         goal = self._legs.advance(moment.motion.x_m, moment.motion.y_m)
         if goal is not None:
             sent.append(ai.goal_message(types, self.way()[goal], moment.t_s))
