@@ -56,7 +56,7 @@ def main() -> int:
 def read_cloud(path: Path) -> tuple[str, NDArray[np.float32]]:
     """The head of one of our clouds, and its points, which stay on the disk."""
     with path.open("rb") as file:
-        lines = []
+        lines: list[bytes] = []
         while not lines or not lines[-1].startswith(b"DATA"):
             lines.append(file.readline())
         return b"".join(lines).decode(), np.memmap(path, "<f4", "r", offset=file.tell()).reshape(-1, POINT // 4)

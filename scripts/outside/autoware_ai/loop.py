@@ -110,7 +110,7 @@ def listened(run: "subprocess.Popen[bytes]", leaf_m: float) -> tuple[dict[int, A
 def time_ns(message: Any) -> int:
     """The time of a message, to the microsecond."""
     stamp = message.header.stamp
-    return round((stamp.sec * NS_PER_S + stamp.nanosec) / 1000.0) * 1000
+    return int(round((stamp.sec * NS_PER_S + stamp.nanosec) / 1000.0) * 1000)
 
 
 def ndt_errors(truth: dict[int, Any], found: dict[int, Any]) -> list[tuple[float, float]]:

@@ -196,7 +196,7 @@ def copied(types: Types, pose: Any) -> Any:
 def time_ns(message: Any) -> int:
     """The time of a message, to the microsecond."""
     stamp = message.header.stamp
-    return round((stamp.sec * NS_PER_S + stamp.nanosec) / 1000.0) * 1000
+    return int(round((stamp.sec * NS_PER_S + stamp.nanosec) / 1000.0) * 1000)
 
 
 def yaw_rad(turn: Any) -> float:
