@@ -26,7 +26,7 @@ from linden.authoring.lanelet2.convert import convert
 from linden.authoring.lanelet2.osm import osm_bytes
 from linden.authoring.lanelet2.second_reader import routes_of
 from linden.authoring.output import write_folder
-from linden.cli.map_source import content_of
+from linden.cli.map_files import content_of
 from linden.maps.opendrive.parse import parse
 
 ROWS = (

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import default_text
 from basu.settings.option import Field, bounds, fields_of

@@ -1,11 +1,12 @@
-"""The tests of the official client, each file in a process of its own: ``run_compat.py [pytest's options]``.
+"""The tests of the official client, in processes of their own: ``run_compat.py [pytest's options]``.
 
-As many files at a time as WORKERS says (2); one at a time while the process runs whose number BESIDE gives.
+As many processes at a time as WORKERS says (2); one at a time while the process runs whose number BESIDE gives.
+Some files share a process and a server (``TOGETHER``), because a start of both takes 3 s of processor time.
 
 That client's threads race each other: when it drops a stream that it has just asked for it may end its process
 (``bad_weak_ptr``), and its Traffic Manager may miss the wake-up of a tick and stand still for ever, where no time-out
-of Python's reaches it. docs/explanation/traffic.md and benchmarks/soak.py have the evidence. So a file whose process
-was ended by a signal, or stood still, is run once more, and is said to have been; the second time counts. A test that
+of Python's reaches it. docs/explanation/traffic.md and benchmarks/soak.py have the evidence. So files whose process
+was ended by a signal, or stood still, are run once more, and are said to have been; the second time counts. A test that
 fails has failed.
 """
 
@@ -17,6 +18,7 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
@@ -31,14 +33,22 @@ MEASURED = {**os.environ, "COVERAGE_OF_SERVERS": str(ROOT / "pyproject.toml")}
 """The client's process runs nothing of ours, so that the coverage of its servers alone is measured."""
 NO_TESTS = 5
 """Of pytest, where options such as ``-k`` leave none in a file."""
+Files = tuple[str, ...]
+TOGETHER: tuple[Files, ...] = (
+    ("actors", "client_quirks", "components", "environment", "vehicles"),
+    ("cameras", "scene", "sensing", "sensors", "unreal"),
+    ("clients", "lights", "props", "walkers"),
+    ("scenario_calls", "truth_of_motion", "truth_on_a_street", "vehicle_forces"),
+)
+"""Files whose tests use the common server alone, begin an episode each, and do not count what the server holds."""
 
 
 def main(options: list[str]) -> int:
     """Run all files, some at a time; return 0 where all passed."""
-    files = sorted((ROOT / "tests" / "compat").glob("test_*.py"))
+    groups = grouped(path.relative_to(ROOT).as_posix() for path in (ROOT / "tests" / "compat").glob("test_*.py"))
     turns = Turns(int(os.environ.get("WORKERS", "2")), int(os.environ.get("BESIDE", "0")))
     with ThreadPoolExecutor(turns.workers) as workers:
-        ended = list(workers.map(lambda file: turns.take(file.relative_to(ROOT).as_posix(), options), files))
+        ended = list(workers.map(lambda files: turns.take(files, options), groups))
     again = [sentence for end in ended for sentence in end.again]
     failed = [end.name for end in ended if end.code not in {0, NO_TESTS}]
     for sentence in again:
@@ -48,8 +58,17 @@ def main(options: list[str]) -> int:
     return 1 if failed else 0
 
 
+def grouped(files: Iterable[str]) -> list[Files]:
+    """Return the files that share a process, in one order always; a file that ``TOGETHER`` lacks is alone."""
+    place = {f"tests/compat/test_{name}.py": number for number, names in enumerate(TOGETHER) for name in names}
+    groups: dict[str | int, list[str]] = {}
+    for file in sorted(files):
+        groups.setdefault(place.get(file, file), []).append(file)
+    return [tuple(group) for group in groups.values()]
+
+
 class Turns:
-    """How many files run at a time: one while a neighbour runs, else as many as there are workers."""
+    """How many processes run at a time: one while a neighbour runs, else as many as there are workers."""
 
     def __init__(self, workers: int, neighbour: int) -> None:
         """Watch the process of that number; 0 is none."""
@@ -68,31 +87,31 @@ class Turns:
             os.close(ending)
         self._alone.set()
 
-    def take(self, name: str, options: list[str]) -> "Ended":
-        """Run a file's tests when it is its turn."""
+    def take(self, files: Files, options: list[str]) -> "Ended":
+        """Run the tests of some files when it is their turn."""
         while not self._alone.is_set():
             if self._first.acquire(timeout=1.0):
                 try:
-                    return told(name, options)
+                    return told(files, options)
                 finally:
                     self._first.release()
-        return told(name, options)
+        return told(files, options)
 
 
 class Ended(NamedTuple):
-    """How the tests of a file ended."""
+    """How the tests of some files ended."""
 
     name: str
     code: int
     again: tuple[str, ...]  # why it was run once more, in a sentence
 
 
-def told(name: str, options: list[str]) -> Ended:
-    """Run a file's tests, once more where the client took its process along, and show what they said."""
+def told(files: Files, options: list[str]) -> Ended:
+    """Run the tests of some files, once more where the client took its process along, and show what they said."""
     again: list[str] = []
-    code = 0
+    name, code = " ".join(files), 0
     for number in range(TRIES):
-        code, said = run([sys.executable, "-m", "pytest", "--no-header", name, *options])
+        code, said = run([sys.executable, "-m", "pytest", "--no-header", *files, *options])
         with SHOWING:
             print(f"{name}{' once more' * (number > 0)}", flush=True)
             sys.stdout.buffer.write(said)

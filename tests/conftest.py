@@ -20,21 +20,33 @@ from tracing import save, untraced
 
 LONGEST = (
     "basu/running/scenario_runs/test_catalogue.py",
-    "basu/running/test_run.py",
-    "basu/agents/builtin/test_behavioral_live.py",
-    "basu/output/hud/test_live.py",
-    "basu/test_python_api_page.py",
-    "basu/managers/test_traffic_manager.py",
     "basu/running/scenario_runs/test_command.py",
-    "basu/test_notebook.py",
-    "basu/running/test_series.py",
-    "basu/running/test_run_folder.py",
-    "basu/test_gym.py",
-    "linden/test_fuzzed_files.py",
+    "basu/running/test_run.py",
     "basu/test_api.py",
     "linden/cli/test_serve.py",
-    "basu/managers/test_conduct.py",
+    "basu/campaigns/test_campaign.py",
+    "basu/managers/test_traffic_manager.py",
+    "basu/managers/test_world_changes.py",
+    "basu/agents/builtin/test_behavioral_live.py",
+    "basu/output/hud/test_live.py",
+    "docs/test_site.py",
+    "test_wheel.py",
+    "basu/sumo/test_run_with_sumo.py",
+    "basu/agents/ros/test_run_with_ros1.py",
+    "basu/running/test_series.py",
+    "basu/test_notebook.py",
+    "basu/test_gym_vector.py",
+    "linden/authoring/aisan/test_convert.py",
+    "linden/sensors/camera/picture/test_shade.py",
     "basu/test_incident.py",
+    "basu/campaigns/search/test_search_campaign.py",
+    "basu/output/viewer/test_live.py",
+    "basu/running/test_parallel_runs.py",
+    "basu/running/test_run_folder.py",
+    "linden/test_fuzzed_files.py",
+    "basu/managers/test_conduct.py",
+    "basu/test_python_api_page.py",
+    "basu/test_gym.py",
 )
 """Files of tests that take longest, longest first: they start first, so that no worker idles at the end."""
 
@@ -55,6 +67,12 @@ def pytest_report_header() -> str:
     return f"hypothesis profile: {os.environ.get('HYPOTHESIS_PROFILE', 'repeatable')}"
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection() -> None:
+    """Have the garbage collector rest while the tests are collected: all of it stays, and it would look at it often."""
+    gc.disable()
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the longest files first; a file's tests keep their order."""
     here = Path(__file__).parent
@@ -66,6 +84,7 @@ def pytest_collection_finish() -> None:
     """Take all that the collection made out of the garbage collector's sight: it stays until the end."""
     gc.collect()
     gc.freeze()
+    gc.enable()
 
 
 @pytest.hookimpl(wrapper=True)

@@ -22,7 +22,8 @@ from linden.authoring.lanelet2.model import without_lanelets
 from linden.authoring.lanelet2.osm import osm_bytes, read_osm
 from linden.authoring.lanelet2.projection import NOWHERE, projection_of
 from linden.authoring.lanelet2.stretches import WALKWAY
-from linden.cli.map_source import is_built_in, opendrive_of
+from linden.cli.map_files import is_built_in
+from linden.cli.map_source import opendrive_of
 
 
 class Findings(NamedTuple):

@@ -17,7 +17,7 @@ from basu.agents.loader import LoadedAgent
 from basu.episode import Towns
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.outcome import Status
 from basu.results import RunResult, ScenarioResults, load
 from basu.running.one_run import Session

@@ -36,7 +36,8 @@ from basu.episode import Episode, EpisodeSpec, Towns, case_spec
 from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
-from basu.options import STEP_S, RunOptions, Traffic
+from basu.options.conditions import STEP_S, Traffic
+from basu.options.run import RunOptions
 from basu.outcome import Status
 from basu.routing.route_file import read_routes
 from basu.scenarios.cases import by_id

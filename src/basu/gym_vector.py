@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.jobs.job import Answer, Play
+    from basu.jobs.processes import ProcessWorker
 
 Observations = dict[str, "NDArray[np.float32]"]
 ANSWER_LIMIT_S = 120.0  # of wall time for a worker's start, reset or step; then it counts as hung
@@ -49,6 +50,7 @@ class ShuttleVectorEnv(VectorEnv[Observations, "NDArray[np.float32]", Any]):
             UserError: the settings cannot be used.
             SimulatorError: there is no simulator.
         """
+        self._workers: list[ProcessWorker] = []  # gymnasium closes an environment that is refused, too
         if num_envs < 1:
             raise UserError(f"num_envs is {num_envs}; it must be at least 1")
         if settings.get("host") is not None:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from typing import IO
 
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
 
 READY = re.compile(r"ready, rpc port (\d+)")
 START_LIMIT_S = 600.0  # a first start compiles kernels, on a machine that may be busy with other things

@@ -1,4 +1,4 @@
-"""A live server for each module, and the official client, which none of us wrote, as the judge."""
+"""A live server for each process of tests, and the official client, which none of us wrote, as the judge."""
 
 import gc
 from collections.abc import Iterator
@@ -14,28 +14,20 @@ TIMEOUT_S = 20.0
 QUIET = [True, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
 """Settings of a world in which nothing happens unasked."""
 
-leaving: list[ExitStack] = []
-"""Servers of modules that are done; pytest holds their last test's clients until the next test begins."""
-
-
-def see_off() -> None:
-    """End servers that are left, after their clients: one that loses its server while it ends may end our process."""
-    gc.collect()
-    while leaving:
-        leaving.pop().close()
+leaving = ExitStack()
+"""The server of a session that is done; pytest holds the last test's clients until then."""
 
 
 def pytest_sessionfinish() -> None:
-    see_off()
+    """End the server after its clients: one that loses its server while it ends may end our process."""
+    gc.collect()
+    leaving.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def server() -> Iterator[RunningServer]:
-    """A server that the tests of a module share; each of them begins an episode of its own."""
-    see_off()
-    stack = ExitStack()
-    running = stack.enter_context(running_server("--log-level", "info"))
-    leaving.append(stack)
+    """A server that the tests of a process share; each of them begins an episode of its own."""
+    running = leaving.enter_context(running_server("--log-level", "info"))
     yield running
     assert running.process.poll() is None, f"the server ended by itself: {running.log()}"
 

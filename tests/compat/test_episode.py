@@ -6,32 +6,8 @@ from pathlib import Path
 import carla
 import pytest
 
+from opendrive_texts import PLAIN_ROAD
 from servers import running_server
-
-PLAIN_ROAD = """<?xml version="1.0" standalone="yes"?>
-<OpenDRIVE>
-  <header revMajor="1" revMinor="4" name="Plain" north="0" south="0" east="200" west="0">
-    <geoReference><![CDATA[+proj=tmerc +lat_0=39.68 +lon_0=-104.96]]></geoReference>
-  </header>
-  <road name="Only Street" length="200.0" id="1" junction="-1">
-    <planView><geometry s="0.0" x="0.0" y="0.0" hdg="0.0" length="200.0"><line/></geometry></planView>
-    <elevationProfile><elevation s="0.0" a="0.0" b="0.0" c="0.0" d="0.0"/></elevationProfile>
-    <lanes>
-      <laneSection s="0.0">
-        <left><lane id="1" type="driving" level="false"><width sOffset="0.0" a="3.5" b="0.0" c="0.0" d="0.0"/>
-          <roadMark sOffset="0.0" type="solid" weight="standard" color="standard" width="0.12" laneChange="none"/>
-        </lane></left>
-        <center><lane id="0" type="none" level="false">
-          <roadMark sOffset="0.0" type="broken" weight="standard" color="yellow" width="0.12" laneChange="none"/>
-        </lane></center>
-        <right><lane id="-1" type="driving" level="false"><width sOffset="0.0" a="3.5" b="0.0" c="0.0" d="0.0"/>
-          <roadMark sOffset="0.0" type="solid" weight="standard" color="standard" width="0.12" laneChange="none"/>
-        </lane></right>
-      </laneSection>
-    </lanes>
-  </road>
-</OpenDRIVE>
-"""
 
 
 def test_the_home_map_is_offered_and_loaded(client: carla.Client) -> None:

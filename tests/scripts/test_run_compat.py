@@ -49,7 +49,8 @@ def test_one_file_at_a_time_runs_while_the_neighbour_does(runner: ModuleType, mo
     begun, both = threading.Semaphore(0), threading.Barrier(2, timeout=30.0)
     running: list[str] = []
 
-    def told(name: str, _options: list[str]) -> str:
+    def told(files: tuple[str, ...], _options: list[str]) -> str:
+        (name,) = files
         running.append(name)
         begun.release()
         if name != "alone":
@@ -65,7 +66,15 @@ def test_one_file_at_a_time_runs_while_the_neighbour_does(runner: ModuleType, mo
     ) as neighbour:
         turns = runner.Turns(2, neighbour.pid)
         with ThreadPoolExecutor(2) as workers:
-            first = workers.submit(turns.take, "alone", [])
+            first = workers.submit(turns.take, ("alone",), [])
             assert begun.acquire(timeout=30.0)
-            rest = [workers.submit(turns.take, name, []) for name in ("left", "right")]
+            rest = [workers.submit(turns.take, (name,), []) for name in ("left", "right")]
             assert [each.result(60.0) for each in (first, *rest)] == ["alone", "left", "right"]
+
+
+def test_every_file_runs_once_and_files_that_are_together_exist(runner: ModuleType) -> None:
+    files = [f"tests/compat/{path.name}" for path in (SCRIPT.parents[1] / "tests" / "compat").glob("test_*.py")]
+    groups = runner.grouped(files)
+    assert sorted(file for group in groups for file in group) == sorted(files)
+    assert {len(group) for group in groups if len(group) > 1} == {len(names) for names in runner.TOGETHER}
+    assert groups == runner.grouped(reversed(files))

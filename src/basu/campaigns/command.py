@@ -64,7 +64,7 @@ def run_campaign(settings: RunSettings) -> int:
     with locked(folder):
         if store is not None:
             _take_up_store(store, folder, resume=settings.resume)
-        backend, workers = _backend(settings, drive_player(_player_settings(plan, folder, settings)))
+        backend, workers = _backend(settings, drive_player(player_settings(plan, folder, settings)))
         begin(folder, plan, settings.file, resume=settings.resume)
         table = DriveTable(folder, schema, plan.campaign.block, plan.size)
         run = _Run(plan, folder, table, settings, None if store is None else Mirror(folder, store))
@@ -99,7 +99,8 @@ def describe(file: Path) -> str:
     return "\n".join([*lines, f"in all    {plan.conditions} conditions, {plan.size} drives"])
 
 
-def _player_settings(plan: CampaignPlan, folder: Path, settings: RunSettings) -> PlayerSettings:
+def player_settings(plan: CampaignPlan, folder: Path, settings: RunSettings) -> PlayerSettings:
+    """What all drives of a campaign in ``folder`` share."""
     campaign = plan.campaign
     return PlayerSettings(
         agents=tuple(agent.typed for agent in plan.agents),

@@ -20,7 +20,7 @@ from basu.jobs.job import versions
 from basu.metrics.scoring import Scoring, scoring_layer, scoring_to_json
 from basu.output.report.documents import plain
 from basu.routing.route_file import read_routes
-from basu.scenarios.cases import cases_of, varied
+from basu.scenarios.cases import cases_of, file_in, files_among, files_named, varied
 from basu.scenarios.parameters import Number
 from basu.scenarios.sampling import Grid, Sweep
 from basu.scenarios.variation import Variation
@@ -224,11 +224,28 @@ def plan_of(campaign: Campaign, source: Path) -> CampaignPlan:
     for name in names:
         if names.count(name) > 1:
             raise UserError(f"{source}: two agents are called '{name}'; name each once, or rename a file")
-    scenario_files = tuple(find(name, "scenario file", source).resolve() for name in campaign.scenario_files)
+    named = [find(name, "scenario file", source).resolve() for name in campaign.scenario_files]
+    every_drives = [_with_paths(drives, source) for drives in campaign.drives]
+    among = [path.resolve() for drives in every_drives for path in files_named(files_among(drives.cases))]
+    scenario_files = tuple(dict.fromkeys([*named, *among]))  # workers open them too
     metric_files = tuple(find(name, "metric file", source).resolve() for name in campaign.metric_files)
-    parts = tuple(_part(drives, campaign, source, scenario_files) for drives in campaign.drives)
+    parts = tuple(_part(drives, campaign, source, scenario_files) for drives in every_drives)
     shared = digest_of([campaign.vehicle, scoring_to_json(scoring), versions()])
     return CampaignPlan(campaign, agents, parts, scoring, scenario_files, metric_files, shared)
+
+
+def _with_paths(drives: Drives, source: Path) -> Drives:
+    """Drives whose cases name files, FILE.xml or FILE.py:Class, by their full paths.
+
+    Raises:
+        UserError: there is no such file.
+    """
+    words = []
+    for word in drives.cases:
+        path, class_name = file_in(word)
+        found = word if path is None else str(find(str(path), "scenario file", source).resolve())
+        words.append(f"{found}:{class_name}" if class_name else found)
+    return drives.model_copy(update={"cases": tuple(words)})
 
 
 def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:

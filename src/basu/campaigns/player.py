@@ -25,7 +25,8 @@ from basu.errors import AgentError, SimulatorError, UserError
 from basu.jobs.job import After, Played, PlayerSpec, versions
 from basu.metrics.registry import user_metrics
 from basu.metrics.result import judge
-from basu.options import STEP_S, RunOptions
+from basu.options.conditions import STEP_S
+from basu.options.run import RunOptions
 from basu.outcome import Fault, Outcome, Status
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare

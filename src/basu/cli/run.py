@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from basu.errors import Terminated
 from basu.metrics.scoring import Scoring, read_scoring_file
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.outcome import EXIT_CODES
 from basu.settings.command_line import add_options, typed
 from basu.settings.option import Layer

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 from basu.cli.run import SIMULATOR, options_of, terminated_as_interrupted
 from basu.errors import UserError
-from basu.options import SUMO_DEMAND, SUMO_OFF, RunOptions
+from basu.options.run import RunOptions
+from basu.options.sumo import SUMO_DEMAND, SUMO_OFF
 from basu.outcome import EXIT_CODES
 from basu.settings.command_line import add_options
 

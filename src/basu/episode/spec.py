@@ -11,7 +11,8 @@ import carla
 
 from basu.agents.autonomous_agent import AgentConfig
 from basu.metrics.scoring import Scoring
-from basu.options import NO_TRAFFIC, STEP_S, Sumo, Traffic
+from basu.options.conditions import NO_TRAFFIC, STEP_S, Traffic
+from basu.options.sumo import Sumo
 from basu.routing.route_file import RouteDescription, RoutePoint
 from basu.routing.weather import changed
 from basu.scenarios.paths.lanes import followed, waypoint_at

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from basu.managers.base_manager import Frame, Run, WorldChanges
     from basu.managers.routes_manager import RoutesManager
-    from basu.options import Sumo
+    from basu.options.sumo import Sumo
 
 MISFIT_M = 4.0  # from the route to the middle of SUMO's lanes: a lane's width, which is the next lane's
 PLACES = 20  # of the route, that a network is tried on

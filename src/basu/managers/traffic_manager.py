@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.managers.base_manager import Frame, Run
-    from basu.options import Traffic
+    from basu.options.conditions import Traffic
 
 
 REACH_M = 300.0

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from basu.managers.base_manager import BaseManager
     from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
     from basu.outcome import Outcome
     from basu.running.preparation import Job, Plan
     from basu.simulator import Simulator

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from basu.jobs.job import Done, Play
     from basu.metrics.scoring import Scoring
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
     from basu.running.preparation import Job as RunJob
     from basu.running.preparation import Plan
     from basu.running.series import Series

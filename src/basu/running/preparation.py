@@ -17,7 +17,7 @@ from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
 from basu.managers.agents_manager import AgentsManager
-from basu.options import SUMO_OFF
+from basu.options.sumo import SUMO_OFF
 from basu.output.hud.person_input import person_for
 from basu.routing.route_file import RouteDescription, read_routes, subset
 from basu.scenarios.route_scenarios import scenarios_on
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
     from basu.scenarios.playable import Playable
 
 

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from basu.files import places, write_bytes
 from basu.metrics.result import judge
-from basu.options import STEP_S, RunOptions
+from basu.options.conditions import STEP_S
+from basu.options.run import RunOptions
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, RunRecord, write_json
 from basu.output.report.streets import around, write_streets

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.metrics.scoring import Scoring
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
     from basu.running.one_run import Finished
     from basu.running.preparation import Job, Plan
     from basu.running.series import Series

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from basu.metrics.scoring import Scoring
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
 from basu.running.preparation import Job, Plan
 
 SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"

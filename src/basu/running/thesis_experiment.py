@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
     from basu.running.table_5_1 import Measured, Printed
 
 

@@ -7,60 +7,25 @@ from collections import Counter
 from collections.abc import Collection
 from importlib import resources
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from linden.authoring.openstreetmap.convert import Imported, convert
 from linden.authoring.output import write_output
-from linden.cli.map_source import bytes_of
+from linden.authoring.streets.build import assembled, off_ground_m
+from linden.authoring.streets.controls import without_lights
+from linden.authoring.streets.routes import xml
+from linden.authoring.streets.street_facts import read
+from linden.authoring.streets.terrain import with_terrain
+from linden.authoring.streets.writing import text as written
+from linden.cli.map_files import bytes_of
+from linden.cli.output import say
 from linden.errors import UserError
 
-if TYPE_CHECKING:
-    from linden.authoring.openstreetmap.convert import Imported
-
-HELP = "turn streets (GeoJSON, or an OpenStreetMap extract) into OpenDRIVE"
 _HOME_STREETS = "linden.geojson"
-
-
-def add_arguments(command: argparse.ArgumentParser) -> None:
-    """Add what the command takes."""
-    command.add_argument(
-        "streets", nargs="?", type=Path, help="GeoJSON file, or OpenStreetMap extract (.osm); default: Linden's streets"
-    )
-    command.add_argument("-o", "--output", type=Path, required=True, help="where to write the .xodr file")
-    command.add_argument(
-        "--facts", type=Path, metavar="FILE", help="write the streets of an OpenStreetMap extract as GeoJSON too"
-    )
-    command.add_argument(
-        "--elevation", type=Path, metavar="FILE", help="lay the streets on measured ground: a GeoTIFF, or LAS or LAZ"
-    )
-    command.add_argument(
-        "--without-lights", action="store_true", help="put all-way stops in place of lights, as in Linden_thesis"
-    )
-    command.add_argument(
-        "--route",
-        action="append",
-        default=[],
-        metavar="NAME=FILE",
-        help="write the route feature NAME of the streets as a route file, for `basu run --routes`; may be given "
-        "several times",
-    )
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the OpenDRIVE map of a file of streets, and the route files that are wanted."""
-    try:
-        from linden.authoring.openstreetmap.convert import convert  # noqa: PLC0415 - an optional part, slow to load
-        from linden.authoring.streets.build import assembled, off_ground_m  # noqa: PLC0415 - likewise
-        from linden.authoring.streets.controls import without_lights  # noqa: PLC0415 - likewise
-        from linden.authoring.streets.routes import xml  # noqa: PLC0415 - likewise
-        from linden.authoring.streets.street_facts import read  # noqa: PLC0415 - likewise
-        from linden.authoring.streets.terrain import with_terrain  # noqa: PLC0415 - likewise
-        from linden.authoring.streets.writing import text as written  # noqa: PLC0415 - likewise
-    except ModuleNotFoundError as error:
-        if (error.name or "").startswith("linden"):
-            raise
-        raise UserError(
-            f"building maps needs the package {error.name}; install it with: pip install 'linden[maps]'"
-        ) from None
     source: Path | None = arguments.streets
     imported = convert(bytes_of(source), str(source)) if source is not None and source.suffix == ".osm" else None
     if arguments.facts is not None and imported is None:
@@ -75,29 +40,29 @@ def run(arguments: argparse.Namespace) -> int:
         files.append((arguments.facts, (json.dumps(imported.streets, indent=1) + "\n").encode()))
     for file, data in files:
         write_output(file, data)
-        _say(f"{file}: {len(data):,} bytes")
+        say(f"{file}: {len(data):,} bytes")
     if imported is not None:
         _report(imported)
     if arguments.elevation is not None:
         away_m, near_m = off_ground_m(built)
-        _say(f"off the ground: {away_m:.2f} m at most, {near_m:.2f} m where roads come down to level junctions")
+        say(f"off the ground: {away_m:.2f} m at most, {near_m:.2f} m where roads come down to level junctions")
     if built.left_out:
-        _say(f"left out: {len(built.left_out)} buildings or things that would stand on a street")
+        say(f"left out: {len(built.left_out)} buildings or things that would stand on a street")
     unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]
     if unwritten and source is not None:
-        _say(f"not written: {', '.join(unwritten)}; `--route {unwritten[0]}=FILE.xml` writes a route feature")
+        say(f"not written: {', '.join(unwritten)}; `--route {unwritten[0]}=FILE.xml` writes a route feature")
     return 0
 
 
-def _report(imported: "Imported") -> None:
+def _report(imported: Imported) -> None:
     """Print what the extract says, what is guessed, and what is left out."""
     kinds = Counter(feature["properties"]["feature"] for feature in imported.streets["features"])
-    _say(", ".join(f"{count:,} {kind}" for kind, count in sorted(kinds.items())))
+    say(", ".join(f"{count:,} {kind}" for kind, count in sorted(kinds.items())))
     for fact in sorted(imported.known.keys() | imported.guessed.keys()):
-        _say(f"{fact:24} {imported.known[fact]:6,} tagged {imported.guessed[fact]:6,} guessed")
+        say(f"{fact:24} {imported.known[fact]:6,} tagged {imported.guessed[fact]:6,} guessed")
     for reason, count in sorted(imported.left_out.items()):
         if count:
-            _say(f"left out: {count:,} {reason}")
+            say(f"left out: {count:,} {reason}")
 
 
 def _route_and_file(given: str, known: Collection[str]) -> tuple[str, Path]:
@@ -121,7 +86,3 @@ def _streets(path: Path | None) -> dict[str, Any]:
     if not isinstance(streets, dict):
         raise UserError(f"{path} is no GeoJSON: it should be an object of type FeatureCollection")
     return streets
-
-
-def _say(line: str) -> None:
-    print(line)  # noqa: T201 - what a command says to its user

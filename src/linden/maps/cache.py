@@ -71,7 +71,7 @@ class MapCache:
         """
         file = self._folder / name
         try:
-            digest, content = (whole := file.read_bytes())[:_DIGEST_BYTES], whole[_DIGEST_BYTES:]
+            digest, content = _parts(file)
             if digest == _digest(content):
                 found = read(content)
                 os.utime(file)  # so that it counts as used
@@ -93,7 +93,7 @@ class MapCache:
 
     def replace(self, name: str, content: bytes) -> None:
         """Keep something else than before under a name."""
-        self._keep(self._folder / name, lambda stream: stream.write(_digest(content) + content))
+        self._keep(self._folder / name, lambda stream: stream.writelines((_digest(content), content)))
 
     def _write(self, file: Path, facts: MapFacts) -> None:
         self._keep(file, lambda stream: np.savez(stream, **pack(facts)))  # type: ignore[arg-type] # one array could be called allow_pickle
@@ -124,6 +124,16 @@ class MapCache:
             total += status.st_size
             if total > self._most_bytes:
                 file.unlink(missing_ok=True)
+
+
+def _parts(file: Path) -> tuple[bytes, bytes]:
+    """Return the digest and the content of a file, without a copy: copies of 50 MB hold Python's lock for 0.1 s.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    with file.open("rb", buffering=0) as stream:
+        return stream.read(_DIGEST_BYTES), stream.readall()
 
 
 def _digest(content: bytes) -> bytes:

@@ -171,12 +171,6 @@ class AnswerOrder:
             waits.cue = Cue()
         return waits.cue
 
-    def came(self, peer: RpcPeer, call: Call) -> None:
-        """Note that a call is carried out now."""
-        waits = self._of.get(peer)
-        if waits is not None and waits.cue is not None:
-            waits.cue.came(call.method, self._clock())
-
     def kept(self, peer: RpcPeer) -> bytes | None:
         """Return the answer to a client's next call that waited for the scene or as a load; None where none did."""
         waits = self._of.get(peer)

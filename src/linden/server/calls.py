@@ -153,7 +153,6 @@ class Calls:
 
     def _prepare(self, peer: RpcPeer, call: Call) -> None:
         """Note what follows from a call before it is carried out."""
-        self.order.came(peer, call)
         if self._context.pending_load is not None:
             self.load.begin_before(peer, call, self._clock())
         if call.method == LOAD:

@@ -9,10 +9,9 @@ on a busy machine.
 The frame is made at once, and shown; only the answer to the tick waits, without which the client wakes no thread. The
 wait is a state of the server's loop: other clients are served meanwhile.
 
-How long the thread needs from the answer to its sleep depends on the machine and its load. The thread itself shows it
-in each step: it makes two calls (:data:`PACED`) with nothing between them. From the first one's answer to the second
-call it takes the same wakes as from the question's answer to its sleep, and the way to the server besides. So the wait
-is twice the longest such time of the last steps, and never more than :data:`SETTLING_S` (docs/decisions/0089).
+The wait after the question is :data:`SETTLING_S`, whatever the machine and its load. A wait of 0.25 to 1 ms by the
+thread's own pace was tried and taken out: on a busy machine the wake fell close to the sleep two to eleven times as
+often (docs/decisions/0089).
 """
 
 import math
@@ -26,14 +25,7 @@ TICK = "tick_cue"
 PATIENCE_S = 0.02
 """How long a tick's answer waits for the question: a busy machine's time slices. Else it is there before the tick."""
 SETTLING_S = 0.001
-"""What a thread is left at most from the answer to its sleep: 0.1 ms is usual. The frame's own time is part of it."""
-LEAST_SETTLING_S = 0.00025
-"""What it is left at least."""
-PACED = ("get_vehicle_light_states", "get_weather_parameters")
-"""Two calls of each step that follow one another: ``VehicleLightStage::UpdateWorldInfo``."""
-MARGIN = 2.0
-FADES = 0.97
-"""What is left after each step of the longest time between the two: half of it after 23 steps."""
+"""What a thread is left from the answer to its sleep: it needs a core and 0.1 ms. The frame's time is part of it."""
 MOST_LATE = 2
 """Ticks in a row that waited in vain. Then none waits: the Traffic Manager is not in synchronous mode."""
 TRUSTED_AGAIN = 50
@@ -54,20 +46,6 @@ class Cue:
     """Until when that answer waits for the question."""
     late: int = 0
     on_time: int = 0
-    slowest_s: float = SETTLING_S
-    """The longest time between the two paced calls, which fades."""
-    _paced_since_s: float | None = None
-
-    def came(self, method: str, now_s: float) -> None:
-        """Note that a call of the client is carried out now."""
-        if method == PACED[1] and self._paced_since_s is not None:
-            self.slowest_s = max(now_s - self._paced_since_s, self.slowest_s * FADES)
-        self._paced_since_s = now_s if method == PACED[0] else None
-
-    @property
-    def settling_s(self) -> float:
-        """How long the thread is left from the answer to its question to its sleep."""
-        return min(SETTLING_S, max(LEAST_SETTLING_S, MARGIN * self.slowest_s))
 
     def ticked(self, answer: bytes, now_s: float) -> None:
         """Note that the tick is carried out."""
@@ -87,7 +65,7 @@ class Cue:
     @property
     def deadline_s(self) -> float:
         """When the present wait is over in any case."""
-        return self.until_s if self.answered_s is None else self.answered_s + self.settling_s
+        return self.until_s if self.answered_s is None else self.answered_s + SETTLING_S
 
     def answered(self, now_s: float) -> None:
         """Note that a question has been answered."""

@@ -32,15 +32,15 @@ log = logging.getLogger("linden")
 HELD_BYTES_OF_ALL = 128 * 1024 * 1024
 """What calls that are half received or wait to be carried out may take in all connections together: two of the largest,
 hundreds of any usual size."""
-HELD_ARRAYS_OF_ALL = 2 * 1024 * 1024
-"""How many arrays such calls may have in all connections together: four of the most, some 140 MB."""
+HELD_ARRAYS_OF_ALL = 1024 * 1024
+"""How many arrays such calls may have in all connections together: four of the most, some 70 MB."""
 
 HOARD_BYTES = 64 * 1024
 """From this size on what a client holds is looked at: smaller ones of a thousand clients are 64 MB."""
 
-SWITCH_S = 0.001
-"""How long work in the background keeps Python's lock when this thread wants it; a call wants it some times, and by
-default it would have to wait 5 ms each time."""
+SWITCH_S = 0.0002
+"""How long a background thread keeps Python's lock when the loop wants it. A tick wants the lock after each call of the
+system, and by default would wait 5 ms each time. Without a background thread the value has no effect."""
 
 LOOKS_EACH_S = 0.02
 """How often a busy server looks for what is due by the clock and is no frame. All of it is a matter of seconds."""

@@ -52,6 +52,7 @@ def steady(folder: Path) -> pa.Table:
     return read_drives(folder).drop_columns(list(VOLATILE))
 
 
+@pytest.mark.usefixtures("here")
 def test_a_campaign_leaves_a_row_for_each_drive_and_folders_of_the_telling_ones(
     run: Callable[..., Path], campaign: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -75,6 +76,7 @@ def test_a_campaign_leaves_a_row_for_each_drive_and_folders_of_the_telling_ones(
         assert heading in page
 
 
+@pytest.mark.usefixtures("here")
 def test_a_campaign_goes_on_and_equals_an_undisturbed_one(run: Callable[..., Path], campaign: Write) -> None:
     file = campaign()
     part = run(file, "part", drives=13)
@@ -85,6 +87,7 @@ def test_a_campaign_goes_on_and_equals_an_undisturbed_one(run: Callable[..., Pat
     assert steady(part).equals(steady(run(file)))
 
 
+@pytest.mark.usefixtures("here")
 def test_killed_workers_and_drivers_lose_nothing_and_count_nothing_twice(
     run: Callable[..., Path], campaign: Write, modules: str, tmp_path: Path
 ) -> None:
@@ -158,6 +161,7 @@ def test_a_campaign_stops_where_the_question_is_answered(run: Callable[..., Path
     assert read_drives(first).num_rows == number
 
 
+@pytest.mark.usefixtures("here")
 def test_two_runs_on_one_folder_are_refused(run: Callable[..., Path], campaign: Write, tmp_path: Path) -> None:
     file = campaign()
     with locked(tmp_path / "campaigns" / "crossings"):
@@ -171,6 +175,7 @@ def test_two_runs_on_one_folder_are_refused(run: Callable[..., Path], campaign: 
         run(file, "elsewhere", resume=True)
 
 
+@pytest.mark.usefixtures("here")
 def test_a_campaign_does_not_go_on_under_other_conditions(
     run: Callable[..., Path], campaign: Write, monkeypatch: pytest.MonkeyPatch
 ) -> None:

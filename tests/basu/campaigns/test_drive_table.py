@@ -16,6 +16,27 @@ from basu.errors import UserError
 SCHEMA = pa.schema([("number", pa.int64()), ("agent", pa.string()), ("score", pa.float64())])
 
 
+WRITER = """
+import sys, tempfile
+from pathlib import Path
+import pyarrow as pa
+from basu.campaigns.columns import schema_of
+from basu.campaigns.drive_table import DriveTable
+
+pa.set_cpu_count(16)  # as on a larger machine: each thread of Arrow keeps memory of its own
+schema = schema_of({})
+numbers = {name: 0.0 for name in schema.names if str(schema.field(name).type) == "double"}
+resident_mb = lambda: int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 1e6
+with tempfile.TemporaryDirectory() as folder:
+    table = DriveTable(Path(folder), schema, 400, 4800)
+    for number in range(4800):
+        values = {name: (number * 7919 + place) % 9973 / 7.0 for place, name in enumerate(numbers)}
+        table.add({**values, "number": number, "agent": "abc"[number % 3], "message": f"drive {number}"})
+        if number in (1599, 4799):
+            print(resident_mb())
+"""
+
+
 def row_of(number: int) -> dict[str, Any]:
     return {"number": number, "agent": ("basic", "blind")[number % 2], "score": number / 7.0}
 
@@ -100,3 +121,10 @@ def test_a_full_disk_is_one_sentence_and_loses_no_row(tmp_path: Path) -> None:
 def test_a_folder_without_drives_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="holds no drives of a campaign yet"):
         read_drives(tmp_path)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
+def test_the_memory_of_the_driver_does_not_grow_with_the_number_of_blocks() -> None:
+    done = subprocess.run([sys.executable, "-c", WRITER], capture_output=True, text=True, check=True)
+    early_mb, late_mb = map(float, done.stdout.split())
+    assert late_mb < early_mb + 6.0

@@ -1,5 +1,6 @@
 """Claims about a campaign's file: it becomes jobs with stable ids, and a mistake in it is one sentence."""
 
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -9,6 +10,7 @@ from basu.campaigns.plan import plan_of
 from basu.campaigns.settings import read_campaign
 from basu.campaigns.shuffle import Shuffle
 from basu.errors import UserError
+from basu.scenarios.cases import open_library
 
 Write = Callable[..., Path]
 
@@ -93,3 +95,18 @@ def test_a_mistake_is_one_sentence(campaign: Write, before: str, after: str, sen
     with pytest.raises(UserError, match=sentence) as raised:
         plan_of(read_campaign(file), file)
     assert "\n" not in str(raised.value)
+
+
+def test_a_file_of_scenarios_is_found_beside_the_campaign_and_workers_open_it(campaign: Write, tmp_path: Path) -> None:
+    example = Path(__file__).parents[3] / "examples" / "scenarios" / "bin_lorry.py"
+    for suffix in (".py", ".xml"):
+        shutil.copy(example.with_suffix(suffix), tmp_path / f"lorry{suffix}")
+    usual = 'cases = ["pedestrian_crossing_1"]\nsweep = 10\nvary = ["ahead", "speed"]'
+    for word in ("lorry.xml", "lorry.py:BinLorry"):
+        file = campaign((usual, f'cases = ["{word}"]'))
+        plan = plan_of(read_campaign(file), file)
+        library = open_library(plan.scenario_files)  # as a worker does it
+        assert [len(library.of_id(plan.job(number)["identity"])) for number in range(plan.size)] == [1] * 6
+    file = campaign((usual, 'cases = ["van.xml"]'))
+    with pytest.raises(UserError, match=r"scenario file 'van\.xml' was not found"):
+        plan_of(read_campaign(file), file)

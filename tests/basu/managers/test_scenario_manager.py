@@ -17,7 +17,7 @@ from basu.managers.placed_scenario import is_behind, place_scenario
 from basu.managers.scenario_manager import Playing
 from basu.managers.scenario_results import results_of
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
 from basu.output.report.console import met
 from basu.output.report.documents import RESULT_SCHEMA, mistakes, read_schema

@@ -8,7 +8,7 @@ import pytest
 
 from basu.cli import main
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.outcome import Fault
 from basu.routing.route_file import RouteDescription
 from basu.running.run_folder import command, options_again

@@ -13,7 +13,7 @@ import pytest
 
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.outcome import Status
 from basu.output.report.documents import make_draft, publish
 from basu.routing.route_file import RouteDescription

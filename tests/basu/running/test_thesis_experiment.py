@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from basu.cli import main
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
 from basu.output.report.documents import RunRecord, point_latest
 from basu.running import thesis_experiment

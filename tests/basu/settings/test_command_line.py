@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from basu.cli import parser
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
-from basu.options import SUMO_DEMAND, SUMO_OFF, SUMO_RANDOM, RunOptions
+from basu.options.run import RunOptions
+from basu.options.sumo import SUMO_DEMAND, SUMO_OFF, SUMO_RANDOM
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import typed, words_of
 from basu.settings.forms import choices
@@ -96,10 +97,13 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
     return resolve(model, [Layer(given)])
 
 
+PARSERS = {model: parser(words) for model, words in COMMAND.items()}
+
+
 def heard(model: type[Settings], words: list[str]) -> Settings:
     """What the real command line makes of words."""
-    whole = [*COMMAND[model], *words]
-    return resolve(model, [Layer(typed(model, parser(whole).parse_args(whole)), typed=True)])
+    parsed = PARSERS[model].parse_args([*COMMAND[model], *words])
+    return resolve(model, [Layer(typed(model, parsed), typed=True)])
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -9,7 +9,7 @@ import pytest
 from basu.cli import main
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.settings.document import RUN, config_document, read_config
 from basu.settings.resolve import resolve
 

@@ -9,7 +9,7 @@ from basu.cli import parser
 from basu.errors import UserError
 from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.scoring import Scoring
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.settings.command_line import typed
 from basu.settings.option import Layer
 from basu.settings.resolve import from_keywords, resolve

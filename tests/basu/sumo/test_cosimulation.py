@@ -9,7 +9,7 @@ import pytest
 
 from basu.cli import main
 from basu.errors import SimulatorError, UserError
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.running.cosimulation import cosimulate
 from servers import RunningServer
 

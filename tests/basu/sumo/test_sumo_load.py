@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from basu.errors import UserError
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.sumo.link import Link, connected, in_process
 from basu.sumo.load import Load
 from basu.sumo.outputs import COLLISIONS, FOLDER, SAFETY, SUMMARY, TRIPS, Outputs

@@ -4,15 +4,10 @@ import time
 from collections import deque
 from types import SimpleNamespace
 
-import pytest
-
 from fakes.raw_client import RawClient
 from linden.protocol.wire.rpc import Call
 from linden.server.cue import (
-    LEAST_SETTLING_S,
-    MARGIN,
     MOST_LATE,
-    PACED,
     PATIENCE_S,
     SETTLING_S,
     TRUSTED_AGAIN,
@@ -138,53 +133,15 @@ def test_the_wait_after_a_question_is_hardly_longer_than_the_thread_needs() -> N
     assert min(took_s) < SETTLING_S + 0.0005
 
 
-def _steps(cue: Cue, *times_s: float) -> None:
-    """Let the Traffic Manager's thread make steps with these times between its two paced calls."""
-    for time_s in times_s:
-        cue.came(PACED[0], 10.0)
-        cue.came(PACED[1], 10.0 + time_s)
-
-
-def test_a_thread_of_which_nothing_is_known_is_left_the_longest_time() -> None:
-    assert Cue().settling_s == SETTLING_S
-
-
-def test_a_quick_thread_is_left_twice_its_time_and_a_slow_step_counts_at_once() -> None:
-    cue = Cue()
-    _steps(cue, *[0.0002] * 200)
-    assert cue.settling_s == pytest.approx(MARGIN * 0.0002)
-    _steps(cue, 0.0004)
-    assert cue.settling_s == pytest.approx(MARGIN * 0.0004)
-    _steps(cue, 0.02)
-    assert cue.settling_s == SETTLING_S, "never longer than that"
-    _steps(cue, *[0.0002] * 20)
-    assert cue.settling_s == SETTLING_S, "one slow step is remembered"
-
-
-def test_a_thread_is_left_a_least_time_however_quick_it_is() -> None:
-    cue = Cue()
-    _steps(cue, *[1e-6] * 1000)
-    assert cue.settling_s == LEAST_SETTLING_S
-
-
-def test_only_two_calls_with_nothing_between_them_show_the_pace() -> None:
-    cue = Cue()
-    cue.came(PACED[0], 10.0)
-    cue.came("get_actor_bounding_box", 10.0)
-    cue.came(PACED[1], 10.0)
-    cue.came(PACED[1], 10.0)
-    assert cue.settling_s == SETTLING_S
-
-
-def test_the_wait_follows_the_pace_of_the_thread() -> None:
+def test_a_thread_is_left_the_whole_wait_however_quick_its_calls_are() -> None:
     took_s = []
     with running_server("--sync") as server, RawClient(server.port) as client:
         _traffic_manager(client)
         for _ in range(300):
-            for method in PACED:
-                client.call(method)
-            client.call("get_episode_settings")
+            client.call("get_vehicle_light_states")
+            client.call("get_weather_parameters")
             began_s = time.perf_counter()
+            client.call("get_episode_settings")
             client.call("tick_cue")
             took_s.append(time.perf_counter() - began_s)
-    assert min(took_s) < SETTLING_S
+    assert min(took_s) >= SETTLING_S

@@ -17,7 +17,7 @@ from basu.agents.loader import load_agent
 from basu.agents.sensor_file import SensorSpec, parse_sensors, read_sensors
 from basu.errors import UserError
 from basu.files import find, read_json
-from basu.options import STEP_S
+from basu.options.conditions import STEP_S
 from basu.routing import plan
 from basu.routing.route_file import RouteDescription, RoutePoint
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from basu.agents.manual.inputs import Person
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
     from basu.output.hud.readings import Setting
 
 DRAW_EVERY_S = 0.05  # wall time, where the run is faster than that

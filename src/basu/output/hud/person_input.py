@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from basu.agents.manual.inputs import InputSource
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
-    from basu.options import RunOptions
+    from basu.options.run import RunOptions
 
 
 def person_for(options: RunOptions, *, by_hand: bool) -> Person | None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import basu
-from basu.options import STEP_S
+from basu.options.conditions import STEP_S
 from basu.outcome import Outcome, Status
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured

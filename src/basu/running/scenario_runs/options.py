@@ -8,21 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from basu.errors import UserError
-from basu.options import (
-    AGENT,
-    CONDITIONS,
-    FOLDERS,
-    AgentMemory,
-    Debug,
-    Host,
-    InProcess,
-    Output,
-    Port,
-    RunOptions,
-    StepLimit,
-    Timeout,
-    check_agent_process,
-)
+from basu.options.agent import AgentMemory, Debug, InProcess, StepLimit, check_agent_process
+from basu.options.folders import Output
+from basu.options.groups import AGENT, CONDITIONS, FOLDERS
+from basu.options.run import RunOptions
+from basu.options.simulator import Host, Port, Timeout
 from basu.settings.option import Option, Settings, fields_of
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from basu.agents.manual.inputs import Held, Input
 from basu.agents.manual.session import Played, RecordingSource, Session, Setting, read_session
 from basu.cli import main
 from basu.errors import SimulatorError, UserError
-from basu.options import RunOptions
+from basu.options.run import RunOptions
 from basu.output.hud.person_input import KeysManager, person_for
 from basu.output.hud.sensor_view import ChaseCamera
 

@@ -1,0 +1,39 @@
+"""``basu replay``: a run again, on a simulator or in Rerun's viewer."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+
+from basu.cli.later import later
+from basu.cli.recorder_log import progress_bar, read_recording
+from basu.cli.run import options_of
+from basu.errors import UserError
+from basu.output.viewer.server_replay import Progress, Where, play
+from basu.output.viewer.stream import require
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Play a run again: on a simulator, where any client can watch it, or with --viewer in Rerun's, without one."""
+    if not arguments.speed >= 0.0:
+        raise UserError(f"--speed is {arguments.speed}; it is a factor, or 0")
+    if not arguments.viewer:
+        return _on_simulator(arguments)
+    require()
+    return later("basu.cli.viewer_replay:run")(arguments)
+
+
+def _on_simulator(arguments: argparse.Namespace) -> int:
+    """The log on a simulator."""
+    if arguments.save is not None or arguments.map is not None:
+        raise UserError("--save and --map belong to --viewer; add it, or leave them out")
+    log, _ = read_recording(arguments.recording, arguments.map)
+    options = options_of(arguments)
+    where = Where(options.host, options.port, options.timeout_s)
+    with progress_bar(log.frames) as bar:
+
+        def ready(address: str) -> None:
+            bar.write(f"watch it at {address}, with any client of CARLA's", file=sys.stderr)
+
+        play(log, where, speed=arguments.speed, progress=Progress(ready, bar.update))
+    return 0

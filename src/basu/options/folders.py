@@ -1,0 +1,78 @@
+"""Options of what a run leaves: its folder, records, bags, topics and series."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from basu.errors import UserError
+from basu.options.groups import FOLDERS
+from basu.settings.option import Option, Settings
+
+Output = Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FolderOptions(Settings):
+    """The output of a run."""
+
+    metric_files: Annotated[
+        tuple[Path, ...],
+        Option(
+            help="metrics of your own, reported beside BASU's or scored with them; may be given several times",
+            group=FOLDERS,
+            flag="--metrics",
+            metavar="FILE.py",
+            is_file=True,
+        ),
+    ] = ()
+    record: Annotated[bool, Option(help="let the simulator write CARLA's log, recording.log", group=FOLDERS)] = False
+    rosbag: Annotated[
+        Literal["ros2", "ros1"] | None,
+        Option(
+            help="write sensors, state, control and TF as a ROS bag: a folder with MCAP for ros2, a .bag for ros1; "
+            "without a word: ros2",
+            group=FOLDERS,
+            bare="ros2",
+            default_text="write none",
+            advice="an agent is named before --rosbag, as in `basu run basic --rosbag`",
+        ),
+    ] = None
+    ros2: Annotated[
+        bool,
+        Option(
+            help="publish the run on ROS 2 while it lasts, over DDS, in the domain of ROS_DOMAIN_ID",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
+    ros1: Annotated[
+        bool,
+        Option(
+            help="publish the run on ROS 1 while it lasts, at the roscore of ROS_MASTER_URI",
+            group=FOLDERS,
+            repeats=False,
+        ),
+    ] = False
+    output: Output = Path("runs")
+    series: Annotated[
+        str | None,
+        Option(
+            help="keep all runs in a folder of this name, with their totals in series.json",
+            group=FOLDERS,
+            metavar="NAME",
+            repeats=False,
+        ),
+    ] = None
+    resume: Annotated[bool, Option(help="continue an interrupted --series", group=FOLDERS, repeats=False)] = False
+
+    def check(self) -> None:
+        """Check the options of a series.
+
+        Raises:
+            UserError: there is none to continue.
+        """
+        if self.resume and self.series is None:
+            raise UserError("--resume continues a series; name it with --series, as when it was begun")
+        super().check()

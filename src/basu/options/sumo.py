@@ -1,0 +1,174 @@
+"""Options of SUMO's traffic in a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
+
+from basu.errors import UserError
+from basu.options.conditions import ConditionOptions, Traffic
+from basu.options.groups import CONDITIONS
+from basu.settings.option import Option
+
+SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM = "none", "demand", "random"
+RANDOM_VEHICLES = 50  # of --sumo random without --vehicles
+
+
+class Sumo(NamedTuple):
+    """What SUMO is to do in a run."""
+
+    file: Path | None = None  # a finished .sumocfg; None: the agent's folder, or one made of the town's map
+    is_random: bool = False  # random trips instead of the demand
+    vehicles: int = 0  # that random trips keep on the road
+    radius_m: float | None = None  # around the vehicle under test, within which vehicles are shown; None: all
+    lights: str = "carla"  # which side has the lights
+    port: int | None = None  # of a SUMO that runs
+    folder: str | None = None  # that the agent's config() names
+    beside: Path | None = None  # the agent's file, for relative names
+    hour: float | None = None  # of the day, for a demand that is made; None: the hour that the route stands for
+    scale: float | None = None  # of the traffic; None: as it is
+    is_sublane: bool = False  # vehicles beside each other in a lane
+    has_output: bool = False  # SUMO's own outputs in the run's folder
+
+
+@dataclass(frozen=True, kw_only=True)
+class SumoOptions(ConditionOptions):
+    """The conditions of a drive, with SUMO."""
+
+    sumo: Annotated[
+        str | None,
+        Option(
+            help="drive amid SUMO's traffic: FILE.sumocfg, random (--vehicles N on random trips), demand (of the "
+            "town) or none; without a word: demand",
+            group=CONDITIONS,
+            metavar="WHAT",
+            bare=SUMO_DEMAND,
+            default_text="as the agent says",
+            advice="an agent is named before --sumo, as in `basu run basic --sumo`",
+        ),
+    ] = None
+    sumo_radius_m: Annotated[
+        float | None,
+        Option(
+            help="show SUMO's vehicles within this of the vehicle under test; the others drive on in SUMO",
+            group=CONDITIONS,
+            flag="--sumo-radius",
+            metavar="M",
+            unit="m",
+            above=0.0,
+            default_text="show all",
+        ),
+    ] = None
+    sumo_lights: Annotated[
+        Literal["carla", "sumo", "none"],
+        Option(help="which side has the traffic lights; none: each its own", group=CONDITIONS),
+    ] = "carla"
+    sumo_port: Annotated[
+        int | None,
+        Option(
+            help="TraCI port of a running SUMO on this machine",
+            group=CONDITIONS,
+            metavar="N",
+            least=1,
+            most=65_535,
+            default_text="SUMO in this process",
+        ),
+    ] = None
+    sumo_hour: Annotated[
+        float | None,
+        Option(
+            help="hour of the day of the demand that is made, such as 17.5",
+            group=CONDITIONS,
+            metavar="H",
+            least=0.0,
+            most=23.99,
+            default_text="the hour that the route stands for",
+        ),
+    ] = None
+    sumo_scale: Annotated[
+        float | None,
+        Option(
+            help="so many times the demand",
+            group=CONDITIONS,
+            metavar="X",
+            least=0.0,
+            default_text="the demand as it is",
+        ),
+    ] = None
+    sumo_sublane: Annotated[
+        bool, Option(help="SUMO's sub-lane model: vehicles pass each other within a lane", group=CONDITIONS)
+    ] = False
+    sumo_output: Annotated[
+        bool,
+        Option(help="keep SUMO's own outputs in the run's folder: trip information, safety measures", group=CONDITIONS),
+    ] = False
+
+    @property
+    def traffic(self) -> Traffic:
+        """The other road users of the run that the simulator's client drives."""
+        return Traffic(0 if self.sumo == SUMO_RANDOM else self.vehicles, self.walkers, self.traffic_density)
+
+    def sumo_of(self, folder: str | None, beside: Path | None) -> Sumo | None:
+        """What SUMO is to do for an agent that names ``folder``; None where it is to do nothing."""
+        if self.sumo == SUMO_OFF or (self.sumo is None and self.sumo_port is None and folder is None):
+            return None
+        is_file = self.sumo not in (None, SUMO_DEMAND, SUMO_RANDOM)
+        return Sumo(
+            file=Path(str(self.sumo)) if is_file else None,
+            is_random=self.sumo == SUMO_RANDOM,
+            vehicles=self.vehicles or RANDOM_VEHICLES,
+            radius_m=self.sumo_radius_m,
+            lights=self.sumo_lights,
+            port=self.sumo_port,
+            folder=folder,
+            beside=beside,
+            hour=self.sumo_hour,
+            scale=self.sumo_scale,
+            is_sublane=self.sumo_sublane,
+            has_output=self.sumo_output,
+        )
+
+    def check(self) -> None:
+        """Check the options of SUMO.
+
+        Raises:
+            UserError: they contradict each other.
+        """
+        self._check_sumo()
+        super().check()
+
+    def _check_sumo(self) -> None:
+        """Check the options of SUMO.
+
+        Raises:
+            UserError: the file is no configuration of SUMO, or random trips are to be made for a demand of a density.
+        """
+        words = (None, SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM)
+        if self.sumo not in words and not str(self.sumo).endswith(".sumocfg"):
+            raise UserError(f"--sumo {self.sumo}: it may be a FILE.sumocfg, random, demand or none")
+        if self.sumo not in words and not Path(str(self.sumo)).is_file():
+            raise UserError(f"--sumo {self.sumo}: there is no such file; write one with `linden map sumo TOWN -o DIR`")
+        if self.sumo == SUMO_RANDOM and self.traffic_density is not None:
+            raise UserError("--sumo random keeps --vehicles N on the road; --traffic-density goes without it")
+        self._check_demand_of_sumo(is_file=self.sumo not in words)
+
+    def _check_demand_of_sumo(self, *, is_file: bool) -> None:
+        """Check the options of SUMO's demand and outputs.
+
+        Raises:
+            UserError: there is no demand to which it applies.
+        """
+        said = {
+            "--sumo-hour": self.sumo_hour is not None,
+            "--sumo-scale": self.sumo_scale is not None,
+            "--sumo-sublane": self.sumo_sublane,
+            "--sumo-output": self.sumo_output,
+        }
+        named = [flag for flag, given in said.items() if given]
+        if named and self.sumo_port is not None:
+            raise UserError(f"{named[0]} is for a SUMO that basu starts; give yours at --sumo-port its own options")
+        if self.sumo == SUMO_RANDOM and (self.sumo_hour is not None or self.sumo_scale is not None):
+            raise UserError(f"{named[0]} is for a demand; --sumo random keeps --vehicles N on the road")
+        if is_file and self.sumo_hour is not None:
+            raise UserError(f"--sumo-hour is for a demand that basu makes; {self.sumo} has its own")

@@ -1,0 +1,91 @@
+"""Options of the window, the viewer and recorded keys."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+from basu.errors import UserError
+from basu.options.groups import WINDOW
+from basu.settings.option import Option, Settings
+
+WINDOWS = (640, 480), (7680, 4320)  # pixels; the panel and the help page need the smallest
+PICTURES = (64, 48), (3840, 2160)  # of the HUD's camera
+
+
+@dataclass(frozen=True, kw_only=True)
+class WindowOptions(Settings):
+    """What is shown of a drive, and keys."""
+
+    viewer: Annotated[
+        bool,
+        Option(help="stream the run to Rerun's viewer and keep it as run.rrd", group=WINDOW, repeats=False),
+    ] = False
+    hud: Annotated[
+        Literal["camera", "map"] | None,
+        Option(
+            help="show a window; P takes over control; without a view: camera",
+            group=WINDOW,
+            bare="camera",
+            advice="an agent is named before --hud, as in `basu run basic --hud`",
+            repeats=False,
+        ),
+    ] = None
+    hud_size: Annotated[
+        tuple[int, int],
+        Option(help="size of the window", group=WINDOW, metavar="WxH", unit="pixels", style="size", repeats=False),
+    ] = (960, 540)
+    hud_camera: Annotated[
+        tuple[int, int],
+        Option(
+            help="size of the pictures of the HUD's camera, which take most of the time",
+            group=WINDOW,
+            metavar="WxH",
+            unit="pixels",
+            style="size",
+            repeats=False,
+        ),
+    ] = (480, 270)
+    hud_screenshot: Annotated[
+        Path | None,
+        Option(help="PNG of the window, written at the end and by F12", group=WINDOW, metavar="FILE", repeats=False),
+    ] = None
+    keys: Annotated[
+        str | None,
+        Option(
+            help="play a recorded session of keys, such as data/human_session.json",
+            group=WINDOW,
+            metavar="FILE",
+            is_file=True,
+        ),
+    ] = None
+    record_keys: Annotated[
+        Path | None,
+        Option(
+            help="write the keys that a person presses to a session file", group=WINDOW, metavar="FILE", repeats=False
+        ),
+    ] = None
+
+    def check(self) -> None:
+        """Check the options of the window.
+
+        Raises:
+            UserError: a picture of no window, or a size beyond the limits.
+        """
+        if self.hud_screenshot is not None and self.hud is None:
+            raise UserError("--hud-screenshot takes a picture of the window; add --hud")
+        _check_size("--hud-size", self.hud_size, WINDOWS)
+        _check_size("--hud-camera", self.hud_camera, PICTURES)
+        super().check()
+
+
+def _check_size(flag: str, size: tuple[int, int], allowed: tuple[tuple[int, int], tuple[int, int]]) -> None:
+    """Check that a size lies within the smallest and the largest.
+
+    Raises:
+        UserError: it does not.
+    """
+    (width, height), (least, most) = size, allowed
+    if not (least[0] <= width <= most[0] and least[1] <= height <= most[1]):
+        raise UserError(f"{flag} {width}x{height}: it may be from {least[0]}x{least[1]} to {most[0]}x{most[1]} pixels")
