@@ -262,8 +262,8 @@ def files_named(files: Iterable[str | Path]) -> tuple[Path, ...]:
 def _read(case: Case, scenario: type[Scenario]) -> Playable:
     """A case with the values that its class reads.
 
-    Parameters for ScenarioRunner's class alone are left out. Under an alias, so are parameters with a name of ours, such
-    as a speed in km/h.
+    Parameters for ScenarioRunner's class alone are left out. Under an alias, so are parameters with a name of ours,
+    such as a speed in km/h.
     """
     ours = {parameter.name for parameter in scenario.parameters} if case.type == scenario.__name__ else set()
     unread = tuple(name for name in case.values if name not in ours and THEIRS.fullmatch(name))
