@@ -1,12 +1,37 @@
-"""ROS software that drives `basu run ros` or `ros1` badly: each kind of failure after some good commands. A process."""
+"""ROS software that drives badly: each kind of failure after some good commands. A process.
+
+`KIND [GENERATION]` drives `basu run ros` or `ros1`; `seldom` and `seldom-stalls` drive `basu run autoware-ai`.
+"""
 
 import sys
 
-from basu.ros import dds, ros1
-from basu.ros.topics import Message, control_of, odometry_of
+from basu.ros import autoware_ai, dds, ros1
+from basu.ros.topics import CLOCK, Message, control_of, odometry_of
 
 GOOD = 5  # commands before the failure
 LONGEST_S = 60.0
+SELDOM_S = 0.35  # of simulated time, between two commands of a loop that misses turns
+
+
+def seldom(last: int) -> None:
+    """Command an Autoware.AI's vehicle every so often by the simulated clock; ``last`` commands in all."""
+    node = ros1.Node("stack")
+    types, due_s, given = node.types, 0.0, 0
+    node.listen(CLOCK)
+    node.announce(autoware_ai.COMMAND)
+    while node.wait(CLOCK, LONGEST_S):
+        for clock in node.received(CLOCK):
+            now_s = clock.clock.sec + 1e-9 * clock.clock.nanosec
+            if now_s < due_s or given == last:
+                continue
+            due_s, given = now_s + SELDOM_S, given + 1
+            header = types.message("std_msgs/msg/Header", stamp=clock.clock)
+            twist = types.message("geometry_msgs/msg/Twist")
+            twist.linear.x = 2.0
+            stamped = types.message("geometry_msgs/msg/TwistStamped", twist=twist)
+            node.publish(
+                Message(autoware_ai.COMMAND, types.message(autoware_ai.COMMAND.type, header=header, twist_cmd=stamped))
+            )
 
 
 def main(kind: str, generation: str = "ros2") -> None:
@@ -29,4 +54,7 @@ def main(kind: str, generation: str = "ros2") -> None:
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if sys.argv[1].startswith("seldom"):
+        seldom(GOOD if sys.argv[1] == "seldom-stalls" else -1)
+    else:
+        main(*sys.argv[1:])

@@ -3,7 +3,7 @@
     python scripts/outside/autoware_ai/loop.py OUT CONTENTS TOWN.xodr --routes FILE.xml [--ndt] -o FOLDER [OPTIONS]
 
 OUT is the folder of ``build``, CONTENTS that of ``linden map package ... --ros1``; OPTIONS go to `basu run`. Writes
-loop.json, loop.svg and the run folder.
+loop.json, loop.jpg and the run folder.
 """
 # ruff: noqa: ANN401 - messages of ROS
 
@@ -18,6 +18,7 @@ from typing import Any
 import matplotlib as mpl
 
 mpl.use("Agg")
+import ndt_settings
 import numpy as np
 from matplotlib import pyplot as plt
 from stack import running_stack
@@ -45,6 +46,8 @@ def main() -> int:
     parser.add_argument("--ndt", action="store_true", help="localise by NDT matching instead of the simulator's pose")
     parser.add_argument("-o", "--output", type=Path, required=True)
     parser.add_argument("--rules", action="store_true", help="with lane_rule and lane_stop, which compute for minutes")
+    parser.add_argument("--leaf", type=float, default=ndt_settings.LEAF_M, help="of the scan's voxel grid, m")
+    parser.add_argument("--round", action="store_true", help="the route ends where it begins")
     args, others = parser.parse_known_args()
     if not (args.out / "build" / "pure_pursuit").exists():
         print("skipped: Autoware.AI's nodes are not built; see docs/how-to/ros.md")
@@ -53,10 +56,11 @@ def main() -> int:
     with running_stack(args.out, args.output / "logs") as stack:
         words = ["--routes", str(args.routes), "--output", str(args.output), *others]
         run = subprocess.Popen([sys.executable, "-c", BASU, "run", "autoware-ai", *words])
+        stack.adopt(run)
         options = {"contents": args.contents.resolve(), "town": args.opendrive.stem, "ndt": str(args.ndt).lower()}
-        options["rules"] = str(args.rules).lower()
+        options.update(rules=str(args.rules).lower(), round=str(args.round).lower())
         stack.start("roslaunch", "roslaunch", str(LAUNCH), *(f"{name}:={value}" for name, value in options.items()))
-        truth, found = listened(run)
+        truth, found = listened(run, args.leaf)
     history = read_history(args.output / "latest")
     result = json.loads((args.output / "latest" / "result.json").read_text(encoding="utf-8"))
     lateral = np.abs(history.frames["lateral_m"])
@@ -81,13 +85,15 @@ def main() -> int:
         }
     print(json.dumps(told, indent=1))
     (args.output / "loop.json").write_text(json.dumps(told, indent=1), encoding="utf-8")
-    draw(history, errors, args.output / "loop.svg")
+    draw(history, errors, args.output / "loop.jpg")
     return 0
 
 
-def listened(run: "subprocess.Popen[bytes]") -> tuple[dict[int, Any], dict[int, Any]]:
-    """The true and the found poses by time, until the run ends."""
+def listened(run: "subprocess.Popen[bytes]", leaf_m: float) -> tuple[dict[int, Any], dict[int, Any]]:
+    """The true and the found poses by time, until the run ends; voxel_grid_filter gets its setting before."""
     node = Node("loop")
+    types = ndt_settings.types()
+    node.publish_as(types, ndt_settings.voxel(types, leaf_m))
     node.listen(TRUTH, FOUND)
     truth: dict[int, Any] = {}
     found: dict[int, Any] = {}
@@ -104,7 +110,7 @@ def listened(run: "subprocess.Popen[bytes]") -> tuple[dict[int, Any], dict[int, 
 def time_ns(message: Any) -> int:
     """The time of a message, to the microsecond."""
     stamp = message.header.stamp
-    return round((stamp.sec * NS_PER_S + stamp.nanosec) / 1000.0) * 1000
+    return int(round((stamp.sec * NS_PER_S + stamp.nanosec) / 1000.0) * 1000)
 
 
 def ndt_errors(truth: dict[int, Any], found: dict[int, Any]) -> list[tuple[float, float]]:
@@ -136,7 +142,7 @@ def draw(history: Any, errors: list[tuple[float, float]], file: Path) -> None:
     graph.set_xlabel("time, s")
     graph.set_ylabel("cm")
     graph.legend()
-    figure.savefig(file, bbox_inches="tight")
+    figure.savefig(file, dpi=110, bbox_inches="tight")
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
     python scripts/outside/autoware_ai/plan.py OUT CONTENTS TOWN.xodr [--pairs 8] [--route FILE.xml] -o FOLDER
 
 OUT is the folder of ``build``, CONTENTS that of ``linden map package ... --ros1``. A plan counts when it begins within
-5 m of the start and ends within 5 m of the goal. Writes plans.json and plan.svg.
+5 m of the start and ends within 5 m of the goal. Writes plans.json and plan.jpg.
 """
 # ruff: noqa: ANN401 - messages of ROS
 
@@ -87,7 +87,7 @@ def main() -> int:
     wanted = sum(plan["name"].startswith("pair") for plan in plans)
     print(f"{found} of {wanted} pairs planned")
     (args.output / "plans.json").write_text(json.dumps(plans), encoding="utf-8")
-    draw(carla_map, plans, args.output / "plan.svg")
+    draw(carla_map, plans, args.output / "plan.jpg")
     return 0 if found == wanted else 1
 
 
@@ -199,7 +199,7 @@ def draw(carla_map: carla.Map, plans: list[dict[str, Any]], file: Path) -> None:
     axes.set_ylabel("north, m")
     axes.set_title("Plans of Autoware.AI's op_global_planner on the Aisan map (o start, x goal)")
     axes.legend(fontsize=7, loc="best")
-    figure.savefig(file, bbox_inches="tight")
+    figure.savefig(file, dpi=110, bbox_inches="tight")
 
 
 if __name__ == "__main__":

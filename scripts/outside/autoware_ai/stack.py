@@ -1,8 +1,10 @@
 """A roscore of its own, and programs of Autoware.AI that were built by ``build``."""
 
 import os
+import signal
 import socket
 import subprocess
+import sys
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -27,6 +29,7 @@ class Stack:
         os.environ.update(own)
         self.environment = {**os.environ, "ROS_PACKAGE_PATH": f"{out / 'packages'}:/usr/share"}
         self.environment.pop("PYTHONPATH", None)
+        self.environment["PATH"] = f"/usr/bin:{os.environ['PATH']}"  # ROS's programs want the system's Python
         core = self.start("roscore", "roscore", "-p", str(port), pipe=True)
         assert core.stdout is not None
         next((line for line in core.stdout if b"started core service" in line), None)
@@ -36,8 +39,12 @@ class Stack:
         log = self._stack.enter_context((self._logs / f"{name}.txt").open("wb"))
         output = subprocess.PIPE if pipe else log
         process = subprocess.Popen(words, env=self.environment, stdout=output, stderr=log)
-        self._stack.callback(_end, process)
+        self.adopt(process)
         return process
+
+    def adopt(self, process: "subprocess.Popen[bytes]") -> None:
+        """End a program with the block."""
+        self._stack.callback(_end, process)
 
     def node(self, name: str, *words: str) -> "subprocess.Popen[bytes]":
         """Start a program of Autoware.AI."""
@@ -62,5 +69,6 @@ def _end(process: "subprocess.Popen[bytes]") -> None:
 @contextmanager
 def running_stack(out: Path, logs: Path) -> Iterator[Stack]:
     """A roscore and what is started at it, until the end of the block."""
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that the programs end with this one
     with ExitStack() as stack:
         yield Stack(stack, out.resolve(), logs)

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from basu.ros.moment import Moment, Mount, Vehicle
 
+Place = tuple[float, float, float, float]
+"""x, y, z in m and yaw in rad, in CARLA's axes."""
+
 WORLD = "world"
 MPS_TO_KMPH = 3.6
 AUTO = 1  # VehicleStatus: MODE_AUTO
@@ -125,17 +128,24 @@ def still_messages(types: Types, vehicle: Vehicle, t_s: float) -> list[Message]:
     return [Message(TF_STATIC, of_vehicle.transforms(types, t_s, tree))]
 
 
-def mission(types: Types, way: list[tuple[float, float, float, float]], t_s: float) -> list[Message]:
-    """Return start, goal and the order to drive; ``way`` gives x, y, z in m and yaw in rad in CARLA's axes."""
-    poses = [Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)) for x, y, z, yaw in (way[0], way[-1])]
-    start, goal = (of_vehicle.pose_message(types, pose) for pose in poses)
+def mission(types: Types, goal: Place, t_s: float) -> list[Message]:
+    """Return the goal and the order to drive."""
+    return [goal_message(types, goal, t_s), Message(STATE_COMMAND, types.message(STATE_COMMAND.type, data="engage"))]
+
+
+def initial_pose(types: Types, vehicle: Vehicle, moment: Moment) -> Message:
+    """Return the pose of base_link, from which a localisation starts."""
+    stamped = _pose(types, vehicle, moment)
+    covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=stamped.pose)
+    return Message(INITIAL_POSE, types.message(INITIAL_POSE.type, header=stamped.header, pose=covered))
+
+
+def goal_message(types: Types, goal: Place, t_s: float) -> Message:
+    """Return a goal."""
+    x, y, z, yaw = goal
+    pose = of_vehicle.pose_message(types, Pose(frames.vector(x, y, z), frames.attitude(0.0, 0.0, yaw)))
     header = of_vehicle.header(types, t_s, of_vehicle.MAP)
-    covered = types.message("geometry_msgs/msg/PoseWithCovariance", pose=start)
-    return [
-        Message(INITIAL_POSE, types.message(INITIAL_POSE.type, header=header, pose=covered)),
-        Message(GOAL, types.message(GOAL.type, header=header, pose=goal)),
-        Message(STATE_COMMAND, types.message(STATE_COMMAND.type, data="engage")),
-    ]
+    return Message(GOAL, types.message(GOAL.type, header=header, pose=pose))
 
 
 def sensing_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator[Message]:

@@ -94,12 +94,24 @@ def test_the_tyre_angle_drives_the_circle() -> None:
     assert ai.tyre_angle_rad(0.0, 0.5, 2.8) == 0.0
 
 
-def test_the_mission_starts_with_the_route_and_engages() -> None:
-    way = [(1.0, 2.0, 0.0, 0.0), (10.0, 5.0, 0.0, math.pi / 2)]
-    start, goal, engage = ai.mission(NEW, way, 1.0)
-    assert (start.topic.name, start.content.pose.pose.position.y) == ("/initialpose", -2.0)
-    assert (goal.topic.name, goal.content.pose.position.x) == ("/move_base_simple/goal", 10.0)
+def test_the_mission_is_a_goal_and_the_order_to_drive() -> None:
+    goal, engage = ai.mission(NEW, (10.0, 5.0, 0.0, math.pi / 2), 1.0)
+    assert (goal.topic.name, goal.content.pose.position.x, goal.content.pose.position.y) == (
+        "/move_base_simple/goal",
+        10.0,
+        -5.0,
+    )
     assert (engage.topic.name, engage.content.data) == ("/state_cmd", "engage")
+
+
+def test_a_localisation_starts_where_the_rear_axle_is() -> None:
+    """A start that is wrong by the distance to the axle can make NDT matching lose its way at once."""
+    now = moment()
+    start = ai.initial_pose(NEW, VEHICLE, now)
+    true = dict(ai.localisation_messages(NEW, VEHICLE, now))[ai.CURRENT_POSE]
+    assert VEHICLE.rear_axle_m > 1.0
+    assert (start.topic.name, start.topic.is_latched) == ("/initialpose", True)
+    assert start.content.pose.pose == true.pose
 
 
 def test_every_topic_that_is_written_was_announced() -> None:

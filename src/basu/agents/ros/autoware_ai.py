@@ -1,7 +1,9 @@
 """``basu run autoware-ai``: an Autoware.AI of ROS 1 beside the run drives the vehicle, in lock-step at a roscore.
 
 The software's nodes have timers and loops of their own, on the simulated clock. So the clock runs on within a frame
-while a command is awaited, up to the next frame. A command that is a little older than the frame is accepted then.
+while a command is awaited, up to the next frame. A command that is a little older than the frame is accepted then. A
+loop that has missed its turn wakes in the next frame only; so the last command holds when nothing newer comes for a
+while, and the clock slows down until the nodes keep up.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ import carla
 
 from basu.agents.ros.autoware_base import AutowareBase
 from basu.agents.ros.commands import STANDS_MPS, Wanted, finite
+from basu.agents.ros.legs import Legs
 from basu.agents.ros.lockstep import NODE, is_answer
 from basu.agents.ros.ros1 import FIRST_S
 from basu.errors import AgentTimedOutError
@@ -30,8 +33,12 @@ if TYPE_CHECKING:
 
 TICK_S = 0.01  # of the clock within a frame, simulated time
 PACE_S = 0.002  # wall time a tick: a message crosses two or three nodes in it
+SLOWEST_S = 0.04  # the same where the nodes do not keep up: on a machine with other work, for example
+SLOWER, FASTER = 2.0, 0.98  # factors of the wall time a tick: after a frame with an old command, and after each frame
 OLDEST_S = 0.2  # simulated time: two scans of a lidar at 10 Hz, which a localisation answers one late
 GRACE_S = 0.04  # wall time that a frame waits for a fresh command before it takes the one of a frame before
+PATIENCE_S = 0.5  # wall time after which a frame takes an even older command: with a clock that stands no loop wakes
+HELD_S = 1.0  # simulated time: the oldest command that is taken so
 STARTING_S = 0.5  # wall time that a frame waits for the very first command
 
 
@@ -72,15 +79,18 @@ class AutowareAiAgent(AutowareBase):
         return ai.still_messages(self.node.types, self.described, t_s)
 
     def beginning(self) -> Sequence[Message]:
-        """Return transforms, start, goal, the order to drive, and the route as a path."""
+        """Return transforms, the first goal, the order to drive, and the route as a path."""
         types, way = self.node.types, self.way()
         route = path_message(types, self.described.role, way)
-        return [*self.still(self.first_s), *ai.mission(types, way, self.first_s), route]
+        assert self.route is not None, "it has a way"
+        self._legs = Legs(self.route)
+        return [*self.still(self.first_s), *ai.mission(types, way[self._legs.goal], self.first_s), route]
 
     def messages(self, moment: Moment) -> Sequence[Message]:
         """Return what Autoware.AI's nodes take in a frame, the clock last: its loops then find what they wait for."""
         types, vehicle = self.node.types, self.described
         self._tick, self._frame_began_s = 0, time.monotonic()
+        self.slice_s = max(PACE_S, self.slice_s * FASTER)
         if not self._has_commanded:
             self._localises_itself = bool(self.node.publishers_of(ai.CURRENT_POSE.name))
         sent = list(ai.sensing_messages(types, vehicle, moment))
@@ -90,6 +100,11 @@ class AutowareAiAgent(AutowareBase):
             self._types = ai.old_types() if ai.is_old(peers[0].definition) else types
         if self._types is not None:
             self.node.publish_as(self._types, ai.status_message(self._types, vehicle, moment, self.tyre_angle_rad))
+        if moment.frame == 0:
+            sent.append(ai.initial_pose(types, vehicle, moment))
+        goal = self._legs.advance(moment.motion.x_m, moment.motion.y_m)
+        if goal is not None:
+            sent.append(ai.goal_message(types, self.way()[goal], moment.t_s))
         if not self._localises_itself:
             sent.extend(ai.localisation_messages(types, vehicle, moment))
         return [*sent, Message(CLOCK, of_vehicle.clock(types, moment.t_s))]
@@ -113,9 +128,12 @@ class AutowareAiAgent(AutowareBase):
             self.node.publish(Message(CLOCK, of_vehicle.clock(self.node.types, t_s)))
             return None
         now_s = time.monotonic()
-        if self._latest is not None and is_answer(self._latest, moment.t_s - OLDEST_S):
-            if now_s < self._frame_began_s + GRACE_S:
+        if self._latest is not None and is_answer(self._latest, moment.t_s - HELD_S):
+            is_fresh = is_answer(self._latest, moment.t_s - OLDEST_S)
+            if now_s < self._frame_began_s + (GRACE_S if is_fresh else PATIENCE_S):
                 return None
+            if not is_fresh:
+                self.slice_s = min(SLOWEST_S, self.slice_s * SLOWER)
             return self._control(self.wanted(ai.COMMAND, self._latest), moment)
         if self._has_commanded or now_s < self._frame_began_s + STARTING_S:
             return None

@@ -10,6 +10,7 @@ import pytest
 
 from basu.agents.ros.ros1 import Ros1Agent
 from basu.cli import main
+from basu.records.history.files import read_history
 from ros_runs import FOLLOWER, STACK, has_failed, has_followed_the_route, run
 from roscore import SYSTEM_PYTHON, Starts, master, roscore, starts
 from servers import RunningServer
@@ -42,6 +43,27 @@ def test_software_that_fails_is_the_agent_s_failure_and_the_record_is_kept(
 ) -> None:
     starts(STACK, kind, "ros1")
     has_failed(run("ros1", simulator, route_file, tmp_path, "--step-limit", "5"), status, says)
+
+
+def test_a_loop_that_misses_its_turn_does_not_stop_the_clock_for_ever(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
+) -> None:
+    """Its last command is too old in some frames, and it wakes only when the clock goes on."""
+    starts(STACK, "seldom")
+    _, result, folder = run("autoware-ai", simulator, route_file, tmp_path, "--stop-after", "2.5", "--step-limit", "5")
+    assert result["status"] == "Stopped", result["message"]
+    frames = read_history(folder).frames
+    assert len(frames) == 51
+    assert frames["route_s_m"][-1] - frames["route_s_m"][0] > 0.5
+
+
+def test_a_loop_that_stalls_is_a_time_out_all_the_same(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
+) -> None:
+    starts(STACK, "seldom-stalls")
+    _, result, _ = run("autoware-ai", simulator, route_file, tmp_path, "--step-limit", "2")
+    assert (result["status"], result["fault"]) == ("AgentTimedOut", "agent"), result["message"]
+    assert "gave no command on /vehicle_cmd for frame" in result["message"]
 
 
 def test_two_drivers_at_one_wheel_are_refused(
