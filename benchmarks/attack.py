@@ -3,7 +3,7 @@
     python benchmarks/attack.py [--packets 100000] [--seed 1]
 
 Packets are noise, requests cut off or changed, right types with values that make no sense, and large ones: texts and
-arrays that are announced and do not come, deep nesting, half a million empty arrays, pictures of a million pixels.
+arrays that are announced and do not come, deep nesting, 250,000 empty arrays, pictures of a million pixels.
 Meanwhile a client that behaves ticks a synchronous world with a car. Its wait is that for the server's main thread:
 its work, and its wait for Python's lock. What other processes take is left out (``tests/lock_waits.py``), for the
 clock of a busy machine says nothing.
@@ -38,7 +38,7 @@ GONE = (EOFError, OSError, ValueError, RuntimeError, AssertionError)
 
 
 def large(chance: random.Random) -> bytes:
-    many = 500_000
+    many = 250_000
     return chance.choice(
         [
             lambda: OPENING + b"\xdb\xff\xff\xff\xff" + bytes(100_000),

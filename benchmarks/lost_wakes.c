@@ -1,12 +1,13 @@
 /* How often a Traffic Manager's thread is woken while it goes to sleep, by the server's wait before a tick's answer.
 
        cc -O2 -pthread -o /tmp/lost_wakes benchmarks/lost_wakes.c
-       /tmp/lost_wakes SECONDS STEP_MS FRAME_MS WAIT_MS...
+       /tmp/lost_wakes SECONDS STEP_MS FRAME_MS BATCH_MS WAIT_MS...
 
    LibCarla 0.9.16 wakes that thread without holding its lock. A wake between the thread's last look and its sleep is lost,
    and the client hangs. This program has the client's three threads (the one that ticks, the Traffic Manager's, the one
    that receives) and a server in a process of its own. Here the lock is held, so that nothing hangs. The program counts
-   the ticks in which the wake falls within NEAR_S of the sleep. The waits take turns of TURN ticks, under the same load.
+   the ticks in which a wake falls within NEAR_S of its sleeper's sleep: the manager's, and the ticking thread's, which
+   sleeps until the step ends. The waits take turns of TURN ticks, under the same load.
 */
 
 #define _GNU_SOURCE
@@ -23,6 +24,7 @@
 #include <unistd.h>
 
 #define MOST_WAITS 8
+#define CALL_S 50e-6 /* a small call on the server */
 #define NEAR_S 20e-6
 #define TURN 50
 
@@ -62,7 +64,7 @@ static void connect_pair(int *client, int *server) {
 }
 
 /* The server: a tick is answered when the question has been answered for as long as the wait of its turn says. */
-static void serve(int socket, double frame_s, const double *waits_s, int count) {
+static void serve(int socket, double frame_s, double batch_s, const double *waits_s, int count) {
   long ticks = 0;
   int ticked = 0, asked = 0;
   double until_s = 0.0;
@@ -84,6 +86,7 @@ static void serve(int socket, double frame_s, const double *waits_s, int count) 
       ticked = 1;
       continue;
     }
+    work(letter == BATCH ? batch_s : CALL_S);
     put(socket, letter);
     if (letter == QUESTION) {
       asked = 1;
@@ -99,8 +102,11 @@ static pthread_mutex_t answers = PTHREAD_MUTEX_INITIALIZER, steps = PTHREAD_MUTE
 static pthread_cond_t of_tick = PTHREAD_COND_INITIALIZER, of_traffic = PTHREAD_COND_INITIALIZER;
 static pthread_cond_t step_begin = PTHREAD_COND_INITIALIZER, step_end = PTHREAD_COND_INITIALIZER;
 static int tick_answered, traffic_answered, has_begun, has_ended;
-static double slept_s; /* when the step that runs began its sleep */
+static double slept_s; /* when the manager went to sleep before the step that runs */
+static double ended_s; /* when that step ended */
 static atomic_long sleeps;
+
+static int is_near(double one_s, double other_s) { return one_s - other_s < NEAR_S && other_s - one_s < NEAR_S; }
 
 static void *receive(void *unused) {
   char letter;
@@ -136,6 +142,7 @@ static void *manage_traffic(void *unused) {
     call(BATCH, &traffic_answered, &of_traffic);
     pthread_mutex_lock(&steps);
     has_ended = 1;
+    ended_s = now_s();
     pthread_cond_signal(&step_end);
     pthread_mutex_unlock(&steps);
   }
@@ -143,19 +150,19 @@ static void *manage_traffic(void *unused) {
 }
 
 int main(int argc, char **argv) {
-  int count = argc - 4, server, near_by[MOST_WAITS] = {0}, awake[MOST_WAITS] = {0}, ticks[MOST_WAITS] = {0};
+  int count = argc - 5, server, near_by[MOST_WAITS] = {0}, near_end[MOST_WAITS] = {0}, awake[MOST_WAITS] = {0}, ticks[MOST_WAITS] = {0};
   double waits_s[MOST_WAITS], took_s[MOST_WAITS] = {0}, load;
   if (count < 1 || count > MOST_WAITS) {
-    fprintf(stderr, "usage: %s SECONDS STEP_MS FRAME_MS WAIT_MS... (at most %d)\n", argv[0], MOST_WAITS);
+    fprintf(stderr, "usage: %s SECONDS STEP_MS FRAME_MS BATCH_MS WAIT_MS... (at most %d)\n", argv[0], MOST_WAITS);
     return 2;
   }
-  for (int i = 0; i < count; i++) waits_s[i] = 1e-3 * atof(argv[4 + i]);
+  for (int i = 0; i < count; i++) waits_s[i] = 1e-3 * atof(argv[5 + i]);
   step_s = 1e-3 * atof(argv[2]);
   connect_pair(&server_socket, &server);
   pid_t child = fork();
   if (child == 0) {
     close(server_socket);
-    serve(server, 1e-3 * atof(argv[3]), waits_s, count);
+    serve(server, 1e-3 * atof(argv[3]), 1e-3 * atof(argv[4]), waits_s, count);
   }
   close(server);
   pthread_t receiver, manager;
@@ -171,18 +178,24 @@ int main(int argc, char **argv) {
     pthread_mutex_lock(&steps);
     has_begun = 1;
     pthread_cond_signal(&step_begin);
+    pthread_mutex_unlock(&steps);
+    pthread_mutex_lock(&steps);
+    double asleep_s = now_s();
     while (!has_ended) pthread_cond_wait(&step_end, &steps);
     has_ended = 0;
-    near_by[i] += slept_s - woken_s < NEAR_S && woken_s - slept_s < NEAR_S;
+    near_by[i] += is_near(slept_s, woken_s);
+    near_end[i] += is_near(asleep_s, ended_s);
     pthread_mutex_unlock(&steps);
     took_s[i] += now_s() - began_s;
     ticks[i]++;
   }
   getloadavg(&load, 1);
-  printf("wait ms    ticks  ms a tick  not asleep  wake within 20 us of the sleep   (load %.0f)\n", load);
+  printf("                                            wake within 20 us of the sleep (load %.0f)\n", load);
+  printf("wait ms    ticks  ms a tick  not asleep  begin of a step  end of a step\n");
   for (int i = 0; i < count; i++)
-    printf("%7.2f  %7d  %9.2f  %9.2f%%  %9.2f%%\n", 1e3 * waits_s[i], ticks[i], 1e3 * took_s[i] / ticks[i],
-           100.0 * awake[i] / ticks[i], 100.0 * near_by[i] / ticks[i]);
+    printf("%7.2f  %7d  %9.2f  %9.2f%%  %14.2f%%  %12.2f%%\n", 1e3 * waits_s[i], ticks[i],
+           1e3 * took_s[i] / ticks[i], 100.0 * awake[i] / ticks[i], 100.0 * near_by[i] / ticks[i],
+           100.0 * near_end[i] / ticks[i]);
   fflush(stdout);
   kill(child, SIGKILL); /* the thread that receives then ends this process */
   return 0;

@@ -45,7 +45,8 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     environment = folder / "environment"
     venv.create(environment, with_pip=False)
     python = environment / "bin" / "python"
-    subprocess.run([*pip, "--python", str(python), "install", "--no-deps", str(wheel)], check=True)
+    install = [*pip, "--python", str(python), "install", "--no-deps", "--no-compile"]  # imports compile what they need
+    subprocess.run([*install, str(wheel)], check=True)
     packages = next(environment.glob("lib/python*/site-packages"))
     hiding = f"import sys; sys.modules.update(dict.fromkeys({OPTIONAL!r}))"
     (packages / "others.pth").write_text("\n".join([*site.getsitepackages(), hiding]) + "\n", encoding="utf-8")
@@ -58,8 +59,9 @@ def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(environment: Path, folder: Path, *command: str) -> "subprocess.CompletedProcess[str]":
-    """Run a command of the environment in a folder, without a word of the checkout."""
-    names = {"PATH": os.defpath, "HOME": str(folder), "XDG_CACHE_HOME": os.environ.get("XDG_CACHE_HOME", "")}
+    """Run a command of the environment in a folder, without a word of the checkout; what maps give is kept already."""
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    names = {"PATH": os.defpath, "HOME": str(folder), "XDG_CACHE_HOME": cache}
     program, *options = command
     return subprocess.run(
         [str(environment / "bin" / program), *options],

@@ -4,11 +4,12 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, nullcontext, suppress
 from pathlib import Path
 
 import pytest
 
+from basu import simulator as simulator_module
 from basu.agents.adapters.replacement_modules import step_back
 from basu.agents.process import agent_process
 from servers import RunningServer, running_server
@@ -23,6 +24,14 @@ def _no_stand_ins() -> Iterator[None]:
     """Forget the modules that an agent's file brought with it: other tests' files find their own."""
     yield
     step_back()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _no_server_starts_early() -> Iterator[None]:
+    """Have a command start its server when it drives: one that is refused, or has another server, starts none."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(simulator_module, "started_early", lambda _: nullcontext())
+        yield
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -134,6 +134,7 @@ def test_a_class_plays_a_case_in_this_process(simulator: RunningServer, tmp_path
     assert case.status is Status.AGENT_CRASHED
 
 
+@pytest.mark.slow
 def test_a_script_without_a_main_guard_may_use_several_workers(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(

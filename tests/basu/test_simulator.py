@@ -2,12 +2,14 @@
 
 import socket
 import sys
+from types import SimpleNamespace
 
 import pytest
 
 from basu import simulator
 from basu.errors import SimulatorError, UserError
-from basu.simulator import OwnServer, connect
+from basu.options.run import RunOptions
+from basu.simulator import OwnServer, connect, started_early
 
 
 def commanded(monkeypatch: pytest.MonkeyPatch, program: str) -> None:
@@ -58,3 +60,14 @@ def test_a_servers_progress_is_passed_on_until_it_is_ready(
         server.end()
     assert "ended by the signal SIGTERM" in (server.gone() or "")
     assert capsys.readouterr().err == "linden: compiling\n"
+
+
+def test_a_server_that_started_early_ends_where_no_run_takes_it_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    ended: list[bool] = []
+    server = SimpleNamespace(end=lambda: ended.append(True))
+    monkeypatch.setattr(simulator, "own_server", lambda _: server)
+    with started_early(RunOptions()):
+        assert simulator._early == [server]
+    assert (simulator._early, ended) == ([], [True])
+    with started_early(RunOptions(host="localhost")):
+        assert simulator._early == []

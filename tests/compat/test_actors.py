@@ -7,6 +7,7 @@ import carla
 import pytest
 
 from fakes.raw_client import RawClient
+from spawn_points import spawn_point
 
 
 @pytest.fixture
@@ -16,7 +17,7 @@ def blueprints(world: carla.World) -> carla.BlueprintLibrary:
 
 @pytest.fixture
 def point(world: carla.World) -> carla.Transform:
-    return world.get_map().get_spawn_points()[100]
+    return spawn_point(world, 100)
 
 
 @pytest.fixture
@@ -115,7 +116,7 @@ def test_an_actor_of_the_map_cannot_be_destroyed(world) -> None:
 
 
 def test_a_teleported_vehicle_is_where_it_was_put(world, car) -> None:
-    target = world.get_map().get_spawn_points()[300]
+    target = spawn_point(world, 300)
     car.set_transform(target)
     world.tick()
     assert car.get_location().distance(target.location) < 0.1

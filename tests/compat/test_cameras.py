@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from spawn_points import spawn_point
+
 WIDTH, HEIGHT, FOV = 320, 240, 90.0
 FOCAL = WIDTH / 2.0
 KINDS = ("depth", "semantic_segmentation", "instance_segmentation", "normals", "rgb", "optical_flow")
@@ -33,7 +35,7 @@ def array(image: carla.Image) -> NDArray[np.uint8]:
 def rig(client: carla.Client, world: carla.World) -> Iterator[Rig]:
     client.set_timeout(60.0)  # who looks first waits for the scene, and this machine may be busy
     library = world.get_blueprint_library()
-    start = world.get_map().get_spawn_points()[100]
+    start = spawn_point(world, 100)
     car = world.spawn_actor(library.find("vehicle.tesla.model3"), start)
     ahead = carla.Transform(start.location + 12.0 * start.get_forward_vector(), start.rotation)
     other = world.spawn_actor(library.find("vehicle.lincoln.mkz_2020"), ahead)

@@ -4,6 +4,7 @@ import carla
 import pytest
 
 from every_method.outcome import RECORD, from_json
+from spawn_points import spawn_point
 
 
 def test_a_torque_is_sent_as_an_angular_impulse() -> None:
@@ -21,9 +22,7 @@ def test_freezing_one_light_freezes_all(world: carla.World) -> None:
 
 
 def test_a_command_for_lamps_that_is_given_an_actor_knows_on_and_off_only(world: carla.World) -> None:
-    car = world.spawn_actor(
-        world.get_blueprint_library().find("vehicle.lincoln.mkz_2020"), world.get_map().get_spawn_points()[0]
-    )
+    car = world.spawn_actor(world.get_blueprint_library().find("vehicle.lincoln.mkz_2020"), spawn_point(world, 0))
     world.tick()
     fog = carla.VehicleLightState.Fog
     assert int(carla.command.SetVehicleLightState(car, fog).light_state) == 1

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 import carla
 
 from servers import RunningServer
+from spawn_points import spawn_point
 
 TICKING = """
 import carla, sys
@@ -34,7 +35,7 @@ def await_frame(world: carla.World, frame: int) -> None:
 
 def spawn(world: carla.World, place: int = 0) -> carla.Actor:
     blueprint = world.get_blueprint_library().filter("vehicle.*")[0]
-    return world.spawn_actor(blueprint, world.get_map().get_spawn_points()[place])
+    return world.spawn_actor(blueprint, spawn_point(world, place))
 
 
 def test_the_client_finds_its_own_version(client: carla.Client) -> None:

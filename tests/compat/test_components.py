@@ -2,9 +2,11 @@
 
 import carla
 
+from spawn_points import spawn_point
+
 
 def test_a_car_knows_where_its_blinkers_are(world: carla.World) -> None:
-    point = world.get_map().get_spawn_points()[120]
+    point = spawn_point(world, 120)
     car = world.spawn_actor(world.get_blueprint_library().find("vehicle.audi.tt"), point)
     world.tick()
     assert next(iter(car.get_component_names())) == "VehicleMesh"
@@ -19,6 +21,6 @@ def test_a_car_knows_where_its_blinkers_are(world: carla.World) -> None:
 
 
 def test_a_bicycle_has_none(world: carla.World) -> None:
-    point = world.get_map().get_spawn_points()[120]
+    point = spawn_point(world, 120)
     bike = world.spawn_actor(world.get_blueprint_library().find("vehicle.bh.crossbike"), point)
     assert list(bike.get_component_names()) == ["VehicleMesh"]

@@ -14,6 +14,7 @@ import pytest
 
 from fakes.nonsense import connections
 from servers import RunningServer
+from spawn_points import spawn_point
 
 SEED = 20_261_121
 PACKETS = 10_000
@@ -29,7 +30,7 @@ def send(port: int, packets: list[bytes]) -> None:
 @pytest.mark.slow
 def test_ten_thousand_bad_packets_hinder_no_other_client(server: RunningServer, world: carla.World) -> None:
     blueprint = world.get_blueprint_library().filter("vehicle.*")[0]
-    vehicle = world.spawn_actor(blueprint, world.get_map().get_spawn_points()[0])
+    vehicle = world.spawn_actor(blueprint, spawn_point(world, 0))
     frame, sent, next_tick = world.tick(), 0, PACKETS_A_TICK
     for number, packets in enumerate(connections(SEED, PACKETS)):
         send(server.streaming_port if number % 50 == 0 else server.port, packets)

@@ -5,12 +5,14 @@ import math
 import carla
 import pytest
 
+from spawn_points import spawn_point
+
 STEP_S = 0.05
 
 
 @pytest.fixture
 def point(world: carla.World) -> carla.Transform:
-    return world.get_map().get_spawn_points()[100]
+    return spawn_point(world, 100)
 
 
 def ticks(world: carla.World, count: int) -> None:

@@ -7,6 +7,7 @@ import pytest
 
 from opendrive_texts import street_through_junction
 from servers import RunningServer
+from spawn_points import spawn_point
 
 Label = carla.CityObjectLabel
 ANY = [
@@ -19,7 +20,7 @@ ANY = [
 @pytest.fixture
 def car(world: carla.World) -> carla.Actor:
     blueprint = world.get_blueprint_library().find("vehicle.tesla.model3")
-    vehicle = world.spawn_actor(blueprint, world.get_map().get_spawn_points()[40])
+    vehicle = world.spawn_actor(blueprint, spawn_point(world, 40))
     for _ in range(20):
         world.tick()
     return vehicle

@@ -8,15 +8,15 @@ import carla
 import numpy as np
 import pytest
 
+from spawn_points import spawn_point
+
 RANGE_M = 60
 
 
 @pytest.fixture
 def ego(world: carla.World) -> carla.Actor:
     """A car that stands, handbrake on."""
-    car = world.spawn_actor(
-        world.get_blueprint_library().find("vehicle.tesla.model3"), world.get_map().get_spawn_points()[0]
-    )
+    car = world.spawn_actor(world.get_blueprint_library().find("vehicle.tesla.model3"), spawn_point(world, 0))
     car.apply_control(carla.VehicleControl(hand_brake=True))
     world.tick(60.0)  # from now on the client knows where it is
     return car

@@ -6,12 +6,14 @@ from itertools import pairwise
 import carla
 import pytest
 
+from spawn_points import spawn_point
+
 FRAMES = 10
 
 
 def attached(world: carla.World, name: str, **attributes: str) -> tuple[carla.Sensor, "queue.Queue[carla.SensorData]"]:
     library = world.get_blueprint_library()
-    point = world.get_map().get_spawn_points()[100]
+    point = spawn_point(world, 100)
     car = world.spawn_actor(library.find("vehicle.tesla.model3"), point)
     for _ in range(40):
         world.tick()

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from spawn_points import spawn_point
 from watching import Reading, made, watching
 
 WIDTH, HEIGHT = 320, 240
@@ -45,7 +46,7 @@ def on_picture(points: NDArray[np.float64], camera: NDArray[np.float64]) -> NDAr
 @pytest.fixture
 def start(client: carla.Client, world: carla.World) -> carla.Transform:
     client.set_timeout(60.0)
-    return world.get_map().get_spawn_points()[STREET]
+    return spawn_point(world, STREET)
 
 
 @pytest.fixture

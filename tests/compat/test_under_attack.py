@@ -132,7 +132,7 @@ def test_walls_round_linden_are_made_beside_the_ticks_of_others(server: RunningS
 
 
 def test_a_message_of_empty_arrays_costs_some_hundred_megabytes_at_most(server: RunningServer, raw: RawClient) -> None:
-    many = 4 * 1024 * 1024  # eight times as many as may come
+    many = 4 * 1024 * 1024  # sixteen times as many as may come
     before_mib = rss_mib(server)
     with RawClient(server.port) as rude, pytest.raises(OSError):  # noqa: PT012 - one message in parts
         rude.socket.sendall(b"\x94\x00\x01\xa7version\xdc\x00\x10\x91\xc2")
@@ -144,7 +144,7 @@ def test_a_message_of_empty_arrays_costs_some_hundred_megabytes_at_most(server: 
 
 @on_linux
 def test_arrays_are_given_back_in_a_fraction_of_a_second(server: RunningServer, raw: RawClient) -> None:
-    many = 500_000
+    many = 250_000
     half = b"\x94\x00\x01\xa7version\xdc\x00\x10\x91\xc2\xdd" + struct.pack(">I", many) + b"\x90" * (many - 1)
     worst_s = 0.0
     for _ in range(3):
@@ -154,11 +154,11 @@ def test_arrays_are_given_back_in_a_fraction_of_a_second(server: RunningServer, 
             rude.reset()
             raw.call("version")
         worst_s = max(worst_s, others.worst_s)
-    assert worst_s < 0.4  # those of 4 Mi took 1.1 s
+    assert worst_s < 0.2  # those of 4 Mi took 1.1 s
 
 
 def test_half_received_arrays_of_many_clients_are_bounded_together(server: RunningServer, raw: RawClient) -> None:
-    many = 450_000
+    many = 225_000
     half = b"\x94\x00\x01\xa7version\xdc\x00\x10\x91\xc2\xdd" + struct.pack(">I", many) + b"\x90" * (many - 1)
     hoarders = [RawClient(server.port) for _ in range(6)]
     for hoarder in hoarders:
@@ -290,6 +290,20 @@ def test_a_recording_of_a_hundred_thousand_frames_is_read_beside_the_ticks_of_ot
         assert worst_tick_s(server, partial(raw.call, *call)) < LONGEST_TICK_S
     raw.call("stop_replayer", False)
     path.unlink()
+
+
+@on_linux
+def test_the_scene_of_a_map_is_made_beside_the_ticks_of_others(server: RunningServer, raw: RawClient) -> None:
+    def look_at_linden() -> None:
+        for town in ("OpenDriveMap", "Linden"):
+            raw.call("load_new_episode", town, True, 0xFFFF)
+            camera = raw.call("spawn_actor", [0, "sensor.camera.rgb", []], AT_ORIGIN)
+            for _ in range(12):  # each answer waits a while for the scene
+                raw.call("version")
+            assert raw.call("destroy_actor", camera[0]) is True
+
+    raw.call("copy_opendrive_to_file", ONE_ROAD, WITHOUT_WALLS)
+    assert worst_tick_s(server, look_at_linden) < LONGEST_TICK_S
 
 
 @on_linux

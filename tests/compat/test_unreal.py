@@ -4,6 +4,7 @@ import carla
 import pytest
 
 from servers import RunningServer
+from spawn_points import spawn_point
 
 
 def sensor(world: carla.World) -> carla.Sensor:
@@ -31,9 +32,7 @@ def test_a_sensor_that_shall_publish_by_itself_does_not_and_the_log_says_what_to
 
 def test_vehicles_to_be_ignored_must_be_vehicles(world: carla.World) -> None:
     imu = sensor(world)
-    vehicle = world.spawn_actor(
-        world.get_blueprint_library().find("vehicle.tesla.model3"), world.get_map().get_spawn_points()[0]
-    )
+    vehicle = world.spawn_actor(world.get_blueprint_library().find("vehicle.tesla.model3"), spawn_point(world, 0))
     imu.set_ignored_vehicles([vehicle.id])
     expected = rf"set_ignored_vehicles: Actor does not match the expected type\.  Actor Id: {imu.id}"
     with pytest.raises(RuntimeError, match=expected):

@@ -6,12 +6,14 @@ from collections.abc import Callable
 import carla
 import pytest
 
+from spawn_points import spawn_point
+
 STEP_S = 0.05
 
 
 @pytest.fixture
 def point(world: carla.World) -> carla.Transform:
-    return world.get_map().get_spawn_points()[100]
+    return spawn_point(world, 100)
 
 
 @pytest.fixture

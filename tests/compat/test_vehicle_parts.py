@@ -8,6 +8,7 @@ import pytest
 
 from fakes.raw_client import RawClient
 from servers import RunningServer
+from spawn_points import spawn_point
 
 WHEEL = carla.VehicleWheelLocation
 
@@ -19,7 +20,7 @@ def ticks(world: carla.World, count: int) -> None:
 
 @pytest.fixture
 def point(world: carla.World) -> carla.Transform:
-    return world.get_map().get_spawn_points()[100]
+    return spawn_point(world, 100)
 
 
 def spawned(world: carla.World, model: str, at: carla.Transform) -> carla.Vehicle:

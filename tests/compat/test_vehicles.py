@@ -8,10 +8,12 @@ from typing import Any, NamedTuple
 import carla
 import pytest
 
+from spawn_points import spawn_point
+
 
 @pytest.fixture
 def car(world: carla.World) -> carla.Vehicle:
-    return settled(world, "vehicle.tesla.model3", world.get_map().get_spawn_points()[100])
+    return settled(world, "vehicle.tesla.model3", spawn_point(world, 100))
 
 
 def settled(world: carla.World, model: str, at: carla.Transform) -> carla.Vehicle:

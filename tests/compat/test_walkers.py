@@ -9,6 +9,7 @@ import pytest
 from fakes.own_map import world_of
 from opendrive_texts import street_through_junction
 from servers import RunningServer
+from spawn_points import spawn_point
 
 CROSSWALK = (
     '<object id="c" type="crosswalk" name="crosswalk" s="30" t="0" zOffset="0" hdg="0" orientation="none"><outline>'
@@ -122,9 +123,7 @@ def test_files_are_named_by_their_content_and_others_are_refused(client, world) 
 
 @pytest.fixture
 def walker(world) -> carla.Walker:
-    walker = world.spawn_actor(
-        world.get_blueprint_library().find("walker.pedestrian.0001"), world.get_map().get_spawn_points()[100]
-    )
+    walker = world.spawn_actor(world.get_blueprint_library().find("walker.pedestrian.0001"), spawn_point(world, 100))
     for _ in range(20):
         world.tick()
     return walker
@@ -194,7 +193,7 @@ def test_what_is_attached_to_a_bone_goes_where_it_goes(world, walker) -> None:
 
 
 def test_a_vehicles_bones_are_its_wheels(world) -> None:
-    point = world.get_map().get_spawn_points()[120]
+    point = spawn_point(world, 120)
     car = world.spawn_actor(world.get_blueprint_library().find("vehicle.tesla.model3"), point)
     for _ in range(20):
         world.tick()

@@ -27,6 +27,7 @@ from basu.output.report.scenarios.page.route_section import card_style
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.output.report.scenarios.sweep.study import LEAST_CASES, Axis, Study
 from basu.output.report.scenarios.sweep.success_map import drawing
+from basu.output.report.scenarios.tally import counted
 from basu.output.report.streets import bounds_of
 from basu.output.report.templates import render
 
@@ -117,10 +118,11 @@ def _summary(document: dict[str, Any], table: pa.Table) -> str:
     seeds = pc.min_max(table["seed"]).as_py()
     subjects = len(pc.unique(table["subject"]))
     hours = float(pc.sum(table["simulated_s"]).as_py() or 0.0) / 3600.0
+    over = f"seeds {seeds['min']} to {seeds['max']}" if seeds["min"] != seeds["max"] else f"seed {seeds['min']}"
     return (
-        f"{table.num_rows} of {document['planned']} drives: {len(document['agents'])} agents, {subjects} routes or "
-        f"cases, {len(pc.unique(table['weather']))} weathers, seeds {seeds['min']} to {seeds['max']}; "
-        f"{hours:.2f} simulated hours"
+        f"{table.num_rows} of {counted(document['planned'], 'drive')}: {counted(len(document['agents']), 'agent')}, "
+        f"{subjects} {'route or case' if subjects == 1 else 'routes or cases'}, "
+        f"{counted(len(pc.unique(table['weather'])), 'weather')}, {over}; {hours:.2f} simulated hours"
     )
 
 
@@ -137,7 +139,8 @@ def _remarks(folder: Path, document: dict[str, Any], table: pa.Table) -> Iterato
     faults = table.filter(pc.is_in(table["fault"], value_set=pa.array(["simulator", "benchmark", "setup"])))
     if faults.num_rows:
         first = faults["message"][0].as_py()
-        yield f"{faults.num_rows} drives were ended by a fault that is not the agent's; the first: {first}"
+        were = "drive was" if faults.num_rows == 1 else "drives were"
+        yield f"{faults.num_rows} {were} ended by a fault that is not the agent's; the first: {first}"
 
 
 def _made_with(document: dict[str, Any]) -> str:
@@ -239,20 +242,27 @@ def _card(folder: Path, kept: Kept) -> dict[str, Any]:
         "reason": WORDS.get(kept.reason, "narrowest success"),
         "message": row["message"],
         "about": f"weather {row['weather']}, seed {row['seed']}{f', {parameters}' if parameters else ''}",
-        "picture": _picture(at, row["kind"]),
+        **_picture(at, row["kind"]),
         "address": quote(at.relative_to(folder).as_posix()),
     }
 
 
-def _picture(at: Path, kind: str) -> Element | None:
-    """The drive from above; None where nothing was driven."""
+def _picture(at: Path, kind: str) -> dict[str, Element | str | None]:
+    """The drive from above, or the reason why there is none: its record, older than this program, say."""
     try:
-        if kind == CASE:
-            case = read_case(at)
-            return None if case.history is None else case_drawing(case.result, case.history, case.streets)
-        run = read_run(at)
-    except UserError:  # the folder was removed, or its files changed: the row in the table stands all the same
-        return None
-    if run.history is None:
-        return None
-    return plain_map(run.history, run.streets, bounds_of(run.history), [])
+        drawn = _case_picture(at) if kind == CASE else _route_picture(at)
+    except UserError as error:  # the row in the table stands all the same
+        return {"picture": None, "without": f"no picture: {error}"}
+    return {"picture": drawn, "without": None if drawn is not None else "no picture: nothing was driven"}
+
+
+def _case_picture(at: Path) -> Element | None:
+    """A case from above; None where nothing was driven."""
+    case = read_case(at)
+    return None if case.history is None else case_drawing(case.result, case.history, case.streets)
+
+
+def _route_picture(at: Path) -> Element | None:
+    """A drive on a route from above; None where nothing was driven."""
+    run = read_run(at)
+    return None if run.history is None else plain_map(run.history, run.streets, bounds_of(run.history), [])

@@ -14,8 +14,8 @@ from linden.scenery.mesh import Material, Mesh, join
 from linden.scenery.patches import ALL_SIDES, Frames, Look, boxes
 from linden.scenery.roadside.buildings import buildings, furniture
 from linden.scenery.roadside.houses import houses, plans
-from linden.scenery.roadside.parked_cars import parked_cars
 from linden.scenery.roadside.name_signs import blades_with_names, posts
+from linden.scenery.roadside.parked_cars import parked_cars
 from linden.scenery.roadside.signal_posts import signs, street_lamps, traffic_lights
 from linden.scenery.roadside.trees import Planted, trees, woods
 from linden.scenery.roadside.wires import shelters, utility_poles

@@ -32,8 +32,8 @@ log = logging.getLogger("linden")
 HELD_BYTES_OF_ALL = 128 * 1024 * 1024
 """What calls that are half received or wait to be carried out may take in all connections together: two of the largest,
 hundreds of any usual size."""
-HELD_ARRAYS_OF_ALL = 2 * 1024 * 1024
-"""How many arrays such calls may have in all connections together: four of the most, some 140 MB."""
+HELD_ARRAYS_OF_ALL = 1024 * 1024
+"""How many arrays such calls may have in all connections together: four of the most, some 70 MB."""
 
 HOARD_BYTES = 64 * 1024
 """From this size on what a client holds is looked at: smaller ones of a thousand clients are 64 MB."""

@@ -97,10 +97,13 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
     return resolve(model, [Layer(given)])
 
 
+PARSERS = {model: parser(words) for model, words in COMMAND.items()}
+
+
 def heard(model: type[Settings], words: list[str]) -> Settings:
     """What the real command line makes of words."""
-    whole = [*COMMAND[model], *words]
-    return resolve(model, [Layer(typed(model, parser(whole).parse_args(whole)), typed=True)])
+    parsed = PARSERS[model].parse_args([*COMMAND[model], *words])
+    return resolve(model, [Layer(typed(model, parsed), typed=True)])
 
 
 @pytest.mark.parametrize("model", MODELS)

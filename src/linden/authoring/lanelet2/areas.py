@@ -15,7 +15,9 @@ _KERB_REACH_M = 5.0
 """Between the outermost lane of a leg and the kerb round its corner: a parking lane, and the kerb's own set-back."""
 _WHOLE = 0.991
 """The share of a lanelet that has to lie inside; the validator wants 0.99."""
-_SLICES = 512  # of a lanelet, so that its share is exact to 0.001
+_SLICES = 256  # of a lanelet, so that its share is exact to 0.001
+_NEAR_M = 0.01
+"""So little out of an area is less than the validator's hundredth of any lane."""
 _TOUCH_M = 1e-3
 
 
@@ -35,8 +37,8 @@ def ring_of(
 ) -> tuple[int, ...]:
     """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways whole.
 
-    First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone, their convex
-    hull, that of ends and kerbs, and that of the ways. ``entries`` are the lanelets that lead into the junction. ``exits``
+    First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone, their
+    convex hull, that of ends and kerbs, and that of the ways. ``entries`` lead into the junction, ``exits``
     lead out of it, and ``ways`` lie inside; all are given by their sides. The ring is empty where there is no area.
     """
     legs = _legs(target, entries, exits) if entries or exits else []
@@ -52,7 +54,7 @@ def ring_of(
         places = _places(target, ring)
         if len(ring) < 3 or not _is_simple(places):
             continue
-        if all(overlap_share(outline, places, _SLICES) >= _WHOLE for outline in outlines):
+        if all(_holds(places, outline) for outline in outlines):
             return ring
     ring = _hull(target, [node for way in ways for side in way for node in side])
     return ring if len(ring) > 2 else ()
@@ -106,7 +108,7 @@ def _places(target: LaneletMap, ring: tuple[int, ...]) -> F64:
 def _is_simple(ring: F64) -> bool:
     """Return whether a ring turns to the left as a whole, and no two of its edges cross or touch but at common ends."""
     a, b = ring, np.roll(ring, -1, axis=0)
-    if _area(ring) <= 0.0 or _touches(a, b):
+    if _area(ring) <= 0.0 or _touches(ring):
         return False
 
     def side(p: F64, q: F64, r: F64) -> F64:
@@ -120,13 +122,28 @@ def _is_simple(ring: F64) -> bool:
     return not bool(crossed.any())
 
 
-def _touches(a: F64, b: F64) -> bool:
-    """Return whether a corner (N, 2) lies on an edge from ``a`` to ``b`` that it does not end."""
-    along, away = (b - a)[None], a[:, None] - a[None]
+def _holds(ring: F64, outline: F64) -> bool:
+    """Return whether a lanelet's outline (N, 2) lies in a ring (M, 2); its area is summed where corners do not tell."""
+    outside = outline[~inside(ring, outline)]
+    notches = ring[inside(outline, ring)]
+    strays = [_gaps_m(places, other).min(axis=1) for places, other in ((outside, ring), (notches, outline))]
+    if all((gap_m < _NEAR_M).all() for gap_m in strays):
+        return True
+    return overlap_share(outline, ring, _SLICES) >= _WHOLE
+
+
+def _touches(ring: F64) -> bool:
+    """Return whether a corner of a ring (N, 2) lies on an edge that it does not end."""
+    corner, edge = np.nonzero(_gaps_m(ring, ring) < _TOUCH_M)
+    return bool(((corner != edge) & (corner != (edge + 1) % len(ring))).any())
+
+
+def _gaps_m(points: F64, ring: F64) -> F64:
+    """Return how far points (N, 2) lie from each edge of a ring (M, 2): (N, M)."""
+    along, away = (np.roll(ring, -1, axis=0) - ring)[None], points[:, None] - ring[None]
     share = np.clip((away * along).sum(axis=2) / np.maximum((along**2).sum(axis=2), 1e-12), 0.0, 1.0)
-    gap_m = np.linalg.norm(away - share[..., None] * along, axis=2)
-    corner, edge = np.nonzero(gap_m < _TOUCH_M)
-    return bool(((corner != edge) & (corner != (edge + 1) % len(a))).any())
+    gaps_m: F64 = np.linalg.norm(away - share[..., None] * along, axis=2)
+    return gaps_m
 
 
 def _area(ring: F64) -> float:

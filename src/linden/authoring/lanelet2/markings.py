@@ -45,14 +45,19 @@ def _tags(tables: Tables, side: Side, users: list[Stretch]) -> Tags:
         return {**KERB, **shared}
     if users[0].junction_id >= 0:
         return {"type": "virtual", **shared}
-    if [user.subtype for user in users] == [SHOULDER, SHOULDER] and users[0].forward != users[1].forward:
-        return {"type": "road_border", **shared}  # each ends there, as Autoware wants it (vm-01-16)
-    if len(users) == 1 and (users[0].subtype != ROAD or mark.type not in _PAINT):
+    if _is_border(users, mark):
         return {"type": "road_border", **shared}
     if mark.type not in _PAINT:
         return {"type": "virtual", **shared}
     tags = {"type": "line_thick" if mark.weight == "bold" else "line_thin", "subtype": _PAINT[mark.type], **shared}
     return {**tags, "color": mark.colour} if mark.colour in {"yellow", "white"} else tags
+
+
+def _is_border(users: list[Stretch], mark: RoadMark) -> bool:
+    """Return whether a road ends at a side; so do both of two shoulders of opposite directions (vm-01-16)."""
+    if len(users) == 1:
+        return users[0].subtype != ROAD or mark.type not in _PAINT
+    return all(user.subtype == SHOULDER for user in users) and users[0].forward != users[1].forward
 
 
 def mark_at(lane: Lane | None, along_m: float) -> RoadMark:

@@ -177,8 +177,11 @@ def test_keys_of_another_route_are_refused(run: Runner, tmp_path: Path, capsys: 
 
 
 @pytest.mark.slow
-def test_the_session_of_the_experiment_arrives_and_is_three_times_too_fast(tmp_path: Path) -> None:
-    assert main(["run", "human", "--keys", "data/human_session.json", "--output", str(tmp_path)]) == 0
+def test_the_session_of_the_experiment_arrives_and_is_three_times_too_fast(
+    simulator: RunningServer, tmp_path: Path
+) -> None:
+    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
+    assert main(["run", "human", *address, "--keys", "data/human_session.json", "--output", str(tmp_path)]) == 0
     result = json.loads((tmp_path / "latest" / "result.json").read_text())
     assert [found["kind"] for found in result["infractions"]] == ["speeding"] * 3
     assert result["scores"]["path_following"] >= 0.98

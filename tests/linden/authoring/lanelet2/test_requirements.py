@@ -91,12 +91,6 @@ def test_areas_have_the_corners_of_lanelets_and_kerbs_alone(linden_map: LaneletM
     assert all(known.issuperset(area.nodes) for area in areas)
 
 
-def test_outlines_of_ways_in_junctions_run_once_round(linden_lanelets: Converted) -> None:
-    ways = [way for found in in_junctions(linden_lanelets).values() for way in found]
-    assert len(ways) > 900
-    assert all(outline(linden_lanelets.lanelet_map, way).is_valid for way in ways)
-
-
 CARRIAGEWAYS = [
     (3, lane(3)),
     (2, lane(2, 2.0, "shoulder", mark="solid")),
