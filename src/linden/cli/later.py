@@ -10,8 +10,8 @@ from linden.errors import UserError
 def later(place: str, extra: str = "") -> Callable[[argparse.Namespace], int]:
     """Return a command that imports ``place`` (``module:function``) when it is called, and then runs it.
 
-    ``extra`` names the extra of linden whose packages the module needs. The command raises UserError where one is
-    missing.
+    ``extra`` names the extra of linden with the packages that the module needs. Without one of them the command raises
+    UserError.
     """
     module, _, name = place.partition(":")
 

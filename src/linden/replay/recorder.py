@@ -232,7 +232,7 @@ def _parents(come: list[ActorRecord]) -> NDArray[np.void]:
 
 
 def _boxes(come: list[ActorRecord]) -> NDArray[np.void]:
-    """Return the local boxes of those that came; signs have trigger volumes instead."""
+    """Return the local boxes of actors that came; signs have trigger volumes instead."""
     found = [record for record in come if record.kind not in (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)]
     boxes = np.zeros(len(found), layouts.BOX)
     for place, record in enumerate(found):

@@ -45,7 +45,7 @@ def polygons(corners_m: F64, look: Look, towards: ArrayLike | None = None) -> Me
 
 
 def _turned_round(corners_m: F64, towards: F64) -> F64:
-    """Return polygons with those that look away from ``towards`` wound the other way."""
+    """Return polygons that all look to ``towards``: the others are wound the other way."""
     normal = np.zeros((len(corners_m), 3))
     for k in range(1, corners_m.shape[1] - 1):
         normal += np.cross(corners_m[:, k] - corners_m[:, 0], corners_m[:, k + 1] - corners_m[:, 0])

@@ -10,7 +10,7 @@ The frame is made at once, and shown; only the answer to the tick waits, without
 wait is a state of the server's loop: other clients are served meanwhile.
 
 The wait after the question is :data:`SETTLING_S`, whatever the machine and its load. A wait of 0.25 to 1 ms by the
-thread's own pace was tried and taken out: on a busy machine the wake fell close to the sleep two to eleven times as
+thread's own pace was tried and taken out. On a busy machine the wake fell close to the sleep two to eleven times as
 often (docs/decisions/0089).
 """
 

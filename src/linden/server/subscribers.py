@@ -92,7 +92,7 @@ class Subscribers:
         return max(0.0, min(peer.congested_since_s or 0.0 for peer in congested) + PATIENCE_S - now_s)
 
     def congested(self, now_s: float) -> list[StreamPeer]:
-        """Return the subscribers that frames wait for, and close subscribers whose time is over."""
+        """Return the subscribers that frames wait for, and close subscribers that have run out of time."""
         if not self._behind:
             return []
         for peer in tuple(self._behind):

@@ -119,7 +119,7 @@ class Walkers:
         return gone
 
     def _show_motion(self, episode: EpisodeState, dt_s: float) -> None:
-        """Give those that were led the velocity, turn and acceleration that their new places mean."""
+        """Give led walkers the velocity, turn and acceleration that their new places mean."""
         bodies, after = episode.bodies, {}
         for actor_id, before in self._before.items():
             record = episode.actors.find(actor_id)

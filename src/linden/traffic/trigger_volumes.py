@@ -25,7 +25,7 @@ MOST_CELLS_A_SIDE = 256
 
 
 class TriggerGrid(NamedTuple):
-    """Trigger volumes in the world (B boxes), and for every cell those that a vehicle in it may touch (K cells)."""
+    """Trigger volumes in the world (B boxes), and for every cell the boxes that a vehicle in it may touch (K cells)."""
 
     centre_m: F64
     """(B, 3)"""

@@ -34,7 +34,7 @@ class Scan(NamedTuple):
 
 
 def in_map(scan: Scan) -> Cloud:
-    """Return the points of a scan in the map's frame; those that are not finite are left out."""
+    """Return the points of a scan in the map's frame, without points that are not finite."""
     points, label = scan.cloud
     moved = np.empty((len(points), 3))
     known = _moved(np.ascontiguousarray(points, np.float64), scan.map_from_sensor, moved)

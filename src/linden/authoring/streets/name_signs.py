@@ -2,7 +2,7 @@
 
 The Manual on Uniform Traffic Control Devices (FHWA, 2009) asks for such signs at all intersections in towns, two feet
 behind the kerb (sections 2D.43 and 2A.19). The corner is a choice of the builder, so no fact says that a sign stands
-there. Streets whose names are not known get no blade.
+there. Streets without a known name get no blade.
 """
 
 import math
@@ -46,7 +46,7 @@ def _is_known(street: Street) -> bool:
 
 
 def _corner(legs: tuple[Leg, ...]) -> Leg:
-    """Return the leg on whose left the sign stands: one that shares this corner with a street of another name."""
+    """Return the leg to the right of the sign: one that shares this corner with a street of another name."""
     pairs = zip(legs, (legs[-1], *legs[:-1]), strict=True)  # counter-clockwise, so the leg before is on the left
     known = [(leg, left) for leg, left in pairs if _is_known(leg.street)]
     return min(known, key=lambda pair: (not _is_known(pair[1].street), pair[0].street.name == pair[1].street.name))[0]

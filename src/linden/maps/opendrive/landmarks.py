@@ -36,7 +36,7 @@ def landmark_transforms(opendrive: OpenDrive) -> tuple[Transform, ...]:
 
 
 def unmoved_transforms(opendrive: OpenDrive) -> tuple[Transform, ...]:
-    """Return the pose of every signal as the file says it, before LibCarla moves those that stand in a lane."""
+    """Return the pose of every signal as the file says it, before LibCarla moves signals that stand in a lane."""
     signals = [signal for _, signal in opendrive.signals()]
     if not signals:
         return ()

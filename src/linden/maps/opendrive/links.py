@@ -10,7 +10,7 @@ _Rows = tuple[int, ...]
 
 
 class LaneLinks(NamedTuple):
-    """For each row of ``Tables.lanes`` the rows it leads into and those that lead into it."""
+    """For each row of ``Tables.lanes`` the rows it leads into and the rows that lead into it."""
 
     successors: tuple[_Rows, ...]
     predecessors: tuple[_Rows, ...]

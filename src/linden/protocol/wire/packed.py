@@ -32,7 +32,7 @@ U8 = NDArray[np.uint8]
 
 
 class PackedBatch(NamedTuple):
-    """A call of ``apply_batch`` all of whose commands are plain controls."""
+    """A call of ``apply_batch`` with plain controls alone."""
 
     call_id: int
     is_async: bool

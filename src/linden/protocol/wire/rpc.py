@@ -22,8 +22,8 @@ from linden.protocol.wire.decode import got
 MAX_MESSAGE_BYTES = 64 * 1024 * 1024
 """Largest request; an OpenDRIVE text of a big town is 10 MB, a 4k texture as floats 40 MB."""
 MAX_ARRAYS = 256 * 1024
-"""Most arrays in one message, one within another or side by side: an empty one is a byte of the message and 70 bytes of
-memory, and the server serves no client while it frees them, which takes 0.07 s for that many. Bytes that look like
+"""Most arrays in one message, one within another or side by side. An empty one is a byte of the message and 70 bytes of
+memory. The server serves no client while it frees them, which takes 0.07 s for that many. Bytes that look like
 the first byte of an array are counted, so a text has none and numbers have a few too many. A batch of 10,000 commands
 has 60,000."""
 MAX_ARRAY_ITEMS = 4 * 1024 * 1024

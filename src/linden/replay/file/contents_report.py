@@ -162,7 +162,7 @@ def bones(walkers_bones: Iterable[WalkerBones]) -> Iterator[str]:
 
 
 def doors(records: Records) -> Iterator[str]:
-    """Tell which doors were moved; CARLA says "opened" of those that were closed too."""
+    """Tell which doors were moved; CARLA says "opened" of closed doors too."""
     for actor_id, door, _ in records.tolist():
         yield f"  Id: {actor_id}\n  Doors opened:  {DOORS[door] if door < len(DOORS) else ''} \n"
 

@@ -113,7 +113,7 @@ class _Watch:
         return [Stop(float(self._began_s[at]), ids[at], float(self._duration_s[at])) for at in long_enough.tolist()]
 
     def stops(self) -> list[Stop]:
-        """Return the stops that ended, then those that last to the end, in the order of their ends."""
+        """Return the stops that ended, then the stops that last to the end, in the order of their ends."""
         return self._ended + self._long_ones(np.arange(len(self._began_s)))
 
 

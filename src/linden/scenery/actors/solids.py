@@ -63,7 +63,7 @@ def bounds(mesh: Mesh) -> tuple[F64, F64]:
 
 
 def closed(vertices_m: F64, triangles: NDArray[np.intp], faces: NDArray[np.void]) -> Mesh:
-    """Return a solid of triangles that all turn the same way round: outwards, without those that have no area."""
+    """Return a solid of triangles that all turn the same way round: outwards, without triangles of no area."""
     corner, normal = _normals(vertices_m, triangles)
     has_area = (normal * normal).sum(1) > (2.0 * _NO_AREA_M2) ** 2
     kept = triangles[has_area] if (corner * normal).sum() >= 0.0 else triangles[has_area, ::-1]

@@ -37,7 +37,7 @@ def blades_with_names(blades: Frames, half_m: F64, objects: I32, names: list[str
         if not strokes:
             continue
         look = Look(Material.SIGN_FACE, SemanticTag.TRAFFIC_SIGNS, _WHITE, objects[row])
-        for side in (1.0, -1.0):  # y points to the right of x: a reader there, who looks against it, has x on the right
+        for side in (1.0, -1.0):  # y points to the right of x: a reader there looks against it and has x on the right
             face = np.array([(side * x, side * (half_m[row, 1] + _PROUD_M), up) for x, up in np.concatenate(strokes)])
             corners = blades.of(np.array([row])).world(face[None])[0].reshape(-1, 4, 3)
             front = blades.of(np.array([row])).turned(np.array([[[0.0, side, 0.0]]]))[0, 0]

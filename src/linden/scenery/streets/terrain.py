@@ -82,7 +82,7 @@ def _edges(simplified_lanes: SimplifiedLanes, ground: Ground) -> F64:
 
 
 def _thinned(points: F64) -> F64:
-    """Return the points without those that lie within centimetres of one before them: triangles need some width."""
+    """Return the points without points within centimetres of an earlier one: triangles need some width."""
     cell = np.round(points[:, :2] / 0.25).astype(np.int64)
     _, first = np.unique(cell, axis=0, return_index=True)
     return points[np.sort(first)]

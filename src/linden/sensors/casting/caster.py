@@ -11,7 +11,7 @@ F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
 
 CPU = "cpu"
-"""``Caster.device`` of all that need no GPU."""
+"""``Caster.device`` of casters without a GPU."""
 
 STATIC = -1
 """``Hits.instance`` of what stands."""

@@ -160,7 +160,7 @@ def _turn(pose: F32, row: int, normal: F32, ray: int) -> None:
 
 @unlocked
 def place(geometry: NDArray[np.int64], pose: F32, before: F32) -> None:
-    """Give instances (K,) their poses (K, 3, 4), those that have another one than ``before`` had."""
+    """Give instances (K,) their poses (K, 3, 4), where it differs from that in ``before``."""
     start = pose.ctypes.data
     for row in range(len(pose)):
         moved = row >= len(before)

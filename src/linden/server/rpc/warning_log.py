@@ -43,7 +43,7 @@ def plain(sentence: str) -> str:
 
 
 def kind_of(sentence: str) -> str:
-    """Return what a sentence has in common with those that differ from it in their figures alone."""
+    """Return what a sentence has in common with sentences that differ from it in figures alone."""
     return _FIGURES.sub("#", sentence[:_KIND_CHARACTERS])
 
 

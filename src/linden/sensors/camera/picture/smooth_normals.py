@@ -1,4 +1,4 @@
-"""Which faces are round: normals at the corners of those that belong to a curved surface, made once for all meshes.
+"""Which faces are round: normals at the corners of faces of a curved surface, made once for all meshes.
 
 Two faces that share a vertex (by its row) and meet at less than a crease's angle are taken for one curved surface.
 """
