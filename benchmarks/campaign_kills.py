@@ -147,25 +147,24 @@ def plans(drives: int, dice: random.Random, *, on_ray: bool) -> list[list[Kill]]
         moments = sorted(dice.sample(range(drives // 10, drives * 8 // 10), len(whats)))
         return [Kill(at, what) for at, what in zip(moments, whats, strict=True)]
 
-    rows = [sorted_at("worker"), sorted_at("workers"), sorted_at("driver")]
     if on_ray:
-        return [*rows, sorted_at("node"), sorted_at("worker", "node", "driver")]
+        return [sorted_at("node"), sorted_at("driver"), sorted_at("worker"), sorted_at("worker", "node", "driver")]
+    rows = [sorted_at("worker"), sorted_at("workers"), sorted_at("driver")]
     return [*rows, sorted_at("worker", "driver", "workers", "driver", "worker")]
 
 
 @contextlib.contextmanager
 def raylets() -> Iterator[Callable[[], Any]]:
-    """A function that starts a cluster of three raylets in place of the last."""
+    """A function that returns the one cluster of three raylets, with a fresh node in place of a lost one."""
     from ray.cluster_utils import Cluster  # noqa: PLC0415 - an extra
 
     started: list[Any] = []
 
     def start() -> Any:  # noqa: ANN401 - Ray's cluster
-        for cluster in started:
-            cluster.shutdown()
         arguments = {"num_cpus": 2, "object_store_memory": OBJECT_STORE_BYTES}
-        started[:] = [Cluster(initialize_head=True, head_node_args=arguments)]
-        for _ in range(2):
+        if not started:
+            started.append(Cluster(initialize_head=True, head_node_args=arguments))
+        while len(started[0].worker_nodes) < 2:
             started[0].add_node(**arguments)
         return started[0]
 

@@ -235,7 +235,7 @@ def plan_of(campaign: Campaign, source: Path) -> CampaignPlan:
 
 
 def _with_paths(drives: Drives, source: Path) -> Drives:
-    """Drives whose cases name files, FILE.xml or FILE.py:Class, by their full paths.
+    """Drives with full paths where their cases name files (FILE.xml or FILE.py:Class).
 
     Raises:
         UserError: there is no such file.

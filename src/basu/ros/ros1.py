@@ -109,7 +109,7 @@ class Node:
                 self._open(ANNOUNCE, topic, _definition(types, topic.type))
 
     def listen(self, *topics: Topic, any_version: bool = False) -> None:
-        """Make subscribers; with ``any_version`` of topics whose type has other fields in other versions."""
+        """Make subscribers; with ``any_version`` of topics with other fields in other versions of their type."""
         for topic in topics:
             if topic.name not in self._numbers:
                 self._arrived[len(self._topics)] = deque(maxlen=topic.depth)
@@ -125,7 +125,7 @@ class Node:
         self.publish_as(self.types, *messages)
 
     def publish_as(self, types: Types, *messages: Message) -> None:
-        """Publish messages whose types have the versions of ``types``."""
+        """Publish messages of types in the versions of ``types``."""
         for topic, content in messages:
             self.announce_as(types, topic)
             self._send(PUBLISH, types.data(content), self._numbers[topic.name])

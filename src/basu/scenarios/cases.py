@@ -262,7 +262,7 @@ def files_named(files: Iterable[str | Path]) -> tuple[Path, ...]:
 def _read(case: Case, scenario: type[Scenario]) -> Playable:
     """A case with the values that its class reads.
 
-    Those that only ScenarioRunner's class reads are left alone; under an alias also those of a name that ours has too,
+    Parameters for ScenarioRunner's class alone are left out. Under an alias, so are parameters with a name of ours,
     such as a speed in km/h.
     """
     ours = {parameter.name for parameter in scenario.parameters} if case.type == scenario.__name__ else set()

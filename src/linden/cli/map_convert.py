@@ -11,6 +11,7 @@ from linden.authoring.lanelet2.bus_stops import Stop, shuttle_stops
 from linden.authoring.lanelet2.convert import UNKNOWN_SPEED_KMH, Converted, Wanted, convert, counts
 from linden.authoring.lanelet2.model import LaneletMap, without_lanelets
 from linden.authoring.lanelet2.osm import osm_bytes, projector_info, read_osm
+from linden.authoring.lanelet2.shared import NEAR_M
 from linden.authoring.lanelet2.stretches import WALKWAY
 from linden.authoring.output import write_file, write_folder
 from linden.authoring.sumo.bus_stops import read_stops
@@ -100,6 +101,11 @@ def report(path: Path, converted: Converted) -> None:
         f"{path}: {len(lanelet_map.nodes):,} nodes, {len(lanelet_map.ways):,} ways, "
         f"{len(lanelet_map.relations):,} relations; bounds within {100 * STATED_ERROR_M:g} cm of the OpenDRIVE curves"
     )
+    if converted.shared:
+        say(
+            f"{len(converted.shared)} edges of ways through junctions are {len(converted.shared) // 2} shared bounds, "
+            f"within {100 * NEAR_M / 2:g} cm"
+        )
     for name, count in sorted(counts(lanelet_map).items()):
         say(f"{count:8,} {name}")
     for reason, count in sorted(converted.network.left_out.items()):

@@ -83,7 +83,7 @@ def test_an_empty_twist_leaves_the_order_to_ctrl_cmd() -> None:
     assert (reset.speed_mps, reset.tyre_angle_rad) == (0.0, None)
 
 
-def test_the_versions_are_told_apart_by_their_definitions() -> None:
+def test_definitions_tell_the_versions_apart() -> None:
     texts = [types.store.generate_msgdef(ai.COMMAND.type) for types in (NEW, OLD)]
     assert [ai.is_old(text) for text, _ in texts] == [False, True]
     assert texts[0][1] != texts[1][1]

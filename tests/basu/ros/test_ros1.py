@@ -125,7 +125,7 @@ def test_a_second_node_of_a_name_is_refused(node: Node) -> None:
         Node("basu")
 
 
-def test_a_node_whose_process_dies_is_a_sentence(node: Node) -> None:
+def test_a_node_with_a_dead_process_is_a_sentence(node: Node) -> None:
     node.listen(TF_STATIC)
     os.kill(node._process.pid, signal.SIGKILL)
     with pytest.raises(UserError, match="the ROS 1 node /basu ended: its process died"):

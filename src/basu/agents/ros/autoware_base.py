@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class AutowareBase(RosAgent):
-    """An agent whose software is an Autoware."""
+    """An agent with an Autoware as its software."""
 
     def config(self) -> dict[str, str]:
         """The shuttle on its round, with a lidar."""

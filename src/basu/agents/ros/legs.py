@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from basu.routing.planned_route import Route
 
-ROUND_M = 30.0  # a route whose ends are nearer together is a round: its end alone is no goal
+ROUND_M = 30.0  # a route with its ends nearer together is a round: its end alone is no goal
 LEG_M = 500.0  # of route between two goals: short enough that the shortest way is that of the route
 AHEAD_M = 100.0  # of route before a goal at which the next one is sent; op_global_planner plans on 30 m before a goal
 SEARCH_M = 50.0  # of route in which the vehicle is looked for, from where it was last

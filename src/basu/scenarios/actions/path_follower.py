@@ -36,7 +36,7 @@ class Limits(NamedTuple):
 
 
 class PathFollower(Action):
-    """The base of all that lead a vehicle. Subclasses say how fast (``wanted_mps``) and how long (``over``).
+    """The base of actions that lead a vehicle. Subclasses say how fast (``wanted_mps``) and how long (``over``).
 
     The path is followed from the place nearest to the vehicle, and its speed changed from what it is, so that one
     action takes over from another. A vehicle that the ego touches is let go.

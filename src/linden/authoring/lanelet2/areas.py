@@ -37,9 +37,9 @@ def ring_of(
 ) -> tuple[int, ...]:
     """Return the nodes of a junction's area, counter-clockwise: the first of these rings that holds all ways whole.
 
-    First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone, their
-    convex hull, that of ends and kerbs, and that of the ways. ``entries`` lead into the junction, ``exits``
-    lead out of it, and ``ways`` lie inside; all are given by their sides. The ring is empty where there is no area.
+    First comes the ring of the ends of the legs and the kerbs round the corners. Then come the ends alone. Then come
+    convex hulls: of the ends, of ends and kerbs, of the ways. ``entries`` lead into the junction, ``exits`` lead out of
+    it, and ``ways`` lie inside; all are given by their sides. The ring is empty where there is no area.
     """
     legs = _legs(target, entries, exits) if entries or exits else []
     ends = [node for leg in legs for node in leg.nodes]

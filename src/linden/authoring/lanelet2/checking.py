@@ -174,7 +174,7 @@ def _lane_pair(tables: Tables, pair: tuple[int, int]) -> str:
 class Worst(NamedTuple):
     """How far the lanes' edges lie from their bounds at most, in m: in plan, and in height at the nearest place.
 
-    ``shared_m`` is the worst in plan where two ways through a junction share the mean of their edges as a bound.
+    ``shared_m`` is the worst of both where two ways through a junction share the mean of their edges as a bound.
     """
 
     plan_m: float
@@ -197,8 +197,10 @@ def worst_error_m(opendrive: OpenDrive, converted: Converted) -> Worst:
     plan_m = height_m = shared_m = 0.0
     for line, way, both in zip(evaluate(tables, specs), ways, is_shared, strict=True):
         away, rise = _from_polyline(line, converted.lanelet_map.line(way))
-        plan_m, height_m = max(plan_m, 0.0 if both else away), max(height_m, rise)
-        shared_m = max(shared_m, away if both else 0.0)
+        if both:
+            shared_m = max(shared_m, away, rise)
+        else:
+            plan_m, height_m = max(plan_m, away), max(height_m, rise)
     return Worst(plan_m, height_m, shared_m)
 
 

@@ -1,8 +1,8 @@
 """Sides of two ways through a junction that are one boundary: where both run between the same ends, close together.
 
 Autoware wants lanelets that touch to share their bound, those of opposite directions too (vm-01-03 and vm-01-04 of its
-map requirements). In OpenDRIVE each way through a junction is a road of its own. Two of them side by side have
-the same boundary only nearly. A left turn and the right turn back, for example, are drawn as different curves.
+map requirements). In OpenDRIVE each way through a junction is a road of its own. Two ways side by side have almost the
+same boundary. A left turn and the right turn back, for example, are drawn as different curves.
 """
 
 from collections import defaultdict

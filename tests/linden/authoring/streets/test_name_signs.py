@@ -66,7 +66,7 @@ def test_linden_s_signs_stand_behind_the_kerb_and_clear_of_other_posts(linden_bu
         assert min(math.dist(place, post) for post in posts) > 3.0
 
 
-def test_linden_s_signs_name_streets_whose_names_are_known(linden_built: Built) -> None:
+def test_linden_s_signs_name_streets_with_known_names(linden_built: Built) -> None:
     known = {
         street.name
         for street in linden_built.facts.streets

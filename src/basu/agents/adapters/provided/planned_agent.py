@@ -52,7 +52,7 @@ class PlannedAgent:
     """An agent that receives a plan, names its sensors, then steps.
 
     The thinned plan lies in ``_global_plan`` (dicts of lat, lon in degrees and z in m) and ``_global_plan_world_coord``
-    (transforms), each entry with its ``RoadOption``; the names are those that agents read.
+    (transforms), each entry with its ``RoadOption``; agents read these names.
     """
 
     PLAN_SPACING_M: ClassVar[float]  # of the plan that an agent is left with, where the option stays the same
