@@ -1,6 +1,7 @@
 """ROS software that drives badly: each kind of failure after some good commands. A process.
 
-`KIND [GENERATION]` drives `basu run ros` or `ros1`; `seldom` and `seldom-stalls` drive `basu run autoware-ai`.
+`KIND [GENERATION]` drives `basu run ros` or `ros1`; `seldom`, `seldom-stalls` and `localises` drive
+`basu run autoware-ai`.
 """
 
 import sys
@@ -11,15 +12,23 @@ from basu.ros.topics import CLOCK, Message, control_of, odometry_of
 GOOD = 5  # commands before the failure
 LONGEST_S = 60.0
 SELDOM_S = 0.35  # of simulated time, between two commands of a loop that misses turns
+UNLOCALISED_S = 1.4  # of the clock, which begins at 1 s: before it a localisation has no map
 
 
-def seldom(last: int) -> None:
-    """Command an Autoware.AI's vehicle every so often by the simulated clock; ``last`` commands in all."""
+def seldom(last: int, *, localises: bool) -> None:
+    """Command an Autoware.AI's vehicle every so often by the simulated clock; ``last`` commands in all.
+
+    One that ``localises`` has no pose before its first command, and ends where it gets another's.
+    """
     node = ros1.Node("stack")
-    types, due_s, given = node.types, 0.0, 0
-    node.listen(CLOCK)
+    types, due_s, given = node.types, UNLOCALISED_S if localises else 0.0, 0
+    node.listen(CLOCK, autoware_ai.CURRENT_POSE)
+    if localises:
+        node.announce(autoware_ai.NDT_POSE)
     node.announce(autoware_ai.COMMAND)
     while node.wait(CLOCK, LONGEST_S):
+        if localises and node.received(autoware_ai.CURRENT_POSE):
+            return
         for clock in node.received(CLOCK):
             now_s = clock.clock.sec + 1e-9 * clock.clock.nanosec
             if now_s < due_s or given == last:
@@ -54,7 +63,7 @@ def main(kind: str, generation: str = "ros2") -> None:
 
 
 if __name__ == "__main__":
-    if sys.argv[1].startswith("seldom"):
-        seldom(GOOD if sys.argv[1] == "seldom-stalls" else -1)
+    if sys.argv[1].startswith(("seldom", "localises")):
+        seldom(GOOD if sys.argv[1] == "seldom-stalls" else -1, localises=sys.argv[1] == "localises")
     else:
         main(*sys.argv[1:])

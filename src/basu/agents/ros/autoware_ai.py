@@ -40,6 +40,9 @@ GRACE_S = 0.04  # wall time that a frame waits for a fresh command before it tak
 PATIENCE_S = 0.5  # wall time after which a frame takes an even older command: with a clock that stands no loop wakes
 HELD_S = 1.0  # simulated time: the oldest command that is taken so
 STARTING_S = 0.5  # wall time that a frame waits for the very first command
+LOCALISED = (ai.CURRENT_POSE.name, ai.NDT_POSE.name)
+"""Topics of a localisation. `ndt_matching` names its own at its start. A relay names the other with the first pose,
+which needs the point cloud. Until then the software would drive by our pose, and NDT would begin at a wrong place."""
 
 
 class AutowareAiAgent(AutowareBase):
@@ -92,7 +95,7 @@ class AutowareAiAgent(AutowareBase):
         self._tick, self._frame_began_s = 0, time.monotonic()
         self.slice_s = max(PACE_S, self.slice_s * FASTER)
         if not self._has_commanded:
-            self._localises_itself = bool(self.node.publishers_of(ai.CURRENT_POSE.name))
+            self._localises_itself = any(map(self.node.publishers_of, LOCALISED))
         sent = list(ai.sensing_messages(types, vehicle, moment))
         sent.append(Message(odometry_of(vehicle.role), of_vehicle.odometry(types, vehicle, moment, of_vehicle.BASE)))
         peers = self.node.peers_of(ai.COMMAND)

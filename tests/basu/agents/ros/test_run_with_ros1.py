@@ -66,6 +66,16 @@ def test_a_loop_that_stalls_is_a_time_out_all_the_same(
     assert "gave no command on /vehicle_cmd for frame" in result["message"]
 
 
+def test_software_that_localises_itself_gets_no_pose_before_its_map_is_there(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
+) -> None:
+    """It has no pose for a while, and must stand still meanwhile."""
+    starts(STACK, "localises")
+    _, result, folder = run("autoware-ai", simulator, route_file, tmp_path, "--stop-after", "2.5", "--step-limit", "5")
+    assert result["status"] == "Stopped", result["message"]
+    assert read_history(folder).frames["route_s_m"][-1] > 0.5
+
+
 def test_two_drivers_at_one_wheel_are_refused(
     simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts
 ) -> None:
