@@ -52,6 +52,8 @@ def main():
     }
     tell(json.dumps(found))
     sys.stdin.readline()
+    while not publisher.get_num_connections():  # rospy drops a message while the subscriber's connection is being made
+        threading.Event().wait(0.01)
     message = command(throttle=0.5, steer=-0.25, gear=2, reverse=True)
     message.header.stamp.secs = 3
     publisher.publish(message)
