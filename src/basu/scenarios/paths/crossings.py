@@ -124,7 +124,7 @@ def meeting(path: Path, place: Place, junction: JunctionAhead, slack_m: float = 
     low, high = np.searchsorted(route.s_m, [junction.from_m + shift_m - slack_m, junction.to_m + shift_m + slack_m])
     ego_m = route.points_m[low:high, :2]
     s_m = np.arange(0.0, path.length_m, 0.5)
-    ours_m = np.array([path.at(float(s))[:2] for s in s_m])
+    ours_m = np.column_stack([np.interp(s_m, path.s_m, path.points_m[:, axis]) for axis in (0, 1)])
     away_m = np.hypot(ours_m[:, None, 0] - ego_m[None, :, 0], ours_m[:, None, 1] - ego_m[None, :, 1])
     nearest_m = away_m.min(axis=1)
     near = np.flatnonzero(nearest_m <= MEET_M)
