@@ -133,16 +133,7 @@ class SumoOptions(ConditionOptions):
         """Check the options of SUMO.
 
         Raises:
-            UserError: they contradict each other.
-        """
-        self._check_sumo()
-        super().check()
-
-    def _check_sumo(self) -> None:
-        """Check the options of SUMO.
-
-        Raises:
-            UserError: the file is no configuration of SUMO, or random trips are to be made for a demand of a density.
+            UserError: the file is no configuration of SUMO, or options contradict each other.
         """
         words = (None, SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM)
         if self.sumo not in words and not str(self.sumo).endswith(".sumocfg"):
@@ -152,6 +143,7 @@ class SumoOptions(ConditionOptions):
         if self.sumo == SUMO_RANDOM and self.traffic_density is not None:
             raise UserError("--sumo random keeps --vehicles N on the road; --traffic-density goes without it")
         self._check_demand_of_sumo(is_file=self.sumo not in words)
+        super().check()
 
     def _check_demand_of_sumo(self, *, is_file: bool) -> None:
         """Check the options of SUMO's demand and outputs.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 from basu.errors import UserError
 from basu.options.agent import AgentMemory, Debug, InProcess, StepLimit, check_agent_process
 from basu.options.folders import Output
-from basu.options.groups import AGENT, CONDITIONS, FOLDERS
+from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
 from basu.options.run import RunOptions
 from basu.options.simulator import Host, Port, Timeout
 from basu.settings.option import Option, Settings, fields_of
@@ -115,7 +115,7 @@ class ScenarioOptions(Settings):
         int,
         Option(
             help="simulators that run at the same time",
-            group="simulator",
+            group=SIMULATOR,
             metavar="N",
             least=1,
             default_text="one a processor",
