@@ -19,7 +19,9 @@ def another(stage: Stage) -> carla.Client:
 
 def traffic_manager(stage: Stage) -> bool:
     """Whether a Traffic Manager begins; it ends at once, for its thread would go round all the time."""
-    stage.forget("get_episode_settings", "get_vehicle_light_states", "get_weather_parameters", "apply_batch")
+    stage.forget(
+        "get_actors_by_id", "get_episode_settings", "get_vehicle_light_states", "get_weather_parameters", "apply_batch"
+    )
     manager = stage.client.get_trafficmanager(8010)
     port = manager.get_port()
     with stage.aside():
