@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import random
 from collections import deque
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -41,6 +41,21 @@ PHYSICS = ("mass", "max_rpm", "moi", "drag_coefficient", "final_ratio", "use_gea
 WHEEL = ("max_steer_angle", "radius", "max_brake_torque", "max_handbrake_torque")
 
 
+class _OwnBox(NamedTuple):
+    """The box of the run's vehicle, read once: each reading by the client takes as long as twenty comparisons."""
+
+    middle_m: float  # ahead of the vehicle's origin
+    half_diagonal_m: float  # of the whole box
+    half_length_m: float  # of the smaller box that must not overlap another
+    half_width_m: float
+
+    @classmethod
+    def of(cls, vehicle: carla.Vehicle) -> _OwnBox:
+        box = vehicle.bounding_box
+        half_m = box.extent.x, box.extent.y
+        return cls(box.location.x, math.hypot(*half_m), *(max(0.1, each - INSIDE_M) for each in half_m))
+
+
 class Conduct:
     """One run's checks of the agent.
 
@@ -58,13 +73,14 @@ class Conduct:
         self._others: OthersCheck | None = None
         self._lights: LightsCheck | None = None
         self._losses: deque[tuple[Frame, float]] = deque()  # of speed, which wait for their contact
+        self._box: _OwnBox | None = None
         self._inside: dict[int, int] = {}  # steps in a row, by the actor that the vehicle overlaps
         self._chance = random.SystemRandom()  # an agent cannot know it; an honest agent's run does not depend on it
         self._look_in_ticks, self._next_look = 1, 0
 
     def begin(self, run: Run) -> None:
         """Note what the agent must not change."""
-        self._run = run
+        self._run, self._box = run, _OwnBox.of(run.vehicle)
         run.changes.checked = True
         self._state = {**_weather(run), **_physics(run), **_settings(run)}
         if run.own_simulator:
@@ -213,11 +229,12 @@ class Conduct:
         """Half a sentence where the vehicle is inside another body, and the collision sensor reports no contact."""
         if run.neighbours is None:
             return None
+        assert self._box is not None, "begin comes first"
         inside: dict[int, int] = {}
         for row in run.neighbours.near(frame):
             key = int(row[1])
             half_m = run.neighbours.sizes[key]
-            if _is_inside(frame.ego, run.vehicle, row, half_m):
+            if _is_inside(frame.ego, self._box, row, half_m):
                 inside[key] = self._inside.get(key, 0) + 1
         self._inside = inside
         for key, ticks in inside.items():
@@ -267,15 +284,14 @@ def _settings(run: Run) -> dict[str, float]:
     }
 
 
-def _is_inside(ego: Ego, vehicle: carla.Vehicle, row: tuple[float, ...], half_m: tuple[float, float]) -> bool:
+def _is_inside(ego: Ego, box: _OwnBox, row: tuple[float, ...], half_m: tuple[float, float]) -> bool:
     """Whether the vehicle's box, made smaller, overlaps that of a row of ``history.OTHER``."""
-    box = vehicle.bounding_box
-    reach_m = math.hypot(box.extent.x, box.extent.y) + math.hypot(*half_m)
+    reach_m = box.half_diagonal_m + math.hypot(*half_m)
     if math.hypot(row[2] - ego.x_m, row[3] - ego.y_m) > reach_m or abs(row[4] - ego.z_m) > ABOVE_M:
         return False
     cos, sin = math.cos(ego.yaw_rad), math.sin(ego.yaw_rad)
-    x_m, y_m = ego.x_m + box.location.x * cos, ego.y_m + box.location.x * sin
-    own = np.array([[x_m, y_m, ego.yaw_rad, max(0.1, box.extent.x - INSIDE_M), max(0.1, box.extent.y - INSIDE_M)]])
+    x_m, y_m = ego.x_m + box.middle_m * cos, ego.y_m + box.middle_m * sin
+    own = np.array([[x_m, y_m, ego.yaw_rad, box.half_length_m, box.half_width_m]])
     return bool(touching(own, np.array([[row[2], row[3], row[5], *half_m]]))[0])
 
 
