@@ -16,15 +16,31 @@ CONFIGURED = ("COVERAGE_PROCESS_CONFIG", "COVERAGE_PROCESS_START", OF_SERVERS)
 def untraced() -> Iterator[None]:
     """Measure no coverage within the block; without a measurement nothing changes."""
     measured = coverage.Coverage.current()
-    kept = {name: os.environ.pop(name) for name in CONFIGURED if name in os.environ}
-    if measured is not None:
-        measured.stop()
+    with _without(CONFIGURED):
+        if measured is not None:
+            measured.stop()
+        try:
+            yield
+        finally:
+            if measured is not None:
+                measured.start()
+
+
+@contextmanager
+def untraced_processes() -> Iterator[None]:
+    """Measure the coverage of this process alone within the block, beside that of servers that are to be measured."""
+    with _without(CONFIGURED[:2]):
+        yield
+
+
+@contextmanager
+def _without(names: tuple[str, ...]) -> Iterator[None]:
+    """Have the environment lack some names within the block."""
+    kept = {name: os.environ.pop(name) for name in names if name in os.environ}
     try:
         yield
     finally:
         os.environ.update(kept)
-        if measured is not None:
-            measured.start()
 
 
 def of_servers() -> dict[str, str]:

@@ -140,8 +140,8 @@ RUNS = 4
 def test_driven_cars_can_be_destroyed_after_a_camera_was_listened_to() -> None:
     """Races of the wheel end 1 run in 24 with a load of 8 a processor, and 8 runs in 9 without the server's order."""
     ended: list[tuple[int, str, str]] = []
-    for _ in range(RUNS):
-        with running_server() as server:
+    with running_server() as server:
+        for _ in range(RUNS):
             ran = subprocess.run(
                 [sys.executable, "-c", GOODBYE, str(server.port), str(free_port())],
                 capture_output=True,
@@ -149,6 +149,6 @@ def test_driven_cars_can_be_destroyed_after_a_camera_was_listened_to() -> None:
                 timeout=120,
                 check=False,
             )
-        ended.append((ran.returncode, ran.stdout, ran.stderr[-300:]))
+            ended.append((ran.returncode, ran.stdout, ran.stderr[-300:]))
     good = [end for end in ended if end[:2] == (0, "DONE\n")]
     assert len(good) >= RUNS - 1, ended

@@ -4,8 +4,8 @@ The drivers are real and the simulator is live; the tables of single changes nee
 """
 
 import json
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -20,6 +20,7 @@ from basu.managers.conduct import Conduct
 from basu.managers.world_changes import LightsCheck, OthersCheck, is_same_control
 from basu.records.history.files import read_history
 from basu.running import runner
+from basu.running.scenario_runs import player
 from basu.simulator import Simulator, connect
 from servers import RunningServer
 
@@ -94,14 +95,19 @@ def client(simulator: RunningServer) -> carla.Client:
     return connect("127.0.0.1", simulator.port, 20.0)
 
 
+Ours = Callable[[object], AbstractContextManager[Simulator]]
+
+
+@pytest.fixture(scope="module")
+def ours(simulator: RunningServer, client: carla.Client) -> Ours:
+    """Return a ``simulator_for`` with which a command takes the session's server for one of its own: it starts none."""
+    found = Simulator(client, ("127.0.0.1", simulator.port), own=True, why_gone=lambda: None, ended=lambda: False)
+    return lambda _: nullcontext(found)
+
+
 @pytest.fixture
-def as_own(simulator: RunningServer, client: carla.Client, monkeypatch: pytest.MonkeyPatch) -> Iterator[carla.Client]:
-    """The session's server, which a run takes for one of its own: it starts none. Lights are as before afterwards."""
-
-    @contextmanager
-    def ours(_: object) -> Iterator[Simulator]:
-        yield Simulator(client, ("127.0.0.1", simulator.port), own=True, why_gone=lambda: None, ended=lambda: False)
-
+def as_own(ours: Ours, client: carla.Client, monkeypatch: pytest.MonkeyPatch) -> Iterator[carla.Client]:
+    """A client of the server that runs take for their own; its lights are as before afterwards."""
     monkeypatch.setattr(runner, "simulator_for", ours)
     world = client.get_world()
     lights = [(light, light.get_green_time()) for light in world.get_actors().filter("traffic.traffic_light")]
@@ -160,13 +166,15 @@ def test_a_step_with_another_control_has_a_sentence() -> None:
 
 
 @pytest.fixture(scope="module")
-def among_others(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
-    """What became of cheats that touch the other actors of a case, in a simulator of the command's own."""
+def among_others(ours: Ours, tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
+    """What became of cheats that touch the other actors of a case."""
     folder = tmp_path_factory.mktemp("cheats")
     agents = [str(driver(folder, name, deed=deed)) for name, (deed, _) in AMONG_OTHERS.items()]
     options = [word for agent in agents for word in ("--agent", agent)]
     case = "follow_leading_vehicle_1"
-    main(["scenario", "run", case, *options, "--output", str(folder / "runs"), "--workers", "1"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(player, "simulator_for", ours)
+        main(["scenario", "run", case, *options, "--output", str(folder / "runs"), "--workers", "1"])
     found = {}
     for path in (folder / "runs" / "latest").glob("*/*/result.json"):
         found[path.parent.parent.name] = json.loads(path.read_text(encoding="utf-8"))

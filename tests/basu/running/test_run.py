@@ -195,6 +195,7 @@ def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path
     assert result["scores"] is not None
 
 
+@pytest.mark.measured_processes
 def test_the_example_agent_arrives(run: Runner) -> None:
     code, result = run(SAMPLE.with_name("gentle_agent.py"))
     assert (code, result["status"]) == (0, "Completed")
@@ -237,16 +238,6 @@ def test_sensors_are_in_step_with_the_ticks(run: Runner, tmp_path: Path) -> None
     _, result = run(doing(tmp_path, deed, "config/sensors.json"))
     frame = result["meta"]["first_server_frame"] + 20
     assert f"ValueError: {{'GNSS': {frame}, 'IMU': {frame}}} {frame}" in result["message"]
-
-
-@pytest.mark.slow
-def test_the_same_seed_leaves_the_same_bytes(tmp_path: Path, route_file: Path) -> None:
-    for name in ("first", "second"):
-        options = ["--routes", str(route_file), "--seed", "3", "--output", str(tmp_path / name)]
-        main(["run", "basic", *options])
-    for file in ("history.parquet", "route.json"):
-        first, second = (tmp_path / name / "latest" / file for name in ("first", "second"))
-        assert first.read_bytes() == second.read_bytes()
 
 
 def test_a_simulator_of_our_own_is_gone_afterwards(tmp_path: Path, route_file: Path) -> None:

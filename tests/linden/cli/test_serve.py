@@ -23,9 +23,18 @@ from opendrive_texts import PLAIN_ROAD
 from servers import START_LIMIT_S, running_server
 
 
+@pytest.fixture
+def street(tmp_path: Path) -> tuple[str, ...]:
+    """Options for a server of one street, of which there is little to derive."""
+    folder = tmp_path / "maps"
+    folder.mkdir()
+    (folder / "Street.xodr").write_text(PLAIN_ROAD, "utf-8")
+    return "--maps", str(folder), "--map", "Street"
+
+
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_a_signal_ends_it_cleanly(number: signal.Signals) -> None:
-    with running_server() as server:
+def test_a_signal_ends_it_cleanly(street: tuple[str, ...], number: signal.Signals) -> None:
+    with running_server(*street) as server:
         server.process.send_signal(number)
         assert server.process.wait(10) == 0
         assert server.log() == ""
@@ -45,15 +54,7 @@ def test_an_idle_server_is_light_and_listens_on_loopback_only() -> None:
         assert (after.user + after.system - before.user - before.system) / 3.0 < 0.2
 
 
-@pytest.fixture
-def street(tmp_path: Path) -> tuple[str, ...]:
-    """Options for a server of one street, of which there is little to derive."""
-    folder = tmp_path / "maps"
-    folder.mkdir()
-    (folder / "Street.xodr").write_text(PLAIN_ROAD, "utf-8")
-    return "--maps", str(folder), "--map", "Street"
-
-
+@pytest.mark.measured_processes
 def test_the_first_start_keeps_what_it_derived_of_the_map(
     tmp_path: Path, street: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -113,6 +114,7 @@ def test_ports_that_cannot_be_are_a_sentence(
     assert said.count("\n") == 1
 
 
+@pytest.mark.measured_processes
 def test_it_serves_on_although_its_output_is_not_read() -> None:
     reading, writing = os.pipe()
     os.close(reading)
@@ -176,9 +178,9 @@ def test_a_signal_while_a_scene_is_built_ends_it_cleanly(after_s: float) -> None
         assert server.process.wait(20) == 0, server.log()
 
 
-def test_it_ends_while_a_subscriber_reads_nothing() -> None:
+def test_it_ends_while_a_subscriber_reads_nothing(street: tuple[str, ...]) -> None:
     with (
-        running_server("--sync") as server,
+        running_server("--sync", *street) as server,
         RawClient(server.port) as client,
         RawSubscriber(server.streaming_port, 1) as deaf,
     ):
@@ -190,8 +192,8 @@ def test_it_ends_while_a_subscriber_reads_nothing() -> None:
         assert server.log() == ""
 
 
-def test_it_listens_on_ipv6_too() -> None:  # the official client looks for IPv4 alone
-    with running_server("--host", "::1") as server:
+def test_it_listens_on_ipv6_too(street: tuple[str, ...]) -> None:  # the official client looks for IPv4 alone
+    with running_server("--host", "::1", *street) as server:
         with socket.create_connection(("::1", server.port), 10.0) as client:
             client.sendall(msgpack.packb([0, 1, "version", [[False]]]))
             assert msgpack.unpackb(client.recv(1000)) == [1, 1, None, [[1, "0.9.16"]]]

@@ -13,14 +13,14 @@ from linden.server.cue import (
     TRUSTED_AGAIN,
     Cue,
 )
-from servers import running_server
+from servers import RunningServer
 
 
-def _traffic_manager(client: RawClient) -> None:
+def _traffic_manager(client: RawClient, port: int) -> None:
     settings = client.call("get_episode_settings")
     settings[0], settings[2] = True, [True, 0.05]
     client.call("set_episode_settings", settings)
-    assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+    assert client.call("add_traffic_manager_running", ["127.0.0.1", port])
 
 
 def _peer(*methods: str) -> SimpleNamespace:
@@ -28,9 +28,9 @@ def _peer(*methods: str) -> SimpleNamespace:
     return SimpleNamespace(calls=deque(Call(n, name, [], False) for n, name in enumerate(("tick_cue", *methods))))
 
 
-def test_a_question_behind_a_tick_is_answered_before_it() -> None:
-    with running_server() as server, RawClient(server.port) as client:
-        _traffic_manager(client)
+def test_a_question_behind_a_tick_is_answered_before_it(server: RunningServer, manager_port: int) -> None:
+    with RawClient(server.port) as client:
+        _traffic_manager(client, manager_port)
         tick = client.request("tick_cue")
         question = client.request("get_episode_settings")
         client.socket.sendall(tick + question)
@@ -79,9 +79,9 @@ def test_the_frames_own_time_is_part_of_the_wait() -> None:
     assert not cue.waits(_peer(), 10.0 + 2.0 * SETTLING_S)
 
 
-def test_ticks_of_a_traffic_manager_in_asynchronous_mode_cost_no_wait() -> None:
-    with running_server() as server, RawClient(server.port) as client:
-        _traffic_manager(client)
+def test_ticks_of_a_traffic_manager_in_asynchronous_mode_cost_no_wait(server: RunningServer, manager_port: int) -> None:
+    with RawClient(server.port) as client:
+        _traffic_manager(client, manager_port)
         first, begun_s = client.call("tick_cue"), time.monotonic()
         frames = []
         for _ in range(100):
@@ -94,9 +94,9 @@ def test_ticks_of_a_traffic_manager_in_asynchronous_mode_cost_no_wait() -> None:
     assert took_s < 100 * PATIENCE_S / 2.0, "each of them waited"
 
 
-def test_other_clients_are_served_while_a_tick_waits() -> None:
-    with running_server() as server, RawClient(server.port) as client, RawClient(server.port) as other:
-        _traffic_manager(client)
+def test_other_clients_are_served_while_a_tick_waits(server: RunningServer, manager_port: int) -> None:
+    with RawClient(server.port) as client, RawClient(server.port) as other:
+        _traffic_manager(client, manager_port)
         served = 0
         client.send("tick_cue")
         client.socket.settimeout(0.0)
@@ -121,10 +121,12 @@ def test_a_late_question_counts_for_the_step_it_belongs_to() -> None:
     assert cue.answered_s == 2.0
 
 
-def test_the_wait_after_a_question_is_hardly_longer_than_the_thread_needs() -> None:
+def test_the_wait_after_a_question_is_hardly_longer_than_the_thread_needs(
+    server: RunningServer, manager_port: int
+) -> None:
     took_s = []
-    with running_server("--sync") as server, RawClient(server.port) as client:
-        _traffic_manager(client)
+    with RawClient(server.port) as client:
+        _traffic_manager(client, manager_port)
         for _ in range(300):
             client.call("get_episode_settings")
             began_s = time.perf_counter()
@@ -133,10 +135,10 @@ def test_the_wait_after_a_question_is_hardly_longer_than_the_thread_needs() -> N
     assert min(took_s) < SETTLING_S + 0.0005
 
 
-def test_a_thread_is_left_the_whole_wait_however_quick_its_calls_are() -> None:
+def test_a_thread_is_left_the_whole_wait_however_quick_its_calls_are(server: RunningServer, manager_port: int) -> None:
     took_s = []
-    with running_server("--sync") as server, RawClient(server.port) as client:
-        _traffic_manager(client)
+    with RawClient(server.port) as client:
+        _traffic_manager(client, manager_port)
         for _ in range(300):
             client.call("get_vehicle_light_states")
             client.call("get_weather_parameters")

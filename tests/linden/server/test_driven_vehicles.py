@@ -5,7 +5,7 @@ from typing import Any
 from fakes.raw_client import RawClient
 from linden.protocol.wire.commands import COMMANDS, ApplyLocation, ApplyVehicleControl, DestroyActor
 from linden.server.driven_vehicles import LONG_PATIENCE_S, PATIENCE_S, DrivenVehicles
-from servers import running_server
+from servers import RunningServer
 
 APPLY_LOCATION = COMMANDS.index(ApplyLocation)
 CONTROL = COMMANDS.index(ApplyVehicleControl)
@@ -93,9 +93,11 @@ def test_batches_of_another_form_are_no_traffic_managers() -> None:
     assert driven.actor_ids == frozenset()
 
 
-def test_the_answer_comes_after_that_to_the_batch_and_other_calls_go_on() -> None:
-    with running_server() as server, RawClient(server.port) as client:
-        client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+def test_the_answer_comes_after_that_to_the_batch_and_other_calls_go_on(
+    server: RunningServer, manager_port: int
+) -> None:
+    with RawClient(server.port) as client:
+        client.call("add_traffic_manager_running", ["127.0.0.1", manager_port])
         points = client.call("get_map_info")[1]
         cars = [client.call("spawn_actor", [0, "vehicle.tesla.model3", []], point)[0] for point in points[:2]]
         drive = [[[APPLY_LOCATION, [car, [1.0, 2.0, 50.0]]]] for car in cars]

@@ -8,7 +8,7 @@ from fakes.raw_client import RawClient
 from linden.protocol.wire.rpc import Call
 from linden.server.load_answers import ASKING_S, GATHERING_S, SETTLING_S, LoadAnswers
 from linden.server.peers import RpcPeer
-from servers import running_server
+from servers import RunningServer
 
 LOAD = ("load_new_episode", "Linden", True, 0xFFFF)
 
@@ -51,9 +51,11 @@ def test_a_client_that_never_asks_gets_its_other_answers() -> None:
     assert not answers.waits(_peer("apply_batch"), 1.0 + ASKING_S)
 
 
-def test_the_order_of_answers_is_load_episode_and_then_the_threads_call() -> None:
-    with running_server() as server, RawClient(server.port) as client:
-        assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+def test_the_order_of_answers_is_load_episode_and_then_the_threads_call(
+    server: RunningServer, manager_port: int
+) -> None:
+    with RawClient(server.port) as client:
+        assert client.call("add_traffic_manager_running", ["127.0.0.1", manager_port])
         before = client.call("get_episode_info")
         load, thread = client.send(*LOAD), client.send("get_weather_parameters")
         assert client.answer()[1] == load
@@ -65,11 +67,11 @@ def test_the_order_of_answers_is_load_episode_and_then_the_threads_call() -> Non
     assert after[0] != before[0]
 
 
-def test_a_client_that_vanishes_in_a_load_leaves_a_new_episode() -> None:
-    with running_server() as server, RawClient(server.port) as watcher:
+def test_a_client_that_vanishes_in_a_load_leaves_a_new_episode(server: RunningServer, manager_port: int) -> None:
+    with RawClient(server.port) as watcher:
         before = watcher.call("get_episode_info")[0]
         with RawClient(server.port) as client:
-            assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+            assert client.call("add_traffic_manager_running", ["127.0.0.1", manager_port])
             client.send(*LOAD)
             client.send("get_weather_parameters")
             client.answer()
@@ -78,8 +80,8 @@ def test_a_client_that_vanishes_in_a_load_leaves_a_new_episode() -> None:
             assert time.monotonic() < deadline_s, "the load is lost"
 
 
-def test_a_load_is_answered_where_no_thread_calls() -> None:
-    with running_server() as server, RawClient(server.port) as client:
-        assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+def test_a_load_is_answered_where_no_thread_calls(server: RunningServer, manager_port: int) -> None:
+    with RawClient(server.port) as client:
+        assert client.call("add_traffic_manager_running", ["127.0.0.1", manager_port])
         client.call(*LOAD)
         assert client.call("get_weather_parameters")

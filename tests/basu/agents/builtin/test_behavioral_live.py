@@ -109,6 +109,7 @@ def infractions(result: dict[str, Any]) -> list[str]:
     return [f"{one['kind']}: {one['detail']}" for one in result["infractions"]]
 
 
+@pytest.mark.measured_processes
 def test_it_goes_round_a_car_parked_in_its_lane_and_comes_back(driven: Driven) -> None:
     history, result = driven(STREET, "self.put(self.route.waypoints[60])")
     s_m, lateral_m = history.frames["route_s_m"], history.frames["lateral_m"]

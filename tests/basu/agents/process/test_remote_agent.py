@@ -16,6 +16,7 @@ from basu.agents.process import remote_agent
 from basu.agents.process.remote_agent import AgentInProcess, RemoteAgent, find_agent
 from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
 
+pytestmark = pytest.mark.measured_processes
 COMPLETE = """
 import os, random, signal, sys, time
 COUNT = [0]

@@ -5,7 +5,6 @@ is in `docs/decisions/0055-control-drivers.md`.
 """
 
 import json
-import os
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ import pytest
 
 from basu.cli import main
 from basu.scenarios.cases import open_library
+from servers import RunningServer
 
 LIBRARY = open_library()
 BLIND, FORWARD = "blind", "forward"
@@ -53,13 +53,15 @@ def drives() -> dict[str, list[str]]:
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> dict[tuple[str, str], dict[str, Any]]:
+def results(
+    simulator: RunningServer, tmp_path_factory: pytest.TempPathFactory
+) -> dict[tuple[str, str], dict[str, Any]]:
     """What came of the drives, by case and driver."""
     found = {}
+    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
     for driver, cases in drives().items():
         output = tmp_path_factory.mktemp(driver)
-        workers = "1" if "PYTEST_XDIST_WORKER" in os.environ else "2"  # the other worker has tests of its own
-        main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), "--workers", workers])
+        main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), *address])
         for path in (output / "latest").glob(f"{driver}/*/result.json"):
             result = json.loads(path.read_text(encoding="utf-8"))
             found[result["id"], driver] = result

@@ -13,6 +13,7 @@ TESTS = Path(__file__).parents[4]
 KINDS = ("depth", "semantic", "instance", "normals", "flow", "coloured")
 
 
+@pytest.mark.measured_processes
 def test_stages_of_the_gpu_make_the_pictures_of_the_cpu() -> None:
     path = os.pathsep.join([str(TESTS), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]).rstrip(os.pathsep)
     simulated = {**os.environ, "NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1", "PYTHONPATH": path}
