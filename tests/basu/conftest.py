@@ -12,6 +12,7 @@ import pytest
 from basu import simulator as simulator_module
 from basu.agents.adapters.replacement_modules import step_back
 from basu.agents.process import agent_process
+from basu.output.report import path_picture
 from servers import RunningServer, running_server
 from shared_client import shared_client
 from tracing import untraced
@@ -32,6 +33,16 @@ def _no_server_starts_early() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(simulator_module, "started_early", lambda _: nullcontext())
         yield
+
+
+@pytest.fixture(autouse=True)
+def _pictures_where_asked(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have drives of the shared simulator leave an empty ``path.png``, but in tests with the mark ``pictures``.
+
+    matplotlib draws it in 0.3 s of processor time, which is a third of a short drive.
+    """
+    if "simulator" in request.fixturenames and not request.node.get_closest_marker("pictures"):
+        monkeypatch.setattr(path_picture, "draw", lambda path, *_: path.write_bytes(b""))
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -14,13 +14,12 @@ from basu.gym import ShuttleEnv
 from basu.gym_vector import ShuttleVectorEnv
 from ray_clusters import connected_cluster
 
-pytest.importorskip("ray.rllib", reason="RLlib is not installed; `pip install linden[rllib]` brings it")
-
 EXAMPLE = Path(__file__).parents[2] / "examples" / "rllib_training.py"
 
 
 @pytest.fixture(scope="module")
 def example() -> dict[str, Any]:
+    pytest.importorskip("ray.rllib", reason="RLlib is not installed; `pip install linden[rllib]` brings it")
     return runpy.run_path(str(EXAMPLE))
 
 

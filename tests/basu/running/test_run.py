@@ -90,6 +90,7 @@ def doing(folder: Path, deed: str, sensors: str | None = None) -> Path:
     return path
 
 
+@pytest.mark.pictures
 def test_the_thesis_sample_leaves_a_scored_folder_and_scoring_it_again_gives_the_same_judgement(
     run: Runner, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
