@@ -35,12 +35,17 @@ NO_TESTS = 5
 """Of pytest, where options such as ``-k`` leave none in a file."""
 Files = tuple[str, ...]
 TOGETHER: tuple[Files, ...] = (
-    ("actors", "client_quirks", "components", "environment", "vehicles"),
+    ("actors", "client_quirks", "components", "environment"),
     ("cameras", "scene", "sensing", "sensors", "unreal"),
-    ("clients", "lights", "props", "walkers"),
+    ("clients", "lights", "props"),
+    ("determinism", "truth_of_runs"),
     ("scenario_calls", "truth_of_motion", "truth_on_a_street", "vehicle_forces"),
+    ("vehicle_parts", "vehicles", "walkers"),
 )
-"""Files whose tests use the common server alone, begin an episode each, and do not count what the server holds."""
+"""Files whose tests use the common server alone, begin an episode each, and do not count what the server holds.
+
+The fourth row starts servers for each drive. In the last, the first file counts sentences of the log.
+"""
 
 
 def main(options: list[str]) -> int:

@@ -150,7 +150,11 @@ class Conduct:
         if self._look_in_ticks <= 0:
             self._look_in_ticks = self._chance.randint(1, 2 * LOOK_TICKS)
             self._next_look = 1 - self._next_look
-            self._look(frame, (_weather, _physics)[self._next_look](self._run))
+            try:
+                now = (_weather, _physics)[self._next_look](self._run)
+            except RuntimeError:  # the vehicle or the simulator is gone: the next step says which
+                return
+            self._look(frame, now)
 
     def finish(self) -> None:
         """Check the whole state once more after the last step.

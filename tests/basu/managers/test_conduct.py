@@ -10,7 +10,7 @@ import pytest
 from basu.cli import main
 from basu.errors import AgentCrashedError
 from basu.managers.base_manager import Ego, WorldChanges
-from basu.managers.conduct import Conduct
+from basu.managers.conduct import LOOK_TICKS, Conduct
 from servers import RunningServer
 
 CHEAT = """
@@ -82,6 +82,18 @@ def test_jumps_are_seen_large_and_small(step_m: float) -> None:
 def test_speed_from_nowhere_is_seen() -> None:
     with pytest.raises(AgentCrashedError, match=r"gained 20\.0 m/s in one step with nothing near"):
         watched([(0.0, 0.0), (0.5, 20.0)])
+
+
+def test_a_look_at_a_vehicle_that_is_gone_leaves_the_verdict_to_the_next_step() -> None:
+    def gone() -> None:
+        raise RuntimeError("Actor could not be found in the registry")
+
+    conduct = watched([(0.0, 5.0)])
+    run: Any = conduct._run
+    run.own_simulator, run.world.get_weather, run.vehicle.get_physics_control = False, gone, gone
+    frame: Any = SimpleNamespace(tick=1, server_frame=1)
+    for _ in range(4 * LOOK_TICKS):
+        conduct.after(frame)
 
 
 @pytest.mark.parametrize(
