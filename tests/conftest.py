@@ -16,7 +16,7 @@ import hypothesis
 import pytest
 
 from processor_time import measured
-from tracing import save, untraced, untraced_processes
+from tracing import save, untraced, untraced_here, untraced_processes
 
 LONGEST = (
     "basu/running/scenario_runs/test_catalogue.py",
@@ -91,6 +91,7 @@ def pytest_collection_finish() -> None:
 def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object]:
     """Measure no coverage in slow tests: they drive long ways through lines that quick tests reach.
 
+    So do tests with the mark ``unmeasured``, which take some seconds.
     Processes that a test starts are measured where it has the mark ``measured_processes``. Others run lines that tests
     of these lines reach in their own process, and a process that measures starts 0.4 s later.
     Of the examples of hypothesis the first ones are measured: the others take the same lines.
@@ -100,6 +101,8 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
             stack.enter_context(untraced_processes())
         if item.get_closest_marker("slow"):
             stack.enter_context(untraced())
+        elif item.get_closest_marker("unmeasured"):
+            stack.enter_context(untraced_here())
         elif (random := getattr(getattr(item, "obj", None), "hypothesis", None)) is not None:
             stack.callback(setattr, random, "inner_test", random.inner_test)
             random.inner_test = traced_first(random.inner_test, stack)

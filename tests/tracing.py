@@ -15,15 +15,21 @@ CONFIGURED = ("COVERAGE_PROCESS_CONFIG", "COVERAGE_PROCESS_START", OF_SERVERS)
 @contextmanager
 def untraced() -> Iterator[None]:
     """Measure no coverage within the block; without a measurement nothing changes."""
+    with _without(CONFIGURED), untraced_here():
+        yield
+
+
+@contextmanager
+def untraced_here() -> Iterator[None]:
+    """Measure no coverage of this process within the block."""
     measured = coverage.Coverage.current()
-    with _without(CONFIGURED):
+    if measured is not None:
+        measured.stop()
+    try:
+        yield
+    finally:
         if measured is not None:
-            measured.stop()
-        try:
-            yield
-        finally:
-            if measured is not None:
-                measured.start()
+            measured.start()
 
 
 @contextmanager

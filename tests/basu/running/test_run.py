@@ -124,6 +124,7 @@ def test_the_history_follows_the_vehicle_from_rest(run: Runner, tmp_path: Path) 
     assert abs(history.frames["route_s_m"][0]) < 1.0
 
 
+@pytest.mark.unmeasured
 @pytest.mark.parametrize(
     ("deed", "status", "sentence"),
     [

@@ -17,6 +17,7 @@ from basu.records.history import History
 from basu.records.history.files import read_history
 from servers import RunningServer
 
+pytestmark = pytest.mark.unmeasured
 # 140 m of a straight street, one lane of 2.9 m each way, no junction
 STREET = [(303.2, 119.1), (363.1, 122.4), (443.0, 126.8)]
 PARKED_S_M = 60

@@ -68,10 +68,11 @@ def test_a_box_behind_the_body_or_behind_the_sensor_hides_nothing() -> None:
     assert not hides([(30.0, 4.5, 2.0, 1.0, 3.0, 3.0, 0.0), (-5.0, 0.0, 2.0, 1.0, 3.0, 3.0, 0.0)], child_at(24.0, 3.6))
 
 
+@pytest.mark.unmeasured
 def test_the_answer_is_that_of_the_obvious_version() -> None:
     chance = random.Random(7)
     answers = []
-    for _ in range(8):
+    for _ in range(4):
         rows = [
             (
                 *(chance.uniform(-25.0, 25.0) for _ in "xy"),

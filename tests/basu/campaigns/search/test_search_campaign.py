@@ -82,6 +82,7 @@ def test_a_search_finds_the_boundary_of_each_agent(run: Callable[..., Path], cam
     assert "Wilson" not in page  # the drives are no sample of the whole
 
 
+@pytest.mark.unmeasured
 def test_a_search_ends_alike_in_whatever_order_workers_finish(
     run: Callable[..., Path], campaign: Write, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -96,6 +97,7 @@ def test_a_search_ends_alike_in_whatever_order_workers_finish(
     assert all((alone / "search" / name).read_bytes() == (together / "search" / name).read_bytes() for name in names)
 
 
+@pytest.mark.unmeasured
 def test_a_killed_search_goes_on_and_equals_an_undisturbed_one(
     run: Callable[..., Path], campaign: Write, modules: str, tmp_path: Path
 ) -> None:
@@ -120,6 +122,7 @@ def _lines(folder: Path) -> int:
     return lines + 4 * len(list(folder.glob("drives/*/*.parquet")))
 
 
+@pytest.mark.unmeasured
 def test_proposals_that_were_lost_are_made_again(run: Callable[..., Path], campaign: Write) -> None:
     file = campaign(ONE_SEED, SEARCH)
     whole, part = run(file), run(file, "part", drives=40)

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
 
@@ -14,6 +15,7 @@ from basu.routing import Control, Stop
 from fakes.drives import STEP_S, VEHICLE, stop_sign, straight_route
 from fakes.rides import Row, eastward, ride
 
+pytestmark = pytest.mark.unmeasured
 WALKER = 9
 SIZES = {WALKER: (0.25, 0.25)}
 LENGTH_M, MARK_M = 100.0, 50.0  # of the route, and where something happens on it
