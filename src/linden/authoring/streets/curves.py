@@ -12,6 +12,8 @@ from typing import NamedTuple
 STRAIGHT_PER_M = 2e-5
 """An arc that is flatter becomes its chord: over 20 m the two lie 1 mm apart, and LibCarla, which finds an arc's points
 from its centre in single precision, is off by more than that where the radius exceeds 50 km."""
+STRAIGHT_RAD = 2e-3
+"""An arc that turns by more stays an arc, however flat it is: its chord would leave and arrive at another angle."""
 
 
 class Pose(NamedTuple):
@@ -149,12 +151,18 @@ def joined(begin: Pose, end: Pose, share: float = 1.0) -> Path:
     single = _one_turn(begin, end, share)
     double = _two_arcs(begin, end)
     found = single if single is not None and sharpest(single) * share <= sharpest(double) + 1e-9 else double
-    return tuple(_chord(piece) if abs(piece.curvature_per_m) < STRAIGHT_PER_M else piece for piece in found)
+    return tuple(_chord(piece) if _is_straight(piece) else piece for piece in found)
 
 
 def sharpest(path: Path) -> float:
     """Return the largest absolute curvature in 1/m."""
     return max(abs(piece.curvature_per_m) for piece in path)
+
+
+def _is_straight(piece: Piece) -> bool:
+    """Return whether a chord may stand for the piece."""
+    curvature_per_m = abs(piece.curvature_per_m)
+    return curvature_per_m < STRAIGHT_PER_M and curvature_per_m * piece.length_m < STRAIGHT_RAD
 
 
 def _chord(piece: Piece) -> Piece:
