@@ -7,7 +7,7 @@ import coverage
 import pytest
 
 from conftest import LONGEST
-from tracing import untraced
+from tracing import untraced, untraced_processes
 
 TESTS = Path(__file__).parents[1]
 
@@ -31,3 +31,18 @@ def test_no_coverage_is_measured_within_the_block_and_it_goes_on_after_it(
         assert os.environ["COVERAGE_PROCESS_CONFIG"] == "all"
         measured.stop()
         monkeypatch.undo()
+
+
+def test_processes_are_not_measured_where_a_test_has_no_mark(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert "COVERAGE_PROCESS_CONFIG" not in os.environ, "this test has no mark"
+    monkeypatch.setenv("COVERAGE_PROCESS_CONFIG", "all")
+    monkeypatch.setenv("COVERAGE_OF_SERVERS", "pyproject.toml")
+    with untraced_processes():
+        assert "COVERAGE_PROCESS_CONFIG" not in os.environ
+        assert os.environ["COVERAGE_OF_SERVERS"] == "pyproject.toml"
+    assert os.environ["COVERAGE_PROCESS_CONFIG"] == "all"
+
+
+@pytest.mark.measured_processes
+def test_processes_are_measured_with_the_mark_where_this_one_is() -> None:
+    assert ("COVERAGE_PROCESS_CONFIG" in os.environ) == (coverage.Coverage.current() is not None)

@@ -82,6 +82,7 @@ def test_a_campaign_goes_on_from_its_store_on_another_machine(
         assert not list((folder / "journal").glob("*"))
 
 
+@pytest.mark.measured_processes
 def test_a_killed_command_leaves_only_complete_blocks(
     run: Callable[..., None], campaign: Write, memory: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

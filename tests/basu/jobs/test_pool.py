@@ -17,6 +17,8 @@ from basu.jobs.job import Answer, Done, Job, Lost, PlayerSpec, Ready
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes
 
+pytestmark = pytest.mark.measured_processes
+
 
 @contextmanager
 def pool_of(player: str, workers: int = 2, *arguments: str, **limits: Any) -> Iterator[Pool]:

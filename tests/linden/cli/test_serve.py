@@ -32,6 +32,7 @@ def street(tmp_path: Path) -> tuple[str, ...]:
     return "--maps", str(folder), "--map", "Street"
 
 
+@pytest.mark.measured_processes
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_signal_ends_it_cleanly(street: tuple[str, ...], number: signal.Signals) -> None:
     with running_server(*street) as server:
@@ -144,6 +145,7 @@ def until_it_answers(port: int) -> None:
             return
 
 
+@pytest.mark.measured_processes
 def test_a_cache_that_cannot_be_written_stops_no_server(
     tmp_path: Path, street: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -156,6 +158,7 @@ def test_a_cache_that_cannot_be_written_stops_no_server(
         assert "set XDG_CACHE_HOME to a folder that can be written" in line
 
 
+@pytest.mark.measured_processes
 def test_a_signal_during_a_long_call_ends_it_cleanly_within_two_seconds() -> None:
     with running_server("--sync") as server, RawClient(server.port) as client:
         client.socket.sendall(b"".join(client.request("load_new_episode", "", True, 0xFFFF) for _ in range(5000)))

@@ -17,7 +17,7 @@ from basu.records.history import History
 from basu.records.history.files import read_history
 from servers import RunningServer
 
-pytestmark = pytest.mark.unmeasured
+pytestmark = [pytest.mark.unmeasured, pytest.mark.measured_processes]
 # 140 m of a straight street, one lane of 2.9 m each way, no junction
 STREET = [(303.2, 119.1), (363.1, 122.4), (443.0, 126.8)]
 PARKED_S_M = 60
@@ -110,7 +110,6 @@ def infractions(result: dict[str, Any]) -> list[str]:
     return [f"{one['kind']}: {one['detail']}" for one in result["infractions"]]
 
 
-@pytest.mark.measured_processes
 def test_it_goes_round_a_car_parked_in_its_lane_and_comes_back(driven: Driven) -> None:
     history, result = driven(STREET, "self.put(self.route.waypoints[60])")
     s_m, lateral_m = history.frames["route_s_m"], history.frames["lateral_m"]

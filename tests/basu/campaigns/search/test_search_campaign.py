@@ -98,6 +98,7 @@ def test_a_search_ends_alike_in_whatever_order_workers_finish(
 
 
 @pytest.mark.unmeasured
+@pytest.mark.measured_processes
 def test_a_killed_search_goes_on_and_equals_an_undisturbed_one(
     run: Callable[..., Path], campaign: Write, modules: str, tmp_path: Path
 ) -> None:
