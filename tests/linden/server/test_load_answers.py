@@ -99,13 +99,14 @@ def _episodes(watcher: RawSubscriber) -> list[int]:
     return found
 
 
-def test_the_client_that_loads_learns_of_the_new_episode_when_all_others_do() -> None:
+def test_the_client_that_loads_learns_of_the_new_episode_when_all_others_do(
+    server: RunningServer, manager_port: int
+) -> None:
     with (
-        running_server() as server,
         RawClient(server.port) as client,
         RawSubscriber(server.streaming_port, WORLD_OBSERVER_ID) as watcher,
     ):
-        client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+        client.call("add_traffic_manager_running", ["127.0.0.1", manager_port])
         start = client.call("get_map_info")[1][0]
         car = client.call("spawn_actor", [0, "vehicle.tesla.model3", []], start)[0]
         client.call("apply_batch", [[[COMMANDS.index(ApplyLocation), [car, start[0]]]]], False)
