@@ -158,7 +158,6 @@ def test_a_cache_that_cannot_be_written_stops_no_server(
         assert "set XDG_CACHE_HOME to a folder that can be written" in line
 
 
-@pytest.mark.measured_processes
 def test_a_signal_during_a_long_call_ends_it_cleanly_within_two_seconds() -> None:
     with running_server("--sync") as server, RawClient(server.port) as client:
         client.socket.sendall(b"".join(client.request("load_new_episode", "", True, 0xFFFF) for _ in range(5000)))

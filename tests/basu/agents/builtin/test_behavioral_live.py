@@ -17,7 +17,6 @@ from basu.records.history import History
 from basu.records.history.files import read_history
 from servers import RunningServer
 
-pytestmark = [pytest.mark.unmeasured, pytest.mark.measured_processes]
 # 140 m of a straight street, one lane of 2.9 m each way, no junction
 STREET = [(303.2, 119.1), (363.1, 122.4), (443.0, 126.8)]
 PARKED_S_M = 60
@@ -110,6 +109,8 @@ def infractions(result: dict[str, Any]) -> list[str]:
     return [f"{one['kind']}: {one['detail']}" for one in result["infractions"]]
 
 
+@pytest.mark.unmeasured
+@pytest.mark.measured_processes
 def test_it_goes_round_a_car_parked_in_its_lane_and_comes_back(driven: Driven) -> None:
     history, result = driven(STREET, "self.put(self.route.waypoints[60])")
     s_m, lateral_m = history.frames["route_s_m"], history.frames["lateral_m"]
@@ -118,6 +119,7 @@ def test_it_goes_round_a_car_parked_in_its_lane_and_comes_back(driven: Driven) -
     assert np.abs(lateral_m[(s_m > 90.0) | (s_m < 25.0)]).max() < 0.3
 
 
+@pytest.mark.unmeasured
 def test_it_lets_oncoming_cars_past_before_it_goes_round(driven: Driven) -> None:
     scene = ("self.put(self.route.waypoints[60])", "for k in (100, 118, 136): self.send(self.across(k), 6.5)")
     history, result = driven(STREET, *scene)
@@ -132,6 +134,7 @@ def test_it_lets_oncoming_cars_past_before_it_goes_round(driven: Driven) -> None
     assert lateral_m[np.abs(s_m - PARKED_S_M) < 2.0].max() < -2.0
 
 
+@pytest.mark.unmeasured
 def test_at_a_stop_sign_the_ones_go_first_that_cross(driven: Driven) -> None:
     number = "next(k for k, w in enumerate(self.route.waypoints) if w.is_junction)"
     history, result = driven(STOP_SIGN, f"self.send_across({number}, 6.0, 0.0, 8.0, 30.0, 52.0)")
@@ -144,6 +147,7 @@ def test_at_a_stop_sign_the_ones_go_first_that_cross(driven: Driven) -> None:
     assert nearest_m(history, frames["tick"][inside]) > 5.0  # from middle to middle; nobody else is on the crossing
 
 
+@pytest.mark.unmeasured
 def test_into_a_roundabout_the_ones_go_first_that_circulate(driven: Driven) -> None:
     number = "next(k for k, w in enumerate(self.route.waypoints) if w.is_junction)"
     history, result = driven(ROUNDABOUT, f"self.send_across({number}, 6.0, -0.3, 8.0, 30.0, 52.0)")
@@ -153,14 +157,13 @@ def test_into_a_roundabout_the_ones_go_first_that_circulate(driven: Driven) -> N
     assert history.speed_mps()[before].min() < 1.2  # an empty one is entered at 2.5 m/s or more
 
 
-@pytest.mark.slow
 def test_the_deviating_agent_makes_the_thesiss_row(
     simulator: RunningServer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Its run ends after 20 s at rest, not after 180: it rests at a house."""
     monkeypatch.setattr(routes_manager, "BLOCKED_S", 20.0)
     address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
-    main(["run", "deviating", *address, "--output", str(tmp_path)])
+    main(["run", "deviating", "--in-process", *address, "--output", str(tmp_path)])
     result = json.loads((tmp_path / "latest" / "result.json").read_text())
     assert sorted(one["kind"] for one in result["infractions"]) == ["collision_static", "speeding"]
     assert 0.5 < result["scores"]["path_following"] < 0.6
