@@ -196,7 +196,6 @@ def test_a_folder_of_something_else_is_refused(tmp_path: Path) -> None:
         status(tmp_path)
 
 
-@pytest.mark.slow
 def test_a_campaign_on_a_cluster_equals_one_of_processes(run: Callable[..., Path], campaign: Write) -> None:
     pytest.importorskip("ray")
     file = campaign(("number = 3", "number = 1"))

@@ -16,7 +16,6 @@ pytest.importorskip("ray")
 from basu.jobs.cluster import RayBackend
 
 
-@pytest.mark.slow
 def test_a_node_that_is_removed_loses_no_job_and_counts_none_twice(player: str) -> None:
     with connected_cluster(cpus=1) as cluster:
         node = cluster.add_node(num_cpus=1, object_store_memory=80_000_000)

@@ -22,7 +22,6 @@ def test_what_runs_cannot_share_is_refused(options: RunOptions) -> None:
         check_parallel(options)
 
 
-@pytest.mark.slow
 def test_a_series_of_two_workers_equals_one_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     words = ["run", "forward", "--routes", "routes/linden_short.xml", "--stop-after", "3", "--repetitions", "2"]
