@@ -78,7 +78,7 @@ class Node:
         waits for its answer, so a node that connects late must not miss it.
 
         Raises:
-            UserError: rosbags or rospy is not installed, no roscore answers, or a node of this name is there.
+            UserError: rospy is not installed, no roscore answers, or a node of this name is there.
         """
         self.types = types_of(Generation.ROS_1)
         self.name = name
@@ -342,7 +342,7 @@ def master_uri() -> str:
     return text
 
 
-def require() -> None:
+def require_roscore() -> None:
     """Check that ROS 1 is there and a roscore answers.
 
     Raises:
