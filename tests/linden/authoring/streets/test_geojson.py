@@ -5,7 +5,8 @@ from typing import Any
 
 import pytest
 
-from linden.authoring.streets.street_facts import Control, read
+from linden.authoring.streets.geojson import read
+from linden.authoring.streets.street_facts import Control
 from linden.errors import UserError
 
 
