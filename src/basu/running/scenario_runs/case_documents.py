@@ -15,7 +15,8 @@ from basu.running.scenario_runs.chosen_cases import design_of, files_of
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured
 from basu.scenarios.sampling import Grid, Sweep
-from basu.scenarios.shares import crash_shares, results_from, shares_to_json
+from basu.scenarios.share_documents import results_from, shares_to_json
+from basu.scenarios.shares import crash_shares
 from basu.scenarios.tree_text import tree_of
 from basu.scenarios.verdict import judge
 from basu.settings.command_line import words_of
