@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from basu.campaigns.command import RunSettings, describe, run_campaign
+from basu.campaigns.campaign_run import RunSettings
+from basu.campaigns.command import describe, run_campaign
 from basu.campaigns.storage import is_address
 from basu.cli.termination import terminated_as_interrupted
 from basu.errors import UserError
