@@ -1,6 +1,6 @@
 """Results as Python objects: a run with scores, events, record and pictures; a matrix of cases; and how both are read.
 
-Everything comes from the documents in a run's folder, so a result that was just driven and one that is read again later
+Everything comes from the documents in a run's folder. So a result that was just driven and one that is read again later
 are the same.
 """
 

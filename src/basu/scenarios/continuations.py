@@ -1,11 +1,13 @@
 """The ego of a record, driven on unimpeded from each of its frames, and what it would have met.
 
 A continuation begins every `START_S` of the record. In it the ego accelerates along its route to the highest speed that
-it had shown until then, slows for bends, stops at stop signs and red lights, and ignores all others. A partner moves as
-it really moved. They meet where the ego's box overlaps the partner's box, widened by `BESIDE_M`: at the same time, or
-within `MEETING_PET_S` of each other where their paths cross at 30 degrees or more. A meeting at different times counts
-only where the ego really was elsewhere, by `RESPONSE_M`, when it would have met: an ego that drove just so has not
-responded, and its record shows what came of that.
+it had shown until then. It slows for bends, stops at stop signs and red lights, and ignores all others. A partner moves
+as it really moved.
+
+They meet where the ego's box overlaps the partner's box, widened by `BESIDE_M`, at the same time. Where their paths
+cross at 30 degrees or more, `MEETING_PET_S` may lie between. Such a meeting at different times counts only where the
+ego really was elsewhere, by `RESPONSE_M`, when it would have met. An ego that drove just so has not responded, and its
+record shows what came of that.
 """
 
 from __future__ import annotations
@@ -41,10 +43,10 @@ class Continuations:
     """Where the ego would be, ``STEP_S`` apart, had it driven on unimpeded from each start.
 
     Attributes:
-        starts: (S,) frames in which continuations begin; the ego has moved before each.
+        starts: (S,) frames in which continuations begin.
         boxes: (S, J, 5) the ego's box.
         reached_mps: (S, J) its speed.
-        differs: (S, J) whether the ego really was elsewhere on its route then.
+        differs: (S, J) whether the ego really was elsewhere then.
     """
 
     def __init__(self, history: History, starts: NDArray[np.int64]) -> None:
