@@ -79,6 +79,8 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path("campaigns"))
     parser.add_argument("options", nargs="*", help="of basu campaign run")
     given = parser.parse_args()
+    if any(option.startswith("--output") for option in given.options):
+        parser.error("--output stands before --: this script reads the folder as well")
     folder = given.output / plan_of(read_campaign(given.campaign), given.campaign).campaign.name
     before = read_drives(folder).num_rows if folder.exists() else 0
     print(f"{len(os.sched_getaffinity(0))} processors for it, load {os.getloadavg()[0]:.1f}")

@@ -33,9 +33,12 @@ SCHEMA_VERSION = 1
 def locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder; the system releases it when this process ends, however that goes.
 
+    Folders that were made for the lock go again where nothing was written into them: the campaign was refused.
+
     Raises:
         UserError: another command holds it, or the folder cannot be made.
     """
+    made = [each for each in (folder, *folder.parents) if not each.exists()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(folder / LOCK_FILE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
@@ -43,6 +46,8 @@ def locked(folder: Path) -> Iterator[None]:
         raise UserError(f"{folder} cannot be used: {error.strerror}; name another place with --output") from error
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        if os.fstat(descriptor).st_nlink == 0:  # a command that was refused has removed it since it was opened
+            raise BlockingIOError
     except OSError:
         os.close(descriptor)
         raise UserError(
@@ -51,7 +56,17 @@ def locked(folder: Path) -> Iterator[None]:
     try:
         yield
     finally:
+        if made and [path.name for path in folder.iterdir()] == [LOCK_FILE]:
+            _remove(folder / LOCK_FILE, made)
         os.close(descriptor)
+
+
+def _remove(lock: Path, folders: list[Path]) -> None:
+    """Remove the lock and the folders around it that hold nothing else, the innermost first."""
+    with contextlib.suppress(OSError):  # another command has begun to use one of them
+        lock.unlink()
+        for folder in folders:
+            folder.rmdir()
 
 
 def is_locked(folder: Path) -> bool:

@@ -7,6 +7,7 @@ a call with long work                     that work, in the background          
 an answer, but for a Traffic Manager's    the scene that sensors look at         :data:`SCENE_S`
 a load's answer, then the calls of        the client's new episode               ``load_answers``
 Traffic Managers
+the next calls of the client that loads   the first frame of the new episode     :meth:`AnswerOrder.must_wait`
 a tick's answer, with Traffic Managers    their thread, which goes to sleep      ``cue``
 an answer to a driven car's destruction   a batch without the car                ``driven_vehicles``
 any call                                  the client, which reads its answers    :data:`UNREAD_ANSWERS_BYTES`
@@ -103,7 +104,14 @@ class AnswerOrder:
     # -- before a call -------------------------------------------------------------------------------------------
 
     def must_wait(self, peer: RpcPeer, unsent_bytes: int = 0) -> bool:
-        """Return whether a client's next call can neither be carried out nor answered yet."""
+        """Return whether a client's next call can neither be carried out nor answered yet.
+
+        The client that loads learns of the new episode when all others do, by its first frame. By calls alone it would
+        be earlier by as long as that frame waits for Traffic Managers. Its program would go on, and another client's
+        would still have the old episode.
+        """
+        if self._context.unshown_load == peer.number and not self.is_synchronous():
+            return True
         waits = self._of.get(peer)
         is_held = None if waits is None else self._is_held(peer, waits)
         if is_held is not None:

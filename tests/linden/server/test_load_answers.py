@@ -1,11 +1,15 @@
 """Claims about the order of answers round a load by a client that runs Traffic Managers."""
 
+import select
+import struct
 import time
 from collections import deque
 from types import SimpleNamespace
 
-from fakes.raw_client import RawClient
+from fakes.raw_client import RawClient, RawSubscriber
+from linden.protocol.wire.commands import COMMANDS, ApplyLocation, DestroyActor
 from linden.protocol.wire.rpc import Call
+from linden.protocol.wire.stream import WORLD_OBSERVER_ID
 from linden.server.load_answers import ASKING_S, GATHERING_S, SETTLING_S, LoadAnswers
 from linden.server.peers import RpcPeer
 from servers import running_server
@@ -83,3 +87,35 @@ def test_a_load_is_answered_where_no_thread_calls() -> None:
         assert client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
         client.call(*LOAD)
         assert client.call("get_weather_parameters")
+
+
+def _episodes(watcher: RawSubscriber) -> list[int]:
+    """Return the episode of each snapshot that has arrived; a frame's header takes 48 bytes before it."""
+    found = []
+    while select.select([watcher.socket], [], [], 0.0)[0]:
+        found.append(struct.unpack_from("<Q", watcher.message(), 48)[0])
+    return found
+
+
+def test_the_client_that_loads_learns_of_the_new_episode_when_all_others_do() -> None:
+    with (
+        running_server() as server,
+        RawClient(server.port) as client,
+        RawSubscriber(server.streaming_port, WORLD_OBSERVER_ID) as watcher,
+    ):
+        client.call("add_traffic_manager_running", ["127.0.0.1", 8000])
+        start = client.call("get_map_info")[1][0]
+        car = client.call("spawn_actor", [0, "vehicle.tesla.model3", []], start)[0]
+        client.call("apply_batch", [[[COMMANDS.index(ApplyLocation), [car, start[0]]]]], False)
+        before = client.call("get_episode_info")[0]
+        while before not in _episodes(watcher):  # the thread begins a step on this frame, and never ends it
+            time.sleep(0.01)
+        client.call("apply_batch", [[[COMMANDS.index(DestroyActor), [car]]]], False)
+        client.call(*LOAD)
+        client.call("version")
+        assert client.call("get_episode_info")[0] == before
+        client.call("get_episode_settings")
+        after = client.call("get_episode_info")[0]
+        seen = _episodes(watcher)
+    assert after != before
+    assert after in seen, "another client still has the old episode"

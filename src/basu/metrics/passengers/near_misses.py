@@ -152,6 +152,8 @@ def post_encroachment_s(
             near = np.hypot(*(others[rows, :2] - at[:, :2]).T) <= radius_m[rows]
             crossing = np.abs(np.sin(others[rows, 2] - at[:, 2])) >= math.sin(CROSSING_RAD)
             rows, at = rows[near & crossing], at[near & crossing]
+            if not len(rows):
+                continue  # most of the time: an empty array costs each of numpy's calls as well
             rows = rows[touching(at, others[rows])]
             found[rows], later[rows] = gap * step_s, np.maximum(tick[rows], tick[rows] + lag)
             left = left[np.isinf(found[left])] if len(rows) else left

@@ -55,7 +55,9 @@ class Context:
     traffic_managers: dict[int, tuple[str, int]] = field(default_factory=dict)
     """Port -> address of the client that runs a Traffic Manager there, and that client's connection."""
     pending_load: PendingLoad | None = None
-    """The load that has been answered and has not begun; see ``handlers.session.load_new_episode``."""
+    """The load that has been answered and has not begun; see ``rpc.session.load_new_episode``."""
+    unshown_load: int | None = None
+    """Connection of the client whose load has begun, until the first frame of the new episode."""
     lamps: tuple[list[tuple[int, int]], Packed] | None = None
     """The lamps of all vehicles as they were packed last."""
     frame_is_due: bool = False
@@ -67,6 +69,7 @@ class Context:
         """Make one frame, put what it shows into the outbox, and return its number."""
         fixed_s = self.world.settings.fixed_delta_seconds
         self.world.step(self.variable_step_s() if fixed_s is None else fixed_s)
+        self.unshown_load = None
         listened = self.streams.listened()
         if WORLD_OBSERVER_ID in listened:
             self.outbox.append((WORLD_OBSERVER_ID, self.frames.world_payload(self.world)))
@@ -78,6 +81,7 @@ class Context:
         pending, self.pending_load = self.pending_load, None
         if pending is not None:
             pending.begin()
+            self.unshown_load, self.frame_is_due = pending.client, True
 
     def builds_the_scene(self) -> bool:
         """Whether what sensors look at is being built."""

@@ -93,7 +93,7 @@ def axes(x: Scale, y: Scale) -> list[Element]:
         drawn.append(e("text", text, x=number(place, 1), y=bottom + 16.0, text_anchor="middle", class_="small"))
     for place, text in y.ticks():
         drawn.append(e("path", d=f"M{LEFT_PX} {number(place, 1)}H{right}", class_="grid"))
-        drawn.append(e("text", text, x=LEFT_PX - 6.0, y=number(place + 4.0, 1), text_anchor="end", class_="small"))
+        drawn.append(_beside(text, place, is_name=bool(y.axis.options)))
     middle = number(TOP_PX + HEIGHT_PX / 2.0, 1)
     drawn.append(
         e("text", title(x.axis), x=LEFT_PX + WIDTH_PX / 2.0, y=bottom + 34.0, text_anchor="middle", class_="strong")
@@ -101,6 +101,14 @@ def axes(x: Scale, y: Scale) -> list[Element]:
     turned = f"rotate(-90 16 {middle})"
     drawn.append(e("text", title(y.axis), x=16, y=middle, text_anchor="middle", transform=turned, class_="strong"))
     return drawn
+
+
+def _beside(text: str, place: float, *, is_name: bool) -> Element:
+    """Return a tick's text to the left of the plot; a name runs upwards, or it would cover the axis's own."""
+    if not is_name:
+        return e("text", text, x=LEFT_PX - 6.0, y=number(place + 4.0, 1), text_anchor="end", class_="small")
+    x, y = LEFT_PX - 10.0, number(place, 1)
+    return e("text", text, x=x, y=y, text_anchor="middle", transform=f"rotate(-90 {x} {y})", class_="small")
 
 
 def title(axis: Axis) -> str:
