@@ -17,7 +17,8 @@ from pathlib import Path
 
 from basu.campaigns.columns import schema_of
 from basu.campaigns.drive_table import DriveTable
-from basu.campaigns.plan import CampaignPlan, plan_of
+from basu.campaigns.plan import CampaignPlan
+from basu.campaigns.planning import plan_of
 from basu.campaigns.settings import checked
 from basu.jobs.job import Done, Job, Play, Played, PlayerSpec
 from basu.jobs.pool import Pool

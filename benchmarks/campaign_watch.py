@@ -22,7 +22,7 @@ import psutil
 from basu.campaigns.campaign_folder import PROGRESS_FILE
 from basu.campaigns.cost import cost_of
 from basu.campaigns.drive_table import read_drives
-from basu.campaigns.plan import plan_of
+from basu.campaigns.planning import plan_of
 from basu.campaigns.settings import read_campaign
 from basu.files import read_json
 

@@ -16,8 +16,10 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from basu.campaigns.command import RunSettings, player_settings
-from basu.campaigns.plan import CampaignPlan, plan_of
+from basu.campaigns.campaign_run import RunSettings
+from basu.campaigns.command import player_settings
+from basu.campaigns.plan import CampaignPlan
+from basu.campaigns.planning import plan_of
 from basu.campaigns.player import open_player
 from basu.campaigns.settings import checked
 from basu.options import STEP_S

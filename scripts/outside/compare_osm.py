@@ -19,7 +19,7 @@ import sumolib
 from linden.authoring.checks.check import Severity, check
 from linden.authoring.openstreetmap.convert import convert
 from linden.authoring.streets.build import assembled
-from linden.authoring.streets.street_facts import read
+from linden.authoring.streets.geojson import read
 from linden.authoring.streets.writing import text
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.parse import parse

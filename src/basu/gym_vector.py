@@ -16,7 +16,8 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space, concatenate, create_empty_array, iterate
 
 from basu.errors import SimulatorError, UserError
-from basu.gym import ShuttleEnv, action_space, observation_space
+from basu.gym import ShuttleEnv
+from basu.gym_spaces import action_space, observation_space
 from basu.jobs.job import Died, Played, PlayerSpec, Ready, Refused, raised
 from basu.jobs.processes import Processes
 

@@ -11,7 +11,8 @@ import numpy as np
 from basu.output.report.streets import Line
 from basu.records.history import FRAME, Collision, Facts, History, Recorder
 from basu.records.history.model import NO_LIGHT
-from basu.scenarios.shares import crash_shares, results_from, shares_to_json
+from basu.scenarios.share_documents import results_from, shares_to_json
+from basu.scenarios.shares import crash_shares
 from fakes.drives import STEP_S, VEHICLE, straight_route
 
 WALKER = 47
@@ -257,7 +258,7 @@ def matrix_of(cases: Sequence[dict[str, Any]], agents: Sequence[str], **changes:
 
 
 def shares(cases: Sequence[dict[str, Any]], agent: str) -> dict[str, Any]:
-    """What the results of one agent stand for, as `basu.scenarios.shares` writes it."""
+    """What the results of one agent stand for, as `basu.scenarios.share_documents` writes it."""
     documents = [{**case, **case["results"][agent]} for case in cases if agent in case["results"]]
     plain: dict[str, Any] = json.loads(json.dumps(shares_to_json(crash_shares(results_from(documents)))))
     return plain

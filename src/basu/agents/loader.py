@@ -34,7 +34,7 @@ BUILT_IN = {
     "forward": "basu.agents.builtin.baselines:ForwardAgent",
     "human": "basu.agents.builtin.basic:HumanAgent",
     "incident": "basu.agents.builtin.incident",
-    "ros": "basu.agents.ros.lockstep:RosAgent",
+    "ros": "basu.agents.ros.ros2:RosAgent",
     "ros1": "basu.agents.ros.ros1:Ros1Agent",
 }
 

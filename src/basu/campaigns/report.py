@@ -92,25 +92,9 @@ def _search(folder: Path, table: pa.Table, confidence: float) -> Markup | None:
     """The sections of searches and estimates; None where the campaign has none."""
     if not (folder / SEARCH).is_dir():
         return None
-    from basu.campaigns.search.boundary_map import boundary_map  # noqa: PLC0415 - scikit-learn, an extra
-    from basu.campaigns.search.findings import boundary_in, rare_in, searches_in  # noqa: PLC0415 - likewise
+    from basu.campaigns.search.report_section import search_section  # noqa: PLC0415 - scikit-learn, an extra
 
-    found = searches_in(folder, table)
-    boundaries = [boundary_in(drives) for drives in found if drives.about["kind"] == "search"]
-    return render(
-        "templates/campaign_search.j2",
-        boundaries=[
-            {
-                "title": each.drives.title,
-                "sentences": each.sentences,
-                "picture": boundary_map(each),
-                "reach": each.reach,
-            }
-            for each in boundaries
-        ],
-        estimates=[rare_in(drives, confidence) for drives in found if drives.about["kind"] == "estimate"],
-        confidence=confidence,
-    )
+    return search_section(folder, table, confidence)
 
 
 def _summary(document: dict[str, Any], table: pa.Table) -> str:

@@ -28,14 +28,14 @@ class Command(NamedTuple):
 
 
 COMMANDS = {
-    "run": Command("run", "drive a route and score the drive"),
+    "run": Command("driving", "drive a route and score the drive"),
     "scenario": Command("scenario", "list, play and draw traffic scenarios"),
-    "sumo": Command("sumo", "show SUMO's traffic beside any client of a running simulator"),
+    "sumo": Command("driving", "show SUMO's traffic beside any client of a running simulator"),
     "campaign": Command("campaign", "drive thousands of jobs from one file, and report on them"),
-    "score": Command("results", "score a run again, from its folder alone"),
+    "score": Command("driving", "score a run again, from its folder alone"),
     "report": Command("results", "write report.html of a run again, from its folder alone"),
     "compare": Command("results", "put runs side by side"),
-    "experiment": Command("run", "drive the thesis's test runs again"),
+    "experiment": Command("driving", "drive the thesis's test runs again"),
     "metrics": Command("recordings", "run a metric of your own on a recording"),
     "replay": Command("recordings", "play a run again"),
     "ros": Command("ros", "ROS bags of runs, and runs of ROS bags"),

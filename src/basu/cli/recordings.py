@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from basu.cli.driving import SIMULATOR
 from basu.cli.later import later
-from basu.cli.run import SIMULATOR
 from basu.options.run import RunOptions
 from basu.settings.command_line import add_options
 

@@ -7,10 +7,10 @@ import sys
 
 from basu.cli.later import later
 from basu.cli.recorder_log import progress_bar, read_recording
-from basu.cli.run import options_of
+from basu.cli.typed_options import options_of
 from basu.errors import UserError
+from basu.extras import RERUN, require
 from basu.output.viewer.server_replay import Progress, Where, play
-from basu.output.viewer.stream import require
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -19,7 +19,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UserError(f"--speed is {arguments.speed}; it is a factor, or 0")
     if not arguments.viewer:
         return _on_simulator(arguments)
-    require()
+    require(RERUN)
     return later("basu.cli.viewer_replay:run")(arguments)
 
 

@@ -1,4 +1,4 @@
-"""Arguments of ``basu score``, ``report``, ``compare`` and ``list``, which need no simulator."""
+"""Arguments of ``basu report``, ``compare`` and ``list``, which need no simulator."""
 
 from __future__ import annotations
 
@@ -6,27 +6,6 @@ import argparse
 from pathlib import Path
 
 from basu.cli.later import later
-
-
-def add_score(score: argparse.ArgumentParser) -> None:
-    """Add the arguments of ``basu score``."""
-    from basu.cli.run import add_scoring  # noqa: PLC0415 - numpy, which the other commands here do not need
-
-    score.description = (
-        "Compute scores and infractions of a run again, from its history and facts, without a simulator."
-    )
-    score.add_argument("folder", type=Path, metavar="RUN", help="a run's folder, such as runs/latest")
-    score.add_argument("--json", action="store_true", help="print the judgement as JSON")
-    score.add_argument(
-        "--metrics",
-        type=Path,
-        action="append",
-        default=[],
-        metavar="FILE.py",
-        help="metrics of your own; may be given several times",
-    )
-    add_scoring(score)
-    score.set_defaults(command=later("basu.cli.score:run"))
 
 
 def add_report(report: argparse.ArgumentParser) -> None:

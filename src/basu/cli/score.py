@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from basu.cli.run import scoring_of
+from basu.cli.typed_options import scoring_of
 from basu.errors import UserError
 from basu.files import read_json
 from basu.metrics.registry import user_metrics

@@ -11,13 +11,14 @@ from __future__ import annotations
 import math
 import random
 from collections import deque
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from basu.errors import AgentCrashedError, UserError
+from basu.managers.guarded_values import every_value, physics_values, weather_values
+from basu.managers.overlap_check import HEARD_TICKS, OverlapCheck
 from basu.managers.world_changes import DRIFT_M, JUMP_M, LightsCheck, OthersCheck, agents_change, is_same_control
-from basu.metrics.boxes import touching
 from basu.routing.weather import WEATHER_FIELDS
 
 if TYPE_CHECKING:
@@ -32,28 +33,7 @@ GAIN_MPS2 = 30.0
 """Gain or loss of speed that no vehicle's tyres give: three times the acceleration of gravity."""
 NEAR_M = 3.0  # beyond both boxes: nothing that is farther away has just struck the vehicle
 LOOK_TICKS = 10  # on average, from one reading of weather or physics to the next
-HEARD_TICKS = 4  # after which a contact has been reported
 CONTACT_TICKS = 3  # between a contact and a change of speed that it explains
-INSIDE_M, INSIDE_TICKS = 0.3, 5
-"""How deep, and in how many steps in a row, the vehicle may overlap another box without a reported contact."""
-ABOVE_M = 2.0  # between the heights of two bodies, one of which passes over the other
-PHYSICS = ("mass", "max_rpm", "moi", "drag_coefficient", "final_ratio", "use_gear_autobox")
-WHEEL = ("max_steer_angle", "radius", "max_brake_torque", "max_handbrake_torque")
-
-
-class _OwnBox(NamedTuple):
-    """The box of the run's vehicle, read once: each reading by the client takes as long as twenty comparisons."""
-
-    middle_m: float  # ahead of the vehicle's origin
-    half_diagonal_m: float  # of the whole box
-    half_length_m: float  # of the smaller box that must not overlap another
-    half_width_m: float
-
-    @classmethod
-    def of(cls, vehicle: carla.Vehicle) -> _OwnBox:
-        box = vehicle.bounding_box
-        half_m = box.extent.x, box.extent.y
-        return cls(box.location.x, math.hypot(*half_m), *(max(0.1, each - INSIDE_M) for each in half_m))
 
 
 class Conduct:
@@ -73,16 +53,17 @@ class Conduct:
         self._others: OthersCheck | None = None
         self._lights: LightsCheck | None = None
         self._losses: deque[tuple[Frame, float]] = deque()  # of speed, which wait for their contact
-        self._box: _OwnBox | None = None
-        self._inside: dict[int, int] = {}  # steps in a row, by the actor that the vehicle overlaps
+        self._overlaps: OverlapCheck | None = None
         self._chance = random.SystemRandom()  # an agent cannot know it; an honest agent's run does not depend on it
         self._look_in_ticks, self._next_look = 1, 0
 
     def begin(self, run: Run) -> None:
         """Note what the agent must not change."""
-        self._run, self._box = run, _OwnBox.of(run.vehicle)
+        self._run = run
+        if run.neighbours is not None:
+            self._overlaps = OverlapCheck(run.vehicle, run.neighbours, run.changes)
         run.changes.checked = True
-        self._state = {**_weather(run), **_physics(run), **_settings(run)}
+        self._state = every_value(run)
         if run.own_simulator:
             if run.neighbours is not None:
                 self._others = OthersCheck(run.neighbours, run.changes, run.step_s)
@@ -96,7 +77,7 @@ class Conduct:
         """
         if self._run is None:
             return
-        changed = self._changed({**_weather(self._run), **_physics(self._run), **_settings(self._run)})
+        changed = self._changed(every_value(self._run))
         if changed:
             raise AgentCrashedError(
                 f"setup() of {self._name} changed {', '.join(changed)} of the run; an agent may look at the world and "
@@ -151,7 +132,7 @@ class Conduct:
             self._look_in_ticks = self._chance.randint(1, 2 * LOOK_TICKS)
             self._next_look = 1 - self._next_look
             try:
-                now = (_weather, _physics)[self._next_look](self._run)
+                now = (weather_values, physics_values)[self._next_look](self._run)
             except RuntimeError:  # the vehicle or the simulator is gone: the next step says which
                 return
             self._look(frame, now)
@@ -165,7 +146,7 @@ class Conduct:
         if self._run is None or self._last is None:
             return
         self._check_losses(self._last.tick, self._run)
-        self._look(self._last, {**_weather(self._run), **_physics(self._run), **_settings(self._run)})
+        self._look(self._last, every_value(self._run))
 
     # -- single checks
 
@@ -203,8 +184,8 @@ class Conduct:
         fault = self._others.fault(frame) if self._others is not None else None
         if fault is None and self._lights is not None:
             fault = self._lights.fault()
-        if fault is None and self._run is not None:
-            fault = self._passed_through(frame, self._run)
+        if fault is None and self._overlaps is not None:
+            fault = self._overlaps.fault(frame)
         if fault is not None:
             raise agents_change(self._name, fault, frame.server_frame)
 
@@ -229,25 +210,6 @@ class Conduct:
             if not any(abs(contact.tick - frame.tick) <= CONTACT_TICKS for contact in contacts):
                 raise self._moved(frame, f"lost {loss_mps:.1f} m/s in one step and touched nothing")
 
-    def _passed_through(self, frame: Frame, run: Run) -> str | None:
-        """Half a sentence where the vehicle is inside another body, and the collision sensor reports no contact."""
-        if run.neighbours is None:
-            return None
-        assert self._box is not None, "begin comes first"
-        inside: dict[int, int] = {}
-        for row in run.neighbours.near(frame):
-            key = int(row[1])
-            half_m = run.neighbours.sizes[key]
-            if _is_inside(frame.ego, self._box, row, half_m):
-                inside[key] = self._inside.get(key, 0) + 1
-        self._inside = inside
-        for key, ticks in inside.items():
-            if ticks < INSIDE_TICKS + HEARD_TICKS:
-                continue
-            if not any(contact.other_id == key for contact in run.changes.contacts(0)):
-                return f"drove through the actor {key} ({run.neighbours.met[key]}) without a contact"
-        return None
-
     def _moved(self, frame: Frame, how: str) -> AgentCrashedError:
         return AgentCrashedError(
             f"the vehicle {how} in the step to frame {frame.server_frame}: {self._name} may drive it with the control "
@@ -258,45 +220,6 @@ class Conduct:
 def ticked(name: str, before: int, now: int) -> str:
     """The sentence about an agent that lets the world go on by itself."""
     return f"the simulator went from frame {before} to {now} by {name}: an agent never ticks the world"
-
-
-def _weather(run: Run) -> dict[str, float]:
-    """The weather, by names in a sentence; one call to the server."""
-    weather = run.world.get_weather()
-    return {f"the weather's {name}": float(getattr(weather, name)) for name in WEATHER_FIELDS}
-
-
-def _physics(run: Run) -> dict[str, float]:
-    """The vehicle's physics, likewise."""
-    physics = run.vehicle.get_physics_control()
-    values = {f"the vehicle's {name}": float(getattr(physics, name)) for name in PHYSICS}
-    for index, wheel in enumerate(physics.wheels):
-        values |= {f"the vehicle's wheel {index} {name}": float(getattr(wheel, name)) for name in WHEEL}
-        values[f"the vehicle's wheel {index} tire_friction"] = float(wheel.tire_friction)
-    values["the vehicle's torque"] = sum(float(point.y) for point in physics.torque_curve)
-    values["the vehicle's gear ratios"] = sum(float(gear.ratio) for gear in physics.forward_gears)
-    return values
-
-
-def _settings(run: Run) -> dict[str, float]:
-    """The world's settings, likewise."""
-    settings = run.world.get_settings()
-    return {
-        "the world's synchronous mode": float(settings.synchronous_mode),
-        "the world's time step": float(settings.fixed_delta_seconds or 0.0),
-        "the world's rendering": float(not settings.no_rendering_mode),
-    }
-
-
-def _is_inside(ego: Ego, box: _OwnBox, row: tuple[float, ...], half_m: tuple[float, float]) -> bool:
-    """Whether the vehicle's box, made smaller, overlaps that of a row of ``history.OTHER``."""
-    reach_m = box.half_diagonal_m + math.hypot(*half_m)
-    if math.hypot(row[2] - ego.x_m, row[3] - ego.y_m) > reach_m or abs(row[4] - ego.z_m) > ABOVE_M:
-        return False
-    cos, sin = math.cos(ego.yaw_rad), math.sin(ego.yaw_rad)
-    x_m, y_m = ego.x_m + box.middle_m * cos, ego.y_m + box.middle_m * sin
-    own = np.array([[x_m, y_m, ego.yaw_rad, box.half_length_m, box.half_width_m]])
-    return bool(touching(own, np.array([[row[2], row[3], row[5], *half_m]]))[0])
 
 
 def _is_something_near(frame: Frame, run: Run) -> bool:

@@ -133,18 +133,6 @@ def scoring_to_json(scoring: Scoring) -> dict[str, Any]:
     return {**to_json(scoring), "path_following_weight": scoring.path_following_weight}
 
 
-def scoring_from_json(document: object, source: str) -> Scoring:
-    """The scoring that ``document`` describes, the thesis's values where it says nothing.
-
-    Raises:
-        UserError: a key that means nothing, a value that is no number, weights that do not sum to 1; the sentence
-            begins with ``source``.
-    """
-    from basu.settings.resolve import resolve  # noqa: PLC0415 - pydantic, which `--help` does not need
-
-    return resolve(Scoring, [scoring_layer(document, source)])
-
-
 def scoring_layer(document: object, source: str) -> Layer:
     """The values of a scoring in a file, to be resolved with others.
 

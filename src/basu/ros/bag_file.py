@@ -6,8 +6,11 @@ import contextlib
 import shutil
 from typing import TYPE_CHECKING, Any, Final
 
+from rosbags import interfaces as i
+from rosbags import rosbag1, rosbag2
+
 from basu.errors import UserError
-from basu.ros.types import INSTALL, Generation, types_of
+from basu.ros.types import Generation, types_of
 from basu.ros.vehicle_messages import nanoseconds
 
 if TYPE_CHECKING:
@@ -27,14 +30,14 @@ class BagFile:
         """Begin the bag ``path``: a folder for ROS 2, a file for ROS 1.
 
         Raises:
-            UserError: rosbags is not installed, or something of that name exists, or it cannot be written.
+            UserError: something of that name exists, or it cannot be written.
         """
         self.types = types_of(generation)
         self._path, self._generation = path, generation
         self._topics: dict[str, Any] = {}
         self.messages = 0
         with _writing(path):
-            self._writer = _ros_1(path) if generation is Generation.ROS_1 else _ros_2(path)
+            self._writer = rosbag1.Writer(path) if generation is Generation.ROS_1 else _ros_2(path)
             self._writer.open()
 
     def announce(self, topics: Iterable[Topic]) -> None:
@@ -86,38 +89,25 @@ class BagFile:
 @contextlib.contextmanager
 def _writing(path: Path) -> Iterator[None]:
     """Turn the errors of the disk and of rosbags into a sentence."""
-    from rosbags.rosbag1 import WriterError as Error1  # noqa: PLC0415 - an extra
-    from rosbags.rosbag2 import WriterError as Error2  # noqa: PLC0415 - likewise
-
     try:
         yield
     except OSError as error:
         raise UserError(f"the bag {path} cannot be written: {error.strerror}; make room or name another place") from (
             error
         )
-    except (Error1, Error2) as error:
+    except (rosbag1.WriterError, rosbag2.WriterError) as error:
         raise UserError(f"the bag {path} cannot be written: {error}") from error
-
-
-def _ros_1(path: Path) -> Any:  # noqa: ANN401 - of rosbags
-    from rosbags.rosbag1 import Writer  # noqa: PLC0415 - an extra
-
-    return Writer(path)
 
 
 def _ros_2(path: Path) -> Any:  # noqa: ANN401 - of rosbags
     """A writer of MCAP with compressed chunks; a message's bytes stay as they are on the wire."""
-    from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer  # noqa: PLC0415 - an extra
-
-    writer = Writer(path, version=VERSION, storage_plugin=StoragePlugin.MCAP)
-    writer.set_compression(CompressionMode.STORAGE, CompressionFormat.ZSTD)
+    writer = rosbag2.Writer(path, version=VERSION, storage_plugin=rosbag2.StoragePlugin.MCAP)
+    writer.set_compression(rosbag2.CompressionMode.STORAGE, rosbag2.CompressionFormat.ZSTD)
     return writer
 
 
 def _qos(topic: Topic) -> Any:  # noqa: ANN401 - of rosbags
     """The QoS that `ros2 bag play` offers: a latched topic reaches late subscribers."""
-    from rosbags import interfaces as i  # noqa: PLC0415 - an extra
-
     forever = i.QosTime(*FOREVER)
     return i.Qos(
         i.QosHistory.KEEP_LAST,
@@ -130,15 +120,3 @@ def _qos(topic: Topic) -> Any:  # noqa: ANN401 - of rosbags
         forever,
         avoid_ros_namespace_conventions=False,
     )
-
-
-def require() -> None:
-    """Check that bags can be written.
-
-    Raises:
-        UserError: rosbags is not installed.
-    """
-    try:
-        import rosbags  # noqa: F401, PLC0415 - an extra
-    except ImportError as error:
-        raise UserError(INSTALL) from error

@@ -6,10 +6,13 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from rosbags.highlevel import AnyReader, AnyReaderError
+from rosbags.rosbag1 import ReaderError as Error1
+from rosbags.rosbag2 import ReaderError as Error2
 
 from basu.errors import UserError
 from basu.ros import frames
-from basu.ros.types import INSTALL, Generation, types_of
+from basu.ros.types import Generation, types_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,12 +44,6 @@ def read_track(path: Path, odometry: str | None = None, control: str | None = No
     Raises:
         UserError: it is no bag, has no such topic or several, or what it measured is no drive.
     """
-    try:
-        from rosbags.highlevel import AnyReader, AnyReaderError  # noqa: PLC0415 - an extra
-        from rosbags.rosbag1 import ReaderError as Error1  # noqa: PLC0415 - likewise
-        from rosbags.rosbag2 import ReaderError as Error2  # noqa: PLC0415 - likewise
-    except ImportError as error:
-        raise UserError(INSTALL) from error
     if not path.exists():
         raise UserError(f"the bag {path} is not there; name a folder of ROS 2, a .mcap, a .db3 or a .bag file")
     try:

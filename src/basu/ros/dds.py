@@ -1,4 +1,7 @@
-"""ROS 2 over DDS without ROS: a node with ROS 2's names, types and QoS, and its entry in the list of nodes."""
+"""ROS 2 over DDS without ROS: a node with ROS 2's names, types and QoS, and its entry in the list of nodes.
+
+The import raises UserError where cyclonedds is not installed.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from basu.errors import UserError
-from basu.ros.dds_types import INSTALL, dds_type
+from basu.extras import CYCLONEDDS
+from basu.ros.dds_types import dds_type
 from basu.ros.topics import Topic
 from basu.ros.types import Generation, types_of
+
+try:
+    from cyclonedds.core import (
+        DDSException,
+        InstanceState,
+        Policy,
+        Qos,
+        ReadCondition,
+        SampleState,
+        ViewState,
+        WaitSet,
+    )
+    from cyclonedds.domain import Domain, DomainParticipant
+    from cyclonedds.pub import DataWriter
+    from cyclonedds.sub import DataReader
+    from cyclonedds.topic import Topic as DdsTopic
+    from cyclonedds.util import duration
+except ImportError as error:
+    raise UserError(CYCLONEDDS.missing) from error
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -61,13 +84,8 @@ class Node:
         """Join a domain, by default that of the environment.
 
         Raises:
-            UserError: cyclonedds is not installed, or it finds no network.
+            UserError: DDS finds no network.
         """
-        try:
-            from cyclonedds.core import DDSException  # noqa: PLC0415 - an extra
-            from cyclonedds.domain import Domain, DomainParticipant  # noqa: PLC0415 - likewise
-        except ImportError as error:
-            raise UserError(INSTALL) from error
         self.types = types_of(Generation.ROS_2)
         self.name = name
         self.domain = domain_of_environment() if domain is None else domain
@@ -93,8 +111,6 @@ class Node:
 
     def listen(self, *topics: Topic) -> None:
         """Make readers, and enter them in the list of nodes."""
-        from cyclonedds.sub import DataReader  # noqa: PLC0415 - an extra
-
         for topic in topics:
             if topic.name not in self._readers:
                 self._readers[topic.name] = (topic, DataReader(self._participant, self._topic(topic), _qos(topic)))
@@ -127,8 +143,6 @@ class Node:
 
     def _waiting(self, topics: Sequence[Topic]) -> Any:  # noqa: ANN401 - of cyclonedds
         """What waits for several readers."""
-        from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState, WaitSet  # noqa: PLC0415
-
         waiting = WaitSet(self._participant)
         for topic in topics:
             reader = self._readers[topic.name][1]
@@ -158,16 +172,12 @@ class Node:
 
     def _writer(self, topic: Topic) -> Any:  # noqa: ANN401 - of cyclonedds
         """The writer of a topic, made at its first use."""
-        from cyclonedds.pub import DataWriter  # noqa: PLC0415 - an extra
-
         if topic.name not in self._writers:
             self._writers[topic.name] = DataWriter(self._participant, self._topic(topic), _qos(topic))
         return self._writers[topic.name]
 
     def _topic(self, topic: Topic) -> Any:  # noqa: ANN401 - of cyclonedds
         """A topic as ROS 2 names it in DDS: with rt before its name (design.ros2.org, topic and service names)."""
-        from cyclonedds.topic import Topic as DdsTopic  # noqa: PLC0415 - an extra
-
         name = f"rt{topic.name}" if topic.name.startswith("/") else topic.name
         return DdsTopic(self._participant, name, dds_type(self.types, topic.type))
 
@@ -198,9 +208,6 @@ def _sample(types: Any, topic: Topic, content: Any) -> Any:  # noqa: ANN401 - as
 
 def _qos(topic: Topic) -> Any:  # noqa: ANN401 - of cyclonedds
     """The QoS of a topic, as ROS 2's profiles have it."""
-    from cyclonedds.core import Policy, Qos  # noqa: PLC0415 - an extra
-    from cyclonedds.util import duration  # noqa: PLC0415 - likewise
-
     return Qos(
         Policy.Reliability.Reliable(duration(milliseconds=100)) if topic.is_reliable else Policy.Reliability.BestEffort,
         Policy.Durability.TransientLocal if topic.is_latched else Policy.Durability.Volatile,

@@ -1,4 +1,7 @@
-"""DDS types of ROS messages: the structures that ROS 2 puts on the wire, made of the definitions, with ready bytes."""
+"""DDS types of ROS messages: the structures that ROS 2 puts on the wire, made of the definitions, with ready bytes.
+
+The import raises UserError where cyclonedds is not installed.
+"""
 
 from __future__ import annotations
 
@@ -6,11 +9,18 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
+from basu.extras import CYCLONEDDS
+
+try:
+    from cyclonedds import idl
+    from cyclonedds.idl import types as idl_types
+except ImportError as error:
+    raise UserError(CYCLONEDDS.missing) from error
 
 if TYPE_CHECKING:
     from basu.ros.types import Types
 
-INSTALL = 'ROS 2 needs the package cyclonedds; install it with `pip install "linden[ros2]"`'
+dds: Any = idl_types  # its generics are no generics to the type checker
 TEXTS = ("string", "wstring")
 
 
@@ -22,11 +32,7 @@ def dds_name(name: str) -> str:
 
 @cache
 def dds_type(types: Types, name: str) -> Any:  # noqa: ANN401 - a class of cyclonedds
-    """Return the class of a topic's samples, for messages of the type ``name``.
-
-    Raises:
-        UserError: cyclonedds is not installed.
-    """
+    """Return the class of a topic's samples, for messages of the type ``name``."""
     made = idl_structure(types, name)
     made.__init__, made.serialize = _hold, _held
     made.deserialize = made.deserialize_key = classmethod(_of_bytes)  # the second one when a writer has left
@@ -50,25 +56,13 @@ def _of_bytes(cls: Any, /, data: bytes, *_: object, **__: object) -> Any:  # noq
 
 
 def idl_structure(types: Types, name: str) -> Any:  # noqa: ANN401 - a class of cyclonedds
-    """Return a new structure with the fields of a message.
-
-    Raises:
-        UserError: cyclonedds is not installed.
-    """
-    try:
-        from cyclonedds import idl  # noqa: PLC0415 - an extra
-    except ImportError as error:
-        raise UserError(INSTALL) from error
+    """Return a new structure with the fields of a message."""
     fields = {key: _member(types, kind) for key, kind in types.store.fielddefs[name][1]}
     return idl.make_idl_struct(name.rpartition("/")[2], dds_name(name), fields)
 
 
 def _member(known: Types, kind: Any) -> Any:  # noqa: ANN401 - a description of rosbags in, a type of cyclonedds out
     """The type of a field."""
-    from cyclonedds.idl import types  # noqa: PLC0415 - an extra
-
-    dds: Any = types  # its generics are no generics to the type checker
-
     node, rest = int(kind[0]), kind[1]
     if node == 1:
         name, bound = rest
@@ -87,15 +81,3 @@ def _member(known: Types, kind: Any) -> Any:  # noqa: ANN401 - a description of 
 def _inner(types: Types, name: str) -> Any:  # noqa: ANN401 - as above
     """The structure of a message inside of others."""
     return idl_structure(types, name)
-
-
-def require() -> None:
-    """Check that DDS is there.
-
-    Raises:
-        UserError: cyclonedds is not installed.
-    """
-    try:
-        import cyclonedds  # noqa: F401, PLC0415 - an extra
-    except ImportError as error:
-        raise UserError(INSTALL) from error

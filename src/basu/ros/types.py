@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from basu.errors import UserError
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -17,7 +16,6 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 DEFINITIONS = Path(__file__).parent / "definitions"
-INSTALL = 'ROS messages need the package rosbags; install it with `pip install "linden[rosbag]"`'
 
 
 class Generation(enum.Enum):
@@ -31,15 +29,7 @@ class Types:
     """The message types of one generation: those of Noetic or Humble, CARLA's, Autoware's and Ackermann's."""
 
     def __init__(self, generation: Generation, foreign: Mapping[str, str] | None = None) -> None:
-        """Read all definitions; ``foreign`` are definitions of other versions, with all that they hold, by type.
-
-        Raises:
-            UserError: rosbags is not installed.
-        """
-        try:
-            from rosbags.typesys import Stores, get_types_from_msg, get_typestore  # noqa: PLC0415 - an extra
-        except ImportError as error:
-            raise UserError(INSTALL) from error
+        """Read all definitions; ``foreign`` are definitions of other versions, with all that they hold, by type."""
         self.generation = generation
         is_first = generation is Generation.ROS_1
         self.store: Typestore = get_typestore(Stores.ROS1_NOETIC if is_first else Stores.ROS2_HUMBLE)
@@ -99,9 +89,5 @@ _DTYPES = {"char": "uint8", "byte": "uint8", "octet": "uint8"}
 
 @cache
 def types_of(generation: Generation) -> Types:
-    """Return the types of a generation, read once a process.
-
-    Raises:
-        UserError: rosbags is not installed.
-    """
+    """Return the types of a generation, read once a process."""
     return Types(generation)

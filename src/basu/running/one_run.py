@@ -88,9 +88,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         return [
             *([] if session.quiet else [ProgressBar(live)]),
             *recording,
-            *onlookers_for(session.options, live),
-            *_viewer(session.options, live),
-            *_ros(session, live),
+            *_onlookers(session.options, live, quiet=session.quiet),
         ]
 
     episode = Episode(
@@ -173,32 +171,16 @@ def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
     )
 
 
-def _viewer(options: RunOptions, live: Live) -> list[BaseManager]:
-    """The manager that streams to Rerun, where ``--viewer`` is given."""
-    if not options.viewer:
-        return []
-    from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, which is an extra
+def _onlookers(options: RunOptions, live: Live, *, quiet: bool) -> list[BaseManager]:
+    """The managers that show the run: the window with its keys, Rerun's viewer, and ROS."""
+    say = (lambda _: None) if quiet else print
+    found: list[BaseManager] = [*onlookers_for(options, live)]
+    if options.viewer:
+        from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, an extra
 
-    return [ViewerManager(live, print)]
+        found.append(ViewerManager(live, print))
+    if options.ros2 or options.ros1 or options.rosbag is not None:
+        from basu.output.ros.run_managers import ros_managers  # noqa: PLC0415 - rosbags, an extra
 
-
-def _ros(session: Session, live: Live) -> list[BaseManager]:
-    """The managers that publish the run and write it as a bag: for ``--ros2``, ``--ros1`` and ``--rosbag``."""
-    options, say = session.options, (lambda _: None) if session.quiet else print
-    managers: list[BaseManager] = []
-    if options.ros2:
-        from basu.output.ros.publish_manager import PublishManager  # noqa: PLC0415 - DDS, which is an extra
-        from basu.ros.dds import Node as Ros2Node  # noqa: PLC0415 - likewise
-
-        managers.append(PublishManager(live, Ros2Node, say))
-    if options.ros1:
-        from basu.output.ros.publish_manager import PublishManager  # noqa: PLC0415 - rosbags, which is an extra
-        from basu.ros.ros1 import Node as Ros1Node  # noqa: PLC0415 - likewise
-
-        managers.append(PublishManager(live, Ros1Node, say))
-    if options.rosbag is not None:
-        from basu.output.ros.bag_manager import BagManager  # noqa: PLC0415 - rosbags, which is an extra
-        from basu.ros.types import Generation  # noqa: PLC0415 - likewise
-
-        managers.append(BagManager(live, Generation(options.rosbag), say))
-    return managers
+        found += ros_managers(options, live, say)
+    return found

@@ -28,11 +28,12 @@ import numpy as np
 from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
 from basu.outcome import Fault
+from basu.scenarios.continuations import MOVING_MPS
 from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margin import present_in
 from basu.scenarios.criteria.surrogate_measures import gap_m
-from basu.scenarios.exercise import MOVING_MPS, Finding
+from basu.scenarios.exercise import Finding
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -7,6 +7,8 @@ import sys
 from collections.abc import Callable, Sequence
 
 from linden import CARLA_VERSION, __version__
+from linden.cli import compiling, serve
+from linden.cli import map as maps
 from linden.errors import UserError
 
 NOBODY_READS = 141
@@ -15,10 +17,6 @@ NOBODY_READS = 141
 
 def parser() -> argparse.ArgumentParser:
     """Return the whole command line; each command says under ``command`` what carries it out."""
-    # here, not above: a program that only asks for something of this module does not need them
-    from linden.cli import compiling, serve  # noqa: PLC0415 - see above
-    from linden.cli import map as maps  # noqa: PLC0415 - see above
-
     whole = argparse.ArgumentParser(prog="linden", description=f"A CARLA {CARLA_VERSION} server without Unreal or GPU.")
     whole.add_argument("--version", action="version", version=f"linden {__version__}, speaking CARLA {CARLA_VERSION}")
     commands = whole.add_subparsers(title="commands", required=True, metavar="COMMAND")

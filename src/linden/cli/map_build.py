@@ -13,8 +13,8 @@ from linden.authoring.openstreetmap.convert import Imported, convert
 from linden.authoring.output import write_output
 from linden.authoring.streets.build import assembled, off_ground_m
 from linden.authoring.streets.controls import without_lights
+from linden.authoring.streets.geojson import read
 from linden.authoring.streets.routes import xml
-from linden.authoring.streets.street_facts import read
 from linden.authoring.streets.terrain import with_terrain
 from linden.authoring.streets.writing import text as written
 from linden.cli.map_files import bytes_of

@@ -6,8 +6,10 @@ from numpy.typing import NDArray
 from linden.background import checkpoint
 from linden.maps.facts import MapFacts
 from linden.maps.ground import Ground
+from linden.maps.library import LoadedMap
 from linden.maps.opendrive.mesh import road_mesh
 from linden.maps.opendrive.model import OpenDrive
+from linden.maps.opendrive.parse import parse
 from linden.maps.records import NAMES_BETWEEN, STREET_NAME_SIGN
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import Material, Mesh, join
@@ -36,6 +38,11 @@ F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
 
 _SEED = 880
+
+
+def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
+    """Return what stands on a loaded map; see :func:`standing`."""
+    return standing(parse(world_map.text), world_map, scene)
 
 
 def standing(opendrive: OpenDrive, facts: MapFacts, scene: Scene) -> Mesh:

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from basu.agents.process.remote_agent import find_agent
-from basu.campaigns import command, plan
+from basu.campaigns import command, planning
 from basu.jobs.job import Answer, PlayerSpec, Ready, versions
 
 PLAYER = """
@@ -147,4 +147,4 @@ _found_once = functools.cache(find_agent)
 def here(monkeypatch: pytest.MonkeyPatch) -> None:
     """Campaigns of this test are driven in this process, and each agent is loaded once in the whole run."""
     monkeypatch.setattr(command, "Processes", _Here)
-    monkeypatch.setattr(plan, "find_agent", _found_once)
+    monkeypatch.setattr(planning, "find_agent", _found_once)

@@ -15,8 +15,9 @@ import pytest
 
 from basu.campaigns import command
 from basu.campaigns.campaign_folder import is_locked, locked
+from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.columns import VOLATILE
-from basu.campaigns.command import RunSettings, describe, run_campaign
+from basu.campaigns.command import describe, run_campaign
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.records import kept_in
 from basu.campaigns.report import write_campaign_report

@@ -8,7 +8,8 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from basu.campaigns import command
-from basu.campaigns.command import RunSettings, run_campaign
+from basu.campaigns.campaign_run import RunSettings
+from basu.campaigns.command import run_campaign
 from basu.campaigns.records import folder_of, kept_in
 from basu.campaigns.report import write_campaign_report
 from basu.files import read_json

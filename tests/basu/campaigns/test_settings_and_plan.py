@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from basu.campaigns.plan import plan_of
+from basu.campaigns.planning import plan_of
 from basu.campaigns.settings import read_campaign
 from basu.campaigns.shuffle import Shuffle
 from basu.errors import UserError

@@ -11,8 +11,9 @@ import pyarrow as pa
 import pytest
 
 from basu.campaigns import command
+from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.columns import VOLATILE
-from basu.campaigns.command import RunSettings, run_campaign
+from basu.campaigns.command import run_campaign
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.storage import Mirror, Store, fetch, is_address, local_copy
 from basu.cli import main

@@ -1,13 +1,11 @@
 """Claims about `basu scenario list`: group, place, parameters and cases, as text and JSON, without a simulator."""
 
-import argparse
 import json
 from pathlib import Path
 
 import pytest
 
-from basu.cli import main
-from basu.cli.scenario import add_list_options, list_scenarios
+from basu.cli import main, parser
 from basu.errors import ScenarioError
 from basu.scenarios.characteristics import Characteristics
 
@@ -44,9 +42,8 @@ def mine_(tmp_path: Path) -> str:
 
 
 def told(capsys: pytest.CaptureFixture[str], *words: str) -> str:
-    parser = argparse.ArgumentParser()
-    add_list_options(parser)
-    assert list_scenarios(parser.parse_args(words)) == 0
+    arguments = parser(["scenario", "list"]).parse_args(["scenario", "list", *words])
+    assert arguments.command(arguments) == 0
     return capsys.readouterr().out
 
 

@@ -10,7 +10,7 @@ from basu.metrics.infraction import DEFAULT_PENALTIES, Infraction
 from basu.metrics.passengers.comfort_score import ComfortWeights
 from basu.metrics.passengers.felt import Place
 from basu.metrics.score import driving_score, infraction_score, infractions, score
-from basu.metrics.scoring import Scoring, read_scoring_file, scoring_from_json, scoring_to_json
+from basu.metrics.scoring import Scoring, read_scoring_file, scoring_layer, scoring_to_json
 from basu.settings.resolve import resolve
 from fakes.drives import at, driven, hit, stop_sign, straight_route, traffic_light
 
@@ -29,6 +29,10 @@ Counts = dict[Infraction, int]
 def test_scores_match_table_5_1(counts: Counts, path: float, driving: float) -> None:
     scoring = Scoring()
     assert driving_score(infraction_score(counts, scoring), path, scoring) == pytest.approx(driving, abs=1e-9)
+
+
+def scoring_in(document: object, source: str) -> Scoring:
+    return resolve(Scoring, [scoring_layer(document, source)])
 
 
 def test_the_human_of_table_5_1_scores_what_is_printed_when_rounded_as_there() -> None:
@@ -122,7 +126,7 @@ def test_a_scoring_survives_a_round_trip() -> None:
         standing_place=Place(1.0, 0.0, 0.25),
         harsh_stop_mps2=2.0,
     )
-    assert scoring_from_json(json.loads(json.dumps(scoring_to_json(scoring))), "here") == scoring
+    assert scoring_in(json.loads(json.dumps(scoring_to_json(scoring))), "here") == scoring
 
 
 def test_a_file_says_only_what_differs(tmp_path: Path) -> None:
@@ -135,7 +139,7 @@ def test_a_file_says_only_what_differs(tmp_path: Path) -> None:
 
 def test_a_scoring_written_before_red_lights_cost_anything_takes_the_usual_factor() -> None:
     old = {"penalties": {"stop_sign": 0.8}, "infraction_weight": 0.8, "path_following_weight": 0.2}
-    assert scoring_from_json(old, "here") == Scoring()
+    assert scoring_in(old, "here") == Scoring()
 
 
 @pytest.mark.parametrize(
@@ -165,12 +169,12 @@ def test_a_scoring_written_before_red_lights_cost_anything_takes_the_usual_facto
 )
 def test_what_is_no_scoring_is_refused_with_a_sentence(document: object, sentence: str) -> None:
     with pytest.raises(UserError, match=f"^the file: .*{sentence}"):
-        scoring_from_json(document, "the file")
+        scoring_in(document, "the file")
 
 
 def test_the_file_in_the_manual_is_one() -> None:
     text = (Path(__file__).parents[3] / "docs" / "reference" / "metrics.md").read_text(encoding="utf-8")
-    found = scoring_from_json(json.loads(text.split("```json")[1].split("```")[0]), "the manual")
+    found = scoring_in(json.loads(text.split("```json")[1].split("```")[0]), "the manual")
     assert found.penalties[Infraction.RED_LIGHT] == 1.0
     assert found.path_following_weight == pytest.approx(0.3)
 

@@ -1,5 +1,6 @@
 """ROS 2 over real DDS on the loopback interface, with a peer in a process of its own."""
 
+import importlib
 import json
 import os
 import subprocess
@@ -120,5 +121,6 @@ def test_the_environment_may_keep_ros_on_this_machine(monkeypatch: pytest.Monkey
 
 def test_without_the_wheel_there_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "cyclonedds.domain", None)
+    monkeypatch.delitem(sys.modules, "basu.ros.dds")
     with pytest.raises(UserError, match=r'pip install "linden\[ros2\]"'):
-        Node("basu")
+        importlib.import_module("basu.ros.dds")

@@ -13,9 +13,10 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.ros import ros1
+from basu.ros import rospy_start
 from basu.ros.autoware_ai import COMMAND, old_types
-from basu.ros.ros1 import INSTALL, Node, master_uri
+from basu.ros.ros1 import Node
+from basu.ros.rospy_start import INSTALL, master_uri
 from basu.ros.topics import (
     TF_STATIC,
     Message,
@@ -143,15 +144,15 @@ def test_without_a_roscore_there_is_a_sentence(master: str, monkeypatch: pytest.
 
 
 def test_without_rospy_there_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ros1, "PYTHONS", (sys.executable,))
-    ros1._python.cache_clear()
+    monkeypatch.setattr(rospy_start, "PYTHONS", (sys.executable,))
+    rospy_start._python.cache_clear()
     try:
         has = subprocess.run([sys.executable, "-c", "import rospy"], check=False, capture_output=True).returncode == 0
         assert not has, "this Python is not the system's"
         with pytest.raises(UserError) as told:
             Node("basu")
     finally:
-        ros1._python.cache_clear()
+        rospy_start._python.cache_clear()
     assert str(told.value) == INSTALL
 
 

@@ -1,12 +1,13 @@
 """Message types from their definitions."""
 
+import importlib
 import sys
 
 import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.ros.types import Generation, Types, types_of
+from basu.ros.types import Generation, types_of
 
 
 @pytest.mark.parametrize("generation", Generation)
@@ -52,6 +53,7 @@ def test_arrays_of_fixed_length_are_full_of_zeros() -> None:
 
 
 def test_a_missing_rosbags_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "rosbags.typesys", None)
+    monkeypatch.setitem(sys.modules, "rosbags", None)
+    monkeypatch.delitem(sys.modules, "basu.ros")
     with pytest.raises(UserError, match=r"pip install \"linden\[rosbag\]\""):
-        Types(Generation.ROS_2)
+        importlib.import_module("basu.ros")

@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from basu.scenarios.nhtsa import BURDENS, Group
-from basu.scenarios.shares import ASSUMPTIONS, Result, crash_shares, results_from, sentence, shares_to_json, wilson
+from basu.scenarios.share_documents import ASSUMPTIONS, results_from, sentence, shares_to_json
+from basu.scenarios.shares import Result, crash_shares, wilson
 from basu.scenarios.verdict import Verdict
 
 OK, LOST, BROKE, SPOILT = Verdict.SUCCESS, Verdict.FAILURE, Verdict.AGENT_FAULT, Verdict.SIMULATOR_FAULT

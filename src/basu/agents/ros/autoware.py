@@ -6,18 +6,25 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.ros.autoware_base import AutowareBase
 from basu.agents.ros.commands import REVERSE, Wanted, autoware_command
+from basu.agents.ros.lockstep import NODE
 from basu.ros import autoware
+from basu.ros.dds import Node
 from basu.ros.topics import TF_STATIC, Message, first_messages, path_message, path_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from basu.ros.moment import Moment
+    from basu.ros.node import RosNode
     from basu.ros.topics import Topic
 
 
 class AutowareAgent(AutowareBase):
     """Autoware's topics: sensing, vehicle status, localisation and goal out, ``control_cmd`` in."""
+
+    def new_node(self) -> RosNode:
+        """Return a node on the domain of ``ROS_DOMAIN_ID``."""
+        return Node(NODE)
 
     def topics(self) -> Sequence[Topic]:
         """Return Autoware's topics, and the route as a path for planners that take one."""

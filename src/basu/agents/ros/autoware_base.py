@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from basu.agents.builtin.perception import SHUTTLE
-from basu.agents.ros.lockstep import RosAgent
+from basu.agents.ros.lockstep import LockstepAgent
 
 if TYPE_CHECKING:
     from basu.agents.builtin.perception import VehicleFacts
 
 
-class AutowareBase(RosAgent):
+class AutowareBase(LockstepAgent):
     """An agent with an Autoware as its software."""
 
     def config(self) -> dict[str, str]:

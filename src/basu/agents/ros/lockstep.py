@@ -1,4 +1,4 @@
-"""``basu run ros`` and ``basu run ros1``: ROS software on CARLA's topics drives; simulated time waits for its commands.
+"""The base of agents that are ROS software: it drives on CARLA's topics, and simulated time waits for its commands.
 
 The agent publishes the frame and the clock. Then it waits for a command of the same time, or of no time at all. A
 command that does not come within the limit of a step is the agent's time-out.
@@ -20,7 +20,6 @@ from basu.agents.ros.vehicle_source import BRAKED, VehicleSource, actor_of, cont
 from basu.agents.sensor_file import read_sensors
 from basu.errors import AgentCrashedError, AgentTimedOutError, UserError
 from basu.files import find
-from basu.ros.dds import Node
 from basu.ros.moment import Vehicle
 from basu.ros.topics import (
     Message,
@@ -48,8 +47,8 @@ SLICE_S = 0.02  # of waiting: in between, the step's time limit can interrupt
 NODE = "basu"
 
 
-class RosAgent(AutonomousAgent):
-    """CARLA's topics: ``vehicle_control_cmd`` or ``ackermann_cmd`` drives."""
+class LockstepAgent(AutonomousAgent):
+    """CARLA's topics: ``vehicle_control_cmd`` or ``ackermann_cmd`` drives. A subclass makes the node."""
 
     facts: VehicleFacts | None = None
     appears_s = APPEARS_S
@@ -105,7 +104,7 @@ class RosAgent(AutonomousAgent):
 
     def new_node(self) -> RosNode:
         """Return a node where the software is looked for."""
-        return Node(NODE)
+        raise NotImplementedError
 
     def topics(self) -> Sequence[Topic]:
         """Return the topics that are published."""

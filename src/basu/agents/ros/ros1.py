@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from basu.agents.ros.lockstep import NODE, RosAgent
+from basu.agents.ros.lockstep import NODE, LockstepAgent
 from basu.ros.ros1 import Node
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 FIRST_S = 1.0  # the time of the first frame: a clock of 0 says "no clock yet" to nodes of ROS 1 (wiki.ros.org/Clock)
 
 
-class Ros1Agent(RosAgent):
+class Ros1Agent(LockstepAgent):
     """CARLA's topics on ROS 1: ``vehicle_control_cmd`` or ``ackermann_cmd`` drives."""
 
     first_s = FIRST_S

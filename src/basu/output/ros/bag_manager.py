@@ -38,7 +38,7 @@ class BagManager(BaseManager):
         """Begin the bag with everything that does not move.
 
         Raises:
-            UserError: rosbags is not installed, or a sensor's id cannot be part of a topic's name.
+            UserError: a sensor's id cannot be part of a topic's name.
         """
         self._source = LiveVehicle(run, self._live.sensors)
         vehicle = self._source.vehicle

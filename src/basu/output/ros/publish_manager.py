@@ -32,7 +32,7 @@ class PublishManager(BaseManager):
         """Join the domain, or the master, and publish what does not move.
 
         Raises:
-            UserError: cyclonedds is not installed, or it finds no network; ROS 1 is not there, or no roscore answers.
+            UserError: DDS finds no network; ROS 1 is not there, or no roscore answers.
         """
         self._source = LiveVehicle(run, self._live.sensors)
         vehicle, node = self._source.vehicle, self._make_node(NODE)

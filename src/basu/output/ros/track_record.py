@@ -13,7 +13,7 @@ from basu.managers.base_manager import Ego
 from basu.managers.observations import NO_LANE, LaneFinder
 from basu.records.history import Facts, History, Vehicle
 from basu.records.history.model import FRAME, NO_LIGHT, OTHER
-from basu.routing import Route, plan
+from basu.routing import Route, lane_graph, plan
 from basu.routing.planned_route import Progress, advance
 
 if TYPE_CHECKING:
@@ -116,8 +116,6 @@ def _limits(lanes: list[carla.Waypoint | None], carla_map: carla.Map | None) -> 
     """The posted limits in m/s, nan where none is known."""
     if carla_map is None:
         return np.full(len(lanes), math.nan)
-    from basu.routing import lane_graph  # noqa: PLC0415 - takes a while to import, and only maps need it
-
     roads = lane_graph.build(carla_map).roads
     return np.array([math.nan if lane is None else roads[lane.road_id].limit_at(lane.s) for lane in lanes])
 

@@ -34,7 +34,7 @@ def show_log(
     """Show a recorder file, keep it in ``rrd``; says where it was shown.
 
     Raises:
-        UserError: Rerun is missing, or there is no actor to show.
+        UserError: there is no actor to show.
     """
     actors = [actor for kind in SHOWN_TYPES for actor in log.ids_of(type_id=kind)]
     if not actors:

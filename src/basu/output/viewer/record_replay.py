@@ -41,7 +41,7 @@ def show_run(
     """Show a run's folder, keep it in ``rrd``; ``map_file`` goes before the map in it. Says where it was shown.
 
     Raises:
-        UserError: Rerun is missing, or the folder has no record.
+        UserError: the folder has no record.
     """
     history = read_history(folder)
     kept = folder / MAP_FILE

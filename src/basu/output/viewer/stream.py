@@ -11,7 +11,10 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import rerun as rr
+
 from basu.errors import UserError
+from basu.output.viewer.layout import layout
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -21,7 +24,6 @@ if TYPE_CHECKING:
 APPLICATION = "basu"
 OPEN_LIMIT_S, POLL_S, SETTLE_S = 20.0, 0.1, 2.0  # for a viewer to listen, and then to find that it cannot draw
 FLUSH_LIMIT_S = 20.0  # for a viewer that does not take what is sent any more
-MISSING = "--viewer needs Rerun: install it with `pip install 'linden[viewer]'`, or run without --viewer"
 
 
 class Stream(NamedTuple):
@@ -31,31 +33,14 @@ class Stream(NamedTuple):
     said: str
 
 
-def require() -> None:
-    """Make sure that Rerun is there.
-
-    Raises:
-        UserError: it is not; says how to get it.
-    """
-    try:
-        import rerun  # noqa: F401, PLC0415 - an extra
-    except ImportError:
-        raise UserError(MISSING) from None
-
-
 def open_stream(file: Path, name: str, parts: Parts, *, screen: bool) -> Stream:
     """Begin a recording called ``name`` in ``file``; ``screen`` says whether a viewer may be opened.
 
     Simulated time is the only timeline.
 
     Raises:
-        UserError: Rerun is missing, or the file cannot be begun.
+        UserError: the file cannot be begun.
     """
-    require()
-    import rerun as rr  # noqa: PLC0415 - an extra
-
-    from basu.output.viewer.layout import layout  # noqa: PLC0415 - likewise
-
     try:
         file.open("wb").close()
     except OSError as error:

@@ -36,7 +36,7 @@ class ViewerManager(BaseManager):
         """Open the recording and show what does not move.
 
         Raises:
-            UserError: Rerun is missing, or its file cannot be written.
+            UserError: its file cannot be written.
         """
         self._run = run
         start = Pose(*ego_in(run.world.get_snapshot().find(run.vehicle.id))[:6])

@@ -11,10 +11,12 @@ from typing import TYPE_CHECKING, Any
 import basu
 from basu.options.conditions import STEP_S
 from basu.outcome import Outcome, Status
+from basu.running.scenario_runs.chosen_cases import design_of, files_of
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured
 from basu.scenarios.sampling import Grid, Sweep
-from basu.scenarios.shares import crash_shares, results_from, shares_to_json
+from basu.scenarios.share_documents import results_from, shares_to_json
+from basu.scenarios.shares import crash_shares
 from basu.scenarios.tree_text import tree_of
 from basu.scenarios.verdict import judge
 from basu.settings.command_line import words_of
@@ -107,7 +109,7 @@ def command_of(options: ScenarioOptions) -> list[str]:
 def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> ScenarioOptions:
     """Return the options that play one case of a run alone; its id holds sample and parameters."""
     chosen = {field.name: field.default for field in fields_of(ScenarioOptions) if field.option.group == CASES}
-    found = {"what": (playable.case.name,), "files": options.all_files, "agents": (agent,), "seed": options.drive_seed}
+    found = {"what": (playable.case.name,), "files": files_of(options), "agents": (agent,), "seed": options.drive_seed}
     return replace(options, **{**chosen, **found})
 
 
@@ -118,7 +120,7 @@ def case_config(playable: Playable, options: ScenarioOptions, loaded: FoundAgent
 
 def run_config(options: ScenarioOptions, agents: Sequence[FoundAgent]) -> dict[str, Any]:
     """Return ``config.json`` of a run of scenarios."""
-    pairs = [(file, file.with_suffix(".xml" if file.suffix == ".py" else ".py")) for file in options.all_files]
+    pairs = [(file, file.with_suffix(".xml" if file.suffix == ".py" else ".py")) for file in files_of(options)]
     files = [*(agent.file for agent in agents if agent.file is not None), *(file for pair in pairs for file in pair)]
     there = [file for file in files if file.is_file()]
     return config_document(SCENARIO_RUN, options, None, command_of(options), there)
@@ -184,7 +186,7 @@ def matrix_of(
 
 def _design(options: ScenarioOptions) -> dict[str, Any] | None:
     """How parameters were sampled."""
-    design = options.design
+    design = design_of(options)
     if design is None:
         return None
     vary = {"vary": list(options.vary)}

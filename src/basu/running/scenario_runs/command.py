@@ -27,11 +27,8 @@ from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, write_matri
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.running.scenario_runs.case_documents import lost, matrix_of, run_config
+from basu.running.scenario_runs.chosen_cases import chosen
 from basu.running.scenario_runs.player import CaseJob, case_player
-from basu.scenarios.cases import cases_of, varied
-from basu.scenarios.nhtsa import Group
-from basu.scenarios.playable import having
-from basu.scenarios.variation import Variation
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -41,7 +38,6 @@ if TYPE_CHECKING:
     from basu.agents.process.remote_agent import FoundAgent
     from basu.jobs.job import Done
     from basu.running.scenario_runs.options import ScenarioOptions
-    from basu.scenarios.playable import Playable
 
 TEXT_FILE, JUNIT_FILE = "matrix.txt", "junit.xml"
 TIMES = "%Y-%m-%dT%H-%M-%S"
@@ -140,19 +136,6 @@ def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> 
         name = f"success-{plain(study.scenario)}-{plain(study.agent)}.svg"
         write_bytes(folder / name, sweep_map(matrix, study.agent, study.scenario).encode())
     write_matrix_page(folder, matrix)
-
-
-def chosen(options: ScenarioOptions) -> tuple[Playable, ...]:
-    """The requested cases in the order of the typology, with samples where requested.
-
-    Raises:
-        UserError: there is none of that name, or it cannot be sampled like this.
-    """
-    variation = Variation(fixed=options.fixed, design=options.design, vary=options.vary)
-    typology = list(Group)
-    cases = having(cases_of(options.what, options.files), options.where)
-    by_group = sorted(cases, key=lambda each: typology.index(each.scenario.group))
-    return varied(by_group, variation)
 
 
 def worst(documents: Iterator[dict[str, Any]]) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from basu.errors import UserError
 from basu.options.agent import AgentMemory, Debug, InProcess, StepLimit, check_agent_process
@@ -14,9 +14,6 @@ from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
 from basu.options.run import RunOptions
 from basu.options.simulator import Host, Port, Timeout
 from basu.settings.option import Option, Settings, fields_of
-
-if TYPE_CHECKING:
-    from basu.scenarios.sampling import Design
 
 CASES = "cases"
 
@@ -139,25 +136,9 @@ class ScenarioOptions(Settings):
         check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
 
     @property
-    def design(self) -> Design | None:
-        """How parameters are sampled; None: each case as it is given."""
-        from basu.scenarios.sampling import Grid, Sweep  # noqa: PLC0415 - the scenarios, which `--help` does not need
-
-        if self.grid is not None:
-            return Grid(self.grid)
-        return None if self.sweep is None else Sweep(self.sweep, self.seed)
-
-    @property
     def drive_seed(self) -> int:
         """The seed of what is random in the drives: 0 for samples; their ids hold no other."""
         return 0 if self.sweep is not None else self.seed
-
-    @property
-    def all_files(self) -> tuple[Path, ...]:
-        """The user's files: those named with --scenarios and those among what is to be played."""
-        from basu.scenarios.cases import files_among  # noqa: PLC0415 - as above
-
-        return (*self.files, *(Path(word) for word in files_among(self.what)))
 
     def run_options(self, agent: str) -> RunOptions:
         """The options of a run with one of the agents."""

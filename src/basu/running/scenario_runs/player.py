@@ -10,6 +10,7 @@ from basu.episode import Towns
 from basu.jobs.job import After, Played, PlayerSpec
 from basu.outcome import Status
 from basu.output.report.documents import plain
+from basu.running.scenario_runs.chosen_cases import files_of
 from basu.running.scenario_runs.one_case import CaseSession, play_case
 from basu.scenarios.cases import open_library
 from basu.simulator import simulator_for
@@ -55,7 +56,7 @@ def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, Loade
         UserError: an agent or a case cannot be had.
         SimulatorError: there is no simulator to play in.
     """
-    library = open_library(options.all_files)
+    library = open_library(files_of(options))
     agents: Mapping[str, FoundAgent] = given or {
         agent: find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb)
         for agent in options.agents

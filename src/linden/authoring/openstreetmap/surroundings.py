@@ -6,6 +6,8 @@ Sources: OpenStreetMap Wiki, "Simple 3D Buildings" (``height``, ``building:level
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
+from shapely import LineString, Point
+
 from linden.authoring.openstreetmap.extract import Extract, OsmRelation, Tags
 from linden.authoring.openstreetmap.graph import Graph
 from linden.authoring.openstreetmap.tags import TAGGED, metres
@@ -102,8 +104,6 @@ def furniture(extract: Extract) -> Iterator[Spot]:
 
 def _nearest(graph: Graph, extract: Extract, node: int) -> str | None:
     """Return the id of the street that passes a node, None where none of its way's pieces does."""
-    from shapely import LineString, Point  # noqa: PLC0415 - the graph's own library
-
     point = Point(graph.metres[node])
     best: tuple[float, str] | None = None
     for segment in graph.segments:

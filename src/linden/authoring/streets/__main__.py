@@ -9,8 +9,8 @@ from pathlib import Path
 
 from linden.authoring.streets.build import assembled
 from linden.authoring.streets.controls import without_lights
+from linden.authoring.streets.geojson import read
 from linden.authoring.streets.routes import xml
-from linden.authoring.streets.street_facts import read
 from linden.authoring.streets.writing import text
 
 

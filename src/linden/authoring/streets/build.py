@@ -5,8 +5,7 @@ import math
 from collections import defaultdict
 from typing import NamedTuple
 
-from linden.authoring.streets import controls, junctions, roads, roundabouts
-from linden.authoring.streets.cross_section import view
+from linden.authoring.streets import controls, crosswalks, junctions, roads, roundabouts
 from linden.authoring.streets.curves import Point, length, pose_at, seen_from
 from linden.authoring.streets.document import (
     Controller,
@@ -19,22 +18,19 @@ from linden.authoring.streets.document import (
     SignalReference,
     value,
 )
+from linden.authoring.streets.geojson import read
 from linden.authoring.streets.name_signs import name_signs
-from linden.authoring.streets.network import End, Leg, Network, nearest_road
+from linden.authoring.streets.network import End, Leg, Network
 from linden.authoring.streets.network import build as build_network
 from linden.authoring.streets.rails import rails
 from linden.authoring.streets.standing import standing
-from linden.authoring.streets.street_facts import Control, Facts, Intersection, read
+from linden.authoring.streets.street_facts import Control, Facts, Intersection
 from linden.authoring.streets.writing import text
 from linden.errors import UserError
 
 FIRST_JUNCTION_ID = 1_000_000  # above all road ids: LibCarla takes a link to an unknown road for a junction
 FIRST_CONTROLLER_ID = 2_000_000
-CROSSWALK_BEFORE_STOP_M = 8.0  # passengers cross behind the shuttle
-ONE_CROSSWALK_WITHIN_M = 30.0  # of opposite stops
-CROSSING_AT_JUNCTION_M = 14.0  # a crossing this near to a junction crosses that leg, before the stop line
 MADE_UP = "made up: the street goes on outside of the map"
-SCHOOL_CROSSING_WITHIN_M = 150.0
 
 
 class Way(NamedTuple):
@@ -91,20 +87,24 @@ class _Assembly:
         self.corners: list[RoadRecord] = []
         self.junctions: list[JunctionRecord] = []
         self.controllers: list[Controller] = []
-        self.walked_ends, self.crossings = self._mapped_crossings()
+        self.walked_ends, self.crossings = crosswalks.mapped_crossings(facts, self.network)
 
     def result(self) -> Built:
-        crossings = self._school_crossings()
+        crossings = crosswalks.nodes_at_schools(self.facts, self.network)
         self._level(tuple(legs for nodes, legs in self.network.junctions if not self._is_bend(nodes, legs)))
         for nodes, legs in self.network.junctions:
             if self._is_bend(nodes, legs):
                 self._add_bend((legs[0], legs[1]))
             else:
                 self._add_junction(nodes, legs, crossings)
-        self._add_stop_crosswalks()
-        self._add_mapped_crosswalks()
+        for edge, crosswalk in (
+            *crosswalks.at_stops(self.facts, self.network, self.object_ids),
+            *crosswalks.between_junctions(self.crossings, self.network, self.object_ids),
+        ):
+            self.objects[edge].append(crosswalk)
         placed = standing(self.facts, self.network)
-        self._add_speed_signs()
+        for edge, sign in controls.speed_signs(self.facts, self.network, self.signal_ids):  # last, so that ids stay
+            self.signals[edge].append(sign)
         signs = name_signs(self.facts, self.network)
         for edge, thing in (*placed.objects, *rails(self.facts, self.network), *signs):
             self.objects[edge].append(thing._replace(id=next(self.object_ids)))
@@ -267,77 +267,6 @@ class _Assembly:
                 found[0].control_confidence if found else MADE_UP,
             )
         )
-
-    def _school_crossings(self) -> frozenset[int]:
-        """Return the nodes nearest to schools: their legs get crosswalks."""
-        found = set()
-        real = [number for number, node in enumerate(self.network.nodes) if node.intersection is not None]
-        for school in self.facts.schools:
-            nearest = min(
-                real, key=lambda number: math.dist(self.network.nodes[number].point, school.point), default=None
-            )
-            if (
-                nearest is not None
-                and math.dist(self.network.nodes[nearest].point, school.point) < SCHOOL_CROSSING_WITHIN_M
-            ):
-                found.add(nearest)
-        return frozenset(found)
-
-    def _add_stop_crosswalks(self) -> None:
-        """Put a crosswalk behind each shuttle stop, one for two stops that face each other."""
-        taken: list[Point] = []
-        for stop in self.facts.stops:
-            edge, s_m = nearest_road(self.network, stop.street_id, stop.point)
-            road = self.network.roads[edge]
-            assert road is not None
-            behind_m = s_m - CROSSWALK_BEFORE_STOP_M if stop.forward else s_m + CROSSWALK_BEFORE_STOP_M
-            at_m = min(max(behind_m, controls.CROSSWALK_M), length(road) - controls.CROSSWALK_M)
-            pose = pose_at(road, at_m)
-            if any(math.dist((pose.x_m, pose.y_m), other) < ONE_CROSSWALK_WITHIN_M for other in taken):
-                continue
-            taken.append((pose.x_m, pose.y_m))
-            across = view(self.network.edges[edge].section, along=True)
-            self.objects[edge].append(controls.crosswalk_at(next(self.object_ids), across, at_m, stop.confidence))
-
-    def _mapped_crossings(self) -> tuple[frozenset[End], tuple[tuple[int, float, str], ...]]:
-        """Return the ends of roads that the facts' crossings lie at, and the others: edge, place, confidence."""
-        ends, between = set(), []
-        for crossing in self.facts.crossings:
-            edge, s_m = nearest_road(self.network, crossing.street_id, crossing.point)
-            road = self.network.roads[edge] if edge >= 0 else None
-            if road is None:
-                continue
-            rest_m = length(road) - s_m
-            met = {leg.end for _, legs in self.network.junctions if len(legs) > 1 for leg in legs}
-            end = End(edge, at_end=rest_m < s_m)
-            if min(s_m, rest_m) < CROSSING_AT_JUNCTION_M and end in met:
-                ends.add(end)
-            else:
-                between.append((edge, s_m, crossing.confidence))
-        return frozenset(ends), tuple(between)
-
-    def _add_mapped_crosswalks(self) -> None:
-        """Put a crosswalk on a road for each crossing of the facts that lies between junctions."""
-        for edge, s_m, confidence in self.crossings:
-            road = self.network.roads[edge]
-            assert road is not None
-            at_m = min(max(s_m, controls.CROSSWALK_M), length(road) - controls.CROSSWALK_M)
-            across = view(self.network.edges[edge].section, along=True)
-            self.objects[edge].append(controls.crosswalk_at(next(self.object_ids), across, at_m, confidence))
-
-    def _add_speed_signs(self) -> None:
-        """Put a sign where each street with a posted limit begins, in both directions; last, so that ids stay."""
-        for street in self.facts.streets:
-            if not street.speed_posted:
-                continue
-            edges = [number for number, edge in enumerate(self.network.edges) if edge.street.id == street.id]
-            roads_m = {number: length(road) for number in edges if (road := self.network.roads[number]) is not None}
-            room = [number for number in roads_m if roads_m[number] >= controls.ROOM_FOR_SPEED_SIGN_M]
-            for along, number in ((True, room[0]), (False, room[-1])) if room else ():
-                seen = view(self.network.edges[number].section, along=along)
-                if seen.driving(right=True):
-                    sign = controls.speed_sign(next(self.signal_ids), street, seen, roads_m[number], along=along)
-                    self.signals[number].append(sign)
 
     def _street_road(self, edge: int) -> RoadRecord | None:
         path = self.network.roads[edge]

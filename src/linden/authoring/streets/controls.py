@@ -1,9 +1,12 @@
 """What tells drivers at a junction what to do: signs, lights, stop lines, crosswalks; and where they stand."""
 
+from collections.abc import Iterator
+
 from linden.authoring.streets import roundabouts
-from linden.authoring.streets.cross_section import KERB_M, PAVED, View
+from linden.authoring.streets.cross_section import KERB_M, PAVED, View, view
+from linden.authoring.streets.curves import length
 from linden.authoring.streets.document import Object, Signal
-from linden.authoring.streets.network import Leg
+from linden.authoring.streets.network import Leg, Network
 from linden.authoring.streets.street_facts import Control, Facts, Intersection, Street
 
 STOP, YIELD, LIGHT, SPEED_LIMIT = "206", "205", "1000001", "274"  # LibCarla's SignalType
@@ -203,3 +206,17 @@ def _rectangle(along_m: float, across_m: float) -> tuple[tuple[float, float], ..
     """Return a closed outline about its middle: LibCarla's readers expect the first corner again at the end."""
     u, v = along_m / 2, across_m / 2
     return ((-u, -v), (u, -v), (u, v), (-u, v), (-u, -v))
+
+
+def speed_signs(facts: Facts, network: Network, ids: Iterator[int]) -> Iterator[tuple[int, Signal]]:
+    """Yield an edge and a sign where each street with a posted limit begins, in both directions."""
+    for street in facts.streets:
+        if not street.speed_posted:
+            continue
+        edges = [number for number, edge in enumerate(network.edges) if edge.street.id == street.id]
+        roads_m = {number: length(road) for number in edges if (road := network.roads[number]) is not None}
+        room = [number for number in roads_m if roads_m[number] >= ROOM_FOR_SPEED_SIGN_M]
+        for along, number in ((True, room[0]), (False, room[-1])) if room else ():
+            seen = view(network.edges[number].section, along=along)
+            if seen.driving(right=True):
+                yield number, speed_sign(next(ids), street, seen, roads_m[number], along=along)

@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 from linden.compiled import fingerprint, machine
 from linden.maps.cache import MapCache
 from linden.maps.library import LoadedMap
-from linden.maps.navigation.detour import Obstacles
+from linden.maps.navigation.detour import Obstacles, write
 
 log = logging.getLogger("linden")
 
@@ -61,16 +61,9 @@ class MeshLibrary:
 
 def _made(world_map: LoadedMap, obstacles: Obstacles) -> bytes:
     """Return the file of a map's mesh; empty where there is no place to walk."""
-    # here, not above: with a mesh out of the cache a start does not pay for them
-    from linden.maps.navigation import detour  # noqa: PLC0415 - see above
-    from linden.maps.navigation.areas import surfaces_of  # noqa: PLC0415 - see above
-    from linden.maps.navigation.build import build  # noqa: PLC0415 - see above
-    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - see above
+    from linden.maps.navigation.map_mesh import mesh_of  # noqa: PLC0415 - a start with a cached mesh does without
 
     begin_s = time.perf_counter()
-    surfaces = surfaces_of(
-        parse(world_map.text), world_map.ground, world_map.lane_of_triangle, world_map.lanes["type_bits"]
-    )
-    mesh = build(surfaces, obstacles)
+    mesh = mesh_of(world_map, world_map.text, obstacles)
     log.info("walking mesh of %s: %d tiles, %.1f s", world_map.name, len(mesh.tiles), time.perf_counter() - begin_s)
-    return detour.write(mesh) if mesh.tiles else b""
+    return write(mesh) if mesh.tiles else b""

@@ -26,9 +26,9 @@ class Image(NamedTuple):
 
 def renderer(look: Look) -> "Renderer":
     """Return the renderer; it is imported when the first camera needs it."""
-    from linden.sensors.camera.renderer import darkroom_of  # noqa: PLC0415 - see above
+    from linden.sensors.camera.renderer import renderer_of  # noqa: PLC0415 - see above
 
-    return darkroom_of(look.seen.caster)
+    return renderer_of(look.seen.caster)
 
 
 def pixels(picture: Picture, look: Look) -> Pixels:

@@ -62,14 +62,12 @@ _on_gpu: list[tuple[Caster, Renderer]] = []
 """The last one made, for the caster it was made of."""
 
 
-def darkroom_of(caster: Caster) -> Renderer:
+def renderer_of(caster: Caster) -> Renderer:
     """Return where pictures of what a caster sees are made."""
     if caster.device == CPU:
         return _ON_CPU
     if not _on_gpu or _on_gpu[0][0] is not caster:
-        from linden.sensors.camera.gpu.renderer import GpuRenderer  # noqa: PLC0415 - likewise
-        from linden.sensors.casting.warp_caster import WarpCaster  # noqa: PLC0415 - users of a GPU alone have Warp
+        from linden.sensors.camera.gpu.renderer import gpu_renderer  # noqa: PLC0415 - Warp, which users of a GPU have
 
-        assert isinstance(caster, WarpCaster)
-        _on_gpu[:] = [(caster, GpuRenderer(caster))]
+        _on_gpu[:] = [(caster, gpu_renderer(caster))]
     return _on_gpu[0][1]

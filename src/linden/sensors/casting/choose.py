@@ -8,6 +8,7 @@ from linden.scenery.mesh import Mesh
 from linden.sensors.casting.caster import CPU, Caster
 from linden.sensors.casting.embree import EmbreeCaster
 from linden.sensors.casting.embree_library import NoEmbreeError
+from linden.sensors.casting.embreex_caster import EmbreexCaster
 
 log = logging.getLogger("linden")
 
@@ -39,6 +40,4 @@ def caster_of(standing: Mesh, bodies: list[Mesh], device: str = CPU) -> Caster:
         return EmbreeCaster(standing, bodies)
     except NoEmbreeError as error:
         log.warning("sensors that look around will be slow: %s; embreex's own call is used instead", error)
-    from linden.sensors.casting.embreex_caster import EmbreexCaster  # noqa: PLC0415 - where Embree works, it is not needed
-
     return EmbreexCaster(standing, bodies)

@@ -14,7 +14,7 @@ from linden.scenery.mesh import Mesh
 from linden.scenery.scene.objects import Scene
 from linden.sensors.casting.caster import CPU, Instances
 from linden.sensors.runtime.light_state import LightStateCache
-from linden.sensors.runtime.scene_build import BuiltScene, SceneKey, build, has_cameras
+from linden.sensors.runtime.scene_key import BuiltScene, SceneKey, has_cameras
 from linden.sensors.runtime.visible_actors import VisibleActors
 from linden.sensors.view import NO_ACTOR_FROM, Seen
 
@@ -32,10 +32,9 @@ _OF_SIGNALS = (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)
 
 def standing_on(world_map: LoadedMap, scene: Scene) -> Mesh:
     """Return what stands on a map; made anew each time."""
-    from linden.maps.opendrive.parse import parse  # noqa: PLC0415 - likewise
-    from linden.scenery.map_mesh import standing  # noqa: PLC0415 - a server without such sensors does not need it
+    from linden.scenery import map_mesh  # noqa: PLC0415 - 50 ms that a server without such sensors does without
 
-    return standing(parse(world_map.text), world_map, scene)
+    return map_mesh.standing_on(world_map, scene)
 
 
 def bodies_of(library: BlueprintLibrary) -> "Bodies":
@@ -170,6 +169,8 @@ class SensorScene:
         if self._whole is None or self._whole[0] is not wanted.scene:
             self._whole = wanted.scene, self.standing_on(wanted.world_map, wanted.scene)
         self.await_kernels(wanted.pictures)
+        from linden.sensors.runtime.scene_build import build  # noqa: PLC0415 - 50 ms, as in standing_on
+
         return build(wanted, self._whole[1], bodies.result(), self.device)
 
 

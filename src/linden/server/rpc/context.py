@@ -57,7 +57,7 @@ class Context:
     pending_load: PendingLoad | None = None
     """The load that has been answered and has not begun; see ``rpc.session.load_new_episode``."""
     unshown_load: int | None = None
-    """Connection of the client whose load has begun, until the first frame of the new episode."""
+    """Connection of the client that loads, until the first frame of the new episode."""
     lamps: tuple[list[tuple[int, int]], Packed] | None = None
     """The lamps of all vehicles as they were packed last."""
     frame_is_due: bool = False

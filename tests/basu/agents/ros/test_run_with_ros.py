@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from basu.agents.ros.lockstep import RosAgent
+from basu.agents.ros.ros2 import RosAgent
 from ros_runs import FOLLOWER, STACK, has_failed, has_followed_the_route, run
 from servers import RunningServer
 

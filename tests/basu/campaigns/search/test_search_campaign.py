@@ -15,10 +15,11 @@ import pyarrow as pa
 import pytest
 
 from basu.campaigns import command
+from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.columns import VOLATILE
-from basu.campaigns.command import RunSettings, describe, run_campaign
+from basu.campaigns.command import describe, run_campaign
 from basu.campaigns.drive_table import read_drives
-from basu.campaigns.plan import plan_of
+from basu.campaigns.planning import plan_of
 from basu.campaigns.report import write_campaign_report
 from basu.campaigns.search.findings import boundary_in, rare_in, searches_in
 from basu.campaigns.settings import read_campaign

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from basu.cli import main
-from basu.output.viewer import stream
+from basu.extras import RERUN
 from basu.records.history import OTHER, History
 from basu.records.history.files import write_history
 from fakes import recordings as made
@@ -138,7 +138,7 @@ def test_without_rerun_there_is_a_sentence_before_anything_starts(
 ) -> None:
     monkeypatch.setitem(sys.modules, "rerun", None)
     assert main(command) == 2
-    assert capsys.readouterr().err == f"basu: {stream.MISSING}\n"
+    assert capsys.readouterr().err == f"basu: {RERUN.missing}\n"
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from fakes.osm_quarter import Drawing, quarter
 from linden.authoring.checks.check import Severity, check
 from linden.authoring.openstreetmap.convert import Imported, convert
 from linden.authoring.streets.build import Built, assembled
-from linden.authoring.streets.street_facts import read
+from linden.authoring.streets.geojson import read
 from linden.authoring.streets.writing import text
 from linden.errors import UserError
 from linden.maps.facts import derive

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from linden.authoring.streets.build import Built, assembled
-from linden.authoring.streets.street_facts import Facts, read
+from linden.authoring.streets.geojson import read
+from linden.authoring.streets.street_facts import Facts
 
 ORIGIN = (-83.0, 40.0)
 Town = dict[str, Any]

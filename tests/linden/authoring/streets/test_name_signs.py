@@ -11,8 +11,8 @@ from linden.authoring.streets.controls import POST_TO_KERB_M
 from linden.authoring.streets.cross_section import KERB_M, PAVED
 from linden.authoring.streets.curves import length, moved, pose_at
 from linden.authoring.streets.document import Object
+from linden.authoring.streets.geojson import read
 from linden.authoring.streets.name_signs import NAME
-from linden.authoring.streets.street_facts import read
 
 
 def signs(built: Built) -> list[tuple[Any, Object]]:

@@ -9,10 +9,10 @@ import pytest
 from linden.authoring.streets.build import assembled
 from linden.authoring.streets.curves import along, length, pose_at, sampled, wrapped
 from linden.authoring.streets.document import value
+from linden.authoring.streets.geojson import read
 from linden.authoring.streets.junctions import Turn
 from linden.authoring.streets.network import ROUNDABOUT_SETBACK_M, build
 from linden.authoring.streets.roundabouts import BEND_RADIUS_M, ISLAND_RADIUS_M, LANE_M, RING_RADIUS_M, turns
-from linden.authoring.streets.street_facts import read
 from linden.errors import UserError
 
 

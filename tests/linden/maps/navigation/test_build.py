@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from linden.maps.facts import derive
-from linden.maps.navigation.areas import surfaces_of
-from linden.maps.navigation.build import build
+from linden.maps.navigation import map_mesh
 from linden.maps.navigation.detour import BORDER, EAST, NORTH, SOUTH, WEST, Area, Obstacles, WalkingMesh, write
-from linden.maps.opendrive.parse import parse
 from naive.walking_mesh import CROSSWALK, ROAD, SIDEWALK, Locator, read
 from opendrive_texts import lane, line, opendrive, road, section, street_through_junction
 
@@ -26,7 +24,7 @@ def crosswalk(s_m: float, half_width_m: float = 3.5, heading: float = 0.0) -> st
 
 def mesh_of(text: str, obstacles: Obstacles = NOTHING) -> WalkingMesh:
     facts = derive(text)
-    return build(surfaces_of(parse(text), facts.ground, facts.lane_of_triangle, facts.lanes["type_bits"]), obstacles)
+    return map_mesh.mesh_of(facts, text, obstacles)
 
 
 def areas_at(mesh: WalkingMesh, x: float, y: float) -> set[int]:

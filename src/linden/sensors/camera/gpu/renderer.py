@@ -29,6 +29,7 @@ from linden.sensors.camera.picture.smooth_normals import Relief
 from linden.sensors.camera.picture.sun_shadows import shines
 from linden.sensors.camera.picture.surface_points import Places
 from linden.sensors.camera.spec import CameraSpec, Film, Picture
+from linden.sensors.casting.caster import Caster
 from linden.sensors.casting.gpu_memory import UploadBuffer
 from linden.sensors.casting.warp_caster import WarpCaster
 from linden.sensors.view import Faces, Look, Seen
@@ -36,6 +37,12 @@ from linden.sensors.view import Faces, Look, Seen
 Pixels = NDArray[Any]
 Waiting = Callable[[], Pixels]
 Thing = TypeVar("Thing")
+
+
+def gpu_renderer(caster: Caster) -> "GpuRenderer":
+    """Return the renderer of what a caster on a GPU sees."""
+    assert isinstance(caster, WarpCaster), "a caster on a GPU is Warp's"
+    return GpuRenderer(caster)
 
 
 class GpuRenderer:

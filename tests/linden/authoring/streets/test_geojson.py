@@ -1,11 +1,12 @@
-"""A street file is checked once, and what is wrong with it is said in a sentence that names the feature."""
+"""A GeoJSON file of streets is checked once, and what is wrong with it is said in a sentence that names the feature."""
 
 import copy
 from typing import Any
 
 import pytest
 
-from linden.authoring.streets.street_facts import Control, read
+from linden.authoring.streets.geojson import read
+from linden.authoring.streets.street_facts import Control
 from linden.errors import UserError
 
 
