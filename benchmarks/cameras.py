@@ -9,6 +9,7 @@ import argparse
 import statistics
 import time
 from collections.abc import Callable
+from typing import TypeVar
 
 from linden.maps.cache import MapCache
 from linden.maps.library import MapLibrary
@@ -21,7 +22,11 @@ from linden.sensors.camera.picture.film import developed
 from linden.sensors.camera.picture.sun_shadows import sunny, within
 from linden.sensors.camera.pixel_rays import aim, directions
 from linden.sensors.camera.spec import CameraSpec, Film
+from linden.sensors.casting.caster import Hits, Rays
+from linden.sensors.view import Seen
 from linden.world import World
+
+T = TypeVar("T")
 
 
 def stage_by_stage(rounds: int) -> None:
@@ -34,8 +39,8 @@ def stage_by_stage(rounds: int) -> None:
     spec, film = CameraSpec(), Film()
     rgb.picture(spec, film, pose, *viewed(spec, pose, seen), seen)
 
-    def took(name: str, work: Callable[[], object]) -> object:
-        times, answer = [], None
+    def took(name: str, work: Callable[[], T]) -> T:
+        times = []
         for _ in range(rounds):
             begin = time.perf_counter()
             answer = work()
@@ -61,7 +66,7 @@ def stage_by_stage(rounds: int) -> None:
     took("all of it", lambda: rgb.picture(spec, film, pose, *viewed(spec, pose, seen), seen))
 
 
-def viewed(spec: CameraSpec, pose: Transform, seen: object) -> tuple[object, object]:
+def viewed(spec: CameraSpec, pose: Transform, seen: Seen) -> tuple[Rays, Hits]:
     rays = aim(directions(spec), pose)
     return rays, seen.caster.closest(rays, labels.FAR_M, coherent=True, outer=True)
 

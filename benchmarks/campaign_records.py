@@ -14,6 +14,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from basu.campaigns.columns import schema_of
 from basu.campaigns.drive_table import DriveTable
@@ -75,7 +76,7 @@ def main() -> None:
     table = DriveTable(folder, schema_of(plan.parameters()), arguments.block, arguments.jobs)
     pool = Pool(Processes(PlayerSpec(f"{Path(__file__).stem}:open_nothing")), arguments.workers)
     memory, began_s, began_cpu_s, done = [], time.perf_counter(), time.process_time(), 0
-    given: dict[int, dict[str, object]] = {}  # jobs in work, as a campaign's command holds them
+    given: dict[int, dict[str, Any]] = {}  # jobs in work, as a campaign's command holds them
 
     def jobs() -> Iterator[Job]:
         for number in table.pending(arguments.jobs):

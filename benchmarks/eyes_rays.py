@@ -21,7 +21,7 @@ from eyes_server import populate, town
 from numpy.typing import NDArray
 from rays import FAR_M, RaySet, raw, ray_sets
 
-from linden.sensors.casting.choose import CPU
+from linden.sensors.casting.caster import CPU
 from linden.sensors.casting.embree import EmbreeCaster
 from linden.sensors.view import Seen
 

@@ -19,6 +19,7 @@ from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.values.space import Transform
 from linden.replay.file.read import Recording
+from linden.replay.file.track import track_of
 from linden.replay.replayer import Plan
 from linden.world import World
 
@@ -56,7 +57,9 @@ def row(maps: MapLibrary, count: int, frames: int, folder: Path) -> tuple[float,
         found.append(cpu_ms(tick, frames))
         simulation.recorder.stop()
         sizes.append((path.stat().st_size - begin) / frames)
-    simulation.replayer.start(simulation, Recording(path), Plan(0.0, 0.0, 0, Transform(), replay_sensors=False))
+    simulation.replayer.start(
+        simulation, track_of(Recording(path)), Plan(0.0, 0.0, 0, Transform(), replay_sensors=False)
+    )
     found.append(cpu_ms(tick, frames))
     return (*found, *sizes)
 

@@ -118,8 +118,8 @@ def main() -> None:
             ready = next((line for line in server.stdout if line.startswith("linden: ready")), None)
             if ready is None:
                 raise SystemExit("the server ended before it was ready")
-            ports = [int(part.split(",")[0]) for part in ready.split("port ")[1:]]
-            target = Target(psutil.Process(server.pid), *ports, Path(log.name))
+            port, streaming_port = (int(part.split(",")[0]) for part in ready.split("port ")[1:])
+            target = Target(psutil.Process(server.pid), port, streaming_port, Path(log.name))
             rows.settle(target)
             print(HEAD)
             for name, (count, row) in ROWS.items():

@@ -48,7 +48,7 @@ def stages(maps: MapLibrary, count: int) -> dict[str, Callable[[], object]]:
     return {
         "batch": lambda: registry.dispatch(context, connection.receive(request)[0]),
         "lights": lambda: episode.traffic.step(0.05),
-        "grip": lambda: episode.grip.update(episode),
+        "friction": lambda: episode.friction.update(episode),
         "physics": physics,
         "walkers": lambda: episode.walkers.step(episode, 0.05),
         "rows": episode.observe,

@@ -25,7 +25,7 @@ import carla
 import numpy as np
 
 from basu.agents.builtin.basic import BasicAgent, HumanAgent
-from basu.agents.manual.inputs import Hands, Held, Input, after, steer_after
+from basu.agents.manual.inputs import Held, Input, PedalsAndWheel, after, steer_after
 from basu.agents.manual.session import Session, Setting, write_session
 from basu.cli import main as basu
 from basu.options.conditions import STEP_S
@@ -48,7 +48,7 @@ class KeyPresser(BasicAgent):
     def setup(self) -> None:
         """Sit down, feet off the pedals."""
         super().setup()
-        self.hands = Hands()
+        self.hands = PedalsAndWheel()
         self.owed_throttle = self.owed_brake = 0.0
         self.haste = list(HASTE)
         self.inputs: list[Input] = []
