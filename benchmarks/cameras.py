@@ -2,7 +2,7 @@
 
     python benchmarks/cameras.py [--rounds 15]
 
-Medians of the rounds in this process, without wire and client; ``eyes.py`` has whole frames.
+Medians of the rounds in this process, without wire and client; ``sensors.py`` has whole frames.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Run by eyes_peers.py and gym_steps.py in a Python that has MetaDrive: steps it with a lidar, or a colour camera.
+"""Run by sensor_peers.py and gym_steps.py in a Python that has MetaDrive: steps it with a lidar, or a colour camera.
 
     python peer_metadrive.py STEPS [camera] [alone]
 

@@ -1,4 +1,4 @@
-"""Run by eyes_rays.py in a Python that has Open3D: casts rays against triangles and says how long it took.
+"""Run by sensor_rays.py in a Python that has Open3D: casts rays against triangles and says how long it took.
 
 python peer_open3d.py SCENE.npz ANSWERS.npz ROUNDS
 """

@@ -1,7 +1,7 @@
 """Acceptance of connections on both ports, up to a limit; connections that stay silent are closed.
 
-A subscriber says at once which stream it wants, so one that keeps silent is sent away. A client may be silent for as
-long as it likes, for a user may think at a prompt; only where there is no room for others it has to make it.
+A subscriber names its stream at once, so a silent one is closed after a while. A client may be silent for as long as it
+likes, because a user may think at a prompt. It is closed only where the process has no files left for others.
 """
 
 import errno
@@ -20,10 +20,10 @@ FULL_PAUSE_S = 1.0
 """How long no connection is accepted after the limit was reached."""
 SILENT_SUBSCRIBER_S = 10.0
 """How long a stream connection may take to say its four bytes; the official client sends them on connecting."""
-LET_IN_AT_ONCE = 64
+ACCEPTED_AT_ONCE = 64
 """Connections accepted on a port before the connected clients have their turn."""
-SHOWN_OUT_AT_ONCE = 16
-"""Silent clients that leave together when there is no room."""
+CLOSED_AT_ONCE = 16
+"""Silent connections that are closed together when the limit is reached."""
 RESERVED_FILES = 64
 """Files of the process that are no connections: its own, those of libraries, maps and recordings."""
 MOST_CONNECTIONS_ANYWHERE = 16384
@@ -46,31 +46,31 @@ def most_connections() -> int:
 
 
 class Acceptor:
-    """Listens on both ports and keeps the connections that have not sent anything yet."""
+    """Listens on both ports, and knows the connections that have not sent anything yet."""
 
     def __init__(
         self,
         ports: Ports,
         selector: selectors.BaseSelector,
         clock: Callable[[], float],
-        welcome: Callable[[Peer], None],
-        show_out: Callable[[Peer], None],
+        accepted: Callable[[Peer], None],
+        close: Callable[[Peer], None],
     ) -> None:
-        """``welcome`` is called with a new connection, ``show_out`` with one to close."""
+        """``accepted`` is called with a new connection, ``close`` with one to close."""
         self._ports = ports
         self._selector = selector
-        self._welcome = welcome
-        self._show_out = show_out
+        self._accepted = accepted
+        self._close = close
         self._most = most_connections()
         self._numbered = 0
-        self._inside = 0
+        self._count = 0
         self._silent: dict[type[Peer], dict[Peer, float]] = {RpcPeer: {}, StreamPeer: {}}  # when each came, in order
         self._closed_until_s: float | None = None
         self._clock = clock
         self._open()
 
     def look(self, now_s: float) -> None:
-        """Do what is due by the clock: open the doors again, and show out silent subscribers."""
+        """Run timers: listen again after a lack of files, and close connections of silent subscribers."""
         if self._closed_until_s is not None and now_s >= self._closed_until_s:
             self._closed_until_s = None
             self._open()
@@ -78,10 +78,10 @@ class Acceptor:
             if now_s - self._silent[StreamPeer][peer] < SILENT_SUBSCRIBER_S:
                 break
             log.info("%s is closed: it has not said within %.0f s what it listens to", peer, SILENT_SUBSCRIBER_S)
-            self._show_out(peer)
+            self._close(peer)
 
     def wait_s(self, now_s: float) -> float | None:
-        """Return how long there is nothing to do by the clock, None where that is for ever."""
+        """Return the time until the next timer in s, None where there is none."""
         if self._closed_until_s is None and not self._silent[StreamPeer]:
             return None
         due = [] if self._closed_until_s is None else [self._closed_until_s]
@@ -89,55 +89,55 @@ class Acceptor:
         return max(0.0, min(due) - now_s) if due else None
 
     def has_spoken(self, peer: Peer) -> None:
-        """Note that a peer has said what it wants."""
+        """Note that a connection has sent something."""
         self._silent[type(peer)].pop(peer, None)
 
     def has_left(self, peer: Peer) -> None:
-        """Note that a peer is no longer inside."""
-        self._inside -= 1
+        """Note that a connection is closed."""
+        self._count -= 1
         self._silent[type(peer)].pop(peer, None)
 
     def _open(self) -> None:
         for listener, kind in ((self._ports.rpc, RpcPeer), (self._ports.streaming, StreamPeer)):
             self._selector.register(
-                listener, selectors.EVENT_READ, lambda _, door=listener, kind=kind: self._let_in(door, kind)
+                listener, selectors.EVENT_READ, lambda _, socket_=listener, kind=kind: self._accept(socket_, kind)
             )
 
-    def _let_in(self, door: socket.socket, kind: type[Peer]) -> None:
-        if self._inside >= self._most and self._closed_until_s is None:
-            self._make_room(f"{self._inside} connections are open")
-        for _ in range(LET_IN_AT_ONCE):
-            if self._inside >= self._most or self._closed_until_s is not None:
+    def _accept(self, listener: socket.socket, kind: type[Peer]) -> None:
+        if self._count >= self._most and self._closed_until_s is None:
+            self._close_silent(f"{self._count} connections are open")
+        for _ in range(ACCEPTED_AT_ONCE):
+            if self._count >= self._most or self._closed_until_s is not None:
                 return
             try:
-                sock, _ = door.accept()
+                sock, _ = listener.accept()
             except (BlockingIOError, InterruptedError):
                 return
             except OSError as error:
                 if error.errno in _OUR_FAULT:
                     raise
                 if error.errno in _NO_ROOM:
-                    self._make_room(str(error))
-                continue  # else it was gone before it was let in
-            self._greet(sock, kind)
+                    self._close_silent(str(error))
+                continue  # else it was gone before it was accepted
+            self._add(sock, kind)
 
-    def _greet(self, sock: socket.socket, kind: type[Peer]) -> None:
+    def _add(self, sock: socket.socket, kind: type[Peer]) -> None:
         self._numbered += 1
         try:
             peer = kind(sock, self._numbered)
-        except OSError:  # gone before it was greeted
+        except OSError:  # already gone
             sock.close()
             return
-        log.debug("%s has come", peer)
-        self._inside += 1
+        log.debug("%s has connected", peer)
+        self._count += 1
         self._silent[kind][peer] = self._clock()
-        self._welcome(peer)
+        self._accepted(peer)
 
-    def _make_room(self, why: str) -> None:
+    def _close_silent(self, why: str) -> None:
         """Close the oldest silent connections; where there are none, accept no connection for a while."""
-        leaving = tuple(islice(chain(self._silent[StreamPeer], self._silent[RpcPeer]), SHOWN_OUT_AT_ONCE))
+        leaving = tuple(islice(chain(self._silent[StreamPeer], self._silent[RpcPeer]), CLOSED_AT_ONCE))
         for peer in leaving:
-            self._show_out(peer)
+            self._close(peer)
         if leaving:
             log.warning("%d silent connections are closed to make room for others: %s", len(leaving), why)
             return

@@ -43,7 +43,7 @@ SWITCH_S = 0.0002
 system, and by default would wait 5 ms each time. Without a background thread the value has no effect."""
 
 LOOKS_EACH_S = 0.02
-"""How often a busy server looks for what is due by the clock and is no frame. All of it is a matter of seconds."""
+"""How often a busy server runs timers that are not tied to a frame. All of them are a matter of seconds."""
 
 COARSE_S = 0.002
 """Waits shorter than this end on time. The selector counts whole milliseconds; a tick's answer waits one at most."""
@@ -70,7 +70,7 @@ class Server:
         file = self._selector.fileno() if hasattr(self._selector, "fileno") else _MOST_SELECTED
         self._fine_files = (file,) if file < _MOST_SELECTED else ()
         self._subscribers = Subscribers(self.context.streams, self._watch, self._close)
-        self._acceptor = Acceptor(ports, self._selector, self._clock, self._welcome, self._close)
+        self._acceptor = Acceptor(ports, self._selector, self._clock, self._accepted, self._close)
         self._stall_log = StallLog()
         self._clients: dict[RpcPeer, None] = {}  # an ordered set
         self._calls = Calls(self.context, self._subscribers, self._clock, self._watch, self._close, self._wake)
@@ -163,7 +163,7 @@ class Server:
         return None if wait_s is None else max(0.0, wait_s)
 
     def _look_around(self, now_s: float) -> None:
-        """Do what is due by the clock and is no frame."""
+        """Run timers that are not tied to a frame."""
         self._acceptor.look(now_s)
         held_up = self._calls.unfinished and any(
             self._calls.order.waits_for_subscribers(peer) for peer in self._calls.unfinished
@@ -176,7 +176,7 @@ class Server:
 
     # -- connections ---------------------------------------------------------------------------------------------
 
-    def _welcome(self, peer: Peer) -> None:
+    def _accepted(self, peer: Peer) -> None:
         if isinstance(peer, RpcPeer):
             self._clients[peer] = None
         self._watch(peer)

@@ -500,7 +500,7 @@ def test_a_thousand_clients_and_subscribers_come_and_go_and_nothing_is_kept_of_t
                 passing.call("version")
         for stream_id in range(2, 1002):
             running.subscriber(stream_id).socket.close()
-        wait_until(lambda: client.call("version") == "0.9.16" and running.server._acceptor._inside == 1)
+        wait_until(lambda: client.call("version") == "0.9.16" and running.server._acceptor._count == 1)
         assert len(running.server._clients) == 1
         assert not running.server.context.streams.listened()
         assert not running.server._subscribers._by_stream

@@ -1,4 +1,4 @@
-"""Rays of eyes.py: our caster beside raw Embree, and beside Open3D's, on the same rays against the same triangles.
+"""Rays of sensors.py: our caster beside raw Embree, and beside Open3D's, on the same rays against the same triangles.
 
 The share is of processor time, on a GPU of the clock's: there the host waits.
 """
@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from eyes_peers import having
-from eyes_rows import rows
-from eyes_server import populate, town
 from numpy.typing import NDArray
 from rays import FAR_M, RaySet, raw, ray_sets
+from sensor_peers import having
+from sensor_rows import rows
+from sensor_server import populate, town
 
 from linden.sensors.casting.caster import CPU
 from linden.sensors.casting.embree import EmbreeCaster

@@ -1,4 +1,4 @@
-"""What the base package of eyes.py takes on a disk: it is installed afresh, with all that it needs, and measured.
+"""What the base package of sensors.py takes on a disk: it is installed afresh, with all that it needs, and measured.
 
 Bytecode is left out, which Python adds when it first reads a file, and so are compiled kernels and maps in the cache.
 """

@@ -1,4 +1,4 @@
-"""MetaDrive beside eyes.py: what a step of its own traffic takes with its lidar, and with its colour camera.
+"""MetaDrive beside sensors.py: what a step of its own traffic takes with its lidar, and with its colour camera.
 
 The camera is drawn by OpenGL: without a screen, run the whole under ``xvfb-run``.
 """

@@ -1,4 +1,4 @@
-"""The rows of the table of eyes.py: which sensors a car carries, and how long a frame is."""
+"""The rows of the table of sensors.py: which sensors a car carries, and how long a frame is."""
 
 from collections.abc import Mapping
 from typing import NamedTuple

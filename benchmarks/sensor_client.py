@@ -1,4 +1,4 @@
-"""Rows of eyes.py measured through the official client: from a tick until all that was seen is in its hands."""
+"""Rows of sensors.py measured through the official client: from a tick until all that was seen is in its hands."""
 
 import queue
 import statistics
@@ -6,8 +6,8 @@ import time
 from collections.abc import Iterator
 
 import carla
-from eyes_rows import CAR, OTHERS, THROTTLE, Figures, Row, Sensor
 from live import LINDEN, Live, cpu_s, server
+from sensor_rows import CAR, OTHERS, THROTTLE, Figures, Row, Sensor
 
 WARM_UP = 3
 TIMEOUT_S = 120.0

@@ -1,7 +1,7 @@
-"""The speed of what sees: cameras, lidars, a whole rig, and rays beside raw Embree and Open3D on the same rays.
+"""The speed of sensors: cameras, lidars, a whole rig, and rays beside raw Embree and Open3D on the same rays.
 
-    python benchmarks/eyes.py [--device cpu|cuda] [--in-process] [--frames 30] [--vehicles 50] [--only table rays ...]
-                              [--peer-python PATH ...]
+    python benchmarks/sensors.py [--device cpu|cuda] [--in-process] [--frames 30] [--vehicles 50]
+                              [--only table rays ...] [--peer-python PATH ...]
 
 A car drives in Linden among others and carries the sensors of a row; all of them measure in every frame. A frame is
 done when all of it is in the official client's hands. With ``--in-process`` there is neither wire nor client, and the
@@ -16,7 +16,7 @@ import os
 import platform
 from pathlib import Path
 
-import eyes_rows
+import sensor_rows
 
 PARTS = ("table", "rays", "peers", "size")
 
@@ -37,30 +37,30 @@ def main() -> None:
     if "table" in options.only:
         table(options)
     if "rays" in options.only or "peers" in options.only:
-        import eyes_rays  # noqa: PLC0415 - builds what it needs of Embree when it is imported
+        import sensor_rays  # noqa: PLC0415 - builds what it needs of Embree when it is imported
 
-        eyes_rays.compare(options)
+        sensor_rays.compare(options)
     if "peers" in options.only:
-        import eyes_peers  # noqa: PLC0415 - beside eyes_rays
+        import sensor_peers  # noqa: PLC0415 - beside sensor_rays
 
-        eyes_peers.drive(options.peer_python, options.frames)
+        sensor_peers.drive(options.peer_python, options.frames)
     if "size" in options.only:
-        import eyes_size  # noqa: PLC0415 - beside eyes_rays
+        import package_size  # noqa: PLC0415 - beside sensor_rays
 
-        eyes_size.tell()
+        package_size.tell()
 
 
 def table(options: argparse.Namespace) -> None:
     """Print what frames take."""
     if options.in_process:
-        from eyes_server import measured  # noqa: PLC0415 - one of two
+        from sensor_server import measured  # noqa: PLC0415 - one of two
     else:
-        from eyes_client import measured  # noqa: PLC0415 - needs the official client
-    rows = tuple(row for row in eyes_rows.rows() if options.rows in row.name)
+        from sensor_client import measured  # noqa: PLC0415 - needs the official client
+    rows = tuple(row for row in sensor_rows.rows() if options.rows in row.name)
     print(f"{'in the server' if options.in_process else 'through the official client'}, {options.vehicles} vehicles")
-    print(eyes_rows.head())
+    print(sensor_rows.head())
     for row, found in measured(options.device, rows, options.vehicles, options.frames):
-        print(eyes_rows.line(row, found), flush=True)
+        print(sensor_rows.line(row, found), flush=True)
 
 
 def machine() -> str:

@@ -1,4 +1,4 @@
-"""Rows of eyes.py measured in the server itself: a step of the world and the messages of its sensors, no client.
+"""Rows of sensors.py measured in the server itself: a step of the world and the messages of its sensors, no client.
 
 Imports nothing of the official client, which not every Python has.
 """
@@ -7,7 +7,7 @@ import statistics
 import time
 from collections.abc import Iterator
 
-from eyes_rows import CAR, OTHERS, THROTTLE, Figures, Row, Sensor
+from sensor_rows import CAR, OTHERS, THROTTLE, Figures, Row, Sensor
 
 from linden.maps.cache import MapCache
 from linden.maps.library import HOME_MAP, MapLibrary
