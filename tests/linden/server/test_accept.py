@@ -86,7 +86,7 @@ def test_without_room_silent_connections_are_closed_and_others_stay(
     assert "16 silent connections are closed to make room for others: 30 connections are open" in caplog.text
 
 
-def test_where_all_have_spoken_the_doors_close_for_a_while(
+def test_where_no_connection_is_silent_none_is_accepted_for_a_while(
     server: Listening, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr(server.acceptor, "_most", 3)
@@ -109,13 +109,13 @@ class Failing:
     """A door at which the system fails once."""
 
     def __init__(self, listener: socket.socket, code: int) -> None:
-        self.door, self.code = door, code
+        self.listener, self.code = listener, code
 
     def accept(self) -> tuple[socket.socket, object]:
         if self.code:
             code, self.code = self.code, 0
             raise OSError(code, "as the system says")
-        return self.door.accept()
+        return self.listener.accept()
 
 
 @pytest.mark.parametrize("code", [errno.ECONNABORTED, errno.EPROTO, errno.EPERM])
