@@ -1,4 +1,4 @@
-"""The folder of a campaign: its document, the lock of the one command that writes it, and how far it has come."""
+"""The folder of a campaign: its file names, its lock, and `campaign.json`, written at the start, compared on resume."""
 
 from __future__ import annotations
 

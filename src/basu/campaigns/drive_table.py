@@ -1,4 +1,4 @@
-"""The table of a campaign: a row for each drive, as Parquet files by agent and block, written whole or not at all.
+"""The table of drives: a JSON-lines journal for each open block, Parquet files for complete blocks, and readers.
 
 A block holds the rows of consecutive numbers of jobs. While a block is open, each row is appended to its journal, a
 file of JSON lines. A complete block becomes a Parquet file for each agent, its rows in the order of their numbers; then

@@ -1,4 +1,4 @@
-"""The plan of a campaign from its file: agents, routes, cases and searches are found, or refused with a sentence."""
+"""Builds a `CampaignPlan` from the settings: loads agents, routes, cases and searches, or raises `UserError`."""
 
 from __future__ import annotations
 

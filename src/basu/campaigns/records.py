@@ -1,4 +1,4 @@
-"""The folders of telling drives: failures, the narrowest successes, and a sample, as many as the settings say."""
+"""Selection and storage of drive records to keep: failures, successes with the smallest margins, and a sample."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The folder of a campaign on an object store, or on anything else that fsspec opens: s3://, gs://, abfs://, file://.
+"""Copies of a campaign folder to and from an object store by fsspec (s3://, gs://, abfs://, file://).
 
 A campaign is driven in a folder of this machine. Complete blocks, kept records and documents are copied to the store
 when a block is complete and at the end. Each object is written whole or not at all. The last object of a record's

@@ -11,7 +11,7 @@ import carla
 from basu.errors import AgentCrashedError, SimulatorError, UserError
 from basu.managers.base_manager import Frame, ego_in
 from basu.managers.conduct import ticked
-from basu.managers.world_changes import taken_away
+from basu.managers.interference import taken_away
 from basu.routing import lane_graph
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The agent under test: made, bound to its run, called for a control every tick within its time limit."""
+"""`AgentsManager`: creates and steps the agent under a time limit; its sensors and route; takeover by a person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The base class of all managers, and the values that they share: the run, the ego vehicle, a frame, the driver."""
+"""`BaseManager` and shared data: run, ego motion, frame, current control, and changes made by the benchmark itself."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Watches that the agent drives with the control that it returns, and with nothing else.
+"""Checks for cheating: control, motion of the ego, extra ticks, weather, settings, other actors, and traffic lights.
 
 An agent in a process of its own has a client of its own, which may do all that CARLA's API offers: move the vehicle,
 tick the world, change the weather. A change that the benchmark did not make ends the run as the agent's failure. Most
@@ -17,8 +17,8 @@ import numpy as np
 
 from basu.errors import AgentCrashedError, UserError
 from basu.managers.guarded_values import every_value, physics_values, weather_values
+from basu.managers.interference import DRIFT_M, JUMP_M, LightsCheck, OthersCheck, agents_change, is_same_control
 from basu.managers.overlap_check import HEARD_TICKS, OverlapCheck
-from basu.managers.world_changes import DRIFT_M, JUMP_M, LightsCheck, OthersCheck, agents_change, is_same_control
 from basu.routing.weather import WEATHER_FIELDS
 
 if TYPE_CHECKING:

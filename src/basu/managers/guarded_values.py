@@ -1,4 +1,4 @@
-"""Values that an agent must not change: the weather, the vehicle's physics, the world's settings.
+"""Reading of weather, vehicle physics and world settings as named numbers, to detect changes made by an agent.
 
 Each is named as in a sentence. Each function is one call to the server.
 """

@@ -1,4 +1,4 @@
-"""A scenario placed on the ego's route, with its tree; errors in its code become errors of the scenario.
+"""Placing of a scenario on a route: trigger point, room left, behaviour tree; exceptions become `ScenarioError`.
 
 On the way of a longer route a scenario's part ends ``needs_m`` behind its trigger point: there the ego has "arrived"
 as far as the scenario is concerned.

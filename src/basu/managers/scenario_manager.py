@@ -15,11 +15,11 @@ from py_trees.common import Status as NodeStatus
 
 from basu.errors import ScenarioError, UserError
 from basu.managers.base_manager import BaseManager
+from basu.managers.interference import agents_change
 from basu.managers.placed_scenario import call_scenario, is_behind, place_scenario
 from basu.managers.stage.environment import SharedWorld
 from basu.managers.stage.live_stage import LiveStage
 from basu.managers.stage.scenario_actors import destroy_actors, spawn_actors
-from basu.managers.world_changes import agents_change
 from basu.outcome import Outcome, Status
 from basu.scenarios.criteria.criterion import Played, moved
 from basu.scenarios.scenario import set_on

@@ -1,4 +1,4 @@
-"""SUMO's traffic in a run: chooses the scenario, joins SUMO and the world, lets both go on in step."""
+"""`SumoManager`: co-simulation with SUMO; selects its .sumocfg, starts it, steps both, and counts bus passengers."""
 
 from __future__ import annotations
 

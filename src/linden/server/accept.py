@@ -1,4 +1,4 @@
-"""Acceptance of connections on both ports, up to a limit; connections that stay silent are closed.
+"""Acceptor of RPC and stream connections: a limit on their number, and a timeout for stream peers that send nothing.
 
 A subscriber names its stream at once, so a silent one is closed after a while. A client may be silent for as long as it
 likes, because a user may think at a prompt. It is closed only where the process has no files left for others.

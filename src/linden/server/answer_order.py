@@ -1,4 +1,4 @@
-"""The order of answers: what a client's next call and its answer wait for. All such reasons stand here.
+"""Rules for delayed calls and answers: for each client, whether its next call or answer has to wait, and how long.
 
 ========================================  =====================================  =============================
 what waits                                for what                               how long at most

@@ -1,4 +1,4 @@
-"""Calls of the clients, carried out strictly in the order of each, and by turns between them.
+"""Scheduler of RPC calls: each client's in order, clients in turn; sends the answers and publishes stream messages.
 
 What a call or its answer waits for is decided in :mod:`linden.server.answer_order`.
 """

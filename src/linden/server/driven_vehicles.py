@@ -1,4 +1,4 @@
-"""Vehicles that a client's Traffic Managers drive; answers to `destroy_actor` that wait until their thread lets go.
+"""Vehicles driven by a client's Traffic Managers: delays frames and `destroy_actor` answers until they are released.
 
 When ``destroy_actor`` is answered, LibCarla's ``Simulator::DestroyActor`` cuts the actor off from its episode. A
 Traffic Manager holds the same object. Its thread ends the process where it still works on it: "trying to operate on

@@ -1,4 +1,4 @@
-"""The order of answers round a load: when it begins, and what a client that runs Traffic Managers is answered when.
+"""Loading of a map: holds the answer until the client's Traffic Managers wait, and starts the load after the answer.
 
 When its load is answered, LibCarla's ``Simulator::LoadEpisode`` drops its ``Episode``, asks for the version and for
 ``get_episode_info``, and makes another. A Traffic Manager in asynchronous mode has a thread that goes on meanwhile and

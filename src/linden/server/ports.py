@@ -1,4 +1,4 @@
-"""The two listening sockets, and the sentence where a port cannot be had."""
+"""Opening of the RPC and the stream listening socket, error messages for ports in use, and a check for loopback."""
 
 import errno
 import ipaddress

@@ -1,4 +1,4 @@
-"""Attached actors: spring arms, and the sockets of a parent that a child follows.
+"""Attachment to spring arms (pose computed once at spawn) and to sockets or bones of a parent (followed every frame).
 
 The pose of a child on a spring arm gives the arm's length and direction. The child looks back along the arm, and its
 own rotation adds to that (ActorAttacher.cpp). These arms are stiff: they take part in their parent's pitch and roll,

@@ -1,4 +1,4 @@
-"""One episode: a map, the actors on it, and everything else that a load of a map begins anew."""
+"""`Episode`: a loaded map with its actors, weather and other parts; fills the rows of the world snapshot each frame."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""The state of an episode that its parts share: the map, the actors, their bodies, and the look-ups over them."""
+"""`EpisodeState`, abstract base of `Episode`: map, actors, bodies, weather; look-up of actors and setting of poses."""
 
 from abc import ABC, abstractmethod
 from typing import Protocol

@@ -1,4 +1,4 @@
-"""The scene of an episode: what the map has, and what clients change in it.
+"""Static scene of an episode: map objects and their collision boxes, layers, street lamps, and debug shapes of clients.
 
 Every map has its lights and signs and the scene that they are part of. Clients hide and show objects, switch lamps and
 draw debug shapes.

@@ -1,4 +1,4 @@
-"""Walkers beyond their bodies: control from outside, distance walked, death; the walking mesh of the map.
+"""Walkers: poses from clients' AI controllers, distance walked, death after a crash; the navigation mesh file.
 
 An AI controller lives in the client. In every tick it sends the pose of its walker. The walker has no physics and no
 collisions then; the server puts it there. The snapshot shows a velocity from the distance that it was moved.

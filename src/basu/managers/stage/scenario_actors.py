@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import carla
 
 from basu.errors import ScenarioError
-from basu.managers.world_changes import CONTROL_TOLERANCE, is_same_control
+from basu.managers.interference import CONTROL_TOLERANCE, is_same_control
 from basu.scenarios.stage import EGO
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""The interface of ray casters; the same on the CPU (``embree``) and on a GPU (``warp``)."""
+"""Abstract `Caster` (nearest hit, occlusion, poses of bodies) and its data types: `Rays`, `Instances`, `Hits`."""
 
 from typing import NamedTuple, Protocol
 

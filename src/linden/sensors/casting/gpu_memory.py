@@ -1,4 +1,4 @@
-"""GPU memory and one stream of work for kernels of numba: buffers to the GPU, and pictures back.
+"""A CUDA device for numba and Warp: arrays, copies both ways, streams, kernel launches, and graph capture and replay.
 
 Warp casts rays there (``warp_caster``); numba compiles the very loops that shade on the CPU for the GPU as well. Needs
 the extra ``gpu``.

@@ -1,4 +1,4 @@
-"""The caster for a GPU: NVIDIA's Warp, the same answers as Embree's. Needs the extra ``gpu``.
+"""GPU ray caster on NVIDIA Warp: the `Caster` interface, and ray queries on arrays that stay on the GPU (extra `gpu`).
 
 What stands is one mesh. All bodies together are another; its corners are moved each tick and its tree is then
 refitted, for Warp knows no instances. Of two surfaces at one distance what stands answers.

@@ -1,4 +1,4 @@
-"""The world's state as the benchmark has set it, and checks that find other actors or lights changed by the agent.
+"""Checks for interference: other actors moved or removed, traffic lights changed, controls that differ.
 
 All checks read the world snapshot, which is there anyway. They hold in a simulator of our own, where nothing but the
 benchmark and its agent is connected. CARLA's rules for lights: TrafficLightGroup.cpp and TrafficLightController.cpp.

@@ -17,7 +17,7 @@ from basu.cli import main
 from basu.errors import AgentCrashedError
 from basu.managers.base_manager import WorldChanges
 from basu.managers.conduct import Conduct
-from basu.managers.world_changes import LightsCheck, OthersCheck, is_same_control
+from basu.managers.interference import LightsCheck, OthersCheck, is_same_control
 from basu.records.history.files import read_history
 from basu.running import runner
 from basu.running.scenario_runs import player
