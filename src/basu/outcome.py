@@ -1,4 +1,4 @@
-"""How a run ended and which party is at fault: the statuses of ``result.json`` and the exit codes of ``basu run``."""
+"""`Outcome` of a run, `Status` for ``result.json``, and `Fault`: the party at fault and exit code of ``basu run``."""
 
 from __future__ import annotations
 

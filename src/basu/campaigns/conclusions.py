@@ -1,4 +1,4 @@
-"""What may be concluded from a campaign's table: rates with intervals, pairs of agents, means of comfort and cost."""
+"""Statistics of a campaign's table: success rates with intervals, paired comparisons of agents, mean metrics, costs."""
 
 from __future__ import annotations
 

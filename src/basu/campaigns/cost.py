@@ -1,4 +1,4 @@
-"""What a drive costs: processor time and memory of this process and of all processes below it (Linux)."""
+"""`cost_of` returns the processor time and memory of a process and its descendants, from ``/proc`` of Linux."""
 
 from __future__ import annotations
 

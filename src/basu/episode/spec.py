@@ -1,4 +1,4 @@
-"""What an episode is to be: its town, route, vehicle, weather, traffic and scenarios, known before there is a world."""
+"""`EpisodeSpec`, an episode before its world is loaded: town, route, vehicle, weather, traffic, scenarios, scoring."""
 
 from __future__ import annotations
 

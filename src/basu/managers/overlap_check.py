@@ -1,4 +1,4 @@
-"""Watches that the run's vehicle does not drive through other bodies."""
+"""`OverlapCheck` reports an actor that the run's vehicle overlaps without a contact of the collision sensor."""
 
 from __future__ import annotations
 

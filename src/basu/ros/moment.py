@@ -1,4 +1,4 @@
-"""What is known of a simulated vehicle at one instant, in CARLA's axes and without a client: the source of messages."""
+"""`Vehicle` and `Moment`, the input of ROS messages: sensor mounts, motion, control, measurements, actors, lights."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node of either generation of ROS offers: topics to publish and to listen to, and its peers."""
+"""`RosNode`, the protocol of ROS 1 and ROS 2 nodes: publishing and receiving on topics, and the number of peers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is to be run, as far as it can be known without a simulator: read whole before anything is started."""
+"""`prepare` loads and checks agent, sensors, routes and scenarios before a simulator starts, and returns a `Plan`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a case happens: the ego's route, the point that arms it, and places seen from there."""
+"""`Place`: the ego's route and trigger point in a case, and poses, lane widths and stop lines at distances from it."""
 
 from __future__ import annotations
 

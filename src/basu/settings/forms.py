@@ -1,4 +1,4 @@
-"""How the values of options are written on the command line: text to JSON values and back to words."""
+"""Command-line forms of option values: `Form` and its subclasses convert text to JSON values and back to arguments."""
 
 from __future__ import annotations
 

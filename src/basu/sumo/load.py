@@ -1,4 +1,4 @@
-"""How much traffic SUMO has and what it loses in it: one row for each second of simulated time."""
+"""`Load` samples SUMO's traffic each simulated second (vehicles, halts, time loss) and counts arrivals and contacts."""
 
 from __future__ import annotations
 

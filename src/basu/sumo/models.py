@@ -1,4 +1,4 @@
-"""Which of CARLA's blueprints shows a SUMO vehicle type or person, and which type a CARLA actor has in SUMO."""
+"""`Models` maps SUMO types and persons to CARLA blueprints; `CLASSES` maps CARLA base types to SUMO vehicle classes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the built-in agents read through the client: traffic lights, motion and the data of their own vehicle."""
+"""CARLA data for built-in agents: motion (`see_ego`), traffic lights (`Lights`), vehicle parameters (`read_facts`)."""
 
 from __future__ import annotations
 

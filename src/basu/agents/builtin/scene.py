@@ -1,4 +1,4 @@
-"""What the driving agents know at one instant: themselves, the others, and what the rules of the road ask of them.
+"""Data types of the driving agents: the vehicle's `Body` and state `Ego`, `Other` actors, and speed `Restriction`.
 
 World frame throughout: CARLA's (metres, x east, y south, angles in rad clockwise from above).
 """

@@ -1,4 +1,4 @@
-"""What a driver can see: the actors in line of sight, within the range that light and weather leave.
+"""Visibility of other actors to a vehicle: line of sight, occlusion, and range by light and weather, with a memory.
 
 An agent asks for them with ``self.visible_actors()`` or holds a :class:`Sight` of its own.
 """

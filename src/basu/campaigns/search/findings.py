@@ -1,4 +1,4 @@
-"""What a campaign's searches found: boundaries with their uncertainty, and probabilities of rare failures."""
+"""Results of a campaign's searches: failure boundaries with their uncertainty, and probabilities of rare failures."""
 
 from __future__ import annotations
 

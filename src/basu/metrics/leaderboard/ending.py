@@ -1,4 +1,4 @@
-"""Where the leaderboard would have ended a drive, and how far along the route it was by then.
+"""Frame and cause of a recorded drive's end by the CARLA leaderboard's criteria, and the route completion per frame.
 
 Sources: ``RouteCompletionTest``, ``InRouteTest`` and ``ActorBlockedTest`` in ``atomic_criteria.py``, and
 ``RouteTimeoutBehavior`` in ``timer.py`` of carla-simulator/scenario_runner, branches leaderboard-1.0 and -2.0;

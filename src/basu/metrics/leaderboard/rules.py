@@ -1,4 +1,4 @@
-"""What each version of the leaderboard takes off for what, and how it adds it up.
+"""The infraction `penalty` by the CARLA leaderboard's versions 1.0, 2.0 and 2.1: events with factors or points.
 
 Sources: ``leaderboard/utils/statistics_manager.py`` of carla-simulator/leaderboard, branches leaderboard-1.0, -2.0 and
 -2.1. Versions 1.0 and 2.0 multiply a factor for each event. Version 2.1 adds up points and takes 1 / (1 + points), so

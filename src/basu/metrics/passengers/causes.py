@@ -1,4 +1,4 @@
-"""What was ahead when a harsh stop began, found in the record: a line, a stop, an actor, a bend, or nothing.
+"""`cause` finds the reason for a harsh stop in a record: contact, actor, line, stop, speed limit, bend, or nothing.
 
 A cause is anything that demands less speed within the reach of a comfortable braking: a second of reaction, then
 1.0 m/s² (`balance.STEP_MPS2`), and two metres to spare. What is farther away is no reason to brake harshly yet. A stop

@@ -1,4 +1,4 @@
-"""What a standing passenger feels: accelerations of the floor, and the share of the ride that upsets the balance.
+"""Acceleration and jerk at a standing passenger's place (`felt`); durations that require a step or grip (`balance`).
 
 A standing passenger balances on a moving floor, so the measure is the specific force: acceleration of
 the place of standing, less gravity, along the vehicle's axes. A slope is felt like a push, and in a bend the place

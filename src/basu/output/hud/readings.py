@@ -1,4 +1,4 @@
-"""What the instruments of the HUD show in one frame, as plain values."""
+"""`Readings`, the HUD's values in one frame: run, time, motion, control, GNSS, IMU, route, judgement, actors nearby."""
 
 from __future__ import annotations
 

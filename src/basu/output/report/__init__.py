@@ -1,1 +1,1 @@
-"""What a person reads and looks at after a run."""
+"""Reports of runs, comparisons and scenarios: console tables, HTML pages, pictures, and JSON and JUnit documents."""

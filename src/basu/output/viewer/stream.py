@@ -1,4 +1,4 @@
-"""Where what is shown goes: into an .rrd file, and to a viewer of Rerun's where there is a screen to open one on."""
+"""`Stream`: a Rerun recording that is written to an .rrd file and, if there is a screen, to a viewer."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a question is put to: the log, the map and the criteria of a run's folder, or of a recorder file by itself."""
+"""Recorder log, OpenDRIVE map and criteria for metrics on CARLA recordings, from a run's folder or a recorder file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What scenarios do: lead vehicles and walkers, disturb the ego, change weather, road and lights."""
+"""Actions of scenarios: motion of vehicles and walkers, disturbed ego controls, weather, friction, lights, doors."""
 
 from basu.scenarios.actions.driving import DriveAlong, FollowEgo, ReachAtEgosArrival
 from basu.scenarios.actions.ego_controls import Bump, JitterControls, PullSteering

@@ -1,4 +1,4 @@
-"""What is done to the ego's controls on their way to the vehicle: noise, a constant pull, a bump."""
+"""Disturbances of the ego's controls as actions: correlated noise, a constant steering offset, a steering pulse."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far the ego got and when: a place reached, the end of its route, the time for it."""
+"""Criteria of progress: arrival at the route's end, a place or point reached, and completion within a time limit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What scenarios wait for: places, progress along the route, motion, time and touch."""
+"""Triggers of scenarios: places, progress along the route, motion, time and contact."""
 
 from basu.scenarios.triggers.along_route import (
     ActorTimeToArrival,

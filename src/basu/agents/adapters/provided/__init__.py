@@ -1,4 +1,4 @@
-"""What such agents import from ``leaderboard``, ``srunner`` and ``agents``, where those are not installed.
+"""Substitutes for modules of ``leaderboard``, ``srunner`` and ``agents`` that agents import if these are missing.
 
 Our own code with their names and meanings, as small as agents need it: base classes, look-ups, the clock, the options
 of a plan. :mod:`basu.agents.adapters.replacement_modules` says under which names. Whatever drives

@@ -1,1 +1,1 @@
-"""How the basic agent moves: its path, the speeds along it, and the hands and feet that follow them. No carla here."""
+"""Motion planning and control without carla: manner, path, speed profile, task, planner, controllers, drivers."""

@@ -1,4 +1,4 @@
-"""How fast each point of the path may be driven: posted limits, the vehicle's own cap, and what bends feel like."""
+"""Maximum speeds and slowdowns along a path, `SpeedProfile`: posted limits, a cap, lateral acceleration and jerk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What stands in the lane ahead, since when, and whether it is a queue or an obstruction to pass."""
+"""`Standing` finds the next `Block` of standing actors in the lane: its extent, standing time, least waiting time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the oncoming lane is free for the time that a manoeuvre takes.
+"""`is_free` predicts if the opposite lane stays clear of other actors, visible or not, for the duration of a detour.
 
 All actors that the agent knows on the street ahead count. An oncoming vehicle is taken to accelerate to the posted
 limit; one out of sight is taken to drive at the limit, just beyond the visible stretch. That is the sight

@@ -1,4 +1,4 @@
-"""What a driver knows of the street beside its own lane: room to the left, lanes to the right, places to wait at."""
+"""`Road`: lane widths, free width to the left, speed limits, junctions, stop lines and service stops along a path."""
 
 from __future__ import annotations
 

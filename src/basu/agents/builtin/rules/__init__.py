@@ -1,1 +1,1 @@
-"""What the basic agent stops and waits for: one rule of the road a file, each a state machine of its own."""
+"""Traffic rules of the basic agent: stop and yield signs, lights, service stops, gap acceptance, obstacles, leaders."""

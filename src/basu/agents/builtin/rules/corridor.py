@@ -1,4 +1,4 @@
-"""Where other bodies lie in the strip of road that the vehicle is going to sweep, in coordinates along the path."""
+"""`Strip`, the path section near the vehicle, and `Footprint`, the extent of another actor in path coordinates."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""What a report draws: a record's signals, thinned out, as charts, a timeline and a map, in HTML and inline SVG."""
+"""Plots of a record for reports: charts of downsampled signals, a timeline of events and a map, in HTML and SVG."""

@@ -1,1 +1,1 @@
-"""What scenario runs show: a matrix for the console, JUnit for a build server, pictures, sweeps, a page."""
+"""Reports of scenario runs: matrix as text and HTML, JUnit file, pictures of cases, shares of crash cost, sweeps."""

@@ -1,1 +1,1 @@
-"""What a shuttle meets besides: at its stops, and in its own steering. No part of NHTSA's typology."""
+"""Shuttle scenarios outside NHTSA's typology: situations at service stops, and a deviation of the steering."""

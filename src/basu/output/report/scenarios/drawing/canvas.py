@@ -1,4 +1,4 @@
-"""What a case's picture shows of the town and how large: metres of the CARLA frame as pixels, north up."""
+"""`Canvas` maps CARLA's coordinates (m) to pixels of a case's picture; `what_matters` selects the points to show."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where an agent begins to fail, in sentences with counts: the rule of one parameter that separates verdicts best.
+"""The rule of one parameter that best separates failed from passed cases: threshold, range or options, in sentences.
 
 Of all thresholds and ranges between neighbouring values, the one with the table of counts that is the least likely by
 chance: Fisher's exact test, one-sided, its probability multiplied by the number of rules that were tried (Bonferroni),
