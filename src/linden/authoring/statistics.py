@@ -1,4 +1,4 @@
-"""How much of everything a map has."""
+"""Statistics of an OpenDRIVE map: counts of its elements, lengths, heights, steepest grade, named buildings."""
 
 from typing import NamedTuple
 

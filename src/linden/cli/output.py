@@ -1,4 +1,4 @@
-"""What commands print for their users."""
+"""``say`` prints a line of a command's output; ``number`` formats a count with its noun."""
 
 
 def say(line: str) -> None:

@@ -1,4 +1,4 @@
-"""What a simulation needs to know of a map."""
+"""``MapFacts``: ground, lanes, signals and other data for the simulation, derived from OpenDRIVE text."""
 
 from dataclasses import dataclass
 

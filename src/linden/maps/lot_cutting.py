@@ -1,4 +1,4 @@
-"""Where lots lie: cut along the pavements of a map, free of every road and of each other.
+"""``cut_lots``: rectangular lots along the outer sidewalks of a map, clear of roads and of each other.
 
 OpenDRIVE says nothing about what lies behind a pavement, so a lot is cut wherever behind one there is room for it.
 Frame: CARLA's (x east, y south, z up).

@@ -1,4 +1,4 @@
-"""What an OpenDRIVE map says of the things beside its roads: buildings on their footprints, furniture, name signs.
+"""Buildings, street furniture and street-name signs of an OpenDRIVE map as upright boxes.
 
 A footprint becomes upright boxes: it is cut into strips across its longest side, at each of its corners. For a
 footprint of right angles, which most buildings have, the boxes are exact; an oblique wall becomes steps.

@@ -1,4 +1,4 @@
-"""Puts the world as a frame of a recording has it: places, controls, lamps, traffic lights, by whole columns."""
+"""``FrameApplier`` sets actors to a recorded frame: pose, controls, velocity, wheels, doors, lamps, traffic lights."""
 
 from collections.abc import Sequence
 from contextlib import suppress

@@ -1,4 +1,4 @@
-"""Where everybody of a recording was at a moment between two of its frames.
+"""Poses of the actors of a recording, in a frame or interpolated between two frames.
 
 A file may say anything. What it says reaches compiled code that looks things up by place, so it is held within limits.
 """

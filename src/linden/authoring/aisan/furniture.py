@@ -1,4 +1,4 @@
-"""What stands beside and lies on the lanes: paint, stop lines, signs, lights, poles, crosswalks, edges, areas."""
+"""``add_furniture``: Aisan rows for markings, stop lines, road edges, stop signs, lights, poles, crosswalks, areas."""
 
 import math
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""What a careful reader finds wrong with a map, in a fixed order: its words, its shapes, its links, its signs."""
+"""``check`` runs all checks on an OpenDRIVE map in a fixed order and returns the findings."""
 
 from linden.authoring.checks.finding import Finding, Severity
 from linden.authoring.checks.joints import lane_joints, road_joints

@@ -1,4 +1,4 @@
-"""Where lanes and roads meet: do their ends touch, in plan, in height, in heading?"""
+"""Checks of linked lanes (gaps, height steps, kinks, width changes) and of linked reference lines (gaps)."""
 
 from typing import NamedTuple
 

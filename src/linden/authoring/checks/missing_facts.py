@@ -1,4 +1,4 @@
-"""What the file leaves unsaid: georeference, speed limits, lane changes, road types."""
+"""Checks for missing data: readable georeference, speed limits of driving lanes, ``laneChange`` of road marks."""
 
 from linden.authoring.checks.finding import Finding, Severity, on_road
 from linden.maps.opendrive.evaluate.tables import tables_of

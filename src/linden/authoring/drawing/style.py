@@ -1,4 +1,4 @@
-"""What the picture is drawn with: colours, and numbers and paths as SVG writes them."""
+"""Colours of map drawings, and functions that write points, paths and groups as SVG text."""
 
 from collections.abc import Iterable
 

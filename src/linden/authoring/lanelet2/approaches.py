@@ -1,4 +1,4 @@
-"""What stands before junctions: stop lines, signs and lights, and the lanes that they speak to."""
+"""Signs and lights of OpenDRIVE junctions with the lanelets that they govern, and stop lines of the approaches."""
 
 import math
 from collections import defaultdict

@@ -1,4 +1,4 @@
-"""What a Lanelet2 map has of an OpenDRIVE map, class by class, and whether the same lanes can be reached."""
+"""Comparison of a Lanelet2 map with its OpenDRIVE map: counts, lengths, lane connections and geometric errors."""
 
 from collections import Counter
 from itertools import pairwise

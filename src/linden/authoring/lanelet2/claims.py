@@ -1,4 +1,4 @@
-"""Which ways through a junction get a ``right_of_way`` element, and what each element names as yielding.
+"""``complete_claims``: the ``right_of_way`` elements of a junction, each with the lanelets that yield.
 
 Autoware leaves the yielding lanelets of the element out of what a vehicle on the lanelet watches. Its requirements
 (vm-03-10 and vm-03-11 of the map requirements of pilot-auto, as autoware_lanelet2_map_validator tests them) want

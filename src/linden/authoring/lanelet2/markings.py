@@ -1,4 +1,4 @@
-"""What runs along a bound: its type and subtype, and whether lanes may be changed across it.
+"""Lanelet2 tags of lanelet bounds (type, subtype, lane change), from OpenDRIVE's lanes and road marks.
 
 Tags as Lanelet2 and autoware_lanelet2_extension have them. Inside junctions bounds are ``virtual`` or ``road_border``,
 as Autoware wants them there (vm-03-03).

@@ -1,4 +1,4 @@
-"""How much of one polygon lies inside of another."""
+"""Area of a polygon, and area of the intersection of two polygons, also as a share of the first one."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Which lanelets an OpenDRIVE map makes: one for each lane and section, one for each movement through a junction.
+"""Lanelets to make from an OpenDRIVE map, one per lane of a section, also in junctions, and their successors.
 
 A section is cut further where a marking or a speed limit changes, for Lanelet2 has one of each along a bound.
 """

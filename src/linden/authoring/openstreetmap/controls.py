@@ -1,4 +1,4 @@
-"""What governs each junction of an extract: lights, stop and yield signs, roundabouts, and what is guessed.
+"""Traffic control of each junction of an OpenStreetMap extract (lights, signs, roundabout), tagged or guessed.
 
 Sources: OpenStreetMap Wiki, "Tag:highway=traffic_signals", "Tag:highway=stop", "Tag:highway=give_way". Signs and lights
 are mapped on the junction's node, or on the way before it; a tag ``direction`` then says for which traffic.

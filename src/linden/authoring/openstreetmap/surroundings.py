@@ -1,4 +1,4 @@
-"""What an extract says of the things beside and across its streets: buildings, crossings, street furniture.
+"""Buildings, crossings and street furniture read from an OpenStreetMap extract.
 
 Sources: OpenStreetMap Wiki, "Simple 3D Buildings" (``height``, ``building:levels``), "Tag:highway=crossing".
 """

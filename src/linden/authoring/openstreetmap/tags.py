@@ -1,4 +1,4 @@
-"""What the tags of an OpenStreetMap way say of a street: lanes, width, speed, direction, parking, sidewalks.
+"""Street attributes from an OpenStreetMap way's tags: class, lanes, width, speed, direction, parking, sidewalks.
 
 What no tag says is guessed from the kind of highway, and each value says which it was: ``tagged``, or ``guessed`` with
 the reason. Sources of the meanings: OpenStreetMap Wiki, pages "Key:highway", "Key:lanes", "Key:maxspeed",

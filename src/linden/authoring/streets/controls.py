@@ -1,4 +1,4 @@
-"""What tells drivers at a junction what to do: signs, lights, stop lines, crosswalks; and where they stand."""
+"""Traffic control as OpenDRIVE records: signs, lights, stop lines, crosswalks and roundabout islands."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""What lies across a street: lanes from the axis outward, on both sides, and where the axis runs.
+"""``Section``: the cross-section of a street, with lane types and widths on both sides and the axis offset.
 
 Widths are authored between the kerbs; ``docs/decisions/0010-cross-sections.md`` says how they are shared out.
 """

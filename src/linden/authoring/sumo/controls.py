@@ -1,4 +1,4 @@
-"""What governs each approach of a SUMO network: the map's stop signs, yield signs and lights, found on its edges."""
+"""SUMO traffic control from OpenDRIVE's signs and lights: node types, edge priorities and light programs."""
 
 from collections import defaultdict
 from typing import NamedTuple

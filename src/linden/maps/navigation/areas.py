@@ -1,4 +1,4 @@
-"""What of a map is walkable, as triangles with a kind: lanes by their type, crosswalks with ramps to the pavements."""
+"""Walkable surfaces of a map as triangles with a kind: lanes, crosswalks and ramps to the sidewalks."""
 
 import math
 from typing import NamedTuple

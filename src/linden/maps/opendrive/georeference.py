@@ -1,4 +1,4 @@
-"""Where on Earth a map's origin lies, as LibCarla 0.9.16 reads it out of <geoReference>.
+"""``read_origin``: latitude and longitude of a map's origin, parsed from <geoReference> as by LibCarla 0.9.16.
 
 Found by feeding ``carla.Map`` two dozen texts: the text is split at spaces, each word at "=", and only the words
 ``+lat_0`` and ``+lon_0`` with exactly one "=" count; the value is read as C's ``strtod`` does, up to the first

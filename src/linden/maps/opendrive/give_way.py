@@ -1,4 +1,4 @@
-"""Where traffic goes first that a stop or yield sign's own traffic lets pass: small squares along the lanes it crosses.
+"""``give_way_areas``: small squares on the lanes to which traffic at a stop or yield sign gives way.
 
 As in CARLA (StopSignComponent.cpp, YieldSignComponent.cpp) they lie along every way through the junction that the
 sign's own ways meet, unless it comes out of the same road, and a little before it. Two things differ: CARLA looks only

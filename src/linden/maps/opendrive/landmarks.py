@@ -1,4 +1,4 @@
-"""Where LibCarla 0.9.16 puts a signal: beside its road as the file says, then out of any lane it would stand in.
+"""Poses of signals as LibCarla 0.9.16 computes them: from the file, then moved sideways out of lanes.
 
 Source: MapBuilder.cpp, ComputeSignalTransform, SolveSignalReferencesAndTransforms, CheckSignalsOnRoads.
 """

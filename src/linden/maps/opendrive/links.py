@@ -1,4 +1,4 @@
-"""Which lane leads into which, in the direction of travel, as LibCarla joins them (MapBuilder.cpp, GetLaneNext)."""
+"""Successors and predecessors of lanes in the direction of travel, as in LibCarla (MapBuilder.cpp, GetLaneNext)."""
 
 from collections import defaultdict
 from typing import NamedTuple

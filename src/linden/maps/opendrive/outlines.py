@@ -1,4 +1,4 @@
-"""Where the outlines of objects lie: corners given along a road, or in the object's own frame, in CARLA's frame."""
+"""``outline_of``: the outline of an OpenDRIVE object, from road or object coordinates to CARLA's frame."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""What stands beside or lies on a road: signals, references to them, objects, controllers. Frame as in model.py."""
+"""OpenDRIVE records: signals, signal references, objects and controllers. Frame as in model.py."""
 
 from dataclasses import dataclass
 from typing import NamedTuple

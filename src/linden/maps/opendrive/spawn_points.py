@@ -1,4 +1,4 @@
-"""Where vehicles may be put on a map: in the middle of driving lanes, looking the way the traffic goes."""
+"""``spawn_points``: poses for new vehicles in the middle of driving lanes, in the direction of travel."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What an actor and its blueprint look like on the wire. Source: ``carla/rpc/Actor*.h``."""
+"""RPC named tuples for actors, blueprints and their attributes. Source: ``carla/rpc/Actor*.h``."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Where recordings lie: what a client may name, and which file is meant. See docs/decisions/0020-recordings.md."""
+"""``RecordingFolder`` resolves a file name in the folder for recordings. See docs/decisions/0020-recordings.md."""
 
 import os
 from pathlib import Path, PurePosixPath, PureWindowsPath

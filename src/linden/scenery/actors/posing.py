@@ -1,4 +1,4 @@
-"""Where the parts of actors are: frames of wheels that steer and roll, of limbs that walk; many actors at once.
+"""Poses of the parts of many actors at once: wheels that steer and roll, forks, bones of walking pedestrians.
 
 Frames are (3, 4) matrices from the part's frame to the actor's, CARLA's axes, m. Vehicles have ``VEHICLE_FRAMES``,
 walkers ``WALKER_FRAMES``; everything else has the first alone, which is the actor's own.

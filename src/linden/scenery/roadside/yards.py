@@ -1,4 +1,4 @@
-"""What lies around houses: porches on posts, hedges, fences of boards or mesh, drives and paths of concrete."""
+"""Triangle meshes of porches, hedges, fences, driveways, garden paths and doorsteps."""
 
 from itertools import pairwise
 from typing import NamedTuple

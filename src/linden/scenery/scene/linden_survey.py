@@ -1,4 +1,4 @@
-"""What is known of Linden by its place: the stops of the shuttle and the line of the railroad.
+"""``surveyed``: shuttle stops, their sides of the street and the railroad line of Linden, in CARLA's frame.
 
 Source: ``data/linden.geojson``, which names its own sources.
 """

@@ -1,4 +1,4 @@
-"""What stands in a scene: things, each made of one or more upright boxes, as tables and as CARLA's clients see them.
+"""``Scene``: objects and their upright boxes, as arrays and as CARLA's environment objects.
 
 A thing is what Unreal calls an actor, a box one of its meshes; clients know every box as an environment object.
 """

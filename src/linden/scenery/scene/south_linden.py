@@ -1,4 +1,4 @@
-"""What stands in South Linden besides its signals: houses and their yards, trees, lamps, poles, shelters, cars."""
+"""``home``: the South Linden scene: houses, yards, trees, lamps, poles, shelters, cars and buildings; no signals."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -1,4 +1,4 @@
-"""What stands along the streets of Linden besides lamps: utility poles, and shelters where the shuttle stops."""
+"""Utility poles and bus shelters of Linden, and ``clear_of``, which drops lots that the railroad crosses."""
 
 import math
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""What lies around the houses of a street: porches, hedges, fences, drives with cars on them.
+"""Layout of yards around houses: boxes of porches, hedges, fences and parked cars, and the driveways.
 
 A lot's measures are those of :mod:`linden.maps.records`; which lot has what is drawn with a seed, like the houses.
 """

@@ -1,4 +1,4 @@
-"""What shines of the things that stand: traffic lights, street lamps, windows; found anew when one of them changes."""
+"""Lit traffic lights, street lamps and windows of a scene, cached until one of them changes."""
 
 from collections.abc import Hashable
 from typing import TYPE_CHECKING, NamedTuple

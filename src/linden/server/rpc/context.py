@@ -1,4 +1,4 @@
-"""What a handler may touch: the world, the maps, the streams, and what goes out with this call."""
+"""``Context``: the state that RPC handlers use, such as world, maps and streams, and the outbox of messages."""
 
 import logging
 import traceback

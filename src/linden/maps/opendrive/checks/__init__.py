@@ -1,1 +1,1 @@
-"""What can be wrong with a map, one family of mistakes a file; each check is a function from a map to findings."""
+"""Empty package; the checks of OpenDRIVE maps are in ``linden.authoring.checks``."""
