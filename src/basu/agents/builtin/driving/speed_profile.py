@@ -56,14 +56,6 @@ def bend_limit_mps(
     return np.asarray(np.maximum(np.floor(slowest_near / STEP_MPS) * STEP_MPS, SLOWEST_MPS))
 
 
-def reachable_mps(limit_mps: NDArray[np.float64], spacing_m: float, braking_mps2: float) -> NDArray[np.float64]:
-    """The backward pass: ``limit_mps`` lowered so that braking never exceeds ``braking_mps2`` (v² = v₁² + 2 a d)."""
-    speeds = np.array(limit_mps, dtype=np.float64)
-    for i in range(len(speeds) - 2, -1, -1):
-        speeds[i] = min(speeds[i], (speeds[i + 1] ** 2 + 2.0 * braking_mps2 * spacing_m) ** 0.5)
-    return speeds
-
-
 def make_profile(
     path: Path, posted_mps: NDArray[np.float64], cap_mps: float, spacing_m: float, manner: Manner = BASIC
 ) -> SpeedProfile:

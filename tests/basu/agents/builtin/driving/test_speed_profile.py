@@ -17,7 +17,6 @@ from basu.agents.builtin.driving.speed_profile import (
     SpeedProfile,
     bend_limit_mps,
     make_profile,
-    reachable_mps,
 )
 from driving_plant import bends
 
@@ -29,6 +28,14 @@ def laid_out(pieces: list[tuple[float, float]], posted_mps: float, cap_mps: floa
     s_m = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points_m[:, :2], axis=0).T))])
     path = make_path(points_m, s_m)
     return path, make_profile(path, np.full(len(path.s_m), posted_mps), cap_mps, SPACING_M)
+
+
+def reachable_mps(limit_mps: NDArray[np.float64], spacing_m: float, braking_mps2: float) -> NDArray[np.float64]:
+    """The backward pass: ``limit_mps`` lowered so that braking never exceeds ``braking_mps2`` (v² = v₁² + 2 a d)."""
+    speeds = np.array(limit_mps, dtype=np.float64)
+    for i in range(len(speeds) - 2, -1, -1):
+        speeds[i] = min(speeds[i], (speeds[i + 1] ** 2 + 2.0 * braking_mps2 * spacing_m) ** 0.5)
+    return speeds
 
 
 @given(pieces=PIECES, posted_mps=st.floats(3.0, 16.0), cap_mps=st.floats(2.0, 20.0))

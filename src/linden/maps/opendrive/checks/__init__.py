@@ -1,1 +1,0 @@
-"""Empty package; the checks of OpenDRIVE maps are in ``linden.authoring.checks``."""
