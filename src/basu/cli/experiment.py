@@ -5,9 +5,10 @@ from __future__ import annotations
 import argparse
 
 from basu.cli.typed_options import options_of
+from basu.options.run import RunOptions
 from basu.running.thesis_experiment import thesis
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Drive basic, behavioral, forward and human as section 5.5 of the thesis did, and print both tables."""
-    return thesis(options_of(arguments))
+    return thesis(options_of(RunOptions, arguments))

@@ -10,6 +10,7 @@ from basu.cli.recorder_log import progress_bar, read_recording
 from basu.cli.typed_options import options_of
 from basu.errors import UserError
 from basu.extras import RERUN, require
+from basu.options.run import RunOptions
 from basu.output.viewer.server_replay import Progress, Where, play
 
 
@@ -28,7 +29,7 @@ def _on_simulator(arguments: argparse.Namespace) -> int:
     if arguments.save is not None or arguments.map is not None:
         raise UserError("--save and --map belong to --viewer; add it, or leave them out")
     log, _ = read_recording(arguments.recording, arguments.map)
-    options = options_of(arguments)
+    options = options_of(RunOptions, arguments)
     where = Where(options.host, options.port, options.timeout_s)
     with progress_bar(log.frames) as bar:
 

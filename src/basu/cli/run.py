@@ -15,7 +15,7 @@ from basu.simulator import started_early
 def run(arguments: argparse.Namespace) -> int:
     """Drive an agent along its route, faster than real time, and write a scored run folder."""
     config = config_of(arguments, "run", RunOptions)
-    options = options_of(arguments, config.options)
+    options = options_of(RunOptions, arguments, config.options)
     _check_extras(options)
     scoring = scoring_of(arguments, config.scoring)
     user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive

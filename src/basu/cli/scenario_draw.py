@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import argparse
 
-from basu.cli.typed_options import scenario_options
+from basu.cli.typed_options import options_of
 from basu.files import write_bytes
 from basu.running.scenario_runs.one_case import drawn
+from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.option import Layer
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the behaviour tree of a case as it stands before a run, with its criteria."""
-    options = scenario_options(arguments, Layer({"what": [arguments.case]}))
+    options = options_of(ScenarioOptions, arguments, Layer({"what": [arguments.case]}))
     text = drawn(options, arguments.form)
     if arguments.output is None:
         print(text)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from basu.cli.termination import terminated_as_interrupted
 from basu.cli.typed_options import options_of
 from basu.errors import UserError
+from basu.options.run import RunOptions
 from basu.options.sumo import SUMO_OFF
 from basu.running.cosimulation import cosimulate
 
@@ -20,7 +21,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise UserError(f"--for is {arguments.limit:g}; give a time above 0 s")
     if arguments.what == SUMO_OFF:
         raise UserError("there is nothing to show with none; name random, demand or a FILE.sumocfg")
-    options = replace(options_of(arguments), sumo=arguments.what)
+    options = replace(options_of(RunOptions, arguments), sumo=arguments.what)
     options.check()
     with terminated_as_interrupted():
         print(

@@ -6,17 +6,24 @@ import sys
 from typing import TYPE_CHECKING
 
 from basu.metrics.scoring import Scoring, read_scoring_file
-from basu.options.run import RunOptions
-from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.command_line import typed
 from basu.settings.document import Config, read_config
 from basu.settings.option import Layer
-from basu.settings.resolve import resolve
+from basu.settings.resolve import Model, resolve
 
 if TYPE_CHECKING:
     import argparse
 
     from basu.settings.option import Settings
+
+
+def options_of(model: type[Model], arguments: argparse.Namespace, *below: Layer) -> Model:
+    """The options of a command line; where it says nothing, those of the layers ``below``, the later before.
+
+    Raises:
+        UserError: an option that does not exist, or a value that it cannot have.
+    """
+    return resolve(model, [*below, Layer(typed(model, arguments), typed=True)])
 
 
 def scoring_of(arguments: argparse.Namespace, below: Layer) -> Scoring:
@@ -26,17 +33,7 @@ def scoring_of(arguments: argparse.Namespace, below: Layer) -> Scoring:
         UserError: an option that does not exist, or a value that it cannot have.
     """
     file = [] if arguments.scoring is None else [read_scoring_file(arguments.scoring)]
-    return resolve(Scoring, [below, *file, Layer(typed(Scoring, arguments), typed=True)])
-
-
-def options_of(arguments: argparse.Namespace, below: Layer | None = None) -> RunOptions:
-    """The options of a command line, with those of ``below`` where it says nothing.
-
-    Raises:
-        UserError: an option that does not exist, or a value that it cannot have.
-    """
-    layers = [] if below is None else [below]
-    return resolve(RunOptions, [*layers, Layer(typed(RunOptions, arguments), typed=True)])
+    return options_of(Scoring, arguments, below, *file)
 
 
 def config_of(arguments: argparse.Namespace, kind: str, model: type[Settings]) -> Config:
@@ -51,12 +48,3 @@ def config_of(arguments: argparse.Namespace, kind: str, model: type[Settings]) -
     for difference in config.warnings:
         print(f"basu: warning: {difference}; the run may differ from that of {arguments.config}", file=sys.stderr)
     return config
-
-
-def scenario_options(arguments: argparse.Namespace, below: Layer) -> ScenarioOptions:
-    """The options of a command line, with those of ``below`` where it says nothing.
-
-    Raises:
-        UserError: an option that does not exist, or a value that it cannot have.
-    """
-    return resolve(ScenarioOptions, [below, Layer(typed(ScenarioOptions, arguments), typed=True)])

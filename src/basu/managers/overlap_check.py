@@ -22,7 +22,7 @@ ABOVE_M = 2.0  # between the heights of two bodies, one of which passes over the
 
 
 class _OwnBox(NamedTuple):
-    """The box of the run's vehicle, read once: each reading by the client takes as long as twenty comparisons."""
+    """The box of the run's vehicle, read once: each reading is a call to the simulator."""
 
     middle_m: float  # ahead of the vehicle's origin
     half_diagonal_m: float  # of the whole box

@@ -1,4 +1,4 @@
-"""A GeoJSON file of streets is checked once, and what is wrong with it is said in a sentence that names the feature."""
+"""A GeoJSON file of streets is checked once. Each error is a sentence that names the feature."""
 
 import copy
 from typing import Any
