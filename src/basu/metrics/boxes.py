@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from basu.records.structured import StructuredArray
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -25,7 +27,7 @@ def boxes(x_m: NDArray[np.float64], y_m: NDArray[np.float64], yaw_rad: NDArray[n
     return np.column_stack([x_m, y_m, yaw_rad, half_m])
 
 
-def own_boxes(facts: Facts, frames: NDArray[np.void]) -> Boxes:
+def own_boxes(facts: Facts, frames: StructuredArray) -> Boxes:
     """(T, 5) of the vehicle under test: its box need not lie around its origin."""
     vehicle, yaw_rad = facts.vehicle, frames["yaw_rad"]
     middle_m = (vehicle.front_m - vehicle.rear_m) / 2.0
@@ -34,7 +36,7 @@ def own_boxes(facts: Facts, frames: NDArray[np.void]) -> Boxes:
     return boxes(x_m, frames["y_m"] + middle_m * np.sin(yaw_rad), yaw_rad, half_m)
 
 
-def other_boxes(facts: Facts, others: NDArray[np.void]) -> Boxes:
+def other_boxes(facts: Facts, others: StructuredArray) -> Boxes:
     """(M, 5) of rows of OTHER."""
     half_m = np.array([facts.actor_sizes.get(int(key), UNKNOWN_M) for key in others["id"]], dtype=np.float64)
     return boxes(others["x_m"], others["y_m"], others["yaw_rad"], half_m.reshape(-1, 2))

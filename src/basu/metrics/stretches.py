@@ -9,6 +9,7 @@ import numpy as np
 
 from basu.metrics.infraction import Evidence, Incident, evidence, row_of
 from basu.metrics.json_schema import EVIDENCE, Schema, listing, number, record
+from basu.records.structured import StructuredArray
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -52,7 +53,7 @@ def chords(points_m: NDArray[np.float64]) -> Chords:
     return Chords(np.array(lengths, dtype=np.float64), np.array(ends, dtype=np.int64))
 
 
-def path_m(frames: NDArray[np.void]) -> NDArray[np.float64]:
+def path_m(frames: StructuredArray) -> NDArray[np.float64]:
     """(T, 2) where the vehicle's origin was, CARLA frame."""
     return np.column_stack([frames["x_m"], frames["y_m"]]).astype(np.float64)
 

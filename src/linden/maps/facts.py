@@ -9,6 +9,7 @@ from linden.maps.ground import Ground
 from linden.maps.opendrive.roadside import Controller
 from linden.maps.records import PlacedSignal, Standing
 from linden.protocol.values.space import Transform
+from linden.structured import StructuredArray
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -30,13 +31,13 @@ class MapFacts:
 
     ground: Ground
     lane_of_triangle: NDArray[np.int32]
-    lanes: NDArray[np.void]
+    lanes: StructuredArray
     spawn_points: tuple[Transform, ...]
     signals: tuple[PlacedSignal, ...]
-    give_way: NDArray[np.void]
+    give_way: StructuredArray
     controllers: tuple[Controller, ...]
     geo_origin_deg: tuple[float, float]
-    lots: NDArray[np.void]
+    lots: StructuredArray
     standing: tuple[Standing, ...]
 
 

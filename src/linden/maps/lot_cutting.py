@@ -19,6 +19,7 @@ from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M, LOTS
 from linden.protocol.values.enums import LaneType
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ _TOLERANCE_M = 0.5  # by which neighbours may lie over one another where a stree
 _HIGH_M = 1e9  # above every road
 
 
-def cut_lots(opendrive: OpenDrive, ground: Ground) -> NDArray[np.void]:
+def cut_lots(opendrive: OpenDrive, ground: Ground) -> StructuredArray:
     """Return the lots of a map, of LOTS, in the order of its roads; the first of two that overlap."""
     taken = _Taken()
     found = [

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linden.compiled import fingerprint
+from linden.structured import StructuredArray
 
-Rows = NDArray[Any]
+Rows = StructuredArray
 """Array of BODY (N,), or of VEHICLE_SPEC (N,)."""
 Body: TypeAlias = Any
 """One record of BODY, as kernels see it."""

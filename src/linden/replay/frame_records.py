@@ -8,7 +8,7 @@ vehicle, then the other actor.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +22,9 @@ from linden.replay.file.packets import WheelTurns
 from linden.sensors.devices.collision import SCENERY
 from linden.simulation.actor_table import NO_BODY, ActorRecord
 from linden.simulation.episode import Episode
+from linden.structured import StructuredArray
 
-Rows = NDArray[Any]
+Rows = StructuredArray
 Indices = NDArray[np.int64]
 
 _ROLL_PITCH_YAW = [2, 0, 1]
@@ -59,7 +60,7 @@ def columns(episode: Episode) -> Columns:
     )
 
 
-def positions(rows: Rows, placed: Indices) -> NDArray[np.void]:
+def positions(rows: Rows, placed: Indices) -> StructuredArray:
     """Return where everybody is, but for the locations, which are left to the caller."""
     found = np.empty(len(placed), layouts.POSITION)
     found["id"] = rows["id"][placed]
@@ -67,19 +68,19 @@ def positions(rows: Rows, placed: Indices) -> NDArray[np.void]:
     return found
 
 
-def vehicles(rows: Rows, of: Indices) -> NDArray[np.void]:
+def vehicles(rows: Rows, of: Indices) -> StructuredArray:
     """Return how vehicles are driven."""
     return _copied(rows.view(VEHICLE_ROW), of, layouts.VEHICLE, ("steer", "throttle", "brake", "hand_brake", "gear"))
 
 
-def walkers(rows: Rows, of: Indices) -> NDArray[np.void]:
+def walkers(rows: Rows, of: Indices) -> StructuredArray:
     """Return how fast walkers were told to walk."""
     found = np.empty(len(of), layouts.WALKER)
     found["id"], found["speed_mps"] = rows["id"][of], rows.view(WALKER_ROW)["speed"][of]
     return found
 
 
-def light_states(rows: Rows, of: Indices) -> NDArray[np.void]:
+def light_states(rows: Rows, of: Indices) -> StructuredArray:
     """Return how traffic lights stand."""
     lights = rows.view(TRAFFIC_LIGHT_ROW)
     found = np.empty(len(of), layouts.LIGHT_STATE)
@@ -88,7 +89,7 @@ def light_states(rows: Rows, of: Indices) -> NDArray[np.void]:
     return found
 
 
-def light_times(rows: Rows, of: Indices) -> NDArray[np.void]:
+def light_times(rows: Rows, of: Indices) -> StructuredArray:
     """Return for how long the colours of traffic lights last."""
     lights = rows.view(TRAFFIC_LIGHT_ROW)
     found = np.empty(len(of), layouts.LIGHT_TIME)
@@ -98,7 +99,7 @@ def light_times(rows: Rows, of: Indices) -> NDArray[np.void]:
     return found
 
 
-def kinematics(rows: Rows, of: Indices) -> NDArray[np.void]:
+def kinematics(rows: Rows, of: Indices) -> StructuredArray:
     """Return how actors move."""
     found = np.empty(len(of), layouts.KINEMATICS)
     found["id"] = rows["id"][of]
@@ -107,7 +108,7 @@ def kinematics(rows: Rows, of: Indices) -> NDArray[np.void]:
     return found
 
 
-def lamps(records: Sequence[ActorRecord]) -> NDArray[np.void]:
+def lamps(records: Sequence[ActorRecord]) -> StructuredArray:
     """Return which lamps of vehicles are lit."""
     return np.array([(record.id, record.light_state) for record in records], layouts.VEHICLE_LIGHT)
 
@@ -129,7 +130,7 @@ def wheels(episode: Episode, records: Sequence[ActorRecord]) -> list[WheelTurns]
     return found
 
 
-def doors(before: Mapping[int, frozenset[int]], after: Mapping[int, frozenset[int]]) -> NDArray[np.void]:
+def doors(before: Mapping[int, frozenset[int]], after: Mapping[int, frozenset[int]]) -> StructuredArray:
     """Return the doors that stand otherwise than before, by actor id and door."""
     moved = [
         (actor_id, door, door in after.get(actor_id, frozenset()))
@@ -139,7 +140,7 @@ def doors(before: Mapping[int, frozenset[int]], after: Mapping[int, frozenset[in
     return np.array(moved, layouts.DOOR)
 
 
-def _copied(rows: Rows, of: Indices, layout: "np.dtype[np.void]", fields: Sequence[str]) -> NDArray[np.void]:
+def _copied(rows: Rows, of: Indices, layout: "np.dtype[np.void]", fields: Sequence[str]) -> StructuredArray:
     found = np.empty(len(of), layout)
     for field in ("id", *fields):
         found[field] = rows[field][of]
@@ -149,7 +150,7 @@ def _copied(rows: Rows, of: Indices, layout: "np.dtype[np.void]", fields: Sequen
 _FULL = 255.0
 
 
-def records(lamps: Sequence[LightState]) -> NDArray[np.void]:
+def records(lamps: Sequence[LightState]) -> StructuredArray:
     """Return lamps as ``layouts.SCENE_LIGHT``."""
     found = [
         (lamp.id, lamp.intensity, (*(part / _FULL for part in lamp.color), 1.0), lamp.active, lamp.group)
@@ -158,7 +159,7 @@ def records(lamps: Sequence[LightState]) -> NDArray[np.void]:
     return np.array(found, layouts.SCENE_LIGHT)
 
 
-def states(found: NDArray[np.void]) -> list[LightState]:
+def states(found: StructuredArray) -> list[LightState]:
     """Return records as lamps; where they are stands nowhere in the file."""
     return [
         LightState(
@@ -176,7 +177,7 @@ _RANK = {Kind.VEHICLE: 1, Kind.WALKER: 2}
 _LAST_RANK = 3
 
 
-def collisions(episode: Episode, first_number: int) -> NDArray[np.void]:
+def collisions(episode: Episode, first_number: int) -> StructuredArray:
     """Return the collisions of the last step, numbered from ``first_number``."""
     pairs: dict[tuple[int, int], tuple[bool, bool]] = {}
     for slot, other_slot in episode.contacts[["a", "b"]].tolist():

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linden.blueprints.library import Kind
 from linden.geometry import compose
@@ -27,6 +26,7 @@ from linden.replay.frame_records import collisions
 from linden.replay.interpolation import FARTHEST_M
 from linden.simulation.actor_table import NO_BODY, ActorRecord
 from linden.simulation.episode import Episode
+from linden.structured import StructuredArray
 
 log = logging.getLogger("linden")
 
@@ -111,7 +111,7 @@ class _Tape:
         self._seen_version = -1
         self._columns_version = -1
         self._lamps: dict[int, LightState] | None = None
-        self._light_times: NDArray[np.void] | None = None
+        self._light_times: StructuredArray | None = None
         self._collisions = 0
         self._open_doors: dict[int, frozenset[int]] = {}
 
@@ -161,7 +161,7 @@ class _Tape:
             yield from self._additional(episode, come)
         yield encode.packet(PacketId.LOCATION_ULPS, len(ulps).to_bytes(2, "little") + ulps.tobytes())
 
-    def _changed_lamps(self, episode: Episode) -> NDArray[np.void]:
+    def _changed_lamps(self, episode: Episode) -> StructuredArray:
         """Return the lamps of streets and houses that stand otherwise than in the last frame; in the first, all."""
         known = self._lamps
         if known is not None and not episode.surroundings.lamps.pending:
@@ -169,13 +169,13 @@ class _Tape:
         self._lamps = {lamp.id: lamp for lamp in episode.surroundings.lamp_states()}
         return recorded_lamps.records([lamp for lamp in self._lamps.values() if (known or {}).get(lamp.id) != lamp])
 
-    def _swung_doors(self, episode: Episode) -> NDArray[np.void]:
+    def _swung_doors(self, episode: Episode) -> StructuredArray:
         """Return the doors that were opened or closed since the last frame; in the first, all that are open."""
         before = {actor_id: doors for actor_id, doors in self._open_doors.items() if actor_id in episode.actors}
         self._open_doors = dict(episode.doors.open)
         return rows_of.doors(before, self._open_doors)
 
-    def _contacts(self, episode: Episode) -> NDArray[np.void]:
+    def _contacts(self, episode: Episode) -> StructuredArray:
         if not len(episode.contacts):
             return np.zeros(0, layouts.COLLISION)
         found = collisions(episode, self._collisions)
@@ -227,11 +227,11 @@ def _has_physics(record: ActorRecord) -> bool:
     return record.kind is Kind.VEHICLE and record.slot != NO_BODY
 
 
-def _parents(come: list[ActorRecord]) -> NDArray[np.void]:
+def _parents(come: list[ActorRecord]) -> StructuredArray:
     return np.array([(record.id, record.parent_id) for record in come if record.parent_id], layouts.PARENT)
 
 
-def _boxes(come: list[ActorRecord]) -> NDArray[np.void]:
+def _boxes(come: list[ActorRecord]) -> StructuredArray:
     """Return the local boxes of actors that came; signs have trigger volumes instead."""
     found = [record for record in come if record.kind not in (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)]
     boxes = np.zeros(len(found), layouts.BOX)
@@ -242,7 +242,7 @@ def _boxes(come: list[ActorRecord]) -> NDArray[np.void]:
     return boxes
 
 
-def _trigger_volumes(episode: Episode, come: list[ActorRecord]) -> NDArray[np.void]:
+def _trigger_volumes(episode: Episode, come: list[ActorRecord]) -> StructuredArray:
     """Return the trigger volumes, in the world, of lights and signs that came with the map."""
     found = [record for record in come if record.kind in (Kind.TRAFFIC_LIGHT, Kind.TRAFFIC_SIGN)]
     boxes = np.zeros(len(found), layouts.BOX)

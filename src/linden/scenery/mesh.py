@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.structured import StructuredArray
+
 F32 = NDArray[np.float32]
 U32 = NDArray[np.uint32]
 
@@ -72,10 +74,10 @@ class Mesh(NamedTuple):
 
     vertices_m: F32  # (V, 3)
     triangles: U32  # (T, 3) rows of vertices; (b - a) x (c - a), reckoned as for right-handed axes, points outwards
-    faces: NDArray[np.void]  # (T,) of FACE
+    faces: StructuredArray  # (T,) of FACE
 
 
-def faces(count: int, material: Material, tag: int, colour: tuple[int, int, int]) -> NDArray[np.void]:
+def faces(count: int, material: Material, tag: int, colour: tuple[int, int, int]) -> StructuredArray:
     """Return ``count`` faces of one kind that belong to no object."""
     made = np.zeros(count, FACE)
     made["material"], made["tag"], made["colour"], made["object"] = material, tag, colour, NO_OBJECT

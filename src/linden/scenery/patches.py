@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.mesh import FACE, NO_OBJECT, LampOf, Material, Mesh
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 
@@ -55,7 +56,7 @@ def _turned_round(corners_m: F64, towards: F64) -> F64:
     return turned
 
 
-def _faces(count: int, each: int, look: Look) -> NDArray[np.void]:
+def _faces(count: int, each: int, look: Look) -> StructuredArray:
     """Return ``each`` faces for each of ``count`` patches."""
     made = np.zeros((count, each), FACE)
     made["material"], made["tag"], made["lamp"] = look.material, look.tag, look.lamp

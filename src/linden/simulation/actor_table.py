@@ -13,6 +13,7 @@ from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import ActorState
 from linden.protocol.values.snapshot import ROW
 from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
+from linden.structured import StructuredArray
 
 NO_BODY = -1
 """Slot of an actor that occupies no space."""
@@ -71,7 +72,7 @@ class ActorTable:
         self._allocate(256)
 
     def _allocate(self, capacity: int) -> None:
-        self.rows: NDArray[np.void] = np.zeros(capacity, ROW)
+        self.rows: StructuredArray = np.zeros(capacity, ROW)
         self.pose = np.zeros((capacity, 6))
         self.relative = np.zeros((capacity, 6))
         self.parent_row = np.full(capacity, -1, np.int32)

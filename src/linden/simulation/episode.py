@@ -19,6 +19,7 @@ from linden.simulation.snapshot_rows import MOTION_OFFSET, gather_motion
 from linden.simulation.state import EpisodeState
 from linden.simulation.surroundings import Surroundings, scenery_of
 from linden.simulation.walkers import Walkers
+from linden.structured import StructuredArray
 from linden.traffic.traffic import Traffic
 
 DEFAULT_SPEED_LIMIT_KMH = 30.0
@@ -173,7 +174,7 @@ class Episode(EpisodeState):
         self._row_bytes: NDArray[np.uint8] = self.actors.rows.view(np.uint8).reshape(-1, ROW.itemsize)
         self._motion = np.zeros((len(self.actors.rows), 15), np.float32)
         self._motion_of_rows: NDArray[np.float32] = self.actors.rows.view(_MOTION)["motion"]
-        self._rows_of_lights: NDArray[np.void] = self.actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows]
+        self._rows_of_lights: StructuredArray = self.actors.rows.view(TRAFFIC_LIGHT_ROW)[self._light_rows]
         self._seen_version = self.actors.version
 
     def _embodied(self, kind: Kind) -> tuple[list[int], NDArray[np.int32], NDArray[np.int32]]:

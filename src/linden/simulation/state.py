@@ -14,6 +14,7 @@ from linden.protocol.values.episode import CLEAR_NOON, WeatherParameters
 from linden.protocol.values.space import Transform
 from linden.simulation.actor_table import NO_BODY, ActorRecord, ActorRefusal, ActorTable
 from linden.simulation.below_ground import BelowGround
+from linden.structured import StructuredArray
 
 
 class WalkerFacts(Protocol):
@@ -63,7 +64,7 @@ class EpisodeState(ABC):
         self.bodies = Bodies()
         self.below_ground = BelowGround(world_map.ground, self.bodies)
         self.weather: WeatherParameters = CLEAR_NOON
-        self.contacts: NDArray[np.void] = np.zeros(0, CONTACT)
+        self.contacts: StructuredArray = np.zeros(0, CONTACT)
 
     @abstractmethod
     def walker_ids_and_slots(self) -> tuple[list[int], NDArray[np.int32]]:

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linden.blueprints.library import DOT
 from linden.geometry import compose
@@ -13,6 +12,7 @@ from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIE
 from linden.maps.records import PlacedSignal
 from linden.protocol.values.enums import SemanticTag, TrafficLightState
 from linden.protocol.values.space import BoundingBox, Transform
+from linden.structured import StructuredArray
 from linden.traffic.cycle import RED_OF_A_SINGLE_LIGHT_S, TIMES_S, LightPlan, plan
 from linden.traffic.signs import SignRules, sign_rules
 from linden.traffic.trigger_volumes import TriggerGrid, trigger_grid
@@ -56,7 +56,7 @@ class Signals(NamedTuple):
     rules: SignRules
 
     @staticmethod
-    def of(placed: Sequence[PlacedSignal], controllers: Sequence[Controller], give_way: NDArray[np.void]) -> "Signals":
+    def of(placed: Sequence[PlacedSignal], controllers: Sequence[Controller], give_way: StructuredArray) -> "Signals":
         """Make the actors of a map's signals; ``controllers`` and ``give_way`` stand in the order of the file."""
         lights = [signal for signal in placed if signal.is_light]
         signs = [signal for signal in placed if not signal.is_light and signal.name != PAINTED]
@@ -73,7 +73,7 @@ class Signals(NamedTuple):
         )
 
 
-def _rules(placed: Sequence[PlacedSignal], give_way: NDArray[np.void]) -> SignRules:
+def _rules(placed: Sequence[PlacedSignal], give_way: StructuredArray) -> SignRules:
     """Number the stop and yield signs as they stand in the file; one only painted on the road has no effect."""
     kinds = (STOP_SIGN_TYPE, YIELD_SIGN_TYPE)
     numbered = [nth for nth, signal in enumerate(placed) if signal.type in kinds and signal.name != PAINTED]

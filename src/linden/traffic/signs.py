@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from linden.compiled import kernel
 from linden.protocol.values.enums import TrafficLightState
+from linden.structured import StructuredArray
 from linden.traffic.trigger_volumes import REACH_M, TriggerGrid, boxes_touch, owners_over
 
 F64 = NDArray[np.float64]
@@ -53,7 +54,7 @@ class SignRules(NamedTuple):
     """(S,) of that circle; 0 where there is no square."""
 
 
-def sign_rules(grid: TriggerGrid, is_stop: Flags, squares: list[NDArray[np.void]]) -> SignRules:
+def sign_rules(grid: TriggerGrid, is_stop: Flags, squares: list[StructuredArray]) -> SignRules:
     """Return the rules of S signs, each with its squares, of ``opendrive.placed.GIVE_WAY``."""
     middle_m, radius_m = np.zeros((len(squares), 2)), np.zeros(len(squares))
     for sign, own in enumerate(squares):

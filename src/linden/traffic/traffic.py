@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from linden.errors import Refusal
 from linden.protocol.values.enums import TrafficLightState
+from linden.structured import StructuredArray
 from linden.traffic import cycle
 from linden.traffic.cycle import restored
 from linden.traffic.signal_actors import NO_LIGHT, Signals
@@ -105,7 +106,7 @@ class Traffic:
         """Begin every cycle anew."""
         self.state = cycle.reset(self._plan, self.state, self._groups())
 
-    def write(self, rows: NDArray[np.void]) -> None:
+    def write(self, rows: StructuredArray) -> None:
         """Write how the lights stand into their rows of the snapshot: (L,) of TRAFFIC_LIGHT_ROW, in the lights' order.
 
         The rows keep what they hold from call to call: what has not changed since the last one is not written again.

@@ -13,6 +13,7 @@ from basu.managers.base_manager import Ego
 from basu.managers.observations import NO_LANE, LaneFinder
 from basu.records.history import Facts, History, Vehicle
 from basu.records.history.model import FRAME, NO_LIGHT, OTHER
+from basu.records.structured import StructuredArray
 from basu.routing import Route, lane_graph, plan
 from basu.routing.planned_route import Progress, advance
 
@@ -126,7 +127,7 @@ def _rows(
     controls: NDArray[np.float64],
     route: Route,
     carla_map: carla.Map | None,
-) -> NDArray[np.void]:
+) -> StructuredArray:
     """The frames of the record."""
     finder: Callable[[Ego], tuple[float, ...]] = (
         (lambda _: NO_LANE) if carla_map is None else LaneFinder(carla_map).under

@@ -32,6 +32,7 @@ from basu.records.carla_log.layouts import (
     must_be,
 )
 from basu.records.carla_log.scan import Place, scan
+from basu.records.structured import StructuredArray
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -41,13 +42,13 @@ class Rows(NamedTuple):
     """Some records with their frames, ascending."""
 
     frame: NDArray[np.int64]  # (N,) from 1
-    rows: NDArray[np.void]  # (N,)
+    rows: StructuredArray  # (N,)
 
 
 class Table:
     """Records in the file's order: ``frame`` (R,) from 1, ascending, and ``rows`` (R,)."""
 
-    def __init__(self, frame: NDArray[np.int64], rows: NDArray[np.void]) -> None:
+    def __init__(self, frame: NDArray[np.int64], rows: StructuredArray) -> None:
         self.frame, self.rows = frame, rows
 
     def __len__(self) -> int:
@@ -74,7 +75,7 @@ class Table:
         place = begin + int(np.searchsorted(self._frame_by_actor[begin:end], frame, side="right")) - 1
         return None if place < begin else int(self._by_actor[place])
 
-    def in_frame(self, frame: int) -> NDArray[np.void]:
+    def in_frame(self, frame: int) -> StructuredArray:
         """The records of a frame, in the file's order."""
         begin, end = np.searchsorted(self.frame, [frame, frame + 1])
         return self.rows[begin:end]

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from basu.records.structured import StructuredArray
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -134,8 +136,8 @@ class History:
     """The whole record of a run."""
 
     facts: Facts
-    frames: NDArray[np.void]  # (T,) of FRAME, ticks ascending without a gap
-    others: NDArray[np.void]  # (M,) of OTHER, ticks ascending
+    frames: StructuredArray  # (T,) of FRAME, ticks ascending without a gap
+    others: StructuredArray  # (M,) of OTHER, ticks ascending
     collisions: tuple[Collision, ...]  # ticks ascending
     lane_invasions: tuple[LaneInvasion, ...]  # ticks ascending
     sumo: SumoRecord | None = None  # None for a run without SUMO

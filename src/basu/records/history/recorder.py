@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.records.history.model import CONTROL, FRAME, OTHER, Collision, Facts, History, LaneInvasion
+from basu.records.structured import StructuredArray
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from numpy.typing import NDArray
 
 MIXED_TICKS = 20  # events of frames no farther apart than this may come in any order
 
@@ -93,7 +93,7 @@ class Recorder:
             lane_invasions=(),
         )
 
-    def _all_frames(self) -> NDArray[np.void]:
+    def _all_frames(self) -> StructuredArray:
         """(T,) every frame, packed; rows that are there stay as they are."""
         fresh = _packed(self._frames, FRAME)
         if len(fresh):
@@ -125,7 +125,7 @@ def _names(dtype: np.dtype[np.void]) -> tuple[str, ...]:
     return dtype.names
 
 
-def _packed(rows: array[float], dtype: np.dtype[np.void]) -> NDArray[np.void]:
+def _packed(rows: array[float], dtype: np.dtype[np.void]) -> StructuredArray:
     """Flat doubles, row after row, as a packed array."""
     names = _names(dtype)
     table = np.array(rows, dtype=np.float64).reshape(-1, len(names))

@@ -9,6 +9,7 @@ import pyarrow as pa
 
 from basu.errors import UserError
 from basu.records.history.model import FRAME, OTHER
+from basu.records.structured import StructuredArray
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -87,7 +88,7 @@ def _field(name: str, kind: pa.DataType) -> pa.Field:
     return pa.field(name, kind, metadata={"unit": unit} if unit else None)
 
 
-def _structs(others: NDArray[np.void]) -> pa.StructArray:
+def _structs(others: StructuredArray) -> pa.StructArray:
     """The rows of OTHER without their tick, which the list they stand in tells."""
     names = [name for name in OTHER.names or () if name != "tick"]
     arrays = [_numbers(others[name]) for name in names]

@@ -19,6 +19,7 @@ from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.roadside import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.maps.records import GIVE_WAY, PlacedSignal
 from linden.protocol.values.enums import LaneType
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 
@@ -27,7 +28,7 @@ COVERED_WIDTHS = 0.9
 SAMPLE_M = 1.0
 
 
-def give_way_areas(opendrive: OpenDrive, placed: tuple[PlacedSignal, ...]) -> NDArray[np.void]:
+def give_way_areas(opendrive: OpenDrive, placed: tuple[PlacedSignal, ...]) -> StructuredArray:
     """Return the squares (B,) of ``GIVE_WAY``, signal after signal."""
     ways = _Ways(opendrive)
     guarded = {nth: ways.approached_by(signal) for nth, signal in enumerate(placed) if _gives_way(signal)}

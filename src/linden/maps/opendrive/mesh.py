@@ -24,6 +24,7 @@ from linden.maps.opendrive.limits import (
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.records import LANES
 from linden.protocol.values.enums import LaneType, SemanticTag
+from linden.structured import StructuredArray
 
 TAGS = {
     LaneType.SIDEWALK: SemanticTag.SIDEWALKS,
@@ -44,7 +45,7 @@ class RoadMesh(NamedTuple):
     vertices: F64  # (V, 3), m
     triangles: NDArray[np.int32]  # (T, 3)
     lane_of_triangle: NDArray[np.int32]  # (T,), row of ``lanes``
-    lanes: NDArray[np.void]  # of LANES; a lane with several speed limits has a row for each
+    lanes: StructuredArray  # of LANES; a lane with several speed limits has a row for each
 
 
 def road_mesh(opendrive: OpenDrive) -> RoadMesh:
@@ -111,7 +112,7 @@ def _triangles(quads: I64, places: int, is_left: NDArray[np.bool_]) -> I64:
     return np.where(is_left[:, None], left, right).reshape(-1, 3)
 
 
-def _lane_table(tables: Tables, lane: I64, speed_mps: F64) -> tuple[I64, NDArray[np.void]]:
+def _lane_table(tables: Tables, lane: I64, speed_mps: F64) -> tuple[I64, StructuredArray]:
     """Return the row of each quad and the rows: a new one where the lane or its speed limit changes."""
     same_speed = (speed_mps[1:] == speed_mps[:-1]) | (np.isnan(speed_mps[1:]) & np.isnan(speed_mps[:-1]))
     begins = np.concatenate([[True], (lane[1:] != lane[:-1]) | ~same_speed])

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from linden.errors import ProtocolError
 from linden.protocol.values.space import Transform
 from linden.protocol.wire.stream import Parts
+from linden.structured import StructuredArray
 
 
 class SensorType(IntEnum):
@@ -102,7 +103,7 @@ def image_payload(pixels: NDArray[np.uint8] | NDArray[np.float32], fov_deg: floa
     return _HEADER.pack(width, height, fov_deg), np.ascontiguousarray(pixels)
 
 
-def events_payload(events: NDArray[np.void], width: int, height: int, fov_deg: float) -> Parts:
+def events_payload(events: StructuredArray, width: int, height: int, fov_deg: float) -> Parts:
     """Return what an event camera saw, packed events one after the other."""
     return _HEADER.pack(width, height, fov_deg), np.ascontiguousarray(events)
 
@@ -127,6 +128,6 @@ def lidar_payload(horizontal_rad: float, count: NDArray[np.uint32], points: NDAr
     )
 
 
-def radar_payload(detections: NDArray[np.void]) -> Parts:
+def radar_payload(detections: StructuredArray) -> Parts:
     """Return detections (N,) of RADAR_DETECTION as they are sent."""
     return (np.ascontiguousarray(detections, RADAR_DETECTION),)

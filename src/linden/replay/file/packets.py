@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linden.errors import UserError
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.control import VehiclePhysicsControl
 from linden.replay.file import layouts
 from linden.replay.file.layouts import PacketId
+from linden.structured import StructuredArray
 
 
 class RecordingError(UserError):
@@ -33,7 +33,7 @@ class CutShortError(RecordingError):
     """A recording ends inside a frame, as that of a server that was killed may; all whole frames before are good."""
 
 
-Records = NDArray[np.void]
+Records = StructuredArray
 Triple = tuple[float, float, float]
 
 

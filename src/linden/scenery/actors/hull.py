@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from linden.scenery.actors.solids import GLASS, HEAD, PAINT, TAIL, TRIM, Look, faces_of, loft
 from linden.scenery.mesh import Mesh
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 Span = tuple[float, float]
@@ -115,7 +116,7 @@ def hull(shape: Silhouette, frame: Frame, *, is_cab: bool = False) -> Mesh:
     return loft(_rings(shape, frame, x), sides, rear, front)
 
 
-def _end(lamps: Look) -> NDArray[np.void]:
+def _end(lamps: Look) -> StructuredArray:
     """Return how the strips (8,) of an end look: bumper, lamps, body."""
     looks = faces_of(PAINT, _BANDS)
     looks[:2] = faces_of(TRIM)
@@ -191,7 +192,7 @@ def _bottom(shape: Silhouette, frame: Frame, x: F64) -> F64:
     return bottom_m
 
 
-def _panes(shape: Silhouette, frame: Frame, x: F64) -> NDArray[np.void]:
+def _panes(shape: Silhouette, frame: Frame, x: F64) -> StructuredArray:
     """Return how the sides (S - 1, 16) of a hull look: painted, with windows; dark below."""
     middle = 0.5 * (x[1:] + x[:-1])
     looks = faces_of(PAINT, len(middle), 2 * _BANDS)
@@ -212,7 +213,7 @@ def _panes(shape: Silhouette, frame: Frame, x: F64) -> NDArray[np.void]:
     return looks
 
 
-def _set(looks: NDArray[np.void], where: NDArray[np.bool_], band: int, look: Look) -> None:
+def _set(looks: StructuredArray, where: NDArray[np.bool_], band: int, look: Look) -> None:
     """Give a band of either side a look."""
     for row in (band, 2 * _BANDS - 2 - band):
         looks[where, row] = faces_of(look)

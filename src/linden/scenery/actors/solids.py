@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linden.scenery.mesh import FACE, NO_OBJECT, LampOf, Material, Mesh
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 Point = Sequence[float]
@@ -30,7 +31,7 @@ class Look(NamedTuple):
     painted: bool = False
 
 
-def faces_of(look: Look, *shape: int) -> NDArray[np.void]:
+def faces_of(look: Look, *shape: int) -> StructuredArray:
     """Return an array of faces that look so; the tag is given to the whole body at the end (:func:`tagged`)."""
     return np.full(shape, _face(look), FACE)
 
@@ -62,7 +63,7 @@ def bounds(mesh: Mesh) -> tuple[F64, F64]:
     return mesh.vertices_m.min(0).astype(np.float64), mesh.vertices_m.max(0).astype(np.float64)
 
 
-def closed(vertices_m: F64, triangles: NDArray[np.intp], faces: NDArray[np.void]) -> Mesh:
+def closed(vertices_m: F64, triangles: NDArray[np.intp], faces: StructuredArray) -> Mesh:
     """Return a solid of triangles that all turn the same way round: outwards, without triangles of no area."""
     corner, normal = _normals(vertices_m, triangles)
     has_area = (normal * normal).sum(1) > (2.0 * _NO_AREA_M2) ** 2
@@ -76,7 +77,7 @@ def inside_out(mesh: Mesh) -> Mesh:
 
 
 def loft(
-    rings_m: F64, look: Look | NDArray[np.void], first: Look | NDArray[np.void], last: Look | NDArray[np.void]
+    rings_m: F64, look: Look | StructuredArray, first: Look | StructuredArray, last: Look | StructuredArray
 ) -> Mesh:
     """Return the solid between rings (S, P, 3), each joined to the next; its ends are closed by strips.
 

@@ -14,6 +14,7 @@ from linden.scenery.scene.neighbourhood import with_house
 from linden.scenery.scene.objects import Kind, Scene
 from linden.scenery.scene.yard_layout import DRIVE_ASIDE_M, DRIVE_HALF_M, Drive, drives, has_porch
 from linden.scenery.streets.road import CONCRETE
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -118,7 +119,7 @@ def _rails(frames: Frames, half_m: F64, look: Look) -> Mesh:
     return join(parts)
 
 
-def paved_yards(lots: NDArray[np.void], scene: Scene, ground: Ground, lawn: Ground) -> Mesh:
+def paved_yards(lots: StructuredArray, scene: Scene, ground: Ground, lawn: Ground) -> Mesh:
     """Return drives from the kerb to the house and paths to front doors; they lie on the lawn and are no objects."""
     under = _Under(ground, lawn)
     drive = drives(lots, scene)

@@ -13,6 +13,7 @@ from linden.scenery.scene.linden_survey import surveyed
 from linden.scenery.scene.neighbourhood import SEED, between, on_lots
 from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, things_with
 from linden.scenery.scene.yard_layout import CAR_HALF_M, Drive
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -31,7 +32,7 @@ _OFF_LINE_M, _OFF_LINE_RAD = 0.05, 0.012  # drivers do not park like machines
 _HIGH_M = 1e9
 
 
-def kerbside_cars(lots: NDArray[np.void], drive: Drive, facts: MapFacts) -> Scene:
+def kerbside_cars(lots: StructuredArray, drive: Drive, facts: MapFacts) -> Scene:
     """Return cars before the lots that lie along parking lanes."""
     draw = np.random.default_rng([SEED, 5]).random((len(lots), 8))
     side = np.where(draw[:, 1] < 0.5, -1.0, 1.0)

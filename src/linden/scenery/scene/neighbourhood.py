@@ -14,6 +14,7 @@ from linden.maps.ground import Ground
 from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M, LOTS, Standing, StandingBox
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 
@@ -44,29 +45,29 @@ assert SETBACK_M[1] + HOUSE_DEPTH_M[1] <= LOT_DEPTH_M
 assert HOUSE_WIDTH_M[1] < LOT_WIDTH_M
 
 
-def furnish(lots: NDArray[np.void], ground: Ground) -> Scene:
+def furnish(lots: StructuredArray, ground: Ground) -> Scene:
     """Return what stands on the lots: houses, then trees, then lamps, each in the order of the lots."""
     draw = _draw(lots)
     return join([_houses(lots, ground, draw), _trees(lots, ground, draw), _lamps(lots, ground)])
 
 
-def _draw(lots: NDArray[np.void]) -> F64:
+def _draw(lots: StructuredArray) -> F64:
     """Return what is drawn for each lot (N, 9): no lot depends on what stands on another."""
     return np.random.default_rng(SEED).random((len(lots), 9))
 
 
-def with_house(lots: NDArray[np.void]) -> NDArray[np.intp]:
+def with_house(lots: StructuredArray) -> NDArray[np.intp]:
     """Return the lots that houses stand on, in the order of the houses."""
     return np.flatnonzero((_draw(lots)[:, 0] >= VACANT) & ~is_taken(lots))
 
 
-def is_taken(lots: NDArray[np.void]) -> NDArray[np.bool_]:
+def is_taken(lots: StructuredArray) -> NDArray[np.bool_]:
     """Return which lots (N,) something else stands on, as :func:`with_taken` marked them."""
     taken: NDArray[np.bool_] = lots["taken"] if "taken" in (lots.dtype.names or ()) else np.zeros(len(lots), bool)
     return taken
 
 
-def with_taken(lots: NDArray[np.void], standing: Sequence[Standing]) -> NDArray[np.void]:
+def with_taken(lots: StructuredArray, standing: Sequence[Standing]) -> StructuredArray:
     """Return lots, marked where a building of the map reaches into them.
 
     They stay in the table, so that what is drawn for the other lots does not change.
@@ -95,13 +96,13 @@ def is_clear(places_m: F64, box: StandingBox) -> NDArray[np.bool_]:
     return clear
 
 
-def tree_side(lots: NDArray[np.void]) -> F64:
+def tree_side(lots: StructuredArray) -> F64:
     """Return for each lot on which hand its tree stands (1 right, -1 left), 0 where it has none."""
     draw = _draw(lots)
     return np.where((draw[:, 6] < WITH_TREE) & ~is_taken(lots), np.sign(draw[:, 7] - 0.5), 0.0)
 
 
-def _houses(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
+def _houses(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
     built = with_house(lots)
     lots, draw = lots[built], draw[built]
     width, depth = between(HOUSE_WIDTH_M, draw[:, 1]), between(HOUSE_DEPTH_M, draw[:, 2])
@@ -114,7 +115,7 @@ def _houses(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.BUILDINGS))
 
 
-def _trees(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
+def _trees(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
     planted = (draw[:, 6] < WITH_TREE) & ~is_taken(lots)
     lots, draw = lots[planted], draw[planted]
     aside = (draw[:, 7] - 0.5) * (LOT_WIDTH_M - 3.0)
@@ -124,7 +125,7 @@ def _trees(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))
 
 
-def _lamps(lots: NDArray[np.void], ground: Ground) -> Scene:
+def _lamps(lots: StructuredArray, ground: Ground) -> Scene:
     lots = lots[::LOTS_A_LAMP]
     aside = np.full(len(lots), 0.5 * LOT_WIDTH_M - 0.5)
     base = on_lots(lots, ground, np.full(len(lots), LAMP_DEPTH_M), aside)
@@ -138,7 +139,7 @@ def _lamps(lots: NDArray[np.void], ground: Ground) -> Scene:
     )
 
 
-def on_lots(lots: NDArray[np.void], ground: Ground, inwards_m: F64, aside_m: F64) -> F64:
+def on_lots(lots: StructuredArray, ground: Ground, inwards_m: F64, aside_m: F64) -> F64:
     """Return places (N, 3) on the ground, so far into the lots and to the right of their middle."""
     cosine, sine = np.cos(lots["yaw_rad"]), np.sin(lots["yaw_rad"])
     x = lots["front_m"][:, 0] + cosine * inwards_m - sine * aside_m

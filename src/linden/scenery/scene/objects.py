@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from linden.protocol.values.enums import MapLayer, SemanticTag
 from linden.protocol.values.episode import EnvironmentObject
 from linden.protocol.values.space import BoundingBox, Rotation, Transform, Vector3D
+from linden.structured import StructuredArray
 
 
 class Kind(IntEnum):
@@ -104,8 +105,8 @@ BOX = np.dtype(
 class Scene:
     """Things and their boxes, those of one thing next to each other, in the order of the things. It never changes."""
 
-    things: NDArray[np.void]  # of THING
-    boxes: NDArray[np.void]  # of BOX
+    things: StructuredArray  # of THING
+    boxes: StructuredArray  # of BOX
     labels: tuple[tuple[int, str], ...] = ()  # rows of things with a name of their own, and that name
 
     @cached_property
@@ -179,7 +180,7 @@ def join(scenes: "list[Scene]") -> Scene:
     return Scene(np.concatenate([scene.things for scene in scenes]), boxes, tuple(labels))
 
 
-def things_with(kind: Kind, base_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> NDArray[np.void]:
+def things_with(kind: Kind, base_m: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> StructuredArray:
     """Return things (N,) of a kind that stand at ``base_m`` (N, 3)."""
     things = np.zeros(len(base_m), THING)
     things["kind"], things["base"], things["yaw_rad"] = kind, base_m, yaw_rad
@@ -187,8 +188,8 @@ def things_with(kind: Kind, base_m: NDArray[np.float64], yaw_rad: NDArray[np.flo
 
 
 def boxes_on(
-    things: NDArray[np.void], offset_m: NDArray[np.float64], half_m: NDArray[np.float64], tag: SemanticTag
-) -> NDArray[np.void]:
+    things: StructuredArray, offset_m: NDArray[np.float64], half_m: NDArray[np.float64], tag: SemanticTag
+) -> StructuredArray:
     """Return one box for each thing; ``offset_m`` of its middle (in the thing's frame) and ``half_m`` are (N, 3)."""
     cosine, sine = np.cos(things["yaw_rad"]), np.sin(things["yaw_rad"])
     x, y, z = np.broadcast_to(offset_m, (len(things), 3)).T
@@ -199,7 +200,7 @@ def boxes_on(
     return boxes
 
 
-def assembled(things: NDArray[np.void], *parts: NDArray[np.void]) -> Scene:
+def assembled(things: StructuredArray, *parts: StructuredArray) -> Scene:
     """Return the scene of things with boxes that come part by part, as :func:`boxes_on` makes them."""
     boxes = np.concatenate(parts)
     return Scene(things, boxes[np.argsort(boxes["thing"], kind="stable")])

@@ -1,8 +1,5 @@
 """``home``: the South Linden scene: houses, yards, trees, lamps, poles, shelters, cars and buildings; no signals."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from linden.maps.facts import MapFacts
 from linden.scenery.scene.kerb_parking import kerbside_cars
 from linden.scenery.scene.linden_survey import surveyed
@@ -12,6 +9,7 @@ from linden.scenery.scene.objects import Scene, join
 from linden.scenery.scene.utility_poles import clear_of, poles, shelters
 from linden.scenery.scene.woodland import groves
 from linden.scenery.scene.yard_layout import drives, yards
+from linden.structured import StructuredArray
 
 
 def home(facts: MapFacts) -> Scene:
@@ -28,6 +26,6 @@ def home(facts: MapFacts) -> Scene:
     return join([standing, mapped(facts.standing, with_houses=False)])
 
 
-def free_lots(facts: MapFacts) -> NDArray[np.void]:
+def free_lots(facts: MapFacts) -> StructuredArray:
     """Return the lots clear of the railroad, marked where named places stand on them."""
     return with_taken(clear_of(facts.lots, surveyed(facts.geo_origin_deg).railroad_m), facts.standing)

@@ -11,6 +11,7 @@ from linden.maps.records import LOT_WIDTH_M
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import LOTS_A_LAMP, on_lots
 from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, things_with
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 
@@ -30,7 +31,7 @@ RAILROAD_CLEAR_M = 10.0
 _HIGH_M = 1e9
 
 
-def poles(lots: NDArray[np.void], ground: Ground) -> Scene:
+def poles(lots: StructuredArray, ground: Ground) -> Scene:
     """Return utility poles on one side of each street, every fourth lot, clear of the lamps."""
     first = np.concatenate([[True], lots["road_id"][1:] != lots["road_id"][:-1]])[: len(lots)]
     leading = lots["yaw_rad"][np.maximum.accumulate(np.where(first, np.arange(len(lots)), 0))] if len(lots) else 0.0
@@ -96,7 +97,7 @@ def _on_road(points: F64, ground: Ground) -> NDArray[np.bool_]:
     return on
 
 
-def clear_of(lots: NDArray[np.void], line_m: F64) -> NDArray[np.void]:
+def clear_of(lots: StructuredArray, line_m: F64) -> StructuredArray:
     """Return the lots that a railroad along ``line_m`` (N, 2) does not cross."""
     if len(line_m) < 2:
         return lots

@@ -13,6 +13,7 @@ from linden.plane_bins import nearby
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import SEED, TRUNK_HALF_M, TRUNK_HEIGHT_M, between
 from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, things_with
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 
@@ -25,7 +26,7 @@ _FROM_LINE_M = 10.0
 _HIGH_M = 1e9
 
 
-def groves(lots: NDArray[np.void], others: Scene, avoid_m: F64, ground: Ground) -> Scene:
+def groves(lots: StructuredArray, others: Scene, avoid_m: F64, ground: Ground) -> Scene:
     """Return trees behind and between the lots, clear of roads, of other things, and of the line ``avoid_m`` (N, 2)."""
     places = _scattered(lots)
     draw = np.random.default_rng([SEED, 3]).random((len(places), 2))
@@ -43,7 +44,7 @@ def groves(lots: NDArray[np.void], others: Scene, avoid_m: F64, ground: Ground) 
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))
 
 
-def _scattered(lots: NDArray[np.void]) -> F64:
+def _scattered(lots: StructuredArray) -> F64:
     """Return places (N, 2) on a grid, moved about at random, within some way of the lots."""
     if not len(lots):
         return np.empty((0, 2))

@@ -13,6 +13,7 @@ from linden.maps.records import LOT_DEPTH_M, LOT_WIDTH_M
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.scene.neighbourhood import HOUSE_WIDTH_M, LOTS_A_LAMP, SEED, between, on_lots, tree_side, with_house
 from linden.scenery.scene.objects import Kind, Scene, assembled, boxes_on, join, things_with
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 I64 = NDArray[np.int64]
@@ -44,7 +45,7 @@ class Drive(NamedTuple):
     length_m: F64
 
 
-def yards(lots: NDArray[np.void], houses: Scene, drive: Drive, ground: Ground) -> Scene:
+def yards(lots: StructuredArray, houses: Scene, drive: Drive, ground: Ground) -> Scene:
     """Return what lies around the houses that stand on the lots and have these drives."""
     lot_of_house = with_house(lots)
     draw = _draw(lots)
@@ -60,7 +61,7 @@ def yards(lots: NDArray[np.void], houses: Scene, drive: Drive, ground: Ground) -
     )
 
 
-def drives(lots: NDArray[np.void], houses: Scene) -> Drive:
+def drives(lots: StructuredArray, houses: Scene) -> Drive:
     """Return the drives of the lots that have one."""
     lot, rows = with_house(lots), _house_rows(houses)
     with_porch = has_porch(lots)[lot]
@@ -74,13 +75,13 @@ def drives(lots: NDArray[np.void], houses: Scene) -> Drive:
     return Drive(lot[chosen], side[chosen], length[chosen])
 
 
-def has_porch(lots: NDArray[np.void]) -> NDArray[np.bool_]:
+def has_porch(lots: StructuredArray) -> NDArray[np.bool_]:
     """Return for each lot whether the house on it, if there is one, has a porch."""
     with_porch: NDArray[np.bool_] = _draw(lots)[:, 0] < PORCHES
     return with_porch
 
 
-def _draw(lots: NDArray[np.void]) -> F64:
+def _draw(lots: StructuredArray) -> F64:
     return np.random.default_rng([SEED, 1]).random((len(lots), 12))
 
 
@@ -88,7 +89,7 @@ def _house_rows(houses: Scene) -> I64:
     return np.flatnonzero(houses.things["kind"] == Kind.HOUSE).astype(np.int64)
 
 
-def _porches(box: NDArray[np.void], things: NDArray[np.void], draw: F64) -> Scene:
+def _porches(box: StructuredArray, things: StructuredArray, draw: F64) -> Scene:
     chosen = draw[:, 0] < PORCHES  # as has_porch
     box, things = box[chosen], things[chosen]
     x = -box["half"][:, 0] - 0.5 * PORCH_DEPTH_M - 0.02
@@ -104,7 +105,7 @@ def _porches(box: NDArray[np.void], things: NDArray[np.void], draw: F64) -> Scen
     return assembled(made, boxes_on(made, half * (0.0, 0.0, 1.0), half, SemanticTag.BUILDINGS))
 
 
-def _hedges(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
+def _hedges(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
     chosen = draw[:, 1] < HEDGES
     lots = lots[chosen]
     base = on_lots(lots, ground, np.full(len(lots), HEDGE_DEPTH_M), np.full(len(lots), HEDGE_ASIDE_M))
@@ -113,7 +114,7 @@ def _hedges(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
     return assembled(things, boxes_on(things, half * (0.0, 0.0, 1.0), half, SemanticTag.VEGETATION))
 
 
-def _fences(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
+def _fences(lots: StructuredArray, ground: Ground, draw: F64) -> Scene:
     """Return fences along the backs and along the left sides of lots."""
     scenes = []
     middle = 0.5 * (FENCE_FRONT_M + FENCE_BACK_M)
@@ -131,7 +132,7 @@ def _fences(lots: NDArray[np.void], ground: Ground, draw: F64) -> Scene:
     return join(scenes)
 
 
-def _cars(lots: NDArray[np.void], ground: Ground, drive: Drive, draw: F64) -> Scene:
+def _cars(lots: StructuredArray, ground: Ground, drive: Drive, draw: F64) -> Scene:
     """Return cars that stand on drives, nose to the house."""
     half = np.array(CAR_HALF_M)[(draw[drive.lot, 6] * len(CAR_HALF_M)).astype(int)]
     fits = (draw[drive.lot, 5] < CARS) & (2.0 * half[:, 0] + CAR_FRONT_M + 0.3 < drive.length_m)

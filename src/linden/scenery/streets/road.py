@@ -9,6 +9,7 @@ from linden.protocol.values.enums import LaneType, SemanticTag
 from linden.scenery.mesh import FACE, NO_OBJECT, Material, Mesh, join
 from linden.scenery.patches import Look, strips
 from linden.scenery.streets.simplified_lanes import SimplifiedLanes
+from linden.structured import StructuredArray
 
 F64 = NDArray[np.float64]
 
@@ -60,7 +61,7 @@ def surface(simplified_lanes: SimplifiedLanes) -> Mesh:
     return Mesh(vertices.astype(np.float32), triangles[solid].astype(np.uint32), faces[solid])
 
 
-def _faces_of(simplified_lanes: SimplifiedLanes) -> NDArray[np.void]:
+def _faces_of(simplified_lanes: SimplifiedLanes) -> StructuredArray:
     """Return the face of each lane."""
     made = np.zeros(len(simplified_lanes.tables.lanes), FACE)
     made["object"] = NO_OBJECT

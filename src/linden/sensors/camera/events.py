@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from linden.compiled import kernel
 from linden.sensors.camera.spec import EventSpec
+from linden.structured import StructuredArray
 
 F32 = NDArray[np.float32]
 I64 = NDArray[np.int64]
@@ -35,7 +36,7 @@ class Events(NamedTuple):
     width_px: int
     height_px: int
     fov_deg: float
-    events: NDArray[np.void]  # of EVENT
+    events: StructuredArray  # of EVENT
 
 
 class EventPixels:
@@ -48,7 +49,7 @@ class EventPixels:
         self._spoke_ns = np.full(self._before.shape, _NOT_YET, np.int64)
         self._now_ns = nanoseconds(now_s)
 
-    def watch(self, image: U8, now_s: float, number: int) -> NDArray[np.void]:
+    def watch(self, image: U8, now_s: float, number: int) -> StructuredArray:
         """Return the events between the last picture and this one, the ``number``-th of the camera."""
         spec, light, now_ns = self._spec, brightness(self._spec, image), nanoseconds(now_s)
         up, down = (

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from linden.physics.contact.statics import scenery_type
 from linden.protocol.values.space import Vector3D
+from linden.structured import StructuredArray
 
 SCENERY = -1
 """Slot of what is no body but part of the scenery."""
@@ -31,7 +32,7 @@ class Collision(NamedTuple):
     point_m: Vector3D
 
 
-def collisions(contacts: NDArray[np.void], carriers: Mapping[int, Sequence[int]]) -> Iterable[Collision]:
+def collisions(contacts: StructuredArray, carriers: Mapping[int, Sequence[int]]) -> Iterable[Collision]:
     """Yield what the sensors notice of a frame's contacts, in the order of the contacts; a's sensors before b's.
 
     Args:
@@ -50,7 +51,7 @@ def collisions(contacts: NDArray[np.void], carriers: Mapping[int, Sequence[int]]
                 yield Collision(sensor_id, slot, other, kind, taken, point)
 
 
-def _pairs(contacts: NDArray[np.void]) -> list[tuple[np.void, NDArray[np.float64]]]:
+def _pairs(contacts: StructuredArray) -> list[tuple[np.void, NDArray[np.float64]]]:
     """Return the first row of each pair and the sum of the impulses of all its rows.
 
     Two pieces of scenery of one kind count as one, as they reach the client under one name.

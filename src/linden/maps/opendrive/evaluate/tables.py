@@ -6,11 +6,11 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linden.maps.opendrive.evaluate.curves import Curves, curves_of
 from linden.maps.opendrive.evaluate.pieces import F64, I64, Pieces, pieces_of
 from linden.maps.opendrive.model import Cubic, Lane, LaneSection, OpenDrive, Road, kept
+from linden.structured import StructuredArray
 
 LANE = np.dtype(
     [
@@ -46,7 +46,7 @@ class Tables:
     curves: Curves
     elevation: Pieces
     lane_offset: Pieces
-    lanes: NDArray[np.void]  # of LANE, in the order of the file, each section from the left to the right
+    lanes: StructuredArray  # of LANE, in the order of the file, each section from the left to the right
     lane_values: tuple[Lane, ...]  # the same lanes as the file has them
     widths: Pieces
     heights_inner: Pieces
@@ -133,7 +133,7 @@ def tables_of(opendrive: OpenDrive) -> Tables:
     )
 
 
-def _lane_rows(cells: list[tuple[int, int, Road, LaneSection, Lane]]) -> NDArray[np.void]:
+def _lane_rows(cells: list[tuple[int, int, Road, LaneSection, Lane]]) -> StructuredArray:
     rows = np.zeros(len(cells), dtype=LANE)
     place = {(cell[0], cell[1], cell[4].id): index for index, cell in enumerate(cells)}
     columns = [

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from linden.compiled import kernel
 from linden.scenery.mesh import LampOf, Mesh
 from linden.sensors.view import LINEAR, Seen
+from linden.structured import StructuredArray
 
 F32 = NDArray[np.float32]
 F64 = NDArray[np.float64]
@@ -66,7 +67,7 @@ class LampGrid(NamedTuple):
     north_m: float
     first: I32  # (cells + 1,) rows of ``number``, cell after cell along x
     number: I32
-    lamps: NDArray[np.void]  # of LAMPLIGHT
+    lamps: StructuredArray  # of LAMPLIGHT
 
 
 def groups(mesh: Mesh, *, standing: bool) -> tuple[LampGroup, ...]:

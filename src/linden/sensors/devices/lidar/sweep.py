@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from linden.compiled import kernel
 from linden.sensors.casting.caster import Hits
 from linden.sensors.devices.lidar.firing_pattern import Fired
+from linden.structured import StructuredArray
 
 F32 = NDArray[np.float32]
 I32 = NDArray[np.int32]
@@ -30,7 +31,7 @@ class SemanticSweep(NamedTuple):
 
     horizontal_rad: float
     points_of_channel: U32
-    points: NDArray[np.void]  # (N,) of SEMANTIC_POINT
+    points: StructuredArray  # (N,) of SEMANTIC_POINT
 
 
 class Losses(NamedTuple):
@@ -103,7 +104,7 @@ class Owners(NamedTuple):
     actor_of_thing: U32  # the last for what is no thing
 
 
-def semantic_points_of(fired: Fired, direction: F32, hits: Hits, owners: Owners) -> tuple[U32, NDArray[np.void]]:
+def semantic_points_of(fired: Fired, direction: F32, hits: Hits, owners: Owners) -> tuple[U32, StructuredArray]:
     """Return how many points each channel has, and the points (M,) of SEMANTIC_POINT; all rays are cast."""
     count, points = np.zeros(len(fired.up), np.uint32), np.empty(len(direction), SEMANTIC_POINT)
     columns = points.view(np.float32).reshape(-1, 6)
