@@ -1,13 +1,12 @@
 """The wheel outside of the checkout: both commands drive a route, without the optional packages.
 
 The wheel is installed into an environment of its own. A .pth file lets it find the packages that the wheel needs among
-those of the tests; optional ones are hidden. What the checkout has compiled is copied beside the installed sources:
-numba accepts it, because they are the same.
+those of the tests; optional ones are hidden. The wheel brings the kernels that the checkout has compiled.
 """
 
 import json
 import os
-import shutil
+import signal
 import site
 import subprocess
 import sys
@@ -15,6 +14,9 @@ import venv
 from pathlib import Path
 
 import pytest
+from build_wheel import PIP, plain_wheel, with_kernels
+
+from linden.compiled import COMPILER_IS_OFF, TARGET
 
 ROOT = Path(__file__).parents[1]
 OPTIONAL = (
@@ -35,26 +37,15 @@ ROUTE = """<routes><route id="piece" town="Linden"><waypoints>{points}</waypoint
 def installed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the environment that has the wheel."""
     folder = tmp_path_factory.mktemp("wheel")
-    sources = folder / "sources"
-    shutil.copytree(ROOT / "src", sources / "src", ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, sources)
-    pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "wheel", str(sources), "--no-deps", "--wheel-dir", str(folder)], check=True)
-    (wheel,) = folder.glob("linden-*.whl")
+    wheel = with_kernels(plain_wheel(folder), ROOT / "src", sys.executable, [TARGET], folder / "dist")
     environment = folder / "environment"
     venv.create(environment, with_pip=False)
     python = environment / "bin" / "python"
-    install = [*pip, "--python", str(python), "install", "--no-deps", "--no-compile"]  # imports compile what they need
-    subprocess.run([*install, str(wheel)], check=True)
+    install = [*PIP, "--python", str(python), "install", "--no-deps", "--no-compile"]  # imports compile what they need
+    subprocess.run([sys.executable, *install, str(wheel)], check=True)
     packages = next(environment.glob("lib/python*/site-packages"))
     hiding = f"import sys; sys.modules.update(dict.fromkeys({OPTIONAL!r}))"
     (packages / "others.pth").write_text("\n".join([*site.getsitepackages(), hiding]) + "\n", encoding="utf-8")
-    for code in (ROOT / "src" / "linden").rglob("*.nb[ci]"):
-        target = packages / code.relative_to(ROOT / "src")
-        if target.parents[1].is_dir():  # else it was left by a module that has moved
-            target.parent.mkdir(exist_ok=True)
-            shutil.copy(code, target)
     return environment
 
 
@@ -102,3 +93,22 @@ def test_commands_need_no_optional_package(installed: Path, tmp_path: Path, comm
     done = run(installed, tmp_path, *command)
     assert done.returncode == 0, done.stderr
     assert done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(COMPILER_IS_OFF, reason="nothing is compiled")
+def test_a_first_start_with_an_empty_home_compiles_nothing(installed: Path, tmp_path: Path) -> None:
+    def kernels() -> set[Path]:
+        return {*installed.rglob("*.nb[ci]"), *tmp_path.rglob("*.nb[ci]")}
+
+    before = kernels()
+    assert before
+    serve = [str(installed / "bin" / "linden"), "serve", "--sync", "--port", "0"]
+    names = {"PATH": os.defpath, "HOME": str(tmp_path)}
+    with subprocess.Popen(serve, cwd=tmp_path, env=names, stdout=subprocess.PIPE, text=True) as server:
+        assert server.stdout is not None
+        said = server.stdout.readline()
+        server.send_signal(signal.SIGINT)
+    assert said.startswith("linden: ready")
+    assert server.returncode == 0
+    assert kernels() == before

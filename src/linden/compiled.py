@@ -17,7 +17,9 @@ from typing import Any, TypeVar, cast
 import llvmlite.binding
 import numba
 import numpy as np
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+from linden.target import choose
 
 log = logging.getLogger("linden")
 
@@ -27,13 +29,16 @@ _UNCOUNTED: dict[str, Any] = {"_nrt": False}
 COMPILER_IS_OFF = bool(getattr(numba.config, "DISABLE_JIT", False))
 """Whether functions stay Python's, as NUMBA_DISABLE_JIT=1 asks for."""
 
+TARGET = choose()
+"""Name of the processor that kernels are compiled for."""
+
 Function = TypeVar("Function", bound=Callable[..., object])
 
 
 def _cached(function: Callable[..., object], **options: Any) -> Any:  # noqa: ANN401 - numba's own
     """Compile with numba and keep what was compiled; for this process only, where no folder can be written to.
 
-    numba looks beside the source first, then in the user's cache folder.
+    numba keeps it beside the source, or in the user's cache folder where that cannot be written to.
     """
     try:
         compiled = numba.njit(cache=True, error_model="numpy", **options)(function)
@@ -58,12 +63,23 @@ class _KernelCache(FunctionCache):
 
     def _load_overload(self, *of_function: object) -> object:
         try:
-            return super()._load_overload(*of_function)  # type: ignore[no-untyped-call]
+            return super()._load_overload(*of_function) or self._shipped(*of_function)  # type: ignore[no-untyped-call]
         except (ImportError, AttributeError, EOFError, ValueError, pickle.UnpicklingError) as error:
             # such as of a class that had another place when the file was written
             log.info("%s is compiled anew: %s", self, error)
             self.flush()  # type: ignore[no-untyped-call]
             return None
+
+    def _shipped(self, signature: object, target: Any) -> object:  # noqa: ANN401 - numba's context of a target
+        """Return what a wheel has brought beside the source, where numba keeps its files elsewhere; else None."""
+        beside = Path(self._py_func.__code__.co_filename).parent / "__pycache__"
+        if beside == Path(self._cache_path):
+            return None
+        files: Any = IndexDataCacheFile(  # type: ignore[no-untyped-call]
+            str(beside), self._impl.filename_base, self._impl.locator.get_source_stamp()
+        )
+        data = files.load(self._index_key(signature, target.codegen()))
+        return None if data is None else self._impl.rebuild(target, data)
 
 
 def kernel(function: Function) -> Function:
@@ -163,4 +179,4 @@ def fingerprint(*sources: Path) -> int:
 def machine() -> str:
     """Return what else decides the last bits of a computed number: the versions of what computes, and the processor."""
     processor = f"{llvmlite.binding.get_host_cpu_name()} {llvmlite.binding.get_host_cpu_features().flatten()}"
-    return f"numpy {np.__version__}, numba {numba.__version__}, {processor}"
+    return f"numpy {np.__version__}, numba {numba.__version__}, {processor}, kernels for {TARGET}"

@@ -53,6 +53,16 @@ def test_a_part_is_compiled_anew_when_a_file_that_it_calls_changes(tmp_path: Pat
     assert [hits(load(tmp_path, sources), "thrice") for sources in (7, 8, 8)] == [0, 0, 1]
 
 
+@pytest.mark.parametrize("name", ["twice", "thrice"])
+def test_what_lies_beside_the_source_is_found_where_another_folder_is_written_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    hits(load(tmp_path), name)
+    monkeypatch.setattr("numba.core.config.CACHE_DIR", str(tmp_path / "elsewhere"))
+    assert hits(load(tmp_path), name) == 1
+    assert not list((tmp_path / "elsewhere").rglob("*.nb?"))
+
+
 class Gone:
     """Stands for a class that has moved since the file was written."""
 

@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 NICE = 10
 """Priority of a process that compiles while the server serves."""
 PROGRAM = """
-import os, sys
+import gc, os, sys
 from linden.cli.compiling import compile_groups
+gc.disable()  # numba's objects stay; the collector would take a tenth of the time
 os.nice(int(sys.argv[1]))
 compile_groups(sys.argv[2:])
 """
@@ -76,17 +77,17 @@ def scenery() -> None:
 def world() -> None:
     """Compile what a world needs beside the physics, and derive what is kept of the default map."""
     from linden.maps.cache import MapCache  # noqa: PLC0415 - as in driving
-    from linden.maps.navigation.library import MeshLibrary  # noqa: PLC0415 - as in driving
+    from linden.maps.navigation.library import made  # noqa: PLC0415 - as in driving
     from linden.protocol.wire.packed import warm_up as warm_batches  # noqa: PLC0415 - as in driving
     from linden.server.rpc import registry  # noqa: PLC0415 - as in driving
-    from linden.simulation.walkers import mesh_file  # noqa: PLC0415 - as in driving
+    from linden.simulation.walkers import obstacles_of  # noqa: PLC0415 - as in driving
 
     registry.load_handlers()
     cache = MapCache.of_user()
     simulation = _home_world(cache)
     simulation.episode.warm_up()
     warm_batches()
-    mesh_file(simulation.episode, MeshLibrary(cache))
+    made(simulation.episode.map, obstacles_of(simulation.episode.map))  # maps of users need its kernels
 
 
 def _home_world(cache: "MapCache") -> "World":
@@ -140,12 +141,13 @@ class Compiling:
         return self._process.wait()
 
     def has(self, group: str) -> bool:
-        """Return whether a group is compiled, or will not be."""
-        return self._compiled[group].is_set()
+        """Return whether a group is compiled, was before, or will not be."""
+        return group not in self._compiled or self._compiled[group].is_set()
 
     def wait_for(self, group: str) -> None:
         """Wait until a group is compiled, or will not be."""
-        self._compiled[group].wait()
+        if group in self._compiled:
+            self._compiled[group].wait()
 
     def end(self) -> None:
         """End it; what it has compiled stays."""
@@ -219,16 +221,18 @@ class FirstStart:
             note_compiled(OF_PHYSICS, self._cache)
             self.step("a frame")
 
-    def compile_sensors(self) -> bool:
-        """Begin to compile what sensors need, in the background; return whether there is anything to compile."""
+    def compile_sensors(self, *, scenery: bool) -> None:
+        """Begin to compile what sensors need, in the background, and to make the scenery where that is wanted."""
         from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
         from linden.sensors.compiling import OF_SENSORS, is_compiled  # noqa: PLC0415 - as in driving
 
+        meshes = ("scenery",) if scenery else ()
         if is_compiled(OF_SENSORS, self._cache):
             warm_up()
-            return False
-        self._background = Compiling("rays", "scenery", "cameras", "sensors", background=True)
-        return True
+            if scenery:
+                self._background = Compiling(*meshes, background=True)
+        else:
+            self._background = Compiling("rays", *meshes, "cameras", "sensors", background=True)
 
     def await_sensors(self, pictures: bool) -> None:  # noqa: FBT001 - as SensorScene calls it
         """Wait until the kernels of rays, or of pictures, are compiled; any thread may call it."""

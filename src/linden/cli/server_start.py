@@ -13,8 +13,8 @@ from linden.maps.navigation.library import MeshLibrary
 from linden.protocol.values.episode import EpisodeSettings
 from linden.protocol.wire.packed import warm_up as warm_batches
 from linden.replay.file.folder import RecordingFolder
-from linden.scenery.actors.actor_meshes_cache import bodies_of, keep_bodies
-from linden.scenery.map_mesh_cache import keep_standing, standing_of
+from linden.scenery.actors.actor_meshes_cache import bodies_of, has_bodies, keep_bodies
+from linden.scenery.map_mesh_cache import has_standing, keep_standing, standing_of
 from linden.sensors.casting.caster import CPU
 from linden.server import frames
 from linden.server.loop import Server
@@ -74,9 +74,13 @@ def make_server(arguments: argparse.Namespace, first_start: FirstStart) -> Start
     mesh_file(simulation.episode, meshes)  # every client asks for it before anything else
     first_start.step("the walking mesh")
     first_start.finish_physics()
-    if not first_start.compile_sensors() or arguments.map != HOME_MAP:
+    scene = simulation.episode.surroundings.scene
+    if arguments.map == HOME_MAP:
+        first_start.compile_sensors(scenery=not (has_bodies(cache) and has_standing(world_map, scene, cache)))
+    else:
+        first_start.compile_sensors(scenery=False)
         keep_bodies(simulation.library, cache)
-        keep_standing(world_map, simulation.episode.surroundings.scene, cache)  # seconds, if it is not there yet
+        keep_standing(world_map, scene, cache)  # seconds, if it is not there yet
     server = Server(simulation, maps, frames, ports)
     server.context.recordings = RecordingFolder(arguments.recordings)
     server.context.meshes = meshes

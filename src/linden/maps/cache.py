@@ -86,10 +86,16 @@ class MapCache:
 
     def keep(self, name: str, make: Callable[[], bytes]) -> None:
         """Have something kept under a name, for :meth:`kept` to read; made only where there is no file of that name."""
-        try:
-            os.utime(self._folder / name)  # it counts as used
-        except OSError:
+        if not self.has(name):
             self.kept(name, make, bytes)
+
+    def has(self, name: str) -> bool:
+        """Return whether there is a file of that name, which then counts as used."""
+        try:
+            os.utime(self._folder / name)
+        except OSError:
+            return False
+        return True
 
     def replace(self, name: str, content: bytes) -> None:
         """Keep something else than before under a name."""

@@ -36,6 +36,11 @@ def keep_standing(world_map: LoadedMap, scene: Scene, cache: MapCache) -> None:
     cache.keep(_name(world_map, scene), lambda: _written(_made(world_map, scene)))
 
 
+def has_standing(world_map: LoadedMap, scene: Scene, cache: MapCache) -> bool:
+    """Return whether the mesh is in the cache."""
+    return cache.has(_name(world_map, scene))
+
+
 def _made(world_map: LoadedMap, scene: Scene) -> Mesh:
     from linden.scenery.map_mesh import standing_on  # noqa: PLC0415 - 50 ms that a start with a cached mesh does without
 

@@ -7,12 +7,15 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+import numba
 from numba.core.dispatcher import Dispatcher
 
-from linden.compiled import COMPILER_IS_OFF, machine
+from linden.compiled import COMPILER_IS_OFF, TARGET, machine
 from linden.maps.cache import MapCache
 
 _PACKAGE = Path(__file__).parent.parent
+_SHIPPED = _PACKAGE / "kernels.json"
+"""Written by scripts/build_wheel.py: what the kernels beside the sources were compiled for."""
 
 
 class Kernels(NamedTuple):
@@ -44,9 +47,9 @@ def compile_once(cache: MapCache) -> None:
 def is_compiled(kernels: Kernels, cache: MapCache) -> bool:
     """Return whether kernels were compiled on this machine, and what was compiled is still there.
 
-    Where numba's compiler is off there is nothing to compile.
+    A wheel may bring them. Where numba's compiler is off there is nothing to compile.
     """
-    if COMPILER_IS_OFF:
+    if COMPILER_IS_OFF or _are_shipped():
         return True
     files = cache.kept(_name(kernels), lambda: b"[]", _files_of)
     return bool(files) and all(map(os.path.exists, files))
@@ -55,6 +58,20 @@ def is_compiled(kernels: Kernels, cache: MapCache) -> bool:
 def note_compiled(kernels: Kernels, cache: MapCache) -> None:
     """Note that kernels are compiled; this process has loaded them."""
     cache.replace(_name(kernels), json.dumps(_compiled_files(kernels)).encode())
+
+
+def versions() -> dict[str, str]:
+    """Return the versions that compiled kernels are made for, and no others."""
+    return {"python": "{}.{}".format(*sys.version_info), "numba": numba.__version__}
+
+
+def _are_shipped() -> bool:
+    """Return whether the wheel has brought kernels for these versions and for this processor."""
+    try:
+        shipped = json.loads(_SHIPPED.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return False
+    return bool(shipped["versions"] == versions() and TARGET in shipped["targets"])
 
 
 def _files_of(content: bytes) -> list[str]:

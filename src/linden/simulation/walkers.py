@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.maps.library import LoadedMap
 from linden.maps.navigation.detour import Obstacles
 from linden.maps.navigation.library import MeshFile, MeshLibrary
 from linden.physics.bodies import Bodies
@@ -178,5 +179,10 @@ def _lay_down(bodies: Bodies, slot: int, share: float, upright_half_m: F64) -> N
 
 def mesh_file(episode: EpisodeState, meshes: MeshLibrary) -> MeshFile | None:
     """Return the mesh as clients fetch it; None where the map has no pavements."""
-    statics = scenery_of(episode.map).statics  # all of it, whatever clients made disappear: the file is the map's
-    return meshes.file_of(episode.map, Obstacles(statics.centre, statics.half, statics.yaw_rad))
+    return meshes.file_of(episode.map, obstacles_of(episode.map))
+
+
+def obstacles_of(world_map: LoadedMap) -> Obstacles:
+    """Return what the walking mesh of a map leaves out: all scenery, whatever clients have made disappear."""
+    statics = scenery_of(world_map).statics
+    return Obstacles(statics.centre, statics.half, statics.yaw_rad)

@@ -51,7 +51,7 @@ def test_a_first_start_prints_each_step_and_ends_what_it_began(monkeypatch: pyte
     start.begin(MapCache(tmp_path))
     parts = list(start._parts.values())
     start.step("the world")
-    assert start.compile_sensors()
+    start.compile_sensors(scenery=True)
     start.await_sensors(False)
     assert start.is_compiling()
     start.end()
@@ -73,8 +73,23 @@ def test_a_start_with_everything_compiled_starts_no_process(monkeypatch: pytest.
     start = FirstStart(said.append)
     start.begin(cache)
     start.step("the world")
-    assert not start.compile_sensors()
+    start.compile_sensors(scenery=False)
     assert not start.is_compiling()
     start.await_sensors(True)
     start.end()
     assert said == []
+
+
+def test_a_start_with_compiled_kernels_makes_missing_scenery_in_the_background(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr("linden.sensors.compiling._are_shipped", lambda: True)
+    monkeypatch.setattr(compiling, "PROGRAM", WAITS)
+    start = FirstStart(print)
+    start.begin(MapCache(tmp_path))
+    start.compile_sensors(scenery=True)
+    assert not start.is_compiling()  # pictures need no kernel that is not there
+    start.await_sensors(True)
+    assert start._background is not None
+    start.end()
+    assert start._background.wait() < 0

@@ -1,4 +1,4 @@
-"""The walking meshes of maps as the files that clients fetch: made once, kept in memory and beside the map's facts."""
+"""The walking meshes of maps as the files that clients fetch: shipped, or made once and cached with the map's facts."""
 
 import hashlib
 import logging
@@ -11,6 +11,7 @@ from linden.compiled import fingerprint, machine
 from linden.maps.cache import MapCache
 from linden.maps.library import LoadedMap
 from linden.maps.navigation.detour import Obstacles, write
+from linden.maps.navigation.shipped import shipped_mesh
 
 log = logging.getLogger("linden")
 
@@ -44,7 +45,9 @@ class MeshLibrary:
         Any thread may call it.
         """
         if world_map not in self._known:
-            content = self._kept(world_map, obstacles) if self._cache else _made(world_map, obstacles)
+            content = shipped_mesh(world_map)
+            if content is None:
+                content = self._kept(world_map, obstacles) if self._cache else made(world_map, obstacles)
             digest = hashlib.sha256(content).hexdigest()[:16]
             self._known[world_map] = MeshFile(f"{_FOLDER}/{world_map.name}_{digest}.bin", content) if content else None
         return self._known[world_map]
@@ -56,10 +59,10 @@ class MeshLibrary:
         key.update(world_map.text.encode())
         for column in obstacles:
             key.update(column.tobytes())
-        return self._cache.kept(f"{key.hexdigest()[:32]}.nav", lambda: _made(world_map, obstacles), bytes)
+        return self._cache.kept(f"{key.hexdigest()[:32]}.nav", lambda: made(world_map, obstacles), bytes)
 
 
-def _made(world_map: LoadedMap, obstacles: Obstacles) -> bytes:
+def made(world_map: LoadedMap, obstacles: Obstacles) -> bytes:
     """Return the file of a map's mesh; empty where there is no place to walk."""
     from linden.maps.navigation.map_mesh import mesh_of  # noqa: PLC0415 - a start with a cached mesh does without
 

@@ -38,6 +38,11 @@ def keep_bodies(library: BlueprintLibrary, cache: MapCache) -> None:
     cache.keep(_name(), lambda: _made(library))
 
 
+def has_bodies(cache: MapCache) -> bool:
+    """Return whether the meshes are in the cache."""
+    return cache.has(_name())
+
+
 @once
 def _name() -> str:
     sources = fingerprint(*(file for pattern in _MAKING for file in _PACKAGE.glob(pattern)))

@@ -43,7 +43,7 @@ def test_a_map_without_pavements_has_none() -> None:
 
 def test_what_was_made_is_not_made_again(street: LoadedMap, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING)
-    monkeypatch.setattr(library, "_made", lambda *_: pytest.fail("it was kept"))
+    monkeypatch.setattr(library, "made", lambda *_: pytest.fail("it was kept"))
     assert MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING) == first
 
 
