@@ -3,8 +3,9 @@
     python benchmarks/start_up.py [--runs 5]
     python benchmarks/start_up.py --first
 
-``--first`` times one first start: nothing is compiled and nothing is kept of the map. It prints the seconds from the
-command to each event: ready, first tick, first tick with a vehicle, first measurement of a lidar and of a camera.
+``--first`` times one first start from a checkout: nothing is compiled and nothing is kept of the map. It prints the
+seconds from the command to each event: ready, first tick, first tick with a vehicle, first measurement of a lidar and
+of a camera.
 
 Without it every figure is a median over the runs. The limits are processes that simulate nothing: one that only imports
 numpy and numba, and one in which numba is ready for its first kernel as well. The kernels' own cache is filled
@@ -14,13 +15,14 @@ run.
 
 import argparse
 import os
+import shutil
 import statistics
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -28,6 +30,9 @@ from typing import NamedTuple
 import carla
 import psutil
 
+import linden
+
+PACKAGE = Path(linden.__file__).parent
 IMPORTS = "import numpy, numba\n"
 KERNELS = """from numba.core.registry import cpu_target
 cpu_target.typing_context.refresh()
@@ -93,33 +98,38 @@ def cold_start() -> Figures:
 
 def first_start() -> None:
     """Print when a first start reaches what its clients wait for."""
-    begin = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        sources = Path(folder) / "src"  # a copy, for kernels beside the sources are found as well
+        shutil.copytree(PACKAGE, sources / PACKAGE.name, ignore=shutil.ignore_patterns("__pycache__"))
+        begin = time.perf_counter()
 
-    def reached(event: str) -> None:
-        print(f"{event:32}{time.perf_counter() - begin:8.1f} s", flush=True)
+        def reached(event: str) -> None:
+            print(f"{event:32}{time.perf_counter() - begin:8.1f} s", flush=True)
 
-    with (
-        tempfile.TemporaryDirectory() as folder,
-        started(SERVE, Path(folder), NUMBA_CACHE_DIR=str(Path(folder) / "numba")) as (_, line, _),
-    ):
-        reached("ready")
-        client = carla.Client("127.0.0.1", int(line.split("rpc port ")[1].split(",")[0]))
-        client.set_timeout(600.0)
-        world = client.get_world()
-        world.tick()
-        reached("first tick")
-        blueprints, place = world.get_blueprint_library(), world.get_map().get_spawn_points()[0]
-        car = world.spawn_actor(blueprints.find("vehicle.tesla.model3"), place)
-        world.tick()
-        reached("first tick with a vehicle")
-        for kind in ("sensor.lidar.ray_cast", "sensor.camera.rgb"):
-            measured = threading.Event()
-            sensor = world.spawn_actor(blueprints.find(kind), carla.Transform(carla.Location(z=2.5)), attach_to=car)
-            sensor.listen(lambda _, measured=measured: measured.set())
-            while not measured.is_set():
-                world.tick(600.0)
-            sensor.stop()
-            reached(kind)
+        with started(SERVE, Path(folder), PYTHONPATH=str(sources)) as (_, line, _):
+            reached("ready")
+            follow(line, reached)
+
+
+def follow(line: str, reached: Callable[[str], None]) -> None:
+    """Drive the server that printed ``line`` to the events after its start."""
+    client = carla.Client("127.0.0.1", int(line.split("rpc port ")[1].split(",", maxsplit=1)[0]))
+    client.set_timeout(600.0)
+    world = client.get_world()
+    world.tick()
+    reached("first tick")
+    blueprints, place = world.get_blueprint_library(), world.get_map().get_spawn_points()[0]
+    car = world.spawn_actor(blueprints.find("vehicle.tesla.model3"), place)
+    world.tick()
+    reached("first tick with a vehicle")
+    for kind in ("sensor.lidar.ray_cast", "sensor.camera.rgb"):
+        measured = threading.Event()
+        sensor = world.spawn_actor(blueprints.find(kind), carla.Transform(carla.Location(z=2.5)), attach_to=car)
+        sensor.listen(lambda _, measured=measured: measured.set())
+        while not measured.is_set():
+            world.tick(600.0)
+        sensor.stop()
+        reached(kind)
 
 
 def main() -> None:
