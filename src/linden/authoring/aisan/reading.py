@@ -69,6 +69,23 @@ def _rows(path: Path, columns: tuple[str, ...]) -> NDArray[np.float64]:
         raise UserError(f"cannot read {path}: {error}") from None
     if lines and not lines[-1]:
         lines.pop()  # what follows the last line's end is no line
+    numbers = _plain_numbers(lines, len(columns))
+    return _named_rows(path, lines, columns) if numbers is None else numbers
+
+
+def _plain_numbers(lines: list[str], width: int) -> NDArray[np.float64] | None:
+    """Return the rows where each line is one of numbers alone, with an id; else None."""
+    if not lines:
+        return None
+    try:
+        rows = np.loadtxt(lines, comments=None, delimiter=",", usecols=range(width), ndmin=2)
+    except ValueError:
+        return None
+    return rows if len(rows) == len(lines) and ((rows[:, 0] > 0) & (rows[:, 0] < _INT32)).all() else None
+
+
+def _named_rows(path: Path, lines: list[str], columns: tuple[str, ...]) -> NDArray[np.float64]:
+    """Return the rows of lines with letters or mistakes; a mistake is named with its line."""
     rows = []
     for number, line in enumerate(lines, start=2):
         cells = line.rstrip("\r").split(",")

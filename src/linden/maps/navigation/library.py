@@ -4,6 +4,7 @@ import hashlib
 import logging
 import time
 from pathlib import Path
+from threading import Lock
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -34,6 +35,7 @@ class MeshLibrary:
         """Keep meshes in ``cache`` too, where there is one."""
         self._cache = cache
         self._known: WeakKeyDictionary[LoadedMap, MeshFile | None] = WeakKeyDictionary()
+        self._making = Lock()
 
     def knows(self, world_map: LoadedMap) -> bool:
         """Return whether the mesh of a map is made, so that :meth:`file_of` takes no time."""
@@ -42,15 +44,17 @@ class MeshLibrary:
     def file_of(self, world_map: LoadedMap, obstacles: Obstacles) -> MeshFile | None:
         """Return the mesh of a map, None where it has no pavements. ``obstacles`` are always those of the map.
 
-        Any thread may call it.
+        Any thread may call it. One makes the mesh, and others that want it meanwhile wait for that one.
         """
-        if world_map not in self._known:
-            content = shipped_mesh(world_map)
-            if content is None:
-                content = self._kept(world_map, obstacles) if self._cache else made(world_map, obstacles)
-            digest = hashlib.sha256(content).hexdigest()[:16]
-            self._known[world_map] = MeshFile(f"{_FOLDER}/{world_map.name}_{digest}.bin", content) if content else None
-        return self._known[world_map]
+        with self._making:
+            if world_map not in self._known:
+                content = shipped_mesh(world_map)
+                if content is None:
+                    content = self._kept(world_map, obstacles) if self._cache else made(world_map, obstacles)
+                digest = hashlib.sha256(content).hexdigest()[:16]
+                name = f"{_FOLDER}/{world_map.name}_{digest}.bin"
+                self._known[world_map] = MeshFile(name, content) if content else None
+            return self._known[world_map]
 
     def _kept(self, world_map: LoadedMap, obstacles: Obstacles) -> bytes:
         assert self._cache is not None

@@ -1,6 +1,9 @@
 """Meshes as files: named by their content, made once, kept beside the map's facts."""
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from threading import Barrier
+from typing import Any
 
 import numpy as np
 import pytest
@@ -45,6 +48,28 @@ def test_what_was_made_is_not_made_again(street: LoadedMap, tmp_path: Path, monk
     first = MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING)
     monkeypatch.setattr(library, "made", lambda *_: pytest.fail("it was kept"))
     assert MeshLibrary(MapCache(tmp_path)).file_of(street, NOTHING) == first
+
+
+def test_threads_that_want_a_mesh_at_once_wait_for_the_one_that_makes_it(
+    street: LoadedMap, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made: list[bytes] = []
+    make, together, meshes = library.made, Barrier(4), MeshLibrary()
+
+    def counted(*given: Any) -> bytes:
+        made.append(make(*given))
+        return made[-1]
+
+    def ask(_: int) -> object:
+        together.wait(60.0)
+        return meshes.file_of(street, NOTHING)
+
+    monkeypatch.setattr(library, "made", counted)
+    with ThreadPoolExecutor(4) as threads:
+        first, *others = threads.map(ask, range(4))
+    assert first is not None
+    assert all(other is first for other in others)
+    assert len(made) == 1
 
 
 def test_a_broken_file_is_made_anew(street: LoadedMap, tmp_path: Path) -> None:
