@@ -2,7 +2,7 @@
 
 import enum
 import random
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from lxml import etree
@@ -110,13 +110,14 @@ def draw(net: Net, demand: Demand, places: tuple[Place, ...] = (), parking: froz
     later = round(rate_hz * demand.duration_s)
     departures = [0.0] * under_way + sorted(round(dice.uniform(0.0, demand.duration_s), 2) for _ in range(later))
     schools, stations = car_streets(net, places, SCHOOL), car_streets(net, places, TRANSIT)
+    likelihood = likelihoods(net.car_edges())
     trips = []
     for number, depart_s in enumerate(departures):
         purpose = dice.choices(PURPOSES, shares)[0]
         starts = homes if purpose in ("out", "within") else entries
         ends = homes if purpose in ("home", "within") else exits
-        start = drawn(starts, dice)
-        end = drawn([edge for edge in ends if _is_elsewhere(edge, start)] or homes, dice)
+        start = drawn(starts, likelihood, dice)
+        end = drawn(_elsewhere(ends, start) or homes, likelihood, dice)
         start, end = _by_place(start, end, dice, demand.hour, (schools, stations))
         parks = end.id in parking and ends is homes and dice.random() < PARKING_SHARE
         trips.append(Trip(depart_s, start.id, end.id, number < under_way, end.id if parks else None))
@@ -135,7 +136,7 @@ def _by_place(
         place, is_end = dice.choice(stations), dice.random() < 0.5
     else:
         return start, end
-    fits = _is_elsewhere(place, start) if is_end else _is_elsewhere(end, place)
+    fits = _elsewhere([place], start) if is_end else _elsewhere([end], place)
     if not fits:
         return start, end
     return (start, place) if is_end else (place, end)
@@ -145,14 +146,20 @@ def _limit_mps(edge: NetEdge) -> float:
     return max(lane.speed_mps for lane in edge.car_lanes)
 
 
-def drawn(edges: Sequence[NetEdge], dice: random.Random) -> NetEdge:
-    """One of the edges; the longer it is and the more lanes it has, the likelier."""
-    return dice.choices(edges, [edge.length_m * max(1, len(edge.car_lanes)) for edge in edges])[0]
+def likelihoods(edges: Iterable[NetEdge]) -> dict[str, float]:
+    """How likely each edge is drawn, by its id: the longer it is and the more lanes for cars it has, the likelier."""
+    return {edge.id: edge.length_m * max(1, len(edge.car_lanes)) for edge in edges}
 
 
-def _is_elsewhere(edge: NetEdge, start: NetEdge) -> bool:
-    """Whether a trip to this edge leaves the street that it begins in."""
-    return edge.id.lstrip("-") != start.id.lstrip("-") and edge.end != start.start
+def drawn(edges: Sequence[NetEdge], likelihood: Mapping[str, float], dice: random.Random) -> NetEdge:
+    """One of the edges, by their likelihoods."""
+    return dice.choices(edges, [likelihood[edge.id] for edge in edges])[0]
+
+
+def _elsewhere(edges: Iterable[NetEdge], start: NetEdge) -> list[NetEdge]:
+    """The edges to which a trip leaves the street that it begins in."""
+    street, begin = start.id.lstrip("-"), start.start
+    return [edge for edge in edges if edge.end != begin and edge.id.lstrip("-") != street]
 
 
 def trips_file(trips: Sequence[Trip]) -> bytes:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from linden.authoring.sumo.bus_stops import BusStop
-from linden.authoring.sumo.demand import HOUR_S, HOUR_SHARES, Demand, HomeWard, drawn, school_way
+from linden.authoring.sumo.demand import HOUR_S, HOUR_SHARES, Demand, HomeWard, drawn, likelihoods, school_way
 from linden.authoring.sumo.net import Net, NetEdge
 from linden.authoring.sumo.places import SCHOOL, TRANSIT, Place, pavements
 
@@ -58,12 +58,13 @@ def draw_walks(net: Net, demand: Demand, places: tuple[Place, ...]) -> list[Walk
     rate_hz = BUSY_WALKS_PER_KM * pavement_km * HOUR_SHARES[int(demand.hour)] * demand.scale / HOUR_S
     later = sorted(dice.uniform(0.0, demand.duration_s) for _ in range(round(rate_hz * demand.duration_s)))
     schools, stations = pavements(net, places, SCHOOL), pavements(net, places, TRANSIT)
+    likelihood = likelihoods(streets)
     walks = []
     for depart_s in [0.0] * round(rate_hz * MEAN_WALK_S) + later:
         goal = _goal(dice, demand, schools, stations)
-        start = drawn(_near(streets, goal, WALK_REACH_M) if goal else streets, dice)
+        start = drawn(_near(streets, goal, WALK_REACH_M) if goal else streets, likelihood, dice)
         end = goal or drawn(
-            [each for each in _near(streets, start, WALK_REACH_M) if each is not start] or [start], dice
+            [each for each in _near(streets, start, WALK_REACH_M) if each is not start] or [start], likelihood, dice
         )
         if school_way(demand.hour) is HomeWard.FROM or (goal in stations and dice.random() < 0.5):
             start, end = end, start
@@ -85,6 +86,7 @@ def draw_riders(net: Net, demand: Demand, stops: Sequence[BusStop]) -> list[Ride
     dice = random.Random(f"riders {demand.seed}")  # noqa: S311 - as above
     rate_hz = BUSY_RIDERS_PER_STOP * HOUR_SHARES[int(demand.hour)] * demand.scale / HOUR_S
     streets = [edge for edge in net.edges.values() if edge.pavements]
+    likelihood = likelihoods(streets)
     riders = []
     for number, stop in enumerate(stops):
         ahead = [each for each in stops[number + 1 :] if math.dist(each.at_m, stop.at_m) > FARTHER_M]
@@ -94,7 +96,8 @@ def draw_riders(net: Net, demand: Demand, stops: Sequence[BusStop]) -> list[Ride
         waiting = _count(dice, rate_hz * HEADWAY_S)
         riders += [Rider(0.0, None, 0.0, stop.id, dice.choice(ahead).id) for _ in range(waiting)]
         for _ in range(_count(dice, rate_hz * demand.duration_s)):
-            start, depart_s = drawn(_near(streets, here, STOP_REACH_M), dice), dice.uniform(0.0, demand.duration_s)
+            start = drawn(_near(streets, here, STOP_REACH_M), likelihood, dice)
+            depart_s = dice.uniform(0.0, demand.duration_s)
             riders.append(Rider(depart_s, start.id, _somewhere(start, dice), stop.id, dice.choice(ahead).id))
     return sorted(riders, key=lambda rider: rider.depart_s)
 
