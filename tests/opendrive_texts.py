@@ -134,3 +134,20 @@ def street_through_junction(signals: str = "", objects: str = "", more: str = ""
         f"{controllers and controllers.partition('|')[2]}</junction>"
     )
     return opendrive(west, east, eastward, westward, controllers.partition("|")[0], junction, more)
+
+
+_CORNERS = "".join(f'<cornerLocal u="{u}" v="{v}" z="0" height="0"/>' for u, v in ((-2, -3), (2, -3), (2, 3), (-2, 3)))
+_THINGS = "".join(
+    f'<object id="{n}" name="{name}" type="{kind}" s="{10 * n}" t="0" zOffset="0" hdg="0" orientation="none" '
+    f'width="3" length="6"><outline>{_CORNERS}</outline></object>'
+    for n, (name, kind) in enumerate(
+        [("Crosswalk", "crosswalk"), ("YieldLine", "roadMark"), ("StopLine", "roadMark"), ("Isle", "trafficIsland")], 1
+    )
+)
+SIGNS_AND_LIGHTS = street_through_junction(
+    objects=_THINGS,
+    signals=signal("7", 45.0, -4.0, "206") + signal("8", 45.0, 4.0, "1000001"),
+    controllers='<controller id="1" name="c" sequence="0"><control signalId="8" type="0"/></controller>'
+    '|<controller id="1" type="0"/>',
+)
+"""A street through a junction with a stop sign, a light, a crosswalk, lines and an island."""

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 from lxml import etree
 
 from fakes import recordings as made
@@ -33,10 +34,12 @@ from linden.replay.replayer import Plan
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
 from linden.world import World
-from opendrive_texts import signal, street_through_junction
+from opendrive_texts import SIGNS_AND_LIGHTS as STREET
 
 SEED = 20_261_122
-MAPS, SEEN, RECORDINGS = 500, 10, 600
+TIMES = max(1, settings().max_examples // 100)
+"""1; the profile ``explore`` has ten times as many examples."""
+MAPS, SEEN, RECORDINGS = 250 * TIMES, 10, 300 * TIMES
 """Examples; every ``SEEN``-th map is built as cameras see it and walkers walk on it, which takes longer."""
 
 NUMBERS = [
@@ -44,20 +47,6 @@ NUMBERS = [
     *("1e-5", "1e-7", "1e-12", "1e-300", "-1e-300", "1e308", "-1e308", "1e400", "nan", "inf", "-inf", ""),
     *("2147483647", "-2147483648", "4294967296", "1_0", "x", "0x10", " 7 ", "driving", "sidewalk", "crosswalk"),
 ]
-CORNERS = "".join(f'<cornerLocal u="{u}" v="{v}" z="0" height="0"/>' for u, v in ((-2, -3), (2, -3), (2, 3), (-2, 3)))
-THINGS = "".join(
-    f'<object id="{n}" name="{name}" type="{kind}" s="{10 * n}" t="0" zOffset="0" hdg="0" orientation="none" '
-    f'width="3" length="6"><outline>{CORNERS}</outline></object>'
-    for n, (name, kind) in enumerate(
-        [("Crosswalk", "crosswalk"), ("YieldLine", "roadMark"), ("StopLine", "roadMark"), ("Isle", "trafficIsland")], 1
-    )
-)
-STREET = street_through_junction(
-    objects=THINGS,
-    signals=signal("7", 45.0, -4.0, "206") + signal("8", 45.0, 4.0, "1000001"),
-    controllers='<controller id="1" name="c" sequence="0"><control signalId="8" type="0"/></controller>'
-    '|<controller id="1" type="0"/>',
-)
 
 
 def changed_map(chance: random.Random) -> str:

@@ -99,6 +99,7 @@ def test_an_empty_cloud_is_refused(tmp_path):
         point_cloud_metadata(tmp_path / "none.pcd")
 
 
+@pytest.mark.unmeasured
 def test_lidar_rays_meet_the_kerbs_where_the_lanelet_bounds_are(linden, linden_lanelets):
     """Points on the road lie on the road's side of the bound, points on the pavement on the other, within 5 cm."""
     read = read_osm(osm_bytes(linden_lanelets.lanelet_map), "linden.osm", linden.geo_reference)

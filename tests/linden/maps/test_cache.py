@@ -53,6 +53,7 @@ def assert_same(first: MapFacts, second: MapFacts) -> None:
     assert repr([getattr(first, name) for name in records]) == repr([getattr(second, name) for name in records])
 
 
+@pytest.mark.unmeasured
 def test_what_is_kept_of_linden_is_what_would_be_derived(
     tmp_path: Path, nothing_is_derived: Callable[[], None]
 ) -> None:

@@ -38,6 +38,7 @@ def test_nothing_is_wrong_with_a_good_map() -> None:
     assert found(GOOD) == []
 
 
+@pytest.mark.unmeasured
 def test_nothing_is_wrong_with_linden() -> None:
     assert found((resources.files("linden") / "data" / "Linden.xodr").read_text()) == []
 

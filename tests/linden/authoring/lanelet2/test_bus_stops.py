@@ -66,6 +66,7 @@ def test_a_roundabout_names_its_lanelets_by_role(linden, linden_everything) -> N
         assert len({tag["intersection_area"] for tag in tags}) == 1
 
 
+@pytest.mark.unmeasured
 def test_format_2_is_named_in_the_file_only_where_it_is_wanted(linden_everything, linden_lanelets) -> None:
     versions = [
         ET.fromstring(osm_bytes(one.lanelet_map)).find("MetaInfo").get("format_version")
@@ -75,6 +76,7 @@ def test_format_2_is_named_in_the_file_only_where_it_is_wanted(linden_everything
     assert not list(linden_lanelets.lanelet_map.elements("roundabout"))
 
 
+@pytest.mark.unmeasured
 def test_second_reader_still_finds_the_same_lanes(linden_everything, linden_lanelets) -> None:
     routes = routes_of(linden_everything.lanelet_map)
     assert routes.errors == ()

@@ -60,6 +60,7 @@ def test_what_waits_on_the_disk_counts_like_what_is_in_memory(tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("at_once", [1, 200])
+@pytest.mark.unmeasured
 def test_memory_is_held_within_the_limit_whatever_the_area(at_once: int, tmp_path: Path) -> None:
     fields = [np.abs(scattered(100, 100.0, n)) + np.array([n * 128.0, 0.0, 0.0]) for n in range(200)]  # side by side
     clouds = [Cloud(np.concatenate(fields[first : first + at_once])) for first in range(0, 200, at_once)]

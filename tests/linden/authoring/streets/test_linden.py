@@ -135,6 +135,7 @@ def test_every_way_behind_a_light_refers_to_it(linden_built: Built) -> None:
     assert referring == {way: come for way, come in ways.items() if way in driven}
 
 
+@pytest.mark.unmeasured
 def test_every_driving_lane_has_the_speed_of_its_road(linden_built: Built) -> None:
     root = etree.fromstring(text(linden_built.document))
     limited = [road for road in root.iter("road") if road.find("type/speed") is not None]
@@ -182,6 +183,7 @@ def test_lanes_go_on_without_jumps_or_kinks(waypoints: list[Any]) -> None:
 
 
 @pytest.mark.parametrize(("route", "least_m", "most_m"), [("leap_primary", 4550, 4700), ("short_ab", 600, 900)])
+@pytest.mark.unmeasured
 def test_a_route_is_driven_lane_by_lane(
     town: Any, linden_built: Built, route: str, least_m: float, most_m: float
 ) -> None:

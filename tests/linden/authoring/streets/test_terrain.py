@@ -101,6 +101,7 @@ def test_roads_follow_gentle_ground_within_a_decimetre_everywhere(facts: Facts, 
     assert max(off_ground_m(assembled(with_terrain(facts, geotiff(tmp_path / "hills.tif", gentle))))) < 0.1
 
 
+@pytest.mark.unmeasured
 def test_waypoints_and_altitudes_of_the_official_client_follow(facts: Facts, tmp_path: Path) -> None:
     built = assembled(with_terrain(facts, geotiff(tmp_path / "hills.tif", gentle)))
     carla_map = carla.Map("Hills", text(built.document).decode())

@@ -42,6 +42,7 @@ def test_a_lost_sign_and_a_wrong_speed_are_misfits(linden: tuple[Converted, Path
     assert found == (f"stop signs: {157 - kept} of 157 are kept",)
 
 
+@pytest.mark.unmeasured
 def test_the_network_has_no_date_and_the_same_bytes_twice(linden: tuple[Converted, Path], tmp_path: Path) -> None:
     again = tmp_path / "again.net.xml"
     convert((resources.files("linden") / "data" / "Linden.xodr").read_bytes(), again)
@@ -83,6 +84,7 @@ def test_stops_of_a_route_file_lie_on_their_side_of_the_street(linden: tuple[Con
     assert lanes[0].startswith("-") != lanes[1].startswith("-"), "in both directions"
 
 
+@pytest.mark.unmeasured
 def test_a_demand_follows_its_seed_its_hour_and_its_scale(linden: tuple[Converted, Path]) -> None:
     net = linden[0].net
     trips = draw(net, Demand())

@@ -1,7 +1,7 @@
 """Every caster against the obvious one, on scenes that are drawn at random."""
 
 import importlib.util
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -55,22 +55,41 @@ def agree(found, expected) -> None:
     np.testing.assert_allclose(found.normal, expected.normal, atol=1e-5)
 
 
+@cache
+def scene(seed: int):
+    """Return what stands, the bodies, where they are, the rays, and the obvious caster."""
+    dice = np.random.default_rng(seed)
+    standing, bodies = rubble(dice, 90, 6.0), [rubble(dice, 20, 2.0), box((1.5, 0.8, 0.5))]
+    bodies_there, rays = drawn(dice, 9), rays_through(dice, 301)
+    plain = PlainCaster(standing, bodies)
+    plain.pose(bodies_there)
+    return standing, bodies, bodies_there, rays, plain
+
+
+@cache
+def obvious_hits(seed: int, *, outer: bool):
+    *_, rays, plain = scene(seed)
+    return plain.closest(rays, 25.0, outer=outer)
+
+
+@cache
+def obviously_blocked(seed: int):
+    *_, rays, plain = scene(seed)
+    return plain.blocked(rays, 25.0)
+
+
 @pytest.mark.parametrize("kind", CASTERS)
 @pytest.mark.parametrize("outer", [False, True])
 @pytest.mark.parametrize("seed", range(3))
 def test_it_answers_as_the_obvious_caster_does(kind, *, outer: bool, seed: int) -> None:
-    dice = np.random.default_rng(seed)
-    standing, bodies = rubble(dice, 90, 6.0), [rubble(dice, 20, 2.0), box((1.5, 0.8, 0.5))]
-    bodies_there, rays = drawn(dice, 9), rays_through(dice, 301)
-    caster, plain = kind(standing, bodies), PlainCaster(standing, bodies)
+    standing, bodies, bodies_there, rays, _ = scene(seed)
+    caster, expected = kind(standing, bodies), obvious_hits(seed, outer=outer)
     caster.pose(bodies_there)
-    plain.pose(bodies_there)
-    expected = plain.closest(rays, 25.0, outer=outer)
     assert np.count_nonzero(expected.instance == STATIC) > 30
     assert np.count_nonzero(expected.instance >= 0) > 10
     agree(caster.closest(rays, 25.0, outer=outer), expected)
     agree(caster.closest(rays, 25.0, coherent=True, outer=outer), expected)
-    assert np.array_equal(caster.blocked(rays, 25.0), plain.blocked(rays, 25.0))
+    assert np.array_equal(caster.blocked(rays, 25.0), obviously_blocked(seed))
 
 
 @pytest.mark.parametrize("kind", CASTERS)

@@ -54,6 +54,7 @@ def test_a_wall_lies_in_the_frame_of_a_sensor_that_is_turned_and_tilted() -> Non
 
 
 @given(st.integers(1, 128), st.integers(1, 2_000_000), st.sampled_from([0.01, 0.05, 0.1]))
+@pytest.mark.unmeasured
 def test_each_channel_fires_its_share_of_the_points(channels: int, points_per_s: int, interval_s: float) -> None:
     fan = read_fan(described("sensor.lidar.ray_cast", channels=channels, points_per_second=points_per_s))
     count = points_a_channel(fan, interval_s)
@@ -88,6 +89,7 @@ def test_half_a_turn_a_frame_begins_behind_and_goes_on_where_it_ended() -> None:
 
 @settings(max_examples=40)
 @given(st.lists(st.sampled_from([0.01, 0.02, 0.05]), max_size=20))
+@pytest.mark.unmeasured
 def test_where_it_points_does_not_depend_on_listeners(intervals_s: list[float]) -> None:
     fan = read_fan(described("sensor.lidar.ray_cast", rotation_frequency=7, horizontal_fov=180))
     at_deg = 0.0
