@@ -5,6 +5,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -39,17 +40,40 @@ def browser() -> Iterator[Browser]:
         yield found
 
 
-@pytest.fixture(scope="module")
-def address(site: Path) -> Iterator[str]:
-    class Quiet(SimpleHTTPRequestHandler):
-        def log_message(self, *arguments: object) -> None:
-            pass
+class Quiet(SimpleHTTPRequestHandler):
+    """Lets the browser keep what it has: each page has the same style and program."""
 
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Quiet, directory=str(site)))
+    def log_message(self, *arguments: object) -> None:
+        pass
+
+    def end_headers(self) -> None:
+        self.send_header("Cache-Control", "max-age=600")
+        super().end_headers()
+
+
+class WithoutSearch(Quiet):
+    """Has no search, of which each page would make the index of all pages anew."""
+
+    def do_GET(self) -> None:  # noqa: N802 - the library's name
+        if self.path.startswith("/search/"):
+            self.send_error(404)
+        else:
+            super().do_GET()
+
+
+@contextmanager
+def serving(site: Path, handler: type[Quiet]) -> Iterator[str]:
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(site)))
     threading.Thread(target=server.serve_forever, daemon=True).start()
     yield f"http://127.0.0.1:{server.server_port}"
     server.shutdown()
     server.server_close()
+
+
+@pytest.fixture(scope="module")
+def address(site: Path) -> Iterator[str]:
+    with serving(site, Quiet) as found:
+        yield found
 
 
 def pages(site: Path) -> list[str]:
@@ -98,13 +122,13 @@ def test_the_search_finds_a_page_without_a_request_to_another_host(browser: Brow
     assert not [url for url in asked if not url.startswith((address, "blob:", "data:"))]
 
 
-def test_no_page_is_wider_than_a_phone(browser: Browser, address: str, site: Path) -> None:
+def test_no_page_is_wider_than_a_phone(browser: Browser, site: Path) -> None:
     page = browser.new_page(viewport={"width": 390, "height": 800})
-    page.route(re.compile(r"/search/"), lambda route: route.abort())  # an index of all pages, made anew for each
     wide = []
-    for name in pages(site):
-        page.goto(f"{address}/{name}", wait_until="domcontentloaded")
-        if page.evaluate("document.documentElement.scrollWidth") > 390:
-            wide.append(name)
-    page.close()
+    with serving(site, WithoutSearch) as address:
+        for name in pages(site):
+            page.goto(f"{address}/{name}", wait_until="domcontentloaded")
+            if page.evaluate("document.documentElement.scrollWidth") > 390:
+                wide.append(name)
+        page.close()
     assert not wide
