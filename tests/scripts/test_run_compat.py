@@ -45,6 +45,23 @@ def test_what_a_process_said_is_kept_in_order(runner: ModuleType) -> None:
     assert runner.run([sys.executable, "-c", program]) == (0, b"first\nsecond\n")
 
 
+def test_coverage_is_measured_in_servers_of_all_files_but_those_that_are_named(
+    runner: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    environments: list[dict[str, str] | None] = []
+
+    def run(_command: list[str], environment: dict[str, str] | None) -> tuple[int, bytes]:
+        environments.append(environment)
+        return 0, b""
+
+    monkeypatch.setattr(runner, "run", run)
+    named = sorted(runner.UNMEASURED)
+    assert all((runner.ROOT / name).exists() for name in named)
+    for files in (named[:1], ["tests/compat/test_actors.py"], [named[0], "tests/compat/test_actors.py"]):
+        runner.told(tuple(files), [])
+    assert environments == [None, runner.MEASURED, runner.MEASURED]
+
+
 def test_one_file_at_a_time_runs_while_the_neighbour_does(runner: ModuleType, monkeypatch: pytest.MonkeyPatch) -> None:
     begun, both = threading.Semaphore(0), threading.Barrier(2, timeout=30.0)
     running: list[str] = []
