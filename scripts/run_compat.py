@@ -138,9 +138,7 @@ STUCK = -1000
 """Instead of a return code."""
 
 
-def run(
-    command: list[str], silent_s: float = SILENT_S, environment: dict[str, str] | None = None
-) -> tuple[int, bytes]:
+def run(command: list[str], silent_s: float = SILENT_S, environment: dict[str, str] | None = None) -> tuple[int, bytes]:
     """Run a command; return its code, minus the signal that ended it, or STUCK, and what it said."""
     said: list[bytes] = []
     with subprocess.Popen(

@@ -54,7 +54,7 @@ class Quiet(SimpleHTTPRequestHandler):
 class WithoutSearch(Quiet):
     """Has no search, of which each page would make the index of all pages anew."""
 
-    def do_GET(self) -> None:  # noqa: N802 - the library's name
+    def do_GET(self) -> None:
         if self.path.startswith("/search/"):
             self.send_error(404)
         else:
