@@ -5,6 +5,7 @@ from typing import Any
 import numba
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from linden.maps.ground import Ground
 from linden.physics.bodies import Bodies
@@ -20,6 +21,16 @@ slow_uncompiled = pytest.mark.slow if numba.config.DISABLE_JIT else pytest.mark.
 def seeds(count: int) -> list[Any]:
     """The numbers below ``count``; where kernels run as plain Python the first alone, which takes the same lines."""
     return [0, *(pytest.param(number, marks=slow_uncompiled) for number in range(1, count))]
+
+
+def column(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the values as a column of bodies: the rows lie apart, and there are two or more.
+
+    For rows without a gap numba compiles a kernel anew.
+    """
+    held = np.zeros(max(2, len(values)), [("column", np.float64, values.shape[1:]), ("other", np.float64)])
+    held["column"][: len(values)] = values
+    return held["column"]
 
 
 FLAT = Ground.flat()

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fleet import column
 from linden.geometry import compose, rotation_matrix
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.simulation.snapshot_rows import gather_motion
@@ -18,7 +19,8 @@ poses = st.builds(
 
 def gather(pose, relative, parent_row, slot, bodies):
     motion = np.full((len(pose), 15), np.nan, np.float32)
-    gather_motion(len(pose), pose, relative, np.array(parent_row, np.int32), np.array(slot, np.int32), *bodies, motion)
+    rows = np.array(parent_row, np.int32), np.array(slot, np.int32)
+    gather_motion(len(pose), pose, relative, *rows, *map(column, bodies), motion)
     return motion
 
 

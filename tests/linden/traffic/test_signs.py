@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from fleet import column
 from linden.maps.records import GIVE_WAY
 from linden.protocol.values.enums import TrafficLightState
 from linden.protocol.values.space import BoundingBox, Rotation, Vector3D
@@ -38,7 +39,8 @@ class Cars:
         box, half = np.tile([0.0, 0.0, 0.75], (count, 1)), np.tile([2.3, 1.0, 0.75], (count, 1))
         slots = np.arange(count, dtype=np.int32)
         ids = np.array(actor_ids or range(10, 10 + count), np.int32)
-        return self._watch.told(Columns(position, rotation, box, half), slots, ids, now_s).tolist()
+        columns = Columns(*map(column, (position, rotation, box, half)))
+        return self._watch.told(columns, slots, ids, now_s).tolist()
 
 
 def test_a_stop_sign_is_red_for_two_seconds_and_then_green() -> None:

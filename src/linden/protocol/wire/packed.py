@@ -62,8 +62,8 @@ def read(data: bytes) -> PackedBatch | None:
 
 
 def warm_up() -> None:
-    """Compile, or load from the cache, what reads a batch."""
-    _read_controls(np.zeros(_LONGEST, np.uint8), 0, 0, np.empty(1, np.int64), np.empty((1, CONTROL_FIELDS)))
+    """Compile, or load from the cache, what reads a batch; bytes cannot be written to, which numba tells apart."""
+    _read_controls(np.frombuffer(bytes(_LONGEST), np.uint8), 0, 0, np.empty(1, np.int64), np.empty((1, CONTROL_FIELDS)))
 
 
 def _unsigned(packed: bytes) -> int | None:
