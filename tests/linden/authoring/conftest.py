@@ -4,6 +4,7 @@ import pytest
 
 from linden.authoring.lanelet2.bus_stops import shuttle_stops
 from linden.authoring.lanelet2.convert import Wanted, convert
+from linden.authoring.lanelet2.second_reader import routes_of
 from linden.maps.opendrive.parse import parse
 from tracing import untraced_here
 
@@ -17,6 +18,13 @@ def linden():
 def linden_lanelets(linden):
     with untraced_here():  # ``linden_everything`` takes the same lines
         return convert(linden)
+
+
+@pytest.fixture(scope="session")
+def linden_routes(linden_lanelets):
+    """What the second reader finds in it."""
+    with untraced_here():
+        return routes_of(linden_lanelets.lanelet_map)
 
 
 @pytest.fixture(scope="session")

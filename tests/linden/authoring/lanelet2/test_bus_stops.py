@@ -66,21 +66,22 @@ def test_a_roundabout_names_its_lanelets_by_role(linden, linden_everything) -> N
         assert len({tag["intersection_area"] for tag in tags}) == 1
 
 
-@pytest.mark.unmeasured
 def test_format_2_is_named_in_the_file_only_where_it_is_wanted(linden_everything, linden_lanelets) -> None:
+    street, stop = parse(document(road(1, 0, 40, [(-1, lane(-1))]))), Stop("A", "near", 20.0, -3.0)
     versions = [
-        ET.fromstring(osm_bytes(one.lanelet_map)).find("MetaInfo").get("format_version")
-        for one in (linden_everything, linden_lanelets)
+        ET.fromstring(osm_bytes(convert(street, wanted).lanelet_map)).find("MetaInfo").get("format_version")
+        for wanted in (Wanted(stops=(stop,)), Wanted(roundabouts=True), Wanted())
     ]
-    assert versions == ["2", "1"]
+    assert versions == ["1", "2", "1"]
+    assert linden_everything.lanelet_map.format_version == "2"
     assert not list(linden_lanelets.lanelet_map.elements("roundabout"))
 
 
 @pytest.mark.unmeasured
-def test_second_reader_still_finds_the_same_lanes(linden_everything, linden_lanelets) -> None:
+def test_second_reader_still_finds_the_same_lanes(linden_everything, linden_routes) -> None:
     routes = routes_of(linden_everything.lanelet_map)
     assert routes.errors == ()
-    assert routes.following == routes_of(linden_lanelets.lanelet_map).following
+    assert routes.following == linden_routes.following
 
 
 def test_without_sidewalks_nothing_else_goes(linden_lanelets) -> None:
