@@ -6,7 +6,7 @@ A step advances the lights, then the bodies, then the snapshot's rows. The repla
 import math
 from collections.abc import Container
 
-from linden.blueprints.library import BlueprintLibrary
+from linden.blueprints.library import packaged
 from linden.maps.library import LoadedMap
 from linden.physics.step import advance
 from linden.protocol.values.actors import ActorDescription
@@ -44,7 +44,7 @@ class World:
 
     def __init__(self, world_map: LoadedMap, settings: EpisodeSettings = EpisodeSettings()) -> None:  # noqa: B008 - frozen
         """Begin the first episode on ``world_map``. Only the noise of sensors is random; clients give its seeds."""
-        self.library = BlueprintLibrary.load()
+        self.library = packaged()
         self.settings = settings
         self.frame = 0
         self.episode_id = 0

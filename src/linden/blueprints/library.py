@@ -6,6 +6,7 @@ Composed from the facts in data/blueprints.json; traffic lights and signs are no
 import json
 from collections.abc import Iterator
 from enum import IntEnum
+from functools import cache
 from importlib import resources
 from typing import Any, NamedTuple
 
@@ -101,6 +102,12 @@ class BlueprintLibrary:
             Refusal: unknown id or attribute, or a value that its attribute cannot take.
         """
         return complete(self.find(description.id).definition, description)
+
+
+@cache
+def packaged() -> BlueprintLibrary:
+    """Return the library of the packaged facts, read once in a process; nothing changes it."""
+    return BlueprintLibrary.load()
 
 
 def _definition(blueprint_id: str, attributes: tuple[ActorAttribute, ...]) -> ActorDefinition:
