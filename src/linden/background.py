@@ -8,7 +8,8 @@ process calls :func:`end_all` before it ends.
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
-from threading import Event, Thread, local
+from threading import Event, Lock, Thread, local
+from types import TracebackType
 from typing import TypeAlias, TypeVar
 from weakref import WeakSet
 
@@ -23,6 +24,8 @@ class NotWantedError(Exception):
     """What a thread was making in the background is not wanted any more."""
 
 
+_LOOK_S = 0.1
+"""How often a thread that waits for its turn looks whether its work is still wanted."""
 _here = local()  # .unwanted: the Event by which the work of this thread is given up
 _threads: "WeakSet[Thread]" = WeakSet()
 _ending = Event()  # the process ends: no work is wanted any more
@@ -70,6 +73,28 @@ def checkpoint() -> None:
     unwanted = getattr(_here, "unwanted", None)
     if unwanted is not None and (unwanted.is_set() or _ending.is_set()):
         raise NotWantedError
+
+
+class OneAtATime:
+    """Lets one thread at a time into its ``with`` block; a thread that waits gives up once its work is not wanted."""
+
+    def __init__(self) -> None:
+        self._taken = Lock()
+
+    def __enter__(self) -> None:
+        """Wait for the turn.
+
+        Raises:
+            NotWantedError: as of :func:`checkpoint`.
+        """
+        while not self._taken.acquire(timeout=_LOOK_S):
+            checkpoint()
+
+    def __exit__(
+        self, _kind: type[BaseException] | None, _error: BaseException | None, _trace: TracebackType | None
+    ) -> None:
+        """Let the next thread in."""
+        self._taken.release()
 
 
 def carry_out(work: Callable[[], Made], done: "Future[Made]") -> None:

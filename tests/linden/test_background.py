@@ -6,7 +6,7 @@ from threading import Event
 
 import pytest
 
-from linden.background import NotWantedError, checkpoint, in_background
+from linden.background import NotWantedError, OneAtATime, checkpoint, in_background
 
 
 def test_what_was_made_or_raised_is_had_from_the_future() -> None:
@@ -50,3 +50,23 @@ def test_the_end_of_a_process_waits_for_work_but_not_for_ever(check: str, said: 
     program = [sys.executable, "-c", AT_THE_END.format(check=check)]
     ran = subprocess.run(program, capture_output=True, text=True, timeout=60, check=True)
     assert ran.stdout == f"{said}\n"
+
+
+def test_one_thread_at_a_time_is_let_in_and_one_that_is_not_wanted_stops_waiting() -> None:
+    turns, unwanted, inside = OneAtATime(), Event(), []
+
+    def take_turn() -> int:
+        with turns:
+            inside.append(len(inside))
+            return inside[-1]
+
+    with turns:
+        given_up, waiting = in_background(take_turn, unwanted), in_background(take_turn)
+        unwanted.set()
+        with pytest.raises(NotWantedError):
+            given_up.result(10)
+        assert inside == []
+    assert waiting.result(10) == 0
+    with pytest.raises(ZeroDivisionError), turns:
+        _ = 1 // 0
+    assert take_turn() == 1

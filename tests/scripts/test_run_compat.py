@@ -45,7 +45,7 @@ def test_what_a_process_said_is_kept_in_order(runner: ModuleType) -> None:
     assert runner.run([sys.executable, "-c", program]) == (0, b"first\nsecond\n")
 
 
-def test_coverage_is_measured_in_servers_of_all_files_but_those_that_are_named(
+def test_coverage_is_measured_in_servers_of_all_files_but_the_named_ones(
     runner: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     environments: list[dict[str, str] | None] = []

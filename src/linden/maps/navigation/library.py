@@ -4,10 +4,10 @@ import hashlib
 import logging
 import time
 from pathlib import Path
-from threading import Lock
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
+from linden.background import OneAtATime
 from linden.compiled import fingerprint, machine
 from linden.maps.cache import MapCache
 from linden.maps.library import LoadedMap
@@ -35,7 +35,7 @@ class MeshLibrary:
         """Keep meshes in ``cache`` too, where there is one."""
         self._cache = cache
         self._known: WeakKeyDictionary[LoadedMap, MeshFile | None] = WeakKeyDictionary()
-        self._making = Lock()
+        self._making = OneAtATime()
 
     def knows(self, world_map: LoadedMap) -> bool:
         """Return whether the mesh of a map is made, so that :meth:`file_of` takes no time."""
