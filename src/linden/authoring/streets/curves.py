@@ -45,7 +45,7 @@ def wrapped(angle_rad: float) -> float:
 def moved(pose: Pose, forward_m: float = 0.0, left_m: float = 0.0) -> Pose:
     """Return the pose shifted in its own frame, heading unchanged."""
     cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-    return pose._replace(x_m=pose.x_m + forward_m * cos - left_m * sin, y_m=pose.y_m + forward_m * sin + left_m * cos)
+    return Pose(pose.x_m + forward_m * cos - left_m * sin, pose.y_m + forward_m * sin + left_m * cos, pose.heading_rad)
 
 
 def turned_back(pose: Pose) -> Pose:

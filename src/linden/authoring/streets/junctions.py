@@ -1,10 +1,12 @@
 """The inside of a junction: paths of all allowed turns, kerbs round the corners, priorities."""
 
 import math
+from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from shapely import LineString, MultiPolygon, Point, Polygon, unary_union
+import numpy as np
+from shapely import LineString, MultiPolygon, Point, Polygon, polygons, unary_union
 
 from linden.authoring.streets.cross_section import KERB_M
 from linden.authoring.streets.curves import Path, Pose, joined, length, moved, pose_at, sampled, turned_back, wrapped
@@ -170,7 +172,7 @@ def conflicting(one: Turn, other: Turn) -> bool:
         return False
     if (one.go.end, one.lane_out) == (other.go.end, other.lane_out):
         return True
-    return bool(_middle_line(one).intersects(_middle_line(other)))
+    return bool(_line(one.path).intersects(_line(other.path)))
 
 
 def _pieces_covered(turn: Turn) -> list[Polygon]:
@@ -181,13 +183,15 @@ def _pieces_covered(turn: Turn) -> list[Polygon]:
     for i in range(count + 1):
         pose, half_m = pose_at(turn.path, total_m * i / count), value(turn.widths, total_m * i / count) / 2
         sides.append((moved(pose, left_m=half_m)[:2], moved(pose, left_m=-half_m)[:2]))
-    return [
-        Polygon([left, right, right_after, left_after]) for (left, right), (left_after, right_after) in pairwise(sides)
-    ]
+    corners = [(left, right, right_after, left_after) for (left, right), (left_after, right_after) in pairwise(sides)]
+    pieces: list[Polygon] = polygons(np.array(corners)).tolist()
+    return pieces
 
 
-def _middle_line(turn: Turn) -> LineString:
-    return LineString([(pose.x_m, pose.y_m) for pose in sampled(turn.path, 2.0)])
+@lru_cache(256)
+def _line(path: Path) -> LineString:
+    """Return a path as a line; the turns of a junction are compared with each other."""
+    return LineString(np.array(sampled(path, 2.0))[:, :2])
 
 
 def _kerb_strip(kerb: Path) -> Polygon:
