@@ -184,7 +184,7 @@ def _pieces_covered(turn: Turn) -> list[Polygon]:
         pose, half_m = pose_at(turn.path, total_m * i / count), value(turn.widths, total_m * i / count) / 2
         sides.append((moved(pose, left_m=half_m)[:2], moved(pose, left_m=-half_m)[:2]))
     corners = [(left, right, right_after, left_after) for (left, right), (left_after, right_after) in pairwise(sides)]
-    pieces: list[Polygon] = polygons(np.array(corners)).tolist()
+    pieces: list[Polygon] = np.asarray(polygons(np.array(corners))).tolist()
     return pieces
 
 
