@@ -44,17 +44,20 @@ class MeshLibrary:
     def file_of(self, world_map: LoadedMap, obstacles: Obstacles) -> MeshFile | None:
         """Return the mesh of a map, None where it has no pavements. ``obstacles`` are always those of the map.
 
-        Any thread may call it. One makes the mesh, and others that want it meanwhile wait for that one.
+        Any thread may call it. One thread at a time makes a mesh; what is made is had without a wait.
         """
-        with self._making:
-            if world_map not in self._known:
-                content = shipped_mesh(world_map)
-                if content is None:
-                    content = self._kept(world_map, obstacles) if self._cache else made(world_map, obstacles)
-                digest = hashlib.sha256(content).hexdigest()[:16]
-                name = f"{_FOLDER}/{world_map.name}_{digest}.bin"
-                self._known[world_map] = MeshFile(name, content) if content else None
-            return self._known[world_map]
+        if world_map not in self._known:
+            with self._making:
+                if world_map not in self._known:
+                    self._known[world_map] = self._found(world_map, obstacles)
+        return self._known[world_map]
+
+    def _found(self, world_map: LoadedMap, obstacles: Obstacles) -> MeshFile | None:
+        content = shipped_mesh(world_map)
+        if content is None:
+            content = self._kept(world_map, obstacles) if self._cache else made(world_map, obstacles)
+        digest = hashlib.sha256(content).hexdigest()[:16]
+        return MeshFile(f"{_FOLDER}/{world_map.name}_{digest}.bin", content) if content else None
 
     def _kept(self, world_map: LoadedMap, obstacles: Obstacles) -> bytes:
         assert self._cache is not None

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from linden.background import in_background
 from linden.maps.cache import MapCache
 from linden.maps.facts import derive
 from linden.maps.library import LoadedMap
@@ -70,6 +71,8 @@ def test_threads_that_want_a_mesh_at_once_wait_for_the_one_that_makes_it(
     assert first is not None
     assert all(other is first for other in others)
     assert len(made) == 1
+    with meshes._making:  # as while the mesh of another map is made
+        assert in_background(lambda: meshes.file_of(street, NOTHING)).result(60.0) is first
 
 
 def test_a_broken_file_is_made_anew(street: LoadedMap, tmp_path: Path) -> None:
