@@ -1,7 +1,8 @@
 """Every scenario tells drivers apart, and the controls gain nothing; played live.
 
 The first case of each scenario is played here; ``benchmarks/scenarios.py`` plays all. What the control drivers prove
-is in `docs/decisions/0055-control-drivers.md`.
+is in `docs/decisions/0055-control-drivers.md`. The drivers are in the benchmark's process, which halves the processor
+time. They are checked for cheating as if they were in their own, so that no scenario makes these checks cry wolf.
 """
 
 import json
@@ -11,7 +12,9 @@ from typing import Any
 
 import pytest
 
+from basu.agents.calls import AgentCalls
 from basu.cli import main
+from basu.managers import agents_manager
 from basu.scenarios.cases import open_library
 from servers import RunningServer
 
@@ -58,13 +61,15 @@ def results(
 ) -> dict[tuple[str, str], dict[str, Any]]:
     """What came of the drives, by case and driver."""
     found = {}
-    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
-    for driver, cases in drives().items():
-        output = tmp_path_factory.mktemp(driver)
-        main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), *address])
-        for path in (output / "latest").glob(f"{driver}/*/result.json"):
-            result = json.loads(path.read_text(encoding="utf-8"))
-            found[result["id"], driver] = result
+    options = ["--in-process", "--host", "127.0.0.1", "--port", str(simulator.port)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(agents_manager, "RemoteAgent", AgentCalls)  # drivers of the class are checked
+        for driver, cases in drives().items():
+            output = tmp_path_factory.mktemp(driver)
+            main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), *options])
+            for path in (output / "latest").glob(f"{driver}/*/result.json"):
+                result = json.loads(path.read_text(encoding="utf-8"))
+                found[result["id"], driver] = result
     return found
 
 
