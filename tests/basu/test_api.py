@@ -93,6 +93,7 @@ def test_pictures_and_cards_show_inline(opened, route_file: Path, tmp_path: Path
         result.plot_speed(by="distance")
 
 
+@pytest.mark.usefixtures("one_server")
 def test_runs_without_a_simulator_of_their_own_share_one(route_file: Path, tmp_path: Path) -> None:
     try:
         first = basu.run("forward", routes=route_file, output=tmp_path)
