@@ -141,7 +141,7 @@ def test_a_script_without_a_main_guard_may_use_several_workers(tmp_path: Path) -
     script.write_text(
         "import basu\n"
         "cases = ['lead_vehicle_brakes_1', 'lead_vehicle_brakes_2']\n"
-        "found = basu.run_scenarios(cases, agent='forward', workers=2, output='out')\n"
+        "found = basu.run_scenarios(cases, agent='forward', workers=2, in_process=True, output='out')\n"
         "print('cases', len(found.cases))\n",
         encoding="utf-8",
     )
