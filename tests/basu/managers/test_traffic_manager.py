@@ -232,7 +232,19 @@ def test_the_weather_of_a_route_holds_unless_an_option_names_another(
     )
     found = []
     for options in ([], ["--weather", "ClearNoon"]):
-        main(["run", str(agent), "--in-process", *address(simulator), "--routes", str(route_file), "--output", str(tmp_path), *options])
+        main(
+            [
+                "run",
+                str(agent),
+                "--in-process",
+                *address(simulator),
+                "--routes",
+                str(route_file),
+                "--output",
+                str(tmp_path),
+                *options,
+            ]
+        )
         result = json.loads((tmp_path / "latest" / "result.json").read_text())
         found.append((float(result["message"].split("fog ")[1].split(";")[0]), result["meta"]["weather"]))
     (fog, name), (clear, other) = found

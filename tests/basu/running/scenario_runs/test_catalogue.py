@@ -99,7 +99,9 @@ def test_a_driver_that_perceives_no_actor_fails_where_the_conflict_needs_percept
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize(("driver", "case"), [(driver, case) for driver, cases in OF_THE_SLOW.items() for case in cases])
+@pytest.mark.parametrize(
+    ("driver", "case"), [(driver, case) for driver, cases in OF_THE_SLOW.items() for case in cases]
+)
 def test_nothing_is_gained_by_absence(results: dict[tuple[str, str], dict[str, Any]], case: str, driver: str) -> None:
     result = results[case, driver]
     assert (result["verdict"], result["message"]) != ("SUCCESS", result["message"])
