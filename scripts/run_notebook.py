@@ -17,10 +17,15 @@ def executed(path: Path) -> nbformat.NotebookNode:
     """The notebook with fresh outputs; raises CellExecutionError where a cell raises."""
     book = nbformat.read(path, as_version=4)
     with tempfile.TemporaryDirectory() as folder:
-        NotebookClient(book, timeout=CELL_LIMIT_S, resources={"metadata": {"path": folder}}).execute()
+        execute(book, Path(folder))
+    return book
+
+
+def execute(book: nbformat.NotebookNode, folder: Path) -> None:
+    """Run a notebook in a folder, and give it its outputs; raises CellExecutionError where a cell raises."""
+    NotebookClient(book, timeout=CELL_LIMIT_S, resources={"metadata": {"path": str(folder)}}).execute()
     for cell in book.cells:
         cell.metadata.pop("execution", None)  # wall clock times, which differ each time
-    return book
 
 
 def main() -> None:

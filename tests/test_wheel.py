@@ -70,7 +70,9 @@ def test_basu_run_drives_with_the_simulator_of_the_wheel(installed: Path, tmp_pa
     lines = (ROOT / "src" / "basu" / "routes" / "linden_short.xml").read_text(encoding="utf-8").splitlines()
     points = [line for line in lines if "<position" in line or "<waypoint " in line][:3]
     (tmp_path / "piece.xml").write_text(ROUTE.format(points="".join(points)), encoding="utf-8")
-    done = run(installed, tmp_path, "basu", "run", "basic", "--routes", "piece.xml", "--no-scenarios")
+    done = run(
+        installed, tmp_path, "basu", "run", "basic", "--routes", "piece.xml", "--no-scenarios", "--stop-after", "3"
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text(encoding="utf-8"))
     assert result["scores"]["path_following"] > 0.0

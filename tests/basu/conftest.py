@@ -13,6 +13,7 @@ from basu import simulator as simulator_module
 from basu.agents.adapters.replacement_modules import step_back
 from basu.agents.process import agent_process
 from basu.output.report import path_picture
+from kept_server import end_kept_server, kept_server
 from servers import RunningServer, running_server
 from shared_client import shared_client
 from tracing import untraced
@@ -93,6 +94,20 @@ def simulator() -> Iterator[RunningServer]:
             running = stack.enter_context(running_server())
         stack.enter_context(shared_client(running.port))
         yield running
+
+
+@pytest.fixture(scope="session")
+def _kept_server_ends() -> Iterator[None]:
+    """End the server of ``one_server`` with the session."""
+    yield
+    end_kept_server()
+
+
+@pytest.fixture
+def one_server(_kept_server_ends: None) -> Iterator[None]:
+    """Commands of this test that start a server take the one of all such tests, in a new world."""
+    with kept_server():
+        yield
 
 
 @pytest.fixture

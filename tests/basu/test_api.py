@@ -93,6 +93,7 @@ def test_pictures_and_cards_show_inline(opened, route_file: Path, tmp_path: Path
         result.plot_speed(by="distance")
 
 
+@pytest.mark.usefixtures("one_server")
 def test_runs_without_a_simulator_of_their_own_share_one(route_file: Path, tmp_path: Path) -> None:
     try:
         first = basu.run("forward", routes=route_file, output=tmp_path)
@@ -140,7 +141,7 @@ def test_a_script_without_a_main_guard_may_use_several_workers(tmp_path: Path) -
     script.write_text(
         "import basu\n"
         "cases = ['lead_vehicle_brakes_1', 'lead_vehicle_brakes_2']\n"
-        "found = basu.run_scenarios(cases, agent='forward', workers=2, output='out')\n"
+        "found = basu.run_scenarios(cases, agent='forward', workers=2, in_process=True, output='out')\n"
         "print('cases', len(found.cases))\n",
         encoding="utf-8",
     )

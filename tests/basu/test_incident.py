@@ -17,7 +17,16 @@ def test_the_incident_scores_1_by_the_thesis_and_fails_by_its_passengers(
     simulator: RunningServer, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
-    words = ["run", "incident", *address, "--routes", "routes/linden_short.xml", "--output", str(tmp_path)]
+    words = [
+        "run",
+        "incident",
+        "--in-process",
+        *address,
+        "--routes",
+        "routes/linden_short.xml",
+        "--output",
+        str(tmp_path),
+    ]
     assert main(words) == 0
     assert "phantom stop" in capsys.readouterr().out
     result = json.loads((tmp_path / "latest" / "result.json").read_text(encoding="utf-8"))

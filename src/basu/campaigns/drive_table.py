@@ -19,7 +19,6 @@ from typing import IO, TYPE_CHECKING, Any
 
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.dataset as ds
 import pyarrow.json as pj
 import pyarrow.parquet as pq
 
@@ -29,6 +28,8 @@ from basu.files import write_bytes
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
+
+    from pyarrow.dataset import Dataset
 
 DRIVES, JOURNAL = "drives", "journal"
 SYNC_S = 1.0  # of wall time from one sync with the disk to the next
@@ -223,12 +224,14 @@ class DriveTable:
         return self.folder / JOURNAL / f"block-{block:06d}.jsonl"
 
 
-def open_drives(folder: Path) -> ds.Dataset:
+def open_drives(folder: Path) -> Dataset:
     """The table in the folder of a campaign, for reading.
 
     Raises:
         UserError: there is none.
     """
+    import pyarrow.dataset as ds  # noqa: PLC0415 - imports pandas, for 0.5 s; a command that writes rows does without
+
     if not any((folder / DRIVES).glob("*/block-*.parquet")):
         raise UserError(f"{folder} holds no drives of a campaign yet; name a folder that `basu campaign run` has left")
     partitions = ds.partitioning(pa.schema([("agent", pa.string())]), flavor="hive")

@@ -28,6 +28,8 @@ from ray_clusters import connected_cluster
 Write = Callable[..., Path]
 DRIVER = (
     "import sys; from pathlib import Path; from importlib import import_module; from basu.campaigns import command;"
+    "from basu.agents.loader import load_agent; from basu.campaigns import planning;"
+    "planning.find_agent = lambda typed, **_: load_agent(typed);"  # without the agents' process
     "command.drive_player = import_module(sys.argv[1]).spec;"
     "settings = command.RunSettings(file=Path(sys.argv[2]), output=Path(sys.argv[3]), workers=2,"
     " resume=sys.argv[4] == 'True');"

@@ -108,6 +108,7 @@ def test_a_look_at_a_vehicle_that_is_gone_leaves_the_verdict_to_the_next_step() 
         pytest.param("pass", "self.vehicle.destroy()", True, "out of the world", id="takes the vehicle away"),
     ],
 )
+@pytest.mark.usefixtures("one_server")
 def test_an_agent_that_cheats_has_failed(
     simulator: RunningServer, route_file: Path, tmp_path: Path, *, at_setup: str, deed: str, own: bool, sentence: str
 ) -> None:

@@ -355,7 +355,7 @@ def seen(world: carla.World) -> set[tuple[int, str]]:
 def driven(simulator: RunningServer, folder: Path, path: Path, *words: str) -> tuple[int, dict[str, Any]]:
     """A run and its result."""
     where = ["--host", "127.0.0.1", "--port", str(simulator.port), "--output", str(folder / "runs")]
-    code = main(["run", "basic", "--routes", str(path), *where, *words])
+    code = main(["run", "basic", "--in-process", "--routes", str(path), *where, *words])
     result: dict[str, Any] = json.loads((folder / "runs" / "latest" / "result.json").read_text(encoding="utf-8"))
     return code, result
 

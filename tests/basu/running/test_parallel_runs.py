@@ -22,9 +22,12 @@ def test_what_runs_cannot_share_is_refused(options: RunOptions) -> None:
         check_parallel(options)
 
 
-def test_a_series_of_two_workers_equals_one_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.usefixtures("one_server")
+def test_a_series_of_two_workers_equals_one_of_one(
+    tmp_path: Path, route_file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)
-    words = ["run", "forward", "--routes", "routes/linden_short.xml", "--stop-after", "3", "--repetitions", "2"]
+    words = ["run", "forward", "--in-process", "--routes", str(route_file), "--stop-after", "3", "--repetitions", "2"]
     for name, workers in (("one", "1"), ("two", "2")):
         assert main([*words, "--series", name, "--workers", workers]) == 0
 

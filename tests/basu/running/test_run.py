@@ -115,7 +115,7 @@ def test_the_thesis_sample_leaves_a_scored_folder_and_scoring_it_again_gives_the
 
 
 def test_the_history_follows_the_vehicle_from_rest(run: Runner, tmp_path: Path) -> None:
-    run(doing(tmp_path, "return None"))
+    run(doing(tmp_path, "return None"), "--in-process")
     history = read_history(tmp_path / "runs" / "latest")
     assert history.frames["tick"].tolist() == list(range(21))
     assert history.speed_mps()[0] < 0.05
@@ -270,7 +270,7 @@ def test_a_simulator_of_our_own_does_not_outlive_a_killed_benchmark(
 
 
 def test_repetitions_leave_a_folder_each(run: Runner, tmp_path: Path) -> None:
-    run(doing(tmp_path, "return None"), "--repetitions", "2")
+    run(doing(tmp_path, "return None"), "--in-process", "--repetitions", "2")
     folders = [path for path in (tmp_path / "runs").iterdir() if not path.is_symlink()]
     assert len(folders) == 2
 
@@ -311,7 +311,7 @@ def test_a_route_that_cannot_be_driven_gets_a_sentence(
 def test_hitting_a_parked_car_is_reported_with_the_party_the_place_and_the_speed(run: Runner, tmp_path: Path) -> None:
     path = tmp_path / "rammer.py"
     path.write_text(RAMMER)
-    _, result = run(path)
+    _, result = run(path, "--in-process")
     (collision,) = (found for found in result["infractions"] if found["kind"] == "collision_vehicle")
     assert collision["other"].startswith("vehicle.audi.a2 (actor ")
     assert collision["speed_mps"] > 2.0

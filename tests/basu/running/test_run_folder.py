@@ -72,6 +72,7 @@ def left(folder: Path) -> tuple[bytes, bytes, dict[str, Any], dict[str, Any]]:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("one_server")
 def test_config_and_command_repeat_the_run_byte_by_byte(
     tmp_path: Path, route_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -83,7 +84,7 @@ def test_config_and_command_repeat_the_run_byte_by_byte(
         "    def config(self): return {}\n"
         "    def run_step(self, sensor_data):\n"
         "        self.steps += 1\n"
-        "        if self.steps > 60: raise ValueError('enough')\n"
+        "        if self.steps > 30: raise ValueError('enough')\n"
         "        return carla.VehicleControl(throttle=0.3 + 0.5 * random.random())\n"
         "class Fast(Slow): pass\n"
     )

@@ -20,7 +20,9 @@ from basu.routing.route_file import RouteDescription
 from basu.running.preparation import Job
 from basu.running.series import RESOLVED, Series, conditions, open_series
 from basu.settings.option import fields_of
+from basu.simulator import connect
 from fakes.results import a_result
+from servers import RunningServer
 
 ROUTE = RouteDescription(id="0", town="Linden", points=(), stops=(), source="r.xml")
 JOBS = tuple(Job(number, ROUTE, "r", number, number) for number in range(4))
@@ -184,7 +186,7 @@ def test_a_damaged_list_gets_a_sentence(tmp_path: Path) -> None:
         opened(tmp_path, resume=True)
 
 
-RUNS = 6
+RUNS = 4
 AGENT = """
 import os, pathlib, resource, signal
 
@@ -196,13 +198,13 @@ class Short(AutonomousAgent):
 
     def run_step(self, sensor_data):
         self.steps += 1
-        if self.steps == 10 and self.attempt == 2:
+        if self.steps == 5 and self.attempt == 2:
             os.kill(os.getpid(), signal.SIGKILL)
-        if self.steps == 10 and self.attempt == 4:
+        if self.steps == 5 and self.attempt == 3:
             signal.raise_signal(signal.SIGTERM)
-        if self.steps == 10 and self.attempt == 6:
+        if self.steps == 5 and self.attempt == 4:
             resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))  # as good as a full disk
-        if self.steps > 20:
+        if self.steps > 10:
             raise ValueError("that was the run")
         return carla.VehicleControl(throttle=0.5)
 
@@ -214,15 +216,22 @@ class Short(AutonomousAgent):
 @pytest.mark.slow
 @pytest.mark.timeout(900)
 @pytest.mark.skipif(sys.platform == "win32", reason="no SIGKILL, and no limit on the size of files")
-def test_runs_broken_off_three_times_are_all_there_and_counted_once(tmp_path: Path, route_file: Path) -> None:
+def test_runs_broken_off_three_times_are_all_there_and_counted_once(
+    simulator: RunningServer, tmp_path: Path, route_file: Path
+) -> None:
     agent, attempts, output = tmp_path / "short.py", tmp_path / "attempts", tmp_path / "runs"
     agent.write_text(AGENT)
     attempts.mkdir()
 
     def basu(*options: str) -> "subprocess.CompletedProcess[str]":
+        connect("127.0.0.1", simulator.port, 20.0).reload_world()  # a killed benchmark leaves its vehicle there
         # in the benchmark's own process, which is to die and to run out of disk
         series = [
             "--in-process",
+            "--host",
+            "127.0.0.1",
+            "--port",
+            str(simulator.port),
             "--routes",
             str(route_file),
             "--repetitions",

@@ -6,6 +6,7 @@ from pathlib import Path
 import carla
 import pytest
 
+from basu import simulator as simulator_module
 from basu.sumo.bridge import ROLE, Bridge
 from basu.sumo.link import in_process
 from servers import RunningServer
@@ -16,8 +17,7 @@ STEP_S = 0.05
 @pytest.fixture
 def client(simulator: RunningServer) -> Iterator[carla.Client]:
     """A client whose world is still and has nothing left in it."""
-    client = carla.Client("127.0.0.1", simulator.port)
-    client.set_timeout(120.0)
+    client = simulator_module.connect("127.0.0.1", simulator.port, 120.0)
     world = client.get_world()
     before = world.get_settings()
     settings = world.get_settings()

@@ -20,13 +20,14 @@ def run(simulator: RunningServer, route_file: Path, output: Path, *options: str)
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("one_server")
 def test_the_same_seed_gives_the_same_bytes(route_file: Path, tmp_path: Path) -> None:
-    """Each run has a simulator of its own: in a shared one the lights have gone on meanwhile."""
+    """Each run has a world of its own: in a shared one the lights have gone on meanwhile."""
     seen = []
     for name in ("first", "second"):
         output = tmp_path / name
-        options = ["--sumo", "random", "--vehicles", "30", "--seed", "3", "--output", str(output)]
-        assert main(["run", "basic", "--routes", str(route_file), *options]) == 0
+        options = ["--sumo", "random", "--vehicles", "30", "--seed", "3", "--stop-after", "8", "--output", str(output)]
+        assert main(["run", "basic", "--in-process", "--routes", str(route_file), *options]) == 0
         result = json.loads((output / "latest" / "result.json").read_text())
         assert result["meta"]["traffic"]["vehicles"] >= 30
         seen.append((output / "latest" / "history.parquet").read_bytes())

@@ -99,7 +99,7 @@ def driven(simulator: RunningServer, tmp_path: Path) -> Driven:
         route.write_text(f'<routes><route id="1" town="Linden"><waypoints>{way}</waypoints></route></routes>')
         output = tmp_path / "runs"
         address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
-        main(["run", str(agent), *address, "--routes", str(route), "--output", str(output)])
+        main(["run", str(agent), "--in-process", *address, "--routes", str(route), "--output", str(output)])
         return read_history(output / "latest"), json.loads((output / "latest" / "result.json").read_text())
 
     return run
@@ -109,8 +109,6 @@ def infractions(result: dict[str, Any]) -> list[str]:
     return [f"{one['kind']}: {one['detail']}" for one in result["infractions"]]
 
 
-@pytest.mark.unmeasured
-@pytest.mark.measured_processes
 def test_it_goes_round_a_car_parked_in_its_lane_and_comes_back(driven: Driven) -> None:
     history, result = driven(STREET, "self.put(self.route.waypoints[60])")
     s_m, lateral_m = history.frames["route_s_m"], history.frames["lateral_m"]

@@ -35,9 +35,10 @@ ESTIMATE = (
 ONE_SEED = ("number = 3", "number = 1")
 DRIVER = (
     "import sys; from pathlib import Path; from importlib import import_module; from basu.campaigns import command;"
+    "from basu.agents.loader import load_agent; from basu.campaigns import planning;"
+    "planning.find_agent = lambda typed, **_: load_agent(typed);"  # without the agents' process
     "command.drive_player = import_module(sys.argv[1]).spec;"
-    "settings = command.RunSettings(file=Path(sys.argv[2]), output=Path(sys.argv[3]), workers=3,"
-    " resume=sys.argv[4] == 'True');"
+    "settings = command.RunSettings(file=Path(sys.argv[2]), output=Path(sys.argv[3]), workers=3);"
     "sys.exit(command.run_campaign(settings))"
 )
 
@@ -98,15 +99,13 @@ def test_a_search_ends_alike_in_whatever_order_workers_finish(
     assert all((alone / "search" / name).read_bytes() == (together / "search" / name).read_bytes() for name in names)
 
 
-@pytest.mark.unmeasured
-@pytest.mark.measured_processes
 def test_a_killed_search_goes_on_and_equals_an_undisturbed_one(
     run: Callable[..., Path], campaign: Write, modules: str, tmp_path: Path
 ) -> None:
     file = campaign(ONE_SEED, SEARCH)
     undisturbed, killed = run(file), tmp_path / "killed" / "crossings"
     words = [sys.executable, "-c", DRIVER, modules, str(file), str(killed.parent)]
-    driver = subprocess.Popen([*words, "False"], env={**os.environ, "DRIVE_S": "0.05"})
+    driver = subprocess.Popen(words, env={**os.environ, "DRIVE_S": "0.05"})
     deadline_s = time.monotonic() + 60.0
     while len(list(killed.glob("journal/*"))) == 0 or _lines(killed) < 20:
         assert driver.poll() is None
@@ -115,7 +114,7 @@ def test_a_killed_search_goes_on_and_equals_an_undisturbed_one(
     driver.kill()
     driver.wait()
     assert 0 < _lines(killed) < 48
-    subprocess.run([*words, "True"], check=True)
+    run(file, "killed", resume=True)
     assert steady(killed).equals(steady(undisturbed))
 
 

@@ -70,8 +70,7 @@ def run(simulator: RunningServer, tmp_path: Path, route_file: Path, monkeypatch:
         address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
         output = tmp_path / "runs"
         # a striker posts events to this process's window; only there it can
-        where = ["--in-process"] if "striker" in str(agent) else []
-        words = [*address, "--routes", str(route_file), "--output", str(output), *where, *options]
+        words = [*address, "--routes", str(route_file), "--output", str(output), "--in-process", *options]
         code = main(["run", str(agent), *words])
         folder = output / "latest"
         return code, json.loads((folder / "result.json").read_text()), read_history(folder)
@@ -181,7 +180,10 @@ def test_the_session_of_the_experiment_arrives_and_is_three_times_too_fast(
     simulator: RunningServer, tmp_path: Path
 ) -> None:
     address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
-    assert main(["run", "human", *address, "--keys", "data/human_session.json", "--output", str(tmp_path)]) == 0
+    assert (
+        main(["run", "human", "--in-process", *address, "--keys", "data/human_session.json", "--output", str(tmp_path)])
+        == 0
+    )
     result = json.loads((tmp_path / "latest" / "result.json").read_text())
     assert [found["kind"] for found in result["infractions"]] == ["speeding"] * 3
     assert result["scores"]["path_following"] >= 0.98

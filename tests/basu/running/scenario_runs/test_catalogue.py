@@ -1,7 +1,8 @@
 """Every scenario tells drivers apart, and the controls gain nothing; played live.
 
 The first case of each scenario is played here; ``benchmarks/scenarios.py`` plays all. What the control drivers prove
-is in `docs/decisions/0055-control-drivers.md`.
+is in `docs/decisions/0055-control-drivers.md`. The drivers are in the benchmark's process, which halves the processor
+time. They are checked for cheating as if they were in their own, so that no scenario makes these checks cry wolf.
 """
 
 import json
@@ -11,13 +12,14 @@ from typing import Any
 
 import pytest
 
+from basu.agents.calls import AgentCalls
 from basu.cli import main
+from basu.managers import agents_manager
 from basu.scenarios.cases import open_library
 from servers import RunningServer
 
 LIBRARY = open_library()
 BLIND, FORWARD = "blind", "forward"
-SLOW = ("creeper", "standing")
 OFF_THE_ROUTE = {"DriftingNeighbour", "RedLightRunner"}  # the route has no two lanes a way and no lights
 WITHOUT_OTHERS = {"ControlLoss", "SlipperyStop", "BendDeparture", "CrossWind", "SteeringDeviation"}
 # conflicts that a slow driver meets late or not at all, and some that it meets like any other
@@ -28,6 +30,10 @@ MISSED_BY_THE_SLOW = (
     "oncoming_overtaker_1",
     "control_loss_1",
 )
+OF_THE_SLOW = {  # one that stands stays there until the time is up, whatever the conflict
+    "creeper": MISSED_BY_THE_SLOW,
+    "standing": MISSED_BY_THE_SLOW[-2:],
+}
 
 
 def first_cases() -> dict[str, tuple[str, str]]:
@@ -49,7 +55,7 @@ def drives() -> dict[str, list[str]]:
         case, reference = FIRST[scenario.__name__]
         found[reference].append(case)
         found[BLIND if scenario.needs_perception else FORWARD].append(case)
-    return {**found, **{driver: list(MISSED_BY_THE_SLOW) for driver in SLOW}}
+    return {**found, **{driver: list(cases) for driver, cases in OF_THE_SLOW.items()}}
 
 
 @pytest.fixture(scope="module")
@@ -58,13 +64,15 @@ def results(
 ) -> dict[tuple[str, str], dict[str, Any]]:
     """What came of the drives, by case and driver."""
     found = {}
-    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
-    for driver, cases in drives().items():
-        output = tmp_path_factory.mktemp(driver)
-        main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), *address])
-        for path in (output / "latest").glob(f"{driver}/*/result.json"):
-            result = json.loads(path.read_text(encoding="utf-8"))
-            found[result["id"], driver] = result
+    options = ["--in-process", "--host", "127.0.0.1", "--port", str(simulator.port)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(agents_manager, "RemoteAgent", AgentCalls)  # drivers of the class are checked
+        for driver, cases in drives().items():
+            output = tmp_path_factory.mktemp(driver)
+            main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), *options])
+            for path in (output / "latest").glob(f"{driver}/*/result.json"):
+                result = json.loads(path.read_text(encoding="utf-8"))
+                found[result["id"], driver] = result
     return found
 
 
@@ -91,8 +99,9 @@ def test_a_driver_that_perceives_no_actor_fails_where_the_conflict_needs_percept
 
 @pytest.mark.slow
 @pytest.mark.timeout(900)
-@pytest.mark.parametrize("driver", SLOW)
-@pytest.mark.parametrize("case", MISSED_BY_THE_SLOW)
+@pytest.mark.parametrize(
+    ("driver", "case"), [(driver, case) for driver, cases in OF_THE_SLOW.items() for case in cases]
+)
 def test_nothing_is_gained_by_absence(results: dict[tuple[str, str], dict[str, Any]], case: str, driver: str) -> None:
     result = results[case, driver]
     assert (result["verdict"], result["message"]) != ("SUCCESS", result["message"])

@@ -116,7 +116,7 @@ def test_what_is_wrong_with_a_case_is_said_and_is_no_failure_of_an_agent(
     simulator: RunningServer, files: Path, tmp_path: Path
 ) -> None:
     """One command plays all of them: the exit code of each is that of its verdict."""
-    assert run(simulator, tmp_path, *WRONG, "--scenarios", files) == 2
+    assert run(simulator, tmp_path, *WRONG, "--scenarios", files, "--in-process") == 2
     results = played(tmp_path)
     assert {case: result["verdict"] for case, result in results.items()} == dict.fromkeys(WRONG, "SETUP_FAULT")
     for case, sentence in WRONG.items():
@@ -145,7 +145,7 @@ def test_a_driver_that_looks_at_nothing_fails_with_evidence(
 def test_the_same_case_again_is_the_same_byte_by_byte(simulator: RunningServer, files: Path, tmp_path: Path) -> None:
     left = []
     for name in ("one", "two"):
-        assert run(simulator, tmp_path / name, "goes_well", "--scenarios", files) == 0
+        assert run(simulator, tmp_path / name, "goes_well", "--scenarios", files, "--in-process") == 0
         folder = tmp_path / name / "latest" / "basic" / "goes_well"
         result = json.loads((folder / "result.json").read_text(encoding="utf-8")) | {"wall_s": 0.0}
         left.append((result, *((folder / file).read_bytes() for file in ("history.parquet", "picture.svg"))))
@@ -168,7 +168,7 @@ def test_config_and_command_repeat_a_sweep_and_each_of_its_cases(
 ) -> None:
     agent = tmp_path / "bad.py"
     agent.write_text(AGENTS, encoding="utf-8")
-    words = ("goes_well", "--scenarios", files, "--agent", f"{agent}:Draws", "--sweep", 2, "--seed", 7)
+    words = ("goes_well", "--scenarios", files, "--agent", f"{agent}:Draws", "--in-process", "--sweep", 2, "--seed", 7)
     run(simulator, tmp_path / "one", *words, "--step-limit", 2, "--vehicle", "vehicle.tesla.model3")
     wanted = drives(tmp_path / "one")
     assert len(wanted) == 2

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from py_trees.common import Status
 
+from basu import simulator as simulator_module
 from basu.managers.stage.scenario_actors import ActorCommands
 from basu.scenarios.actions import Brake, DriveAlong, LetGo, WalkAlong
 from basu.scenarios.actions.one_frame import Action
@@ -69,8 +70,7 @@ class OneActor:
 @pytest.fixture
 def client(simulator: RunningServer) -> Iterator[carla.Client]:
     """Of a fresh world that ticks with us."""
-    client = carla.Client("127.0.0.1", simulator.port)
-    client.set_timeout(60.0)
+    client = simulator_module.connect("127.0.0.1", simulator.port, 60.0)
     world = client.get_world()
     if not world.get_map().name.endswith("Linden"):
         world = client.load_world("Linden")

@@ -39,9 +39,10 @@ def test_documents_are_as_their_schemas_say(document: dict[str, Any], name: str)
 
 
 @pytest.mark.parametrize(("document", "name"), [DOCUMENTS[0], DOCUMENTS[2]])
-def test_the_schemas_are_read_as_the_library_reads_them(document: dict[str, Any], name: str) -> None:
-    dice, library, refused = random.Random(4), jsonschema.Draft202012Validator(read_schema(name)), 0
-    for _ in range(400):
+def test_each_mistake_gets_a_sentence(document: dict[str, Any], name: str) -> None:
+    schema = read_schema(name)
+    dice, library, refused = random.Random(4), jsonschema.Draft202012Validator(schema), 0
+    for _ in range(100):
         changed = copy.deepcopy(document)
         place: Any = changed
         while True:  # down to some place
@@ -51,10 +52,10 @@ def test_the_schemas_are_read_as_the_library_reads_them(document: dict[str, Any]
                 break
             place = inside
         place[key] = dice.choice([None, True, -1, 7, 0.5, "text", [], {}, {"odd": 1}])
-        found = list(mistakes(changed, read_schema(name)))
+        found = list(mistakes(changed, schema))
         assert bool(found) != library.is_valid(changed), (found, key)
         refused += bool(found)
-    assert 100 < refused < 400
+    assert 25 < refused < 100
 
 
 def test_a_case_comes_back_from_its_folder(tmp_path: Path) -> None:
