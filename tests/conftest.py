@@ -5,18 +5,25 @@ The hypothesis profile is repeatable and has no deadlines, because kernels compi
 
 import functools
 import gc
+import importlib
 import itertools
 import os
 import signal
 from collections.abc import Callable, Generator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
+import coverage
 import hypothesis
 import pytest
 
 from processor_time import measured
 from tracing import save, untraced, untraced_here, untraced_processes
+
+if coverage.Coverage.current() is not None:
+    with untraced_here():  # libraries of most tests: their import takes twice as long where it is traced
+        for library in ("carla", "matplotlib.pyplot", "numba", "pandas", "pyarrow.parquet", "pydantic"):
+            importlib.import_module(library)
 
 LONGEST = (
     "basu/running/scenario_runs/test_catalogue.py",
@@ -77,6 +84,20 @@ def pytest_report_header() -> str:
 def pytest_collection() -> None:
     """Have the garbage collector rest while the tests are collected: all of it stays, and it would look at it often."""
     gc.disable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, object, object]:
+    """Import a file of tests with coverage, and make its tests without.
+
+    Whatever the import raises, the making of the tests meets it again.
+    """
+    if not isinstance(collector, pytest.Module | pytest.Class):
+        return (yield)
+    with suppress(Exception, pytest.skip.Exception):
+        _ = collector.obj
+    with untraced_here():
+        return (yield)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
