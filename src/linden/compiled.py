@@ -1,4 +1,4 @@
-"""How functions are compiled: one decorator, so that every kernel is built alike and keeps its type for the reader.
+"""Decorators that compile functions with numba and cache them: `kernel`, `part`, `kept_part`, `unlocked`, `shading`.
 
 ``error_model="numpy"``: dividing by zero gives inf or nan, as arrays do. No ``fastmath`` and no threads: the same input
 gives the same bits; what is seen has threads (``unlocked``), pictures both. The compiled code is kept beside the source

@@ -1,4 +1,4 @@
-"""A campaign at work: jobs are given out, rows and records come in, and the folder says how far it is."""
+"""`CampaignRun`: sends jobs to the worker pool, stores rows and records, writes progress, applies the stopping rule."""
 
 from __future__ import annotations
 

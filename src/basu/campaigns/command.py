@@ -1,4 +1,4 @@
-"""``basu campaign run``: drives all jobs of a campaign with a pool of workers and writes its folder."""
+"""`basu campaign run`: sets up lock, plan, table and workers for `CampaignRun`; `describe` prints the dry run."""
 
 from __future__ import annotations
 

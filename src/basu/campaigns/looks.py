@@ -1,4 +1,4 @@
-"""The stopping rule: after each block in their order, whether every agent's success rate is known well enough.
+"""`Looks`: stops a campaign once each agent's confidence interval is narrow enough; checked after each complete block.
 
 A look counts the rows of the first blocks and no others. So a campaign stops at the same drive with any number of
 workers. Looking several times makes an interval cover slightly less than it says. Source: Frey 2010, "Fixed-width

@@ -1,4 +1,4 @@
-"""The jobs of a campaign: agents, routes or cases, weather, traffic and seeds as a product that needs no list."""
+"""`CampaignPlan`: computes job number N from agents, routes or cases, weather, traffic and seeds."""
 
 from __future__ import annotations
 

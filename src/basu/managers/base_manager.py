@@ -1,4 +1,4 @@
-"""`BaseManager` and shared data: run, ego motion, frame, current control, and changes made by the benchmark itself."""
+"""`BaseManager`; data of a run: `Run`, `Ego`, `Frame`, `Driver`; `WorldChanges`: legal changes, for cheating checks."""
 
 from __future__ import annotations
 

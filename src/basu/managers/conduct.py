@@ -1,4 +1,4 @@
-"""Checks for cheating: control, motion of the ego, extra ticks, weather, settings, other actors, and traffic lights.
+"""`Conduct`: ends the run as the agent's failure if the agent moved the ego, ticked the world or changed its state.
 
 An agent in a process of its own has a client of its own, which may do all that CARLA's API offers: move the vehicle,
 tick the world, change the weather. A change that the benchmark did not make ends the run as the agent's failure. Most

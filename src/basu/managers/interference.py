@@ -1,4 +1,4 @@
-"""Checks for interference: other actors moved or removed, traffic lights changed, controls that differ.
+"""`OthersCheck` and `LightsCheck`, used by `Conduct`: other actors moved or removed, traffic lights changed too early.
 
 All checks read the world snapshot, which is there anyway. They hold in a simulator of our own, where nothing but the
 benchmark and its agent is connected. CARLA's rules for lights: TrafficLightGroup.cpp and TrafficLightController.cpp.

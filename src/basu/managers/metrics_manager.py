@@ -1,4 +1,4 @@
-"""Recording of a run for its metrics: frames and events go into the record, and scores so far come from it."""
+"""`MetricsManager`: records frames, collisions and lane invasions of a run; gives infractions and scores so far."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""CARLA's own log of a run, written by the simulator: the source of later queries and replays."""
+"""`RecordingManager`: starts and stops the simulator's recorder for a run, and saves the OpenDRIVE map."""
 
 from __future__ import annotations
 

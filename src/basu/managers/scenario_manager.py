@@ -1,4 +1,4 @@
-"""The scenarios of a run: armed when the ego comes near, ticked once a frame, judged afterwards, gone without trace.
+"""`ScenarioManager`: spawns scenario actors near the ego, starts each at its trigger point, ticks and judges it.
 
 A run may be a scenario's own (it begins and ends with it), or meet several on its route: then the cast of each comes
 into the world when the ego is near, and the scenario begins when the ego reaches its trigger point.

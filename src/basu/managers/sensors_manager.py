@@ -1,4 +1,4 @@
-"""The agent's sensors: spawned from its sensor set, listened to by the agent's process or here."""
+"""`SensorsManager`: spawns the agent's sensors; each tick waits for data, unless the agent's process receives it."""
 
 from __future__ import annotations
 

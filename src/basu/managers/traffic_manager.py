@@ -1,4 +1,4 @@
-"""Other traffic from one seed: vehicles led by CARLA's Traffic Manager, walkers led by its crowd."""
+"""`TrafficManager`: spawns background traffic from a seed: vehicles on autopilot, walkers with AI controllers."""
 
 from __future__ import annotations
 

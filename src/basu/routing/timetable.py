@@ -1,4 +1,4 @@
-"""When a service runs and when a round of it is due at each stop, read from a JSON file that a route names.
+"""Timetable of a bus service: its times, and when each round is due at each stop; from a JSON file that a route names.
 
     {"schema_version": 1, "round": "24:00", "headway": "12:00",
      "service": [{"days": ["Mon"], "from": "06:00", "to": "08:00"}],

@@ -1,4 +1,4 @@
-"""What was derived from maps, kept in the user's cache folder, so that the next start does not derive it again.
+"""`MapCache`: data derived from maps in the user's cache folder, so that the next start does not derive it again.
 
 A file is named by all that decides what it says: the map's text, the sources that derive, the machine. So it is never
 out of date; it may be broken, and then it is made anew. Without a folder to write to everything works, only slower.

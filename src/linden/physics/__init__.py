@@ -1,4 +1,4 @@
-"""How bodies move: stages of a step, one idea a file. ``bodies.Bodies`` is what moves, ``step.advance`` moves it."""
+"""Motion of bodies: the stages of a step. ``bodies.Bodies`` holds them, ``step.advance`` moves them."""
 
 from linden.physics.warming import warm_up
 

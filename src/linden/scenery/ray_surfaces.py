@@ -1,4 +1,4 @@
-"""Where a ray meets one thing: a box, a triangle, a parabola. Places count from 0 at its start to 1 at its end.
+"""Intersection of a ray with a box, a triangle or a parabola. Places count from 0 at its start to 1 at its end.
 
 A ray is its start and its step (3,), in m; what is missed is met at infinity.
 """

@@ -1,4 +1,4 @@
-"""Whether kernels are compiled on this machine already, found out without loading them."""
+"""Check whether kernels are compiled on this machine already, without loading them."""
 
 import hashlib
 import json

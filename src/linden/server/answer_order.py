@@ -1,4 +1,4 @@
-"""Rules for delayed calls and answers: for each client, whether its next call or answer has to wait, and how long.
+"""`AnswerOrder`: holds back calls and answers for long work, sensors, loads, Traffic Managers or slow subscribers.
 
 ========================================  =====================================  =============================
 what waits                                for what                               how long at most

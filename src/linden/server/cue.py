@@ -1,4 +1,4 @@
-"""Delay of the answer to a tick until the thread of the client's Traffic Manager has made its next call.
+"""`Cue`: delays a tick's answer until the client's Traffic Manager thread sleeps, else LibCarla loses a wake-up.
 
 In synchronous mode that thread of the client asks ``get_episode_settings`` once a step, then sleeps until the thread
 that ticks has its new frame and wakes it. LibCarla 0.9.16 gives this signal without the lock: one that falls between

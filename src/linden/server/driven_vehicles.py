@@ -1,4 +1,4 @@
-"""Vehicles driven by a client's Traffic Managers: delays frames and `destroy_actor` answers until they are released.
+"""`DrivenVehicles`: delays `destroy_actor` answers and frames until the Traffic Manager has dropped the vehicle.
 
 When ``destroy_actor`` is answered, LibCarla's ``Simulator::DestroyActor`` cuts the actor off from its episode. A
 Traffic Manager holds the same object. Its thread ends the process where it still works on it: "trying to operate on

@@ -1,4 +1,4 @@
-"""Loading of a map: holds the answer until the client's Traffic Managers wait, and starts the load after the answer.
+"""`LoadAnswers`: delays a map load's answer until Traffic Manager threads are blocked in calls, so no client crashes.
 
 When its load is answered, LibCarla's ``Simulator::LoadEpisode`` drops its ``Episode``, asks for the version and for
 ``get_episode_info``, and makes another. A Traffic Manager in asynchronous mode has a thread that goes on meanwhile and

@@ -1,4 +1,4 @@
-"""Stream subscribers: registry, congestion of slow ones, and frames that wait for a subscription already announced.
+"""`Subscribers`: registry of streams with limits for slow peers; `Expected`: a stream's token asked for, not yet used.
 
 In asynchronous mode a slow subscriber misses whole messages: only the newest one waits for it. In synchronous mode
 every message is sent. Up to :data:`QUEUED_BYTES` wait for each subscriber, and up to :data:`QUEUED_BYTES_OF_ALL` for

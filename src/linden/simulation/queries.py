@@ -1,4 +1,4 @@
-"""Queries of clients about the surroundings: boxes of objects, actors and lights, and what a ray meets."""
+"""Queries: boxes of map objects, actors and traffic lights; `cast_ray` and `project_point` on all surfaces."""
 
 import math
 from typing import NamedTuple

@@ -1,1 +1,1 @@
-"""What happens where bodies meet: which pairs are near, where boxes overlap, what impulse parts them."""
+"""Contacts of bodies: pairs that are near, overlap of boxes, impulses between them."""

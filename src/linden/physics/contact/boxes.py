@@ -1,4 +1,4 @@
-"""Where two boxes overlap, seen from above: along which direction, how deep, at which point."""
+"""Overlap of two boxes, seen from above: along which direction, how deep, at which point."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What parts two bodies that overlap: impulses against approach and sliding, and a push out of each other.
+"""Impulses between two bodies that overlap, against approach and sliding, and a push out of each other.
 
 Every impulse takes energy or leaves it: normal impulses only press, with a restitution below one; friction at most
 stops the sliding. Guendelman et al. 2003, "Nonconvex rigid bodies with stacking", treats pairs in sequence likewise;

@@ -1,4 +1,4 @@
-"""What a client says to and asks of a vehicle: controls, physics control, Ackermann targets, telemetry."""
+"""Vehicle API of clients: controls, physics control, Ackermann targets, telemetry."""
 
 import math
 from collections.abc import Sequence

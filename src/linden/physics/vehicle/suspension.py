@@ -1,4 +1,4 @@
-"""How a vehicle stands on the ground: height, pitch and roll follow the ground under the wheels like damped springs.
+"""Suspension of a vehicle: height, pitch and roll follow the ground under the wheels like damped springs.
 
 One spring for each of the three, solved by backward Euler, so a long step is only softer. The spring is as stiff as a
 body that bounces at ``BOUNCE_RADPS``; a force only ever pushes up, so a vehicle can leave the ground and land again.

@@ -1,4 +1,4 @@
-"""Where cameras have their pictures made: on the CPU, or on the GPU where rays are cast on one."""
+"""Choice of the renderer of camera pictures: on the CPU, or on the GPU where rays are cast on one."""
 
 from typing import Protocol, TypeAlias
 

@@ -1,4 +1,4 @@
-"""The filter for back faces of bodies: their hits do not count, so that a sensor inside a car sees out of it.
+"""Embree filter callback, compiled by numba: drops hits on back faces, so that a sensor inside a car sees out of it.
 
 An RTCFilterFunctionN (embree4/rtcore_common.h), compiled: Embree calls it in the middle of its search, from whichever
 thread is looking, with rays and hits in the frame of the body.

@@ -1,4 +1,4 @@
-"""A CUDA device for numba and Warp: arrays, copies both ways, streams, kernel launches, and graph capture and replay.
+"""`Gpu`: a CUDA device shared by numba and Warp (arrays, copies, launches, graphs); `UploadBuffer` for repeated inputs.
 
 Warp casts rays there (``warp_caster``); numba compiles the very loops that shade on the CPU for the GPU as well. Needs
 the extra ``gpu``.

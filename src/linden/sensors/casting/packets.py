@@ -1,4 +1,4 @@
-"""Packets of rays as Embree takes them from compiled code: made, filled, sent and read without Python in between.
+"""Embree ray packets in numba: `Packet`, fill and query functions, and `build` for closest-hit and occlusion kernels.
 
 RTCRayHit16 and RTCRayHit8 (embree4/rtcore_ray.h) are columns of that many numbers of 4 bytes: those of the ray, then
 those of the hit. A kernel that wants more than distances (a camera's) is built of the same parts.

@@ -1,4 +1,4 @@
-"""Where a picture has edges: pixels that need more than one ray, and the rays they get."""
+"""Edges of a picture: pixels that need more than one ray, and the rays they get."""
 
 import math
 

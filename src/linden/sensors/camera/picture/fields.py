@@ -1,4 +1,4 @@
-"""What is known of a block of rays while it is shaded: an array of floats, field after field, one of whole numbers."""
+"""Data of a block of rays while it is shaded: an array of floats, field after field, one of whole numbers."""
 
 BLOCK = 256
 """Rays; what is known of them fits into a processor's nearest memory, and those of one material are still many.

@@ -1,4 +1,4 @@
-"""What surfaces look like from near: bricks, boards, grass, asphalt, by the place on the surface alone.
+"""Patterns of surfaces seen from near: bricks, boards, grass, asphalt, by the place on the surface alone.
 
 A pattern is seen until its parts are smaller than a pixel; ``near`` (1 at hand, 0 far off) fades it before that.
 """

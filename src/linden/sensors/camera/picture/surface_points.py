@@ -1,4 +1,4 @@
-"""What there is at a hit: its place in its body, normal, colour, what it shines by itself, and the rain on it.
+"""Surface points at hits: place in the body, normal, colour, light of its own, and the rain on it.
 
 Parts for one place each; ``shade`` puts them together, for a GPU number after number, for the CPU stage after stage.
 """

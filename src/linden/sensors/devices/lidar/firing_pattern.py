@@ -1,4 +1,4 @@
-"""Where a lidar fires: its channels, how far it turns in a time, and the rays of a sweep.
+"""Firing pattern of a lidar: its channels, how far it turns in a time, and the rays of a sweep.
 
 Source of meaning: CARLA 0.9.16, RayCastSemanticLidar.cpp.
 """

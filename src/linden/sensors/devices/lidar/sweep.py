@@ -1,4 +1,4 @@
-"""What a lidar measured: the points of a sweep, written as CARLA sends them, in one pass over what the rays met."""
+"""Points of a lidar's sweep, written as CARLA sends them, in one pass over the hits of its rays."""
 
 from typing import NamedTuple
 
