@@ -25,7 +25,7 @@ def untraced_here() -> Iterator[None]:
     measured = coverage.Coverage.current()
     if measured is not None:
         measured.stop()
-        measured._warn_preimported_source = False  # noqa: SLF001 - else start() looks at all imported modules, 0.1 s
+        measured._warn_preimported_source = False  # else start() looks at all imported modules, 0.1 s
     try:
         yield
     finally:
