@@ -44,7 +44,7 @@ class MeshLibrary:
     def file_of(self, world_map: LoadedMap, obstacles: Obstacles) -> MeshFile | None:
         """Return the mesh of a map, None where it has no pavements. ``obstacles`` are always those of the map.
 
-        Any thread may call it. One thread at a time makes a mesh; what is made is had without a wait.
+        Any thread may call it. One thread at a time makes a mesh. A mesh that is made is returned at once.
         """
         if world_map not in self._known:
             with self._making:

@@ -13,12 +13,12 @@ _FOLDER = Path(__file__).parents[2] / "data"
 
 
 def shipped_mesh(world_map: LoadedMap) -> bytes | None:
-    """Return the file of a map's mesh; None where the package has none, or one of another map of this name."""
+    """Return the file of a map's mesh; None where the package has none that can be read, or one of another map."""
     if world_map.name not in HOME_MAPS:
         return None
     try:
         content = lzma.decompress(_file_of(world_map.name).read_bytes())
-    except FileNotFoundError:
+    except (OSError, lzma.LZMAError):
         return None
     digest = _digest(world_map)
     return content[len(digest) :] if content.startswith(digest) else None

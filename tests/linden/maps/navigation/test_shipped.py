@@ -34,3 +34,5 @@ def test_a_mesh_of_another_map_of_that_name_is_not_taken(tmp_path: Path, monkeyp
     assert shipped_mesh(linden) == b"mesh"
     file.write_bytes(lzma.compress(bytes(32) + b"mesh"))
     assert shipped_mesh(linden) is None
+    file.write_bytes(b"no archive")
+    assert shipped_mesh(linden) is None
