@@ -2,7 +2,7 @@
 
 The first case of each scenario is played here; ``benchmarks/scenarios.py`` plays all. What the control drivers prove
 is in `docs/decisions/0055-control-drivers.md`. The drivers are in the benchmark's process, which halves the processor
-time. They are checked for cheating as if they were in their own, so that no scenario sets off these checks without a cheat.
+time. They are checked for cheating as if they were in their own, because no scenario may set off these checks.
 """
 
 import json
