@@ -11,23 +11,9 @@ from basu.cli import main
 from basu.errors import AgentCrashedError
 from basu.managers.base_manager import Ego, WorldChanges
 from basu.managers.conduct import LOOK_TICKS, Conduct
+from cheating_agent import cheating_agent
 from servers import RunningServer
 
-CHEAT = """
-class Cheat(AutonomousAgent):
-    def setup(self):
-        self.steps = 0
-        {at_setup}
-
-    def run_step(self, sensor_data):
-        self.steps += 1
-        if self.steps > 20:
-            {deed}
-        return carla.VehicleControl(throttle=0.3)
-
-    def config(self):
-        return {{"vehicle": "vehicle.tesla.model3"}}
-"""
 TELEPORT = "self.vehicle.set_transform(self.route.waypoints[-1].transform)"
 CREEP = (
     "pose = self.vehicle.get_transform(); ahead = pose.get_forward_vector(); "
@@ -112,9 +98,9 @@ def test_a_look_at_a_vehicle_that_is_gone_leaves_the_verdict_to_the_next_step() 
 def test_an_agent_that_cheats_has_failed(
     simulator: RunningServer, route_file: Path, tmp_path: Path, *, at_setup: str, deed: str, own: bool, sentence: str
 ) -> None:
-    (tmp_path / "cheat.py").write_text(CHEAT.format(at_setup=at_setup, deed=deed))
+    agent = cheating_agent(tmp_path, "cheat", at_setup=at_setup, deed=deed)
     address = [] if own else ["--host", "127.0.0.1", "--port", str(simulator.port)]
-    words = [str(tmp_path / "cheat.py"), *address, "--routes", str(route_file), "--output", str(tmp_path / "runs")]
+    words = [str(agent), *address, "--routes", str(route_file), "--output", str(tmp_path / "runs")]
     assert main(["run", *words]) == 1
     result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text())
     assert (result["status"], result["fault"]) == ("AgentCrashed", "agent")

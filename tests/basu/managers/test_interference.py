@@ -22,29 +22,9 @@ from basu.records.history.files import read_history
 from basu.running import runner
 from basu.running.scenario_runs import player
 from basu.simulator import Simulator, connect
+from cheating_agent import cheating_agent
 from servers import RunningServer
 
-DRIVER = """
-import threading, time
-
-class Cheat(AutonomousAgent):
-    def setup(self):
-        self.steps = 0
-        {at_setup}
-
-    def run_step(self, sensor_data):
-        self.steps += 1
-        others = [a for a in self.world.get_actors() if a.type_id.startswith(("vehicle.", "walker."))]
-        others = [a for a in others if a.id != self.vehicle.id]
-        if self.steps {when}:
-            {deed}
-        return carla.VehicleControl(throttle=0.3)
-
-    def config(self):
-        return {{"vehicle": "vehicle.tesla.model3"}}
-
-    {more}
-"""
 NIGHT = "self.world.set_weather(carla.WeatherParameters.HardRainNight)"
 GRIP = (
     "p = self.vehicle.get_physics_control(); w = list(p.wheels); [setattr(x, 'tire_friction', 9.0) for x in w]; "
@@ -76,17 +56,11 @@ ALONE = [
     ),
 ]
 AMONG_OTHERS = {
-    "destroys": ("others[0].destroy()", "out of the world"),
-    "moves": ("others[0].set_transform(self.route.waypoints[-1].transform)", "moved the actor"),
-    "controls": ("others[0].apply_control(carla.VehicleControl(throttle=1.0, steer=1.0))", "gave the actor"),
+    "destroys": ("self.others()[0].destroy()", "out of the world"),
+    "moves": ("self.others()[0].set_transform(self.route.waypoints[-1].transform)", "moved the actor"),
+    "controls": ("self.others()[0].apply_control(carla.VehicleControl(throttle=1.0, steer=1.0))", "gave the actor"),
     "ghost": ("self.vehicle.set_collisions(False)", "without a contact"),
 }
-
-
-def driver(folder: Path, name: str, *, at_setup: str = "pass", when: str = "> 20", deed: str, more: str = "") -> Path:
-    path = folder / f"{name}.py"
-    path.write_text(DRIVER.format(at_setup=at_setup, when=when, deed=deed, more=more))
-    return path
 
 
 @pytest.fixture(scope="module")
@@ -135,7 +109,7 @@ def to_a_light(as_own: carla.Client, tmp_path: Path) -> Path:
 def test_a_cheat_in_a_later_step_has_failed(
     to_a_light: Path, tmp_path: Path, *, at_setup: str, when: str, deed: str, more: str, sentence: str
 ) -> None:
-    agent = driver(tmp_path, "cheat", at_setup=at_setup, when=when, deed=deed, more=more)
+    agent = cheating_agent(tmp_path, "cheat", at_setup=at_setup, when=when, deed=deed, more=more)
     assert main(["run", str(agent), "--routes", str(to_a_light), "--output", str(tmp_path / "runs")]) == 1
     result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text())
     assert (result["status"], result["fault"]) == ("AgentCrashed", "agent"), result["message"]
@@ -144,8 +118,8 @@ def test_a_cheat_in_a_later_step_has_failed(
 
 def test_a_control_from_a_thread_is_a_cheat_or_has_no_effect(to_a_light: Path, tmp_path: Path) -> None:
     """The benchmark's own control is the last before most steps; where it is not, the run ends."""
-    agent = driver(tmp_path, "cheat", at_setup=START, when="> 999", deed="pass", more=THREAD)
-    honest = driver(tmp_path, "honest", when="> 999", deed="pass")
+    agent = cheating_agent(tmp_path, "cheat", at_setup=START, when="> 999", deed="pass", more=THREAD)
+    honest = cheating_agent(tmp_path, "honest", when="> 999", deed="pass")
     options = ["--routes", str(to_a_light), "--output", str(tmp_path / "runs")]
     assert main(["run", str(honest), *options]) == 0
     alone = read_history(tmp_path / "runs" / "latest")
@@ -169,7 +143,7 @@ def test_a_step_with_another_control_has_a_sentence() -> None:
 def among_others(ours: Ours, tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, Any]]:
     """What became of cheats that touch the other actors of a case."""
     folder = tmp_path_factory.mktemp("cheats")
-    agents = [str(driver(folder, name, deed=deed)) for name, (deed, _) in AMONG_OTHERS.items()]
+    agents = [str(cheating_agent(folder, name, deed=deed)) for name, (deed, _) in AMONG_OTHERS.items()]
     options = [word for agent in agents for word in ("--agent", agent)]
     case = "follow_leading_vehicle_1"
     with pytest.MonkeyPatch.context() as patch:

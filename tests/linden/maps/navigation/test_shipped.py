@@ -1,4 +1,4 @@
-"""The walking meshes that come with the package are those that the shipped maps give."""
+"""The shipped walking meshes equal the meshes that are made from the shipped maps."""
 
 import lzma
 from pathlib import Path
