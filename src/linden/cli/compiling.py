@@ -226,13 +226,13 @@ class FirstStart:
         from linden.scenery.ray_query import warm_up  # noqa: PLC0415 - as in driving
         from linden.sensors.compiling import OF_SENSORS, is_compiled  # noqa: PLC0415 - as in driving
 
-        meshes = ("scenery",) if scenery else ()
+        groups = ["scenery"] if scenery else []
         if is_compiled(OF_SENSORS, self._cache):
             warm_up()
-            if scenery:
-                self._background = Compiling(*meshes, background=True)
         else:
-            self._background = Compiling("rays", *meshes, "cameras", "sensors", background=True)
+            groups = ["rays", *groups, "cameras", "sensors"]
+        if groups:
+            self._background = Compiling(*groups, background=True)
 
     def await_sensors(self, pictures: bool) -> None:  # noqa: FBT001 - as SensorScene calls it
         """Wait until the kernels of rays, or of pictures, are compiled; any thread may call it."""

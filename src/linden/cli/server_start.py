@@ -75,10 +75,9 @@ def make_server(arguments: argparse.Namespace, first_start: FirstStart) -> Start
     first_start.step("the walking mesh")
     first_start.finish_physics()
     scene = simulation.episode.surroundings.scene
-    if arguments.map == HOME_MAP:
-        first_start.compile_sensors(scenery=not (has_bodies(cache) and has_standing(world_map, scene, cache)))
-    else:
-        first_start.compile_sensors(scenery=False)
+    is_home, is_kept = arguments.map == HOME_MAP, has_bodies(cache) and has_standing(world_map, scene, cache)
+    first_start.compile_sensors(scenery=is_home and not is_kept)
+    if not is_home:
         keep_bodies(simulation.library, cache)
         keep_standing(world_map, scene, cache)  # seconds, if it is not there yet
     server = Server(simulation, maps, frames, ports)
