@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import ctypes
 import io
 import random
-import signal
 import sys
 import threading
 import time
@@ -19,7 +17,6 @@ import numpy as np
 from basu.agents.calls import AgentCalls
 from basu.agents.loader import load_agent
 from basu.agents.process.channel import AgentsEnd, ChannelClosedError
-from basu.agents.process.confinement import confine
 from basu.agents.sensor_streams import SensorSilentError, SensorStreams
 from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, SimulatorError, UserError
 
@@ -30,7 +27,6 @@ if TYPE_CHECKING:
     from basu.agents.sensor_streams import SpawnedSensor
     from basu.routing import Route
 
-PR_SET_PDEATHSIG = 1  # Linux, prctl(2): this process gets a signal when its parent's thread is gone
 NAP_S = 0.0001  # between two looks for a snapshot that is under way
 KINDS: dict[type[BaseException], str] = {
     AgentCrashedError: "crashed",
@@ -233,17 +229,13 @@ def _with_waypoints(route: Route, places_m: Sequence[float], carla_map: carla.Ma
     return replace(route, waypoints=tuple(carla_map.get_waypoint_xodr(*triple) for triple in triples))
 
 
-def main() -> None:
-    """Serve the benchmark at the other end of the socket; its descriptor is the second argument."""
-    descriptor, is_of_main_thread = int(sys.argv[2]), sys.argv[3] == "1"
-    sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
-    if is_of_main_thread and sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    confine()
+def serve(descriptor: int, confinement: Sequence[str]) -> None:
+    """Serve the benchmark at the other end of a socket; the first message says what confines this process."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(line_buffering=True)  # what an agent said before it was killed is seen
     end = AgentsEnd(descriptor)
+    end.send([0, list(confinement)])
     number = 0
     child = Child(lambda: end.send([number, "begun"]))
     while True:
