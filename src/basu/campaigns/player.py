@@ -60,6 +60,7 @@ class PlayerSettings:
     vehicle: str | None
     step_limit_s: float
     agent_memory_gb: float | None
+    agent_writes: tuple[str, ...]
     scenario_files: tuple[Path, ...]
     metric_files: tuple[Path, ...]
     sample: float  # share of drives that leave a record in any case
@@ -94,7 +95,10 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
         UserError: an agent, a scenario's or a metric's file cannot be used here.
         SimulatorError: there is no simulator.
     """
-    agents = {typed: find_agent(typed, memory_gb=settings.agent_memory_gb) for typed in settings.agents}
+    agents = {
+        typed: find_agent(typed, memory_gb=settings.agent_memory_gb, writes=settings.agent_writes)
+        for typed in settings.agents
+    }
     library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
     with (
         simulator_for(RunOptions()) as simulator,
@@ -174,6 +178,7 @@ class _Player:
             metric_files=settings.metric_files,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
+            agent_writes=settings.agent_writes,
         )
         try:
             plan = self._plan(options, job)
@@ -213,6 +218,7 @@ class _Player:
             vehicle=settings.vehicle,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
+            agent_writes=settings.agent_writes,
         )
         weather = None if job["weather"] == AS_GIVEN else job["weather"]
         session = CaseSession(options, self._simulator, self._towns, pictures=False, weather=weather)

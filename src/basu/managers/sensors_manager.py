@@ -91,10 +91,15 @@ class SensorsManager(BaseManager):
             raise SimulatorError(str(error)) from error
 
     def close(self) -> None:
-        """Stop listening, let go of what was measured, and take the sensors away."""
-        if self._listener is not None and self._actors:
-            self._listener.stop_hearing()
-        self._streams.stop()
+        """Stop listening, let go of what was measured, and take the sensors away, whatever the agent's process says."""
+        try:
+            if self._listener is not None and self._actors:
+                self._listener.stop_hearing()
+        finally:
+            self._streams.stop()
+            self._take_away()
+
+    def _take_away(self) -> None:
         if not self._actors:
             return
         with contextlib.suppress(RuntimeError):  # the simulator is gone, and all sensors with it

@@ -71,13 +71,13 @@ class Memory(NamedTuple):
 class AgentProcess:
     """One process with its keeper (`basu.agents.process.keeper`), in a session of its own: Ctrl-C does not reach it."""
 
-    def __init__(self, memory: Memory | None = None, writable: tuple[Path, ...] = ()) -> None:
+    def __init__(self, memory: Memory | None = None, writable: tuple[str, ...] = ()) -> None:
         """Start the process; no call is sent yet. ``writable`` are folders in which it may write beside its own."""
         ours, theirs = socket.socketpair()
         self._control, kept = socket.socketpair()
         self._folder = Path(tempfile.mkdtemp(prefix="basu-agent-"))
         self._ooms = oom_kills()
-        may_write = [str(self._folder), *map(str, writable), *ALSO_WRITABLE]
+        may_write = [str(self._folder), *writable, *ALSO_WRITABLE]
         arguments = [json.dumps(sys.path), str(theirs.fileno()), str(kept.fileno()), json.dumps(may_write)]
         with theirs, kept:
             self._process = subprocess.Popen(  # noqa: S603 - our own command
@@ -116,6 +116,8 @@ class AgentProcess:
             OverLimitError: the agent's part took longer; the process was killed.
             CallError: the operation raised.
         """
+        if self._process.poll() is not None:
+            raise self._dead()
         if self._is_pending:
             begin_limit_s = PENDING_S
         if operation == "make":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import random
 import sys
 import threading
@@ -18,7 +19,14 @@ from basu.agents.calls import AgentCalls
 from basu.agents.loader import load_agent
 from basu.agents.process.channel import AgentsEnd, ChannelClosedError
 from basu.agents.sensor_streams import SensorSilentError, SensorStreams
-from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, SimulatorError, UserError
+from basu.errors import (
+    AgentCrashedError,
+    AgentInvalidControlError,
+    AgentTimedOutError,
+    BasuError,
+    SimulatorError,
+    UserError,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -33,9 +41,8 @@ KINDS: dict[type[BaseException], str] = {
     AgentTimedOutError: "timed out",
     AgentInvalidControlError: "invalid control",
     UserError: "user",
-    SimulatorError: "simulator",
 }
-"""What the benchmark's side makes the same errors of again; anything else is a bug of ours."""
+"""The kinds of failure that the benchmark's side tells apart. All are the agent's failures there."""
 
 
 class Wanted(NamedTuple):
@@ -199,6 +206,7 @@ class Child:
             self._address = place.address
             self._maps.clear()
         client = carla.Client(*place.address)
+        client.set_files_base_folder(os.environ.get("BASU_AGENT_FOLDER", ""))  # its cache of maps' files
         client.set_timeout(place.timeout_s)
         return client
 
@@ -255,4 +263,5 @@ def _answer(child: Child, operation: str, argument: Any) -> list[Any]:  # noqa: 
         for error_class, kind in KINDS.items():
             if isinstance(error, error_class):
                 return ["failed", kind, str(error), trace]
-        return ["failed", "other", f"{type(error).__name__}: {error}", trace]
+        text = str(error) if isinstance(error, BasuError) else f"{type(error).__name__}: {error}"
+        return ["failed", "other", text, trace]
