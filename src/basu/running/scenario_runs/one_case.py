@@ -140,7 +140,9 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
             session.simulator,
             replace(spec, config=agents.config),
             towns=session.towns,
-            sensors=lambda: SensorsManager(*sensors, late=agents.late_sensors, listener=agents),
+            sensors=lambda: SensorsManager(
+                *sensors, late=agents.late_sensors, listener=agents, by_agent=loaded.file is not None
+            ),
             participants=[agents],
             folder=folder,
         )
