@@ -1,6 +1,5 @@
 """A live simulator for the tests of whole runs, and a short piece of a Linden street to drive on."""
 
-import os
 import subprocess
 import sys
 import tempfile

@@ -94,7 +94,8 @@ def check_agent_process(*, in_process: bool, memory_gb: float | None, writes: tu
         UserError: there is to be none, and its memory is to be limited, or its writing widened.
     """
     if in_process and writes:
-        raise UserError("--agent-writes widens what the agent's own process may do, and --in-process gives it none; "
-                        "choose one")
+        raise UserError(
+            "--agent-writes widens what the agent's own process may do, and --in-process gives it none; choose one"
+        )
     if in_process and memory_gb is not None:
         raise UserError("--agent-memory limits the agent's own process, and --in-process gives it none; choose one")

@@ -118,33 +118,40 @@ class AgentProcess:
         """
         if self._process.poll() is not None:
             raise self._dead()
-        if self._is_pending:
-            begin_limit_s = PENDING_S
         if operation == "make":
             self._begin_run()
+        begin_limit_s = PENDING_S if self._is_pending else begin_limit_s
         self._number += 1
-        deadline_s = time.monotonic() + begin_limit_s
-        has_begun = False
         self._is_pending = True
         try:
-            if not self._channel.send((self._number, operation, argument), deadline_s):
+            if not self._channel.send((self._number, operation, argument), time.monotonic() + begin_limit_s):
                 raise self._hung(begin_limit_s)
-            while True:
-                answer = self._answer(deadline_s)
-                if answer is None:
-                    if has_begun:
-                        self.kill()
-                        raise OverLimitError
-                    raise self._hung(begin_limit_s)
-                if answer[0] != self._number:
-                    continue  # of a call that was interrupted
-                if answer[1] == "begun" and not has_begun:
-                    has_begun, deadline_s = True, time.monotonic() + limit_s + GRACE_S
-                    continue
-                self._is_pending = False
-                return _result(answer)
+            return self._awaited(begin_limit_s, limit_s)
         except (ChannelClosedError, LookupError, TypeError, ValueError) as error:
             raise self._dead() from error
+
+    def _awaited(self, begin_limit_s: float, limit_s: float) -> Any:  # noqa: ANN401 - as the operation has it
+        """What the operation that was sent returns.
+
+        Raises:
+            Death, OverLimitError, CallError: as ``call``.
+            ChannelClosedError, LookupError, TypeError, ValueError: the answer is none.
+        """
+        deadline_s, has_begun = time.monotonic() + begin_limit_s, False
+        while True:
+            answer = self._answer(deadline_s)
+            if answer is None:
+                if has_begun:
+                    self.kill()
+                    raise OverLimitError
+                raise self._hung(begin_limit_s)
+            if answer[0] != self._number:
+                continue  # of a call that was interrupted
+            if answer[1] == "begun" and not has_begun:
+                has_begun, deadline_s = True, time.monotonic() + limit_s + GRACE_S
+                continue
+            self._is_pending = False
+            return _result(answer)
 
     def kill(self) -> None:
         """End the process and all that it started, at once; what it has written in its own folder goes too."""

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 from basu.agents.process import confinement, namespaces
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    pass
 
 PR_SET_PDEATHSIG = 1  # prctl(2): this process gets a signal when its parent's thread is gone
 PR_SET_CHILD_SUBREAPER = 36
@@ -33,7 +33,9 @@ OUTPUT_BYTES = 1 << 20
 """What a run's agent may write to each of its two outputs; what exceeds it is thrown away."""
 CHUNK_BYTES = 1 << 16
 END_LIMIT_S = 2.0  # for killed processes to be gone
-LEFT_OUT = f"\nbasu: the agent wrote more than {OUTPUT_BYTES >> 20} MB in this run; the rest of its output is left out\n"
+LEFT_OUT = (
+    f"\nbasu: the agent wrote more than {OUTPUT_BYTES >> 20} MB in this run; the rest of its output is left out\n"
+)
 
 
 class Ended(NamedTuple):
@@ -47,7 +49,7 @@ def main() -> None:
     """Keep an agent's process: arguments are the descriptors of channel and control, and the writable folders."""
     channel, control, writable = int(sys.argv[2]), int(sys.argv[3]), json.loads(sys.argv[4])
     sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
-    os.set_inheritable(channel, False)  # noqa: FBT003 - the only argument it has
+    os.set_inheritable(channel, False)
     _set(PR_SET_CHILD_SUBREAPER, 1)
     has_namespaces = namespaces.enter()
     outputs = [os.pipe(), os.pipe()]
@@ -127,7 +129,7 @@ def _keep(child: int, control: int, outputs: list[int], ended: int | None) -> No
         last = _end_all(child)
         end = end or last
     if ended is not None:
-        os.set_blocking(ended, False)  # noqa: FBT003 - the only argument it has
+        os.set_blocking(ended, False)
         with contextlib.suppress(OSError, ValueError):
             end = Ended(*json.loads(os.read(ended, CHUNK_BYTES)))
     if end is not None:
@@ -140,7 +142,7 @@ def _watch(child: int, control: socket.socket, outputs: _Outputs) -> Ended | Non
     """Pass output on until the child has ended; None where the benchmark lets go before."""
     woken, waker = os.pipe()
     for descriptor in (woken, waker):
-        os.set_blocking(descriptor, False)  # noqa: FBT003 - the only argument it has
+        os.set_blocking(descriptor, False)
     signal.set_wakeup_fd(waker, warn_on_full_buffer=False)
     signal.signal(signal.SIGCHLD, lambda *_: None)
     poll = select.poll()
@@ -171,7 +173,7 @@ class _Outputs:
         self.open = dict(zip(descriptors, (1, 2), strict=True))
         self._left = dict.fromkeys(descriptors, OUTPUT_BYTES)
         for descriptor in descriptors:
-            os.set_blocking(descriptor, False)  # noqa: FBT003 - the only argument it has
+            os.set_blocking(descriptor, False)
 
     def begin(self) -> None:
         """Begin a run: its output is counted anew. What the run before has written is passed on first."""
@@ -195,9 +197,9 @@ class _Outputs:
             self.open.pop(descriptor, None)
             return False
         left = self._left[descriptor]
-        if left > 0:
+        if left >= 0:
             _write(self.open[descriptor], part[:left])
-            self._left[descriptor] = left - len(part)
+            self._left[descriptor] = max(-1, left - len(part))
             if len(part) > left:
                 _write(2, LEFT_OUT.encode())
         return True

@@ -65,11 +65,12 @@ class AgentInProcess(NamedTuple):
         return kept
 
     @property
-    def confinement(self) -> tuple[str, ...]:
-        """The parts of the confinement that hold for its process (`basu.agents.process.confinement`)."""
-        return self.process().confinement or ()
+    def confinement(self) -> list[str]:
+        """The parts of the confinement of its process that the kernel enforces (`basu.agents.process.confinement`)."""
+        return list(_enforced)
 
 
+_enforced: list[str] = []  # the same for all agents of a machine
 FoundAgent = LoadedAgent | AgentInProcess
 
 _kept: dict[tuple[str, Memory | None, tuple[str, ...]], AgentProcess] = {}
@@ -101,7 +102,9 @@ def find_agent(
     )
     agent = AgentInProcess("", file, "", False, wanted, agent_config, memory, writes)
     try:
-        found = agent.process().call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)
+        process = agent.process()
+        found = process.call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)
+        _enforced[:] = process.confinement or ()
     except OverLimitError:
         raise UserError(f"the agent's file {wanted} was not loaded within {LOAD_LIMIT_S:g} s") from None
     except Death as death:
