@@ -93,6 +93,7 @@ SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first 
 PEDALS_AND_WHEEL = (("throttle", 0.0), ("steer", -1.0), ("brake", 0.0))  # with the lowest value; the highest is 1
 SWITCHES = ("hand_brake", "reverse", "manual_gear_shift")
 PAIR = 2
+WRITES = "; an agent writes in the folder $BASU_AGENT_FOLDER, and elsewhere with --agent-writes DIR"
 
 
 class AgentCalls:
@@ -239,9 +240,10 @@ class AgentCalls:
     def _crashed(self, method: str, error: BaseException) -> AgentCrashedError:
         """The failure that an exception in a method is."""
         where = traceback.extract_tb(error.__traceback__)[-1]
+        hint = WRITES if isinstance(error, PermissionError) and not self._is_ours else ""
         return AgentCrashedError(
             f"{method}() of {self.name} raised {type(error).__name__}: {error} "
-            f"(line {where.lineno} of {where.filename})"
+            f"(line {where.lineno} of {where.filename}){hint}"
         )
 
 

@@ -189,10 +189,12 @@ class _Player:
         except (UserError, AgentError, SimulatorError) as error:
             return self._not_begun(error)
         result = done.result
+        contacts = result.metrics.get("collisions") or {"at_fault": 0}
         success = None
-        if done.outcome.status.fault in JUDGED:
-            contacts = result.metrics.get("collisions") or {"at_fault": 0}
-            success = done.outcome.status is Status.COMPLETED and contacts["at_fault"] == 0
+        if contacts["at_fault"] > 0:  # no fault that follows takes it back
+            success = False
+        elif done.outcome.status.fault in JUDGED:
+            success = done.outcome.status is Status.COMPLETED
         row = {
             **_verdict(success, 1.0 if result.scores is None else 1.0 - result.scores.driving),
             **metric_values(result, self._own),

@@ -112,8 +112,9 @@ def find_agent(
     except CallError as error:
         raise UserError(error.sentence[:LONGEST_SENTENCE]) from _there(error)
     try:
-        names = {key: _name(found[key]) for key in ("name", "class_name")}
-        return agent._replace(**names, is_human=found["is_human"] is True)
+        return agent._replace(
+            name=_name(found["name"]), class_name=_name(found["class_name"]), is_human=found["is_human"] is True
+        )
     except (LookupError, TypeError) as error:
         raise UserError(f"the agent {wanted} does not load: its process gave it no name; mend its file") from error
 
