@@ -142,7 +142,7 @@ def _collisions(played: Played) -> tuple[Collision, ...]:
 
 
 def _unsafe(assessment: Assessment, outcome: Outcome) -> tuple[Verdict, str] | None:
-    """The verdict of a drive whose record is unsafe: no fault that follows takes it back."""
+    """The verdict of an unsafe record: no fault that follows takes it back."""
     if assessment.safe.holds is not False:
         return None
     later = _fault(outcome)

@@ -1,8 +1,8 @@
 """How an agent's process ended, and whether the kernel's record says that others took the machine's memory.
 
-A process may kill itself, or have itself killed by what it started. So a SIGKILL is the agent's failure unless the
-kernel recorded a kill for want of memory in the benchmark's control group (cgroup), and the agent's own processes held
-little of that memory.
+A process may kill itself, or have itself killed by what it started. So a SIGKILL is the agent's failure, with one
+exception. The kernel recorded a kill for want of memory in the benchmark's control group (cgroup), and the agent's own
+processes held little of that memory.
 """
 
 from __future__ import annotations

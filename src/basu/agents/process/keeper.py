@@ -244,7 +244,7 @@ def _end_all(child: int) -> Ended | None:
 
 
 def _children() -> list[int]:
-    """The children of this process; none where ``/proc`` shows another namespace, whose first process ends them."""
+    """The children of this process; none where ``/proc`` shows another namespace, which ends its own."""
     own, found = os.getpid(), []
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError, IndexError):

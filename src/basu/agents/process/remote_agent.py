@@ -193,9 +193,8 @@ class RemoteAgent:
         ``sensor_data`` is not sent: the agent's process has its own.
 
         Raises:
-            AgentError: it failed, took too long, died, or answered with what is no control. A sensor or a frame that
-                its process did not hear of is its failure too: the benchmark's own client tells whether the simulator
-                is there.
+            AgentError: it failed, took too long, died, or answered with what is no control. So is a sensor or
+                a frame that did not reach its process. The benchmark's own client tells whether the simulator is there.
         """
         assert self._hears or not sensor_data, "the SensorsManager of this run lacks its listener"
         answer = self._call("step", frame, "run_step", self._step_limit_s, self._step_begins_s)
