@@ -157,7 +157,7 @@ def drives(output: Path) -> dict[str, tuple[bytes, dict[str, Any], dict[str, Any
     """The bytes of each drive of the newest run, its result and its config, without wall times."""
     found = {}
     for path in (output / "latest").glob("*/*/result.json"):
-        result = json.loads(path.read_text(encoding="utf-8")) | {"wall_s": 0.0}
+        result = json.loads(path.read_text(encoding="utf-8")) | {"wall_s": 0.0, "confinement": None}
         config = json.loads(path.with_name("config.json").read_text(encoding="utf-8")) | {"session": None}
         found[result["id"]] = (path.with_name("history.parquet").read_bytes(), result, config)
     return found
