@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+BENCHMARK = "0"  # for the fixture ``kills``: the process that drives the agent, whose number an agent cannot know
+
 AGENT = """
 import threading, time
 

@@ -36,6 +36,10 @@ class AgentTimedOutError(AgentError):
     """The agent took longer than its limit over one call."""
 
 
+class AgentEndedOutsideError(AgentError):
+    """The system ended the agent's process for want of memory that others used: no failure of the agent's."""
+
+
 class AgentInvalidControlError(AgentError):
     """The agent returned something that is not a usable ``carla.VehicleControl``."""
 

@@ -35,6 +35,7 @@ class Status(enum.Enum):
     SCENARIO_TIMEOUT = "ScenarioTimeout"  # the simulated time for the scenario was used up
     STOPPED = "Stopped"  # --stop-after ended the drive before the end of its route
     SETUP_FAILED = "SetupFailed"
+    ENDED_FROM_OUTSIDE = "EndedFromOutside"  # the machine ran out of memory that others than the agent used
     SIMULATOR_FAILED = "SimulatorFailed"
     BENCHMARK_FAILED = "BenchmarkFailed"
     INTERRUPTED = "Interrupted"
@@ -57,6 +58,7 @@ FAULT_OF = {
     Status.SCENARIO_TIMEOUT: Fault.AGENT,
     Status.STOPPED: Fault.NONE,
     Status.SETUP_FAILED: Fault.SETUP,
+    Status.ENDED_FROM_OUTSIDE: Fault.SETUP,
     Status.SIMULATOR_FAILED: Fault.SIMULATOR,
     Status.BENCHMARK_FAILED: Fault.BENCHMARK,
     Status.INTERRUPTED: Fault.USER,

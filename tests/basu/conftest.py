@@ -1,8 +1,8 @@
 """A live simulator for the tests of whole runs, and a short piece of a Linden street to drive on."""
 
-import os
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, nullcontext, suppress
 from pathlib import Path
@@ -59,11 +59,27 @@ def _agents_write_their_coverage() -> Iterator[None]:
 
 
 KILLER = """
-import os, sys
+import os, socket, struct, sys
+
+import psutil
+
+orders = socket.socket(socket.AF_UNIX)
+orders.bind(sys.argv[1])
+orders.listen()
+print(flush=True)
 while True:
-    for line in open(sys.argv[1]):
-        os.kill(*map(int, line.split()))
-        open(sys.argv[2], "w").close()
+    agent, _ = orders.accept()
+    pid, number = map(int, agent.recv(100).split())
+    if pid == 0:  # the benchmark: the first above the agent's process and its keeper, which share their command
+        own = psutil.Process(struct.unpack("3i", agent.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))[0])
+        command = own.cmdline()
+        while own.cmdline() == command:
+            own = own.parent()
+        pid = own.pid
+        with open(sys.argv[2], "w") as note:
+            note.write(" ".join(str(child.pid) for child in own.children()))
+    os.kill(pid, number)
+    agent.close()
 """
 Kills = Callable[[str, str], str]
 
@@ -72,18 +88,23 @@ Kills = Callable[[str, str], str]
 def kills(tmp_path: Path) -> Iterator[Kills]:
     """Code for an agent that has a signal sent by another process: the kernel lets its own signal none but its own.
 
-    The arguments are code as well, of a process's id and a signal. The code waits until the signal is sent.
+    The arguments are code as well, of a process's id (or ``BENCHMARK``) and a signal. The code waits until the signal
+    is sent. The file ``children`` in ``tmp_path`` then holds the ids of the benchmark's children.
     """
-    orders, done = tmp_path / "orders", tmp_path / "done"
-    os.mkfifo(orders)
-    os.mkfifo(done)
-    with subprocess.Popen([sys.executable, "-c", KILLER, str(orders), str(done)]) as killer:
-        yield (
-            lambda pid, name: (
-                f"open({str(orders)!r}, 'w').write(f'{{{pid}}} {{int({name})}}\\n'); open({str(done)!r}).read()"
+    with tempfile.TemporaryDirectory() as short:  # the path of a socket has 107 characters at most
+        orders = Path(short) / "orders"
+        with subprocess.Popen(
+            [sys.executable, "-c", KILLER, str(orders), str(tmp_path / "children")], stdout=subprocess.PIPE
+        ) as killer:
+            assert killer.stdout is not None
+            killer.stdout.readline()
+            yield (
+                lambda pid, name: (
+                    f"import socket; ask = socket.socket(socket.AF_UNIX); ask.connect({str(orders)!r}); "
+                    f"ask.sendall(f'{{{pid}}} {{int({name})}}'.encode()); ask.recv(1)"
+                )
             )
-        )
-        killer.kill()
+            killer.kill()
 
 
 @pytest.fixture(scope="session")

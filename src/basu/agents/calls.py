@@ -91,7 +91,9 @@ def _call_abandoned(limit_s: float, function: Callable[[], T]) -> T:
 
 SETUP_LIMIT_S = 120.0  # a driver may load a network's weights before the first tick, not during it
 PEDALS_AND_WHEEL = (("throttle", 0.0), ("steer", -1.0), ("brake", 0.0))  # with the lowest value; the highest is 1
+SWITCHES = ("hand_brake", "reverse", "manual_gear_shift")
 PAIR = 2
+WRITES = "; an agent writes in the folder $BASU_AGENT_FOLDER, and elsewhere with --agent-writes DIR"
 
 
 class AgentCalls:
@@ -212,10 +214,17 @@ class AgentCalls:
         return checked(answer, self.name)
 
     def destroy(self) -> None:
-        """Let the agent put its things away, where it was bound."""
+        """Let the agent put its things away, where it was bound.
+
+        Raises:
+            AgentError: it failed, which changes no outcome.
+        """
         if self._is_bound:
             self._is_bound = False
-            self._call("destroy", self._setup_limit_s, self.agent.destroy)
+            try:
+                self._call("destroy", self._setup_limit_s, self.agent.destroy)
+            except UserError as error:
+                raise self._crashed("destroy", error) from error
 
     def _call(self, method: str, limit_s: float, call: Callable[[], T]) -> T:
         """One call of the agent's code; what goes wrong in it is the agent's."""
@@ -231,9 +240,10 @@ class AgentCalls:
     def _crashed(self, method: str, error: BaseException) -> AgentCrashedError:
         """The failure that an exception in a method is."""
         where = traceback.extract_tb(error.__traceback__)[-1]
+        hint = WRITES if isinstance(error, PermissionError) and not self._is_ours else ""
         return AgentCrashedError(
             f"{method}() of {self.name} raised {type(error).__name__}: {error} "
-            f"(line {where.lineno} of {where.filename})"
+            f"(line {where.lineno} of {where.filename}){hint}"
         )
 
 
@@ -243,7 +253,9 @@ def timed_out(method: str, name: str, limit_s: float) -> AgentTimedOutError:
 
 
 def checked(answer: object, name: str) -> carla.VehicleControl:
-    """The answer of ``run_step`` with its values brought into range, as CARLA does.
+    """The answer of ``run_step`` as a control of its own, with its values brought into range, as CARLA does.
+
+    Each value is read once: a subclass could give another one to each reader.
 
     Raises:
         AgentInvalidControlError: it is no ``carla.VehicleControl``, or a value is not a finite number.
@@ -251,13 +263,20 @@ def checked(answer: object, name: str) -> carla.VehicleControl:
     if not isinstance(answer, carla.VehicleControl):
         what = "None" if answer is None else f"a {type(answer).__name__}"
         raise AgentInvalidControlError(f"run_step() of {name} returned {what}; it must return a carla.VehicleControl")
+    try:
+        numbers = {value_name: float(getattr(answer, value_name)) for value_name, _ in PEDALS_AND_WHEEL}
+        flags = {flag: bool(getattr(answer, flag)) for flag in SWITCHES}
+        control = carla.VehicleControl(gear=int(answer.gear), **flags)
+    except Exception as error:  # a property of a subclass may raise anything
+        raise AgentInvalidControlError(
+            f"run_step() of {name} returned a control that cannot be read: {type(error).__name__}: {error}"
+        ) from error
     for value_name, low in PEDALS_AND_WHEEL:
-        value = getattr(answer, value_name)
+        value = numbers[value_name]
         if not math.isfinite(value):
             raise AgentInvalidControlError(f"run_step() of {name} returned a control with {value_name} {value}")
-        if not low <= value <= 1.0:
-            setattr(answer, value_name, min(1.0, max(low, value)))
-    return answer
+        setattr(control, value_name, min(1.0, max(low, value)))
+    return control
 
 
 def route_point(place: object) -> RoutePoint:

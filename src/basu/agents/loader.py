@@ -54,6 +54,11 @@ class LoadedAgent(NamedTuple):
         return self.agent_class.__name__
 
     @property
+    def confinement(self) -> None:
+        """What confines the agent: nothing, since it runs in the benchmark's process."""
+        return
+
+    @property
     def is_human(self) -> bool:
         """Whether a person drives at first."""
         return self.agent_class.driven_by_person

@@ -83,6 +83,7 @@ def player_settings(plan: CampaignPlan, folder: Path, settings: RunSettings) -> 
         vehicle=campaign.vehicle,
         step_limit_s=campaign.step_limit_s,
         agent_memory_gb=campaign.agent_memory_gb,
+        agent_writes=campaign.agent_writes,
         scenario_files=plan.scenario_files,
         metric_files=plan.metric_files,
         sample=campaign.keep.sample,

@@ -89,7 +89,7 @@ def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:
     else:
         digest = ""
     try:
-        found = find_agent(typed, memory_gb=campaign.agent_memory_gb)
+        found = find_agent(typed, memory_gb=campaign.agent_memory_gb, writes=campaign.agent_writes)
     except UserError as error:
         raise UserError(f"{source}: {error}") from None
     if found.is_human:

@@ -60,6 +60,7 @@ class PlayerSettings:
     vehicle: str | None
     step_limit_s: float
     agent_memory_gb: float | None
+    agent_writes: tuple[str, ...]
     scenario_files: tuple[Path, ...]
     metric_files: tuple[Path, ...]
     sample: float  # share of drives that leave a record in any case
@@ -94,7 +95,10 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
         UserError: an agent, a scenario's or a metric's file cannot be used here.
         SimulatorError: there is no simulator.
     """
-    agents = {typed: find_agent(typed, memory_gb=settings.agent_memory_gb) for typed in settings.agents}
+    agents = {
+        typed: find_agent(typed, memory_gb=settings.agent_memory_gb, writes=settings.agent_writes)
+        for typed in settings.agents
+    }
     library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
     with (
         simulator_for(RunOptions()) as simulator,
@@ -174,6 +178,7 @@ class _Player:
             metric_files=settings.metric_files,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
+            agent_writes=settings.agent_writes,
         )
         try:
             plan = self._plan(options, job)
@@ -184,10 +189,12 @@ class _Player:
         except (UserError, AgentError, SimulatorError) as error:
             return self._not_begun(error)
         result = done.result
+        contacts = result.metrics.get("collisions") or {"at_fault": 0}
         success = None
-        if done.outcome.status.fault in JUDGED:
-            contacts = result.metrics.get("collisions") or {"at_fault": 0}
-            success = done.outcome.status is Status.COMPLETED and contacts["at_fault"] == 0
+        if contacts["at_fault"] > 0:  # no fault that follows takes it back
+            success = False
+        elif done.outcome.status.fault in JUDGED:
+            success = done.outcome.status is Status.COMPLETED
         row = {
             **_verdict(success, 1.0 if result.scores is None else 1.0 - result.scores.driving),
             **metric_values(result, self._own),
@@ -213,6 +220,7 @@ class _Player:
             vehicle=settings.vehicle,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
+            agent_writes=settings.agent_writes,
         )
         weather = None if job["weather"] == AS_GIVEN else job["weather"]
         session = CaseSession(options, self._simulator, self._towns, pictures=False, weather=weather)

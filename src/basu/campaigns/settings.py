@@ -164,6 +164,7 @@ class Campaign(Table):
     vehicle: str | None = None
     step_limit_s: Annotated[float, Field(gt=0.0)] = 10.0
     agent_memory_gb: Annotated[float | None, Field(gt=0.0)] = None
+    agent_writes: tuple[str, ...] = ()
     scenario_files: tuple[str, ...] = ()
     metric_files: tuple[str, ...] = ()
     scoring: dict[str, Any] = {}

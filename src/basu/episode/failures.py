@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from basu.errors import (
     AgentCrashedError,
+    AgentEndedOutsideError,
     AgentError,
     AgentInvalidControlError,
     AgentTimedOutError,
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 
 STATUS_OF: dict[type[AgentError], Status] = {
     AgentCrashedError: Status.AGENT_CRASHED,
+    AgentEndedOutsideError: Status.ENDED_FROM_OUTSIDE,
     AgentTimedOutError: Status.AGENT_TIMED_OUT,
     AgentInvalidControlError: Status.AGENT_INVALID_CONTROL,
 }

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from basu.errors import AgentCrashedError, UserError
+from basu.managers.base_manager import Frame, ego_in
 from basu.managers.guarded_values import every_value, physics_values, weather_values
 from basu.managers.interference import DRIFT_M, JUMP_M, LightsCheck, OthersCheck, agents_change, is_same_control
 from basu.managers.overlap_check import HEARD_TICKS, OverlapCheck
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     import carla
     from numpy.typing import NDArray
 
-    from basu.managers.base_manager import Ego, Frame, Run
+    from basu.managers.base_manager import Ego, Run
 
 DRIFT_TICKS = 20
 """Steps in which ways beyond what the velocities explain are summed up, for many small jumps."""
@@ -68,6 +69,20 @@ class Conduct:
             if run.neighbours is not None:
                 self._others = OthersCheck(run.neighbours, run.changes, run.step_s)
             self._lights = LightsCheck(run.world, run.route, run.changes, run.step_s)
+            self._begin_before_setup(run)
+
+    def _begin_before_setup(self, run: Run) -> None:
+        """Take the world before the agent's setup as the frame before the first one: setup is under the drive's rules.
+
+        The vehicle stands then, and the step to the first frame is the only one until the agent's first answer.
+        """
+        snapshot = run.world.get_snapshot()
+        seen = snapshot.find(run.vehicle.id)
+        if seen is None:
+            return
+        self._last = Frame(-1, snapshot.frame, snapshot, ego_in(seen))
+        for check in (self._others and self._others.fault(self._last), self._lights and self._lights.fault()):
+            assert check is None, "there is nothing to compare with yet"
 
     def set_up(self) -> None:
         """Check the world after the agent's setup.
@@ -77,6 +92,10 @@ class Conduct:
         """
         if self._run is None:
             return
+        if self._last is not None:
+            now = self._run.world.get_snapshot().frame
+            if now != self._last.server_frame:
+                raise AgentCrashedError(f"during setup() {ticked(self._name, self._last.server_frame, now)}")
         changed = self._changed(every_value(self._run))
         if changed:
             raise AgentCrashedError(

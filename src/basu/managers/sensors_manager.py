@@ -9,7 +9,7 @@ import carla
 
 from basu.agents.sensor_file import SensorSpec, check_sensors
 from basu.agents.sensor_streams import ON_EVENT, SensorSilentError, SensorStreams, SpawnedSensor
-from basu.errors import SimulatorError, UserError
+from basu.errors import AgentCrashedError, BasuError, SimulatorError, UserError
 from basu.managers.base_manager import BaseManager
 
 if TYPE_CHECKING:
@@ -36,6 +36,7 @@ class SensorsManager(BaseManager):
         *,
         listener: SensorListener | None = None,
         is_watched: bool = False,
+        by_agent: bool = False,
     ) -> None:
         """Take a sensor set.
 
@@ -44,10 +45,12 @@ class SensorsManager(BaseManager):
             source: what complaints begin with: where the set comes from.
             late: gives more sensors once the agent is set up.
             listener: receives the measurements for the agent, maybe in its own process.
+            by_agent: whether a set that cannot be served is the agent's failure, and not the set-up's.
             is_watched: whether a window or a viewer shows the measurements, so that they are received here as well.
         """
         self._specs, self._source, self._late = specs, source, late
         self._listener, self._is_watched = listener, is_watched
+        self._refusal: type[BasuError] = AgentCrashedError if by_agent else UserError
         self._client: Any = None
         self._world: Any = None
         self._actors: list[Any] = []
@@ -72,7 +75,10 @@ class SensorsManager(BaseManager):
             return
         self._client, self._world = run.client, run.world
         library = run.world.get_blueprint_library()
-        check_sensors(self._specs, library, self._source)
+        try:
+            check_sensors(self._specs, library, self._source)
+        except UserError as error:
+            raise self._refusal(str(error)) from error
         self._timeout_s = run.timeout_s
         self._streams = SensorStreams(run.timeout_s)
         sensors = [self._spawned(spec, _blueprint(library, spec, run.seed), run) for spec in self._specs]
@@ -91,10 +97,15 @@ class SensorsManager(BaseManager):
             raise SimulatorError(str(error)) from error
 
     def close(self) -> None:
-        """Stop listening, let go of what was measured, and take the sensors away."""
-        if self._listener is not None and self._actors:
-            self._listener.stop_hearing()
-        self._streams.stop()
+        """Stop listening, let go of what was measured, and take the sensors away, whatever the agent's process says."""
+        try:
+            if self._listener is not None and self._actors:
+                self._listener.stop_hearing()
+        finally:
+            self._streams.stop()
+            self._take_away()
+
+    def _take_away(self) -> None:
         if not self._actors:
             return
         with contextlib.suppress(RuntimeError):  # the simulator is gone, and all sensors with it
@@ -123,12 +134,12 @@ class SensorsManager(BaseManager):
         """Calls for one sensor; a refusal is the set's fault.
 
         Raises:
-            UserError: the simulator refused.
+            AgentCrashedError, UserError: the simulator refused.
         """
         try:
             yield
         except RuntimeError as error:
-            raise UserError(
+            raise self._refusal(
                 f"{self._source}: sensor '{spec.id}' ({spec.type_id}) cannot be served by this simulator: {error}"
             ) from error
 

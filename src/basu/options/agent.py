@@ -35,6 +35,15 @@ AgentMemory = Annotated[
         default_text="no limit",
     ),
 ]
+AgentWrites = Annotated[
+    tuple[str, ...],
+    Option(
+        help="let the agent's process write in this folder too, beside its own; may be given several times",
+        group=AGENT,
+        flag="--agent-writes",
+        metavar="DIR",
+    ),
+]
 Debug = Annotated[bool, Option(help="show the traceback of an agent that fails", group=AGENT, repeats=False)]
 
 
@@ -65,23 +74,28 @@ class AgentOptions(Settings):
     step_limit_s: StepLimit = 10.0
     in_process: InProcess = False
     agent_memory_gb: AgentMemory = None
+    agent_writes: AgentWrites = ()
     debug: Debug = False
 
     def check(self) -> None:
         """Check the options of the agent's process.
 
         Raises:
-            UserError: there is to be none, and its memory is to be limited.
+            UserError: as ``check_agent_process``.
         """
-        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
+        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb, writes=self.agent_writes)
         super().check()
 
 
-def check_agent_process(*, in_process: bool, memory_gb: float | None) -> None:
+def check_agent_process(*, in_process: bool, memory_gb: float | None, writes: tuple[str, ...]) -> None:
     """Check the options of the agent's process.
 
     Raises:
-        UserError: there is to be none, and its memory is to be limited.
+        UserError: there is to be none, and its memory is to be limited, or its writing widened.
     """
+    if in_process and writes:
+        raise UserError(
+            "--agent-writes widens what the agent's own process may do, and --in-process gives it none; choose one"
+        )
     if in_process and memory_gb is not None:
         raise UserError("--agent-memory limits the agent's own process, and --in-process gives it none; choose one")

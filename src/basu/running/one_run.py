@@ -96,7 +96,11 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         spec,
         towns=session.towns,
         sensors=lambda: SensorsManager(
-            *session.plan.sensors, late=agents.late_sensors, listener=agents, is_watched=watched
+            *session.plan.sensors,
+            late=agents.late_sensors,
+            listener=agents,
+            is_watched=watched,
+            by_agent=session.plan.loaded.file is not None,
         ),
         participants=[agents],
         observers=observers,

@@ -66,7 +66,11 @@ def prepare(options: RunOptions, given: FoundAgent | None = None) -> Plan:
         UserError, AgentError: nothing can be started like this.
     """
     loaded = given or find_agent(
-        options.agent, options.agent_config, in_process=options.in_process, memory_gb=options.agent_memory_gb
+        options.agent,
+        options.agent_config,
+        in_process=options.in_process,
+        memory_gb=options.agent_memory_gb,
+        writes=options.agent_writes,
     )
     agents = new_agents(loaded, options, options.seed)
     config = agents.config

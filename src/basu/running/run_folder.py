@@ -58,7 +58,12 @@ def run_config(
     return {
         **config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description)),
         "started": started.isoformat(timespec="seconds"),
-        "agent": {"name": loaded.name, "class": loaded.class_name, "file": options.agent},
+        "agent": {
+            "name": loaded.name,
+            "class": loaded.class_name,
+            "file": options.agent,
+            "confinement": loaded.confinement,
+        },
         "agent_config": asdict(wishes),
         "route": description.id,
         "town": description.town,

@@ -22,7 +22,8 @@ ASSUMPTIONS = (
     "The burden is that of people driving light vehicles, whatever drove here.",
     "A failed case is charged the group's mean crash cost, whether it was a scratch or a near miss.",
     "NOT_EXERCISED counts for neither side in the first figure, and as not passed in the figure for all crashes.",
-    "An agent that broke down has not passed; cases spoiled by simulator, set-up, benchmark or by hand are left out.",
+    "An agent that broke down has not passed.",
+    "Cases spoiled by simulator, set-up, benchmark or by hand, or not played, count as NOT_EXERCISED ones do.",
     "Control loss and road departure have no other actor: a driver without perception passes them as well.",
     "The shuttle's own situations are not in the typology and weigh nothing.",
     "Not covered: backing up, vehicle failure, evasive action, crashes with objects, and speeds above a shuttle's.",
@@ -48,6 +49,19 @@ def results_from(documents: Iterable[Mapping[str, Any]]) -> list[Result]:
     ]
 
 
+def not_played(about: Mapping[str, Any]) -> Result:
+    """The result of a case of the suite that was not played, by the facts of the case."""
+    return Result(
+        case=about["id"],
+        scenario=about["scenario"],
+        group=Group(about["group"]),
+        verdict=Verdict.INTERRUPTED,
+        message="not played: the run was interrupted before",
+        margins={},
+        pre_crash=tuple(about["pre_crash"]),
+    )
+
+
 def shares_to_json(found: CrashShares) -> dict[str, Any]:
     """Plain values, with the tables' figures and the assumptions beside them."""
     return {
@@ -57,6 +71,8 @@ def shares_to_json(found: CrashShares) -> dict[str, Any]:
         "share_of_equivalent_lives": _plain(found.equivalent_lives),
         "shown_of_cost": _plain(found.shown_cost),
         "measured_of_cost": found.measured_of_cost,
+        "cases": found.cases,
+        "judged": found.judged,
         "groups": [
             {
                 "group": share.group.value,
@@ -88,12 +104,13 @@ def shares_to_json(found: CrashShares) -> dict[str, Any]:
 
 def sentence(found: CrashShares) -> str:
     """The score in a sentence."""
+    judged = f"{found.judged} of {found.cases} cases judged"
     if found.cost is None:
-        return "no group of the typology was exercised, so nothing can be said about crashes"
+        return f"{judged}: no group of the typology was exercised, so nothing can be said about crashes"
     number = len(BURDENS) - len(found.unmeasured)
     groups = "the one group exercised, which is" if number == 1 else f"the {number} groups exercised, which are"
     text = (
-        f"it passes situations that stand for {_percent(found.cost)} of the crash cost of {groups} "
+        f"{judged}: it passes situations that stand for {_percent(found.cost)} of the crash cost of {groups} "
         f"{100.0 * found.measured_of_cost:.0f} % of all, and shows {_percent(found.shown_cost)} of all crash cost"
     )
     if found.unmeasured:

@@ -5,8 +5,8 @@ is represented by the BASU scenarios that stand for it, in equal parts; a BASU s
 Each group then weighs by what its crashes take in a year: cost, crashes, fatal crashes, equivalent lives.
 
 Two figures come of this. *Of the exercised*: the passed part of the cases in which the conflict came about. *Shown*:
-the passed part of all played cases, over all nine groups; what was not exercised, not represented or not played counts
-as not passed. Absence from a conflict cannot raise the second figure.
+the passed part of all cases of the suite, over all nine groups; what was not exercised, not represented, not played or
+not judged counts as not passed. Absence from a conflict cannot raise the second figure, and no fault can.
 
 Intervals are those of Wilson 1927 at 95 % for each scenario's cases, combined over scenarios by the method of variance
 estimates recovery (Zou and Donner 2008, equation 5). They cover the number of cases alone.
@@ -60,7 +60,7 @@ class GroupShare(NamedTuple):
 
     group: Group
     passed: Estimate | None  # of the exercised cases; None where none was exercised
-    shown: Estimate  # of all played cases, and of all crashes of the group
+    shown: Estimate  # of all cases of the suite, and of all crashes of the group
     scenarios: int  # with at least one case that counts
     cases: int  # that count
     not_exercised: int
@@ -88,7 +88,9 @@ class CrashShares(NamedTuple):
     not_exercised: int
     collisions: int
     at_fault: int
-    left_out: tuple[Result, ...]  # for faults of others
+    left_out: tuple[Result, ...]  # for faults of others, and not played
+    cases: int  # of the suite
+    judged: int  # of them, passed or failed
     narrowest: tuple[Narrowest, ...]  # by scenario, in the order in which they come
 
 
@@ -114,7 +116,7 @@ def crash_shares(results: Sequence[Result]) -> CrashShares:
     absent = [result for result in results if result.verdict is Verdict.NOT_EXERCISED]
     played = [*counted, *absent]
     exercised = {group: _strata(group, counted) for group in Group}
-    shown = {group: _strata(group, played, whole_group=True) for group in Group}
+    shown = {group: _strata(group, results, whole_group=True) for group in Group}
     measured = [group for group in BURDENS if exercised[group]]
     return CrashShares(
         groups=tuple(
@@ -134,6 +136,8 @@ def crash_shares(results: Sequence[Result]) -> CrashShares:
         at_fault=sum(result.at_fault for result in results),
         left_out=tuple(result for result in results if result not in played),
         narrowest=_narrowest(counted),
+        cases=len(results),
+        judged=len(counted),
     )
 
 

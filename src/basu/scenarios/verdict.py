@@ -1,7 +1,7 @@
 """The verdict about a case: the policy's three answers as one word, kept apart from faults that are not the driving.
 
-SUCCESS is safe, completed and exercised. FAILURE is unsafe, or exercised and not completed. NOT_EXERCISED is safe where
-the conflict never came about; it counts for neither side. See `basu.scenarios.policy`.
+SUCCESS is safe, completed and exercised. FAILURE is unsafe, whatever ended the drive, or exercised and not completed.
+NOT_EXERCISED is safe where the conflict never came about; it counts for neither side. See `basu.scenarios.policy`.
 """
 
 from __future__ import annotations
@@ -113,7 +113,8 @@ def judge(
     begun = exercised(played) if triggered else Finding(False, "the ego never came to where the conflict begins")
     assessment = assess(deciding, judgements, outcome, begun)
     verdict, message = (
-        _fault(outcome)
+        _unsafe(assessment, outcome)
+        or _fault(outcome)
         or _never_triggered(played, triggered=triggered)
         or _of_driving(assessment, judgements[: len(criteria)])
     )
@@ -140,6 +141,15 @@ def _collisions(played: Played) -> tuple[Collision, ...]:
     return tuple(found)
 
 
+def _unsafe(assessment: Assessment, outcome: Outcome) -> tuple[Verdict, str] | None:
+    """The verdict of an unsafe record: no fault that follows takes it back."""
+    if assessment.safe.holds is not False:
+        return None
+    later = _fault(outcome)
+    sentence = assessment.safe.sentence
+    return Verdict.FAILURE, sentence if later is None else f"{sentence}; afterwards {later[1]}"
+
+
 def _fault(outcome: Outcome) -> tuple[Verdict, str] | None:
     """The verdict of a run that something other than the driving decided."""
     if outcome.status in BROKEN:
@@ -163,9 +173,7 @@ def _never_triggered(played: Played, *, triggered: bool) -> tuple[Verdict, str] 
 
 def _of_driving(assessment: Assessment, judgements: Sequence[Judgement]) -> tuple[Verdict, str]:
     """What the drive deserves; ``judgements`` are those of the scenario's own criteria."""
-    safe, completed, exercised = assessment
-    if safe.holds is False:
-        return Verdict.FAILURE, safe.sentence
+    _, completed, exercised = assessment
     if not exercised.holds:
         return Verdict.NOT_EXERCISED, exercised.sentence
     if completed.holds is False:

@@ -56,13 +56,14 @@ class Arrays(AutonomousAgent):
 """
 
 
-@pytest.mark.parametrize("mode", [[], ["--in-process"]], ids=["own process", "in process"])
+@pytest.mark.parametrize("mode", [["--agent-writes"], ["--in-process"]], ids=["own process", "in process"])
 def test_arrays_equal_the_arrays_of_the_adapter(
     simulator: RunningServer, route_file: Path, tmp_path: Path, mode: list[str]
 ) -> None:
     agent, told = tmp_path / "arrays.py", tmp_path / "told.json"
     agent.write_text(f"TOLD = {str(told)!r}\n{AGENT}")
     address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
+    mode = [*mode, str(tmp_path)] if mode == ["--agent-writes"] else mode
     main(["run", str(agent), *address, "--routes", str(route_file), "--output", str(tmp_path / "runs"), *mode])
     found = json.loads(told.read_text())
     assert found["sensor.camera.rgb"] == ["uint8", [24, 32, 4], True, 24 * 32 * 4]

@@ -24,6 +24,7 @@ NIGHT = "self.world.set_weather(carla.WeatherParameters.HardRainNight); self.wor
 LIGHTER = (
     "physics = self.vehicle.get_physics_control(); physics.mass = 10.0; self.vehicle.apply_physics_control(physics)"
 )
+TICKS = "[self.world.tick() for _ in range(160)]"
 
 
 def ego(x_m: float, speed_mps: float) -> Ego:
@@ -91,6 +92,8 @@ def test_a_look_at_a_vehicle_that_is_gone_leaves_the_verdict_to_the_next_step() 
         pytest.param(NIGHT, "pass", False, "changed the weather's", id="weather"),
         pytest.param(LIGHTER, "pass", False, "changed the vehicle's mass", id="physics"),
         pytest.param("pass", "self.world.tick()", True, "never ticks the world", id="ticks"),
+        pytest.param(TICKS, "pass", True, "during setup() the simulator went from frame", id="ticks in setup"),
+        pytest.param(TELEPORT, "pass", True, "farther than its speed explains", id="jumps in setup"),
         pytest.param("pass", "self.vehicle.destroy()", True, "out of the world", id="takes the vehicle away"),
     ],
 )

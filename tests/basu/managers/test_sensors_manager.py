@@ -45,7 +45,7 @@ def steps(simulator: RunningServer, tmp_path: Path, route_file: Path) -> list[tu
     """The frames in which the agent ran, each with those of its measurements."""
     agent = tmp_path / "looking.py"
     agent.write_text(f"import json\nFOLDER = {str(tmp_path)!r}\n" + AGENT)
-    address = ["--host", "127.0.0.1", "--port", str(simulator.port)]
+    address = ["--host", "127.0.0.1", "--port", str(simulator.port), "--agent-writes", str(tmp_path)]
     main(["run", str(agent), *address, "--routes", str(route_file), "--output", str(tmp_path / "runs")])
     return [(now, frames) for now, frames in json.loads((tmp_path / "steps.json").read_text())]
 

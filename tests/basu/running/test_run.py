@@ -15,6 +15,7 @@ import pytest
 
 from basu.cli import main
 from basu.records.history.files import read_history
+from cheating_agent import BENCHMARK
 from servers import RunningServer, running_server
 
 SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
@@ -191,7 +192,7 @@ def test_the_agents_process_changes_nothing_of_the_drive(tmp_path: Path, simulat
 
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
 def test_an_interrupted_run_is_written_and_called_so(run: Runner, tmp_path: Path, kills: Kills, name: str) -> None:
-    code, result = run(doing(tmp_path, kills("os.getppid()", f"signal.{name}")))
+    code, result = run(doing(tmp_path, kills(BENCHMARK, f"signal.{name}")))
     assert (code, result["status"]) == (130, "Interrupted")
     assert result["message"] == {"SIGINT": "interrupted by the user", "SIGTERM": "terminated by SIGTERM"}[name]
     assert result["scores"] is not None
@@ -219,7 +220,7 @@ def test_another_users_simulator_is_left_as_it_was(run: Runner, tmp_path: Path, 
 def test_a_sensor_that_the_simulator_cannot_serve_gets_a_sentence(run: Runner, tmp_path: Path) -> None:
     (tmp_path / "ears.json").write_text('[{"type": "sensor.other.v2x", "id": "EAR"}]')
     code, result = run(doing(tmp_path, "return None", str(tmp_path / "ears.json")))
-    assert (code, result["status"]) == (2, "SetupFailed")
+    assert (code, result["status"]) == (1, "AgentCrashed")  # an agent that could choose it could choose its cases
     assert "ears.json: sensor 'EAR' (sensor.other.v2x) cannot be served by this simulator" in result["message"]
 
 
@@ -253,18 +254,13 @@ def test_a_simulator_of_our_own_is_gone_afterwards(tmp_path: Path, route_file: P
 def test_a_simulator_of_our_own_does_not_outlive_a_killed_benchmark(
     tmp_path: Path, route_file: Path, kills: Kills
 ) -> None:
-    note = tmp_path / "children"
-    deed = (
-        "import psutil; children = psutil.Process().parent().children(); "  # the simulator, and the agent itself
-        f"open({str(note)!r}, 'w').write(' '.join(str(child.pid) for child in children)); "
-        f"{kills('os.getppid()', 'signal.SIGKILL')}"
-    )
+    deed = kills(BENCHMARK, "signal.SIGKILL")
     arguments = ["run", str(doing(tmp_path, deed)), "--routes", str(route_file), "--output", str(tmp_path / "runs")]
     program = f"import sys; from basu.cli import main; sys.exit(main({arguments!r}))"
     killed = subprocess.run([sys.executable, "-c", program], capture_output=True, check=False)
     assert killed.returncode == -9
-    servers = [int(number) for number in note.read_text().split()]
-    assert len(servers) == 2
+    servers = [int(number) for number in (tmp_path / "children").read_text().split()]
+    assert len(servers) == 2  # the simulator, and the keeper of the agent
     gone, alive = psutil.wait_procs([psutil.Process(pid) for pid in servers if psutil.pid_exists(pid)], timeout=20)
     assert not alive, f"{len(gone)} ended, {alive} live on"
 

@@ -88,6 +88,14 @@ def test_a_broken_agent_has_not_passed_and_a_broken_simulator_says_nothing() -> 
     assert Group.REAR_END in found.unmeasured
 
 
+@pytest.mark.parametrize("spoilt", [SPOILT, ABSENT, Verdict.INTERRUPTED])
+def test_no_fault_raises_what_is_shown(spoilt: Verdict) -> None:
+    lost = [result(Group.ANIMAL, "DeerAtDusk", 1, OK), result(Group.ANIMAL, "DeerAtDusk", 2, LOST)]
+    excused = [lost[0], lost[1]._replace(verdict=spoilt)]
+    assert crash_shares(excused).shown_cost.share == pytest.approx(crash_shares(lost).shown_cost.share)
+    assert (crash_shares(excused).judged, crash_shares(excused).cases) == (1, 2)
+
+
 def test_absence_counts_for_neither_side_and_shows_nothing() -> None:
     present = [result(Group.ANIMAL, "DeerAtDusk", 1, OK), result(Group.ANIMAL, "DeerAtDusk", 2, LOST)]
     away = [one._replace(verdict=ABSENT) if one.verdict is LOST else one for one in present]
@@ -114,7 +122,7 @@ def test_the_shuttles_own_situations_are_reported_and_weigh_nothing() -> None:
 def test_without_a_group_of_the_typology_there_is_no_share() -> None:
     found = crash_shares([result(Group.SHUTTLE, "Phantom", 1, OK)])
     assert found.cost is found.crashes is found.fatal_crashes is found.equivalent_lives is None
-    assert sentence(found).startswith("no group of the typology was exercised")
+    assert sentence(found).startswith("1 of 1 cases judged: no group of the typology was exercised")
     assert crash_shares([]).groups == ()
 
 
@@ -194,6 +202,6 @@ def test_the_documents_of_cases_are_read_and_the_figures_written_with_their_assu
     assert written["assumptions"] == list(ASSUMPTIONS)
     assert written["narrowest"][0]["least"]["distance_m"] == 1.5
     assert written["sentence"].startswith(
-        "it passes situations that stand for 50 % (9 to 91) of the crash cost of the one group exercised, which is 1 % "
-        "of all, and shows 1 % (0 to 1) of all crash cost; not exercised: control loss"
+        "2 of 2 cases judged: it passes situations that stand for 50 % (9 to 91) of the crash cost of the one group "
+        "exercised, which is 1 % of all, and shows 1 % (0 to 1) of all crash cost; not exercised: control loss"
     )

@@ -57,6 +57,7 @@ def test_meeting_every_criterion_is_success() -> None:
         (Status.AGENT_INVALID_CONTROL, Verdict.AGENT_FAULT, Fault.AGENT),
         (Status.SIMULATOR_FAILED, Verdict.SIMULATOR_FAULT, Fault.SIMULATOR),
         (Status.SETUP_FAILED, Verdict.SETUP_FAULT, Fault.SETUP),
+        (Status.ENDED_FROM_OUTSIDE, Verdict.SETUP_FAULT, Fault.SETUP),
         (Status.BENCHMARK_FAILED, Verdict.BENCHMARK_FAULT, Fault.BENCHMARK),
         (Status.INTERRUPTED, Verdict.INTERRUPTED, Fault.USER),
     ],
@@ -68,6 +69,15 @@ def test_a_fault_is_the_verdict_whatever_was_driven(
     found = judge(CRITERIA, record, Outcome(status, "it broke"), triggered=True)
     assert (found.verdict, found.fault, found.message) == (verdict, fault, "it broke")
     assert len(found.judgements) == (0 if record is None else 7)  # measured figures are reported all the same
+
+
+@pytest.mark.parametrize("status", [Status.AGENT_CRASHED, Status.SIMULATOR_FAILED, Status.INTERRUPTED])
+def test_an_unsafe_record_is_a_failure_whatever_fault_follows(status: Status) -> None:
+    case = played(driven(at(10.0, 4.0), collisions=[hit(70)]))
+    found = judge(CRITERIA, case, Outcome(status, "it broke"), triggered=True)
+    assert found.verdict is Verdict.FAILURE
+    assert found.message.startswith("no collision: hit static.poles at 3.50 s")
+    assert found.message.endswith("; afterwards it broke")
 
 
 def test_every_end_of_a_run_has_a_verdict() -> None:

@@ -94,6 +94,7 @@ def settings(draw: st.DrawFn, model: type[Settings]) -> Settings:
         given.pop(name, None)
     if given.get("in_process"):
         given.pop("agent_memory_gb", None)  # without a process there is no memory to limit
+        given.pop("agent_writes", None)  # nor anything that it may not write
     return resolve(model, [Layer(given)])
 
 

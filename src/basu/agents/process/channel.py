@@ -15,7 +15,7 @@ import time
 from typing import Any
 
 LENGTH = struct.Struct("<I")  # before each message: its length in bytes
-MOST_BYTES = 64 << 20  # of an answer: more is none that BASU's own code gives
+MOST_BYTES = 8 << 20  # of an answer: more is none that BASU's own code gives
 CHUNK_BYTES = 1 << 16
 POLL_S = 0.05  # between two looks at the process's life and memory, where the system does not tell by itself
 
@@ -134,7 +134,7 @@ class BenchmarksEnd:
             return None
         try:
             answer = json.loads(bytes(self._received[LENGTH.size : end]))
-        except ValueError as error:
+        except (ValueError, RecursionError) as error:
             raise ChannelClosedError from error
         del self._received[:end]
         if not isinstance(answer, list):

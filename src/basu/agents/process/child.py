@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import ctypes
 import io
+import os
 import random
-import signal
 import sys
 import threading
 import time
@@ -19,9 +18,15 @@ import numpy as np
 from basu.agents.calls import AgentCalls
 from basu.agents.loader import load_agent
 from basu.agents.process.channel import AgentsEnd, ChannelClosedError
-from basu.agents.process.confinement import confine
 from basu.agents.sensor_streams import SensorSilentError, SensorStreams
-from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError, SimulatorError, UserError
+from basu.errors import (
+    AgentCrashedError,
+    AgentInvalidControlError,
+    AgentTimedOutError,
+    BasuError,
+    SimulatorError,
+    UserError,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -30,16 +35,14 @@ if TYPE_CHECKING:
     from basu.agents.sensor_streams import SpawnedSensor
     from basu.routing import Route
 
-PR_SET_PDEATHSIG = 1  # Linux, prctl(2): this process gets a signal when its parent's thread is gone
 NAP_S = 0.0001  # between two looks for a snapshot that is under way
 KINDS: dict[type[BaseException], str] = {
     AgentCrashedError: "crashed",
     AgentTimedOutError: "timed out",
     AgentInvalidControlError: "invalid control",
     UserError: "user",
-    SimulatorError: "simulator",
 }
-"""What the benchmark's side makes the same errors of again; anything else is a bug of ours."""
+"""The kinds of failure that the benchmark's side tells apart. All are the agent's failures there."""
 
 
 class Wanted(NamedTuple):
@@ -203,6 +206,7 @@ class Child:
             self._address = place.address
             self._maps.clear()
         client = carla.Client(*place.address)
+        client.set_files_base_folder(os.environ.get("BASU_AGENT_FOLDER", ""))  # its cache of maps' files
         client.set_timeout(place.timeout_s)
         return client
 
@@ -233,17 +237,13 @@ def _with_waypoints(route: Route, places_m: Sequence[float], carla_map: carla.Ma
     return replace(route, waypoints=tuple(carla_map.get_waypoint_xodr(*triple) for triple in triples))
 
 
-def main() -> None:
-    """Serve the benchmark at the other end of the socket; its descriptor is the second argument."""
-    descriptor, is_of_main_thread = int(sys.argv[2]), sys.argv[3] == "1"
-    sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
-    if is_of_main_thread and sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    confine()
+def serve(descriptor: int, confinement: Sequence[str]) -> None:
+    """Serve the benchmark at the other end of a socket; the first message says what confines this process."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(line_buffering=True)  # what an agent said before it was killed is seen
     end = AgentsEnd(descriptor)
+    end.send([0, list(confinement)])
     number = 0
     child = Child(lambda: end.send([number, "begun"]))
     while True:
@@ -263,4 +263,5 @@ def _answer(child: Child, operation: str, argument: Any) -> list[Any]:  # noqa: 
         for error_class, kind in KINDS.items():
             if isinstance(error, error_class):
                 return ["failed", kind, str(error), trace]
-        return ["failed", "other", f"{type(error).__name__}: {error}", trace]
+        text = str(error) if isinstance(error, BasuError) else f"{type(error).__name__}: {error}"
+        return ["failed", "other", text, trace]

@@ -1,7 +1,7 @@
-"""Confinement of the agent's process by the kernel: it may signal and trace its own processes only.
+"""Confinement of the agent's process by the kernel: it signals and traces its own processes, and writes its own folder.
 
-Landlock (Linux 6.12, ABI 6; https://docs.kernel.org/userspace-api/landlock.html) needs no privilege. A process that it
-confines cannot end the simulator or the benchmark by a signal, and all processes that it starts inherit that.
+Landlock (Linux 5.13; signals from 6.12; https://docs.kernel.org/userspace-api/landlock.html) needs no privilege. All
+processes that a confined one starts inherit it, and none can take it off.
 """
 
 from __future__ import annotations
@@ -10,12 +10,28 @@ import ctypes
 import os
 import platform
 import sys
+from typing import TYPE_CHECKING
 
-CREATE_RULESET, RESTRICT_SELF = 444, 446  # system calls, the same on all of Linux's architectures
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+PROCESSES, SIGHT, SIGNALS, FILES = "processes", "sight", "signals", "files"
+MEANINGS = {
+    PROCESSES: "all that it starts ends with it, and it can neither signal nor limit other processes",
+    SIGHT: "it sees no other processes",
+    SIGNALS: "it can signal and trace no other processes",
+    FILES: "it writes in its own folder only",
+}
+"""The parts of a confinement; which of them hold depends on the kernel and its settings."""
+
+CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444, 445, 446  # system calls, the same on all of Linux's architectures
 ABI_VERSION = 1  # flag of CREATE_RULESET
+PATH_BENEATH = 1  # LANDLOCK_RULE_PATH_BENEATH
 SIGNAL_SCOPE = 2  # LANDLOCK_SCOPE_SIGNAL
-ABI_WITH_SCOPES = 6
+ABI_WITH_REFER, ABI_WITH_TRUNCATE, ABI_WITH_SCOPES = 2, 3, 6
+WRITE_FILE, REMOVE_AND_MAKE, REFER, TRUNCATE = 1 << 1, 0x1FF0, 1 << 13, 1 << 14  # LANDLOCK_ACCESS_FS_*
 NO_NEW_PRIVILEGES = 38  # prctl(2); Landlock asks for it
+DEVICES, SHARED_MEMORY, OWN_PROCESSES = "/dev", "/dev/shm", "/proc"  # noqa: S108 - system folders, not temporary files
 
 
 class _Ruleset(ctypes.Structure):
@@ -24,28 +40,72 @@ class _Ruleset(ctypes.Structure):
     _fields_ = (("files", ctypes.c_uint64), ("network", ctypes.c_uint64), ("scoped", ctypes.c_uint64))
 
 
+class _Beneath(ctypes.Structure):
+    """``struct landlock_path_beneath_attr``: kinds of access below an open folder."""
+
+    _pack_ = 1
+    _fields_ = (("files", ctypes.c_uint64), ("folder", ctypes.c_int32))
+
+
+def sentence(held: Iterable[str]) -> str:
+    """What a confinement comes to, in words."""
+    known = [meaning for name, meaning in MEANINGS.items() if name in held]
+    return "; ".join(known) or "nothing confines it here"
+
+
+def landlock_abi() -> int:
+    """The version of the kernel's Landlock; 0 where there is none."""
+    if sys.platform != "linux" or platform.machine() not in ("x86_64", "aarch64"):
+        return 0
+    return max(0, int(ctypes.CDLL(None).syscall(CREATE_RULESET, None, 0, ABI_VERSION)))
+
+
 def is_available() -> bool:
     """Whether this system's kernel can confine signals."""
-    if sys.platform != "linux" or platform.machine() not in ("x86_64", "aarch64"):
-        return False
-    return int(ctypes.CDLL(None).syscall(CREATE_RULESET, None, 0, ABI_VERSION)) >= ABI_WITH_SCOPES
+    return landlock_abi() >= ABI_WITH_SCOPES
 
 
-def confine() -> bool:
-    """Let this thread, and all threads and processes that it starts, signal only one another; whether that is so.
+def confine(writable: Sequence[str], *, sees_own_processes: bool = False) -> list[str]:
+    """Confine this thread, and all threads and processes that it starts; the parts that hold.
 
-    Call it before the process has other threads.
+    Call it before the process has other threads. ``writable`` are the folders below which it may write;
+    ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust.
     """
-    if not is_available():
-        return False
+    abi = landlock_abi()
+    if abi == 0:
+        return []
+    everything = WRITE_FILE | REMOVE_AND_MAKE
+    everything |= REFER if abi >= ABI_WITH_REFER else 0
+    everything |= TRUNCATE if abi >= ABI_WITH_TRUNCATE else 0
+    has_scopes = abi >= ABI_WITH_SCOPES
+    rules = _Ruleset(files=everything, scoped=SIGNAL_SCOPE if has_scopes else 0)
     libc = ctypes.CDLL(None)
-    rules = _Ruleset(scoped=SIGNAL_SCOPE)
-    descriptor = int(libc.syscall(CREATE_RULESET, ctypes.byref(rules), ctypes.sizeof(rules), 0))
-    if descriptor < 0:
-        return False
+    size = ctypes.sizeof(rules) if has_scopes else ctypes.sizeof(ctypes.c_uint64)
+    ruleset = int(libc.syscall(CREATE_RULESET, ctypes.byref(rules), size, 0))
+    if ruleset < 0:
+        return []
+    to_files = everything & (WRITE_FILE | TRUNCATE)
+    allowed = [*((folder, everything) for folder in (*writable, SHARED_MEMORY)), (DEVICES, to_files)]
+    if sees_own_processes:
+        allowed.append((OWN_PROCESSES, to_files))
     try:
-        return (
-            int(libc.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0)) == 0 and int(libc.syscall(RESTRICT_SELF, descriptor, 0)) == 0
-        )
+        for folder, access in allowed:
+            _allow(libc, ruleset, folder, access)
+        if libc.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0 or libc.syscall(RESTRICT_SELF, ruleset, 0) != 0:
+            return []
+    finally:
+        os.close(ruleset)
+    return [SIGNALS, FILES] if has_scopes else [FILES]
+
+
+def _allow(libc: ctypes.CDLL, ruleset: int, folder: str, access: int) -> None:
+    """Allow kinds of access below a folder, where it is there."""
+    try:
+        descriptor = os.open(folder, os.O_PATH | os.O_CLOEXEC)
+    except OSError:
+        return
+    try:
+        beneath = _Beneath(files=access, folder=descriptor)
+        libc.syscall(ADD_RULE, ruleset, PATH_BENEATH, ctypes.byref(beneath), 0)
     finally:
         os.close(descriptor)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import carla
 
-from basu.agents.autonomous_agent import AgentConfig
+from basu.agents.autonomous_agent import AgentConfig, parse_config
 from basu.agents.calls import SETUP_LIMIT_S, checked, timed_out
 from basu.agents.loader import BUILT_IN, LOAD_LIMIT_S, LoadedAgent, load_agent
 from basu.agents.process.agent_process import AgentProcess, CallError, Death, Memory, OverLimitError
@@ -17,27 +17,29 @@ from basu.agents.process.child import Place, Wanted
 from basu.agents.sensor_file import SensorSpec
 from basu.errors import (
     AgentCrashedError,
+    AgentEndedOutsideError,
+    AgentError,
     AgentInvalidControlError,
     AgentTimedOutError,
-    BasuError,
-    SimulatorError,
     UserError,
 )
 from basu.routing.route_file import RoutePoint
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from basu.agents.sensor_streams import SpawnedSensor
     from basu.routing import Route
 
-ERRORS: dict[str, type[BasuError]] = {
+T = TypeVar("T")
+FAILURES: dict[str, type[AgentError]] = {
     "crashed": AgentCrashedError,
     "timed out": AgentTimedOutError,
     "invalid control": AgentInvalidControlError,
-    "user": UserError,
-    "simulator": SimulatorError,
 }
+"""Which failure of the agent a message of its process tells of. It can tell of no other party's."""
+SETUP = "user"  # the kind of a wrong set-up, which only a driver of BASU's own may name
+LONGEST_SENTENCE, LONGEST_NAME = 2000, 200  # characters of what an agent's process says
 MARGIN_S = 5.0  # beyond the simulator's time-out for a step to begin: the process itself reports the cause of the wait
 BUILT_IN_KEY = ""  # BASU's own agents share a process: none of them leaves anything behind
 
@@ -52,47 +54,69 @@ class AgentInProcess(NamedTuple):
     wanted: str  # as it was typed
     agent_config: str | None
     memory: Memory | None
+    writes: tuple[str, ...] = ()  # folders in which its process may write beside its own
 
     def process(self) -> AgentProcess:
         """The process that is kept for this agent; a new one where the last one ended."""
-        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.memory)
+        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.memory, self.writes)
         kept = _kept.get(key)
         if kept is None or not kept.alive:
-            kept = _kept[key] = AgentProcess(self.memory)
+            kept = _kept[key] = AgentProcess(self.memory, self.writes)
         return kept
 
+    @property
+    def confinement(self) -> list[str]:
+        """The parts of the confinement of its process that the kernel enforces (`basu.agents.process.confinement`)."""
+        return list(_enforced)
 
+
+_enforced: list[str] = []  # the same for all agents of a machine
 FoundAgent = LoadedAgent | AgentInProcess
 
-_kept: dict[tuple[str, Memory | None], AgentProcess] = {}
+_kept: dict[tuple[str, Memory | None, tuple[str, ...]], AgentProcess] = {}
 
 
 def find_agent(
-    wanted: str, agent_config: str | None = None, *, in_process: bool = False, memory_gb: float | None = None
+    wanted: str,
+    agent_config: str | None = None,
+    *,
+    in_process: bool = False,
+    memory_gb: float | None = None,
+    writes: tuple[str, ...] = (),
 ) -> FoundAgent:
     """The agent called ``wanted``, as ``load_agent`` finds it, loaded in a process of its own or in this one.
 
-    ``memory_gb`` limits what its process uses, in GB.
+    ``memory_gb`` limits what its process uses, in GB; ``writes`` are folders in which it may write beside its own.
 
     Raises:
         UserError: there is none, the file does not load, or it holds no agent or more than one.
     """
     if in_process:
         return load_agent(wanted, agent_config)
+    for folder in writes:
+        if not Path(folder).is_dir():
+            raise UserError(f"--agent-writes {folder}: there is no such folder; make it first")
     memory = None if memory_gb is None else Memory(memory_gb)
     file = (
         None if wanted.partition(":")[0] in BUILT_IN else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
     )
-    agent = AgentInProcess("", file, "", False, wanted, agent_config, memory)
+    agent = AgentInProcess("", file, "", False, wanted, agent_config, memory, writes)
     try:
-        found = agent.process().call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)
+        process = agent.process()
+        found = process.call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)
+        _enforced[:] = process.confinement or ()
     except OverLimitError:
         raise UserError(f"the agent's file {wanted} was not loaded within {LOAD_LIMIT_S:g} s") from None
     except Death as death:
         raise UserError(f"the agent {wanted} does not load: {death}") from death
     except CallError as error:
-        _raise(error)
-    return agent._replace(**found)
+        raise UserError(error.sentence[:LONGEST_SENTENCE]) from _there(error)
+    try:
+        return agent._replace(
+            name=_name(found["name"]), class_name=_name(found["class_name"]), is_human=found["is_human"] is True
+        )
+    except (LookupError, TypeError) as error:
+        raise UserError(f"the agent {wanted} does not load: its process gave it no name; mend its file") from error
 
 
 class RemoteAgent:
@@ -103,15 +127,21 @@ class RemoteAgent:
         self._step_limit_s = step_limit_s
         self._setup_limit_s = max(SETUP_LIMIT_S, step_limit_s)
         self._process = found.process()
+        self._is_ours = found.file is None
         self._is_bound = self._has_failed = self._hears = False
         self._step_begins_s = MARGIN_S
         self.name = found.class_name
         wanted = Wanted(found.wanted, found.agent_config, seed, step_limit_s)
         made = self._call("make", wanted, "__init__", self._setup_limit_s + LOAD_LIMIT_S)
-        self.name = made["name"]
-        self.manual: bool = made["manual"]
-        self.gives_sensors_late: bool = made["late"]
-        self._config = AgentConfig(**made["config"])
+        self.name, self.manual, self.gives_sensors_late, self._config = self._understood(
+            "__init__",
+            lambda: (
+                _name(made["name"]),
+                made["manual"] is True,
+                made["late"] is True,
+                parse_config(made["config"], self.name),
+            ),
+        )
 
     def config(self) -> AgentConfig:
         """What the agent's ``config`` returned."""
@@ -121,12 +151,12 @@ class RemoteAgent:
         """The points of the agent's own plan, None where it has none."""
         method = "get_initial_route_locations"
         points = self._call("own_route", None, method, self._setup_limit_s)
-        return None if points is None else tuple(RoutePoint(*point) for point in points)
+        return None if points is None else self._understood(method, lambda: tuple(map(_point, points)))
 
     def sensor_set(self) -> tuple[SensorSpec, ...] | None:
         """The agent's own sensor set, None where it has none."""
         entries = self._call("sensor_set", None, "sensors", self._setup_limit_s)
-        return None if entries is None else tuple(_spec(entry) for entry in entries)
+        return None if entries is None else self._understood("sensors", lambda: tuple(map(_spec, entries)))
 
     def setup(self, binding: Mapping[str, Any], timeout_s: float) -> None:
         """Bind the agent to its run with the arguments of ``AutonomousAgent.bind``, and let it get ready."""
@@ -144,7 +174,7 @@ class RemoteAgent:
         )
         self._step_begins_s = timeout_s + MARGIN_S
         self._is_bound = True
-        self.manual = self._call("setup", place, "setup", self._setup_limit_s)
+        self.manual = self._call("setup", place, "setup", self._setup_limit_s) is True
 
     def hear(self, sensors: Sequence[SpawnedSensor]) -> bool:
         """Let the agent's process listen to the agent's sensors; True: it does."""
@@ -163,25 +193,26 @@ class RemoteAgent:
         ``sensor_data`` is not sent: the agent's process has its own.
 
         Raises:
-            AgentError: it failed, took too long, died, or answered with what is no control.
-            SimulatorError: a sensor, or the frame itself, did not come.
+            AgentError: it failed, took too long, died, or answered with what is no control. So is a sensor or
+                a frame that did not reach its process. The benchmark's own client tells whether the simulator is there.
         """
         assert self._hears or not sensor_data, "the SensorsManager of this run lacks its listener"
         answer = self._call("step", frame, "run_step", self._step_limit_s, self._step_begins_s)
         try:
-            throttle, steer, brake, hand_brake, reverse, manual_gear_shift, gear, manual = answer
+            *numbers, hand_brake, reverse, manual_gear_shift, gear, manual = answer
+            throttle, steer, brake = map(float, numbers)
             control = carla.VehicleControl(
-                throttle=float(throttle),
-                steer=float(steer),
-                brake=float(brake),
+                throttle=throttle,
+                steer=steer,
+                brake=brake,
                 hand_brake=bool(hand_brake),
                 reverse=bool(reverse),
                 manual_gear_shift=bool(manual_gear_shift),
                 gear=int(gear),
             )
-        except (TypeError, ValueError) as error:
+        except (TypeError, ValueError, ArithmeticError) as error:
             raise AgentInvalidControlError(f"the process of {self.name} answered with no control: {error}") from error
-        self.manual = bool(manual)
+        self.manual = manual is True
         return checked(control, self.name)
 
     def destroy(self) -> None:
@@ -193,7 +224,7 @@ class RemoteAgent:
             return
         is_clean = False
         try:
-            is_clean = self._call("destroy", None, "destroy", self._setup_limit_s) and not self._has_failed
+            is_clean = self._call("destroy", None, "destroy", self._setup_limit_s) is True and not self._has_failed
         finally:
             if not is_clean:
                 self._process.kill()
@@ -201,27 +232,77 @@ class RemoteAgent:
     def _call(
         self, operation: str, argument: object, method: str, limit_s: float, begin_limit_s: float = SETUP_LIMIT_S
     ) -> Any:  # noqa: ANN401 - as the operation has it
-        """One call; what goes wrong in it is the agent's, but for what its process says of others."""
+        """One call; what goes wrong in it is the agent's, whatever its process says of others.
+
+        Raises:
+            AgentError: it went wrong.
+            UserError: the setup of a driver of BASU's own says that the run is set up wrongly for it.
+        """
         try:
             return self._process.call(operation, argument, limit_s=limit_s, begin_limit_s=begin_limit_s)
         except OverLimitError:
             raise timed_out(method, self.name, limit_s) from None
         except Death as death:
-            raise AgentCrashedError(f"{self.name} died in {method}(): {death}") from death
+            failure = AgentEndedOutsideError if death.from_outside else AgentCrashedError
+            raise failure(f"{self.name} died in {method}(): {death}") from death
         except CallError as error:
             self._has_failed = True
-            _raise(error)
+            sentence = error.sentence[:LONGEST_SENTENCE]
+            if error.kind == SETUP and self._is_ours and operation != "step":
+                raise UserError(sentence) from _there(error)
+            if error.kind in FAILURES:
+                raise FAILURES[error.kind](sentence) from _there(error)
+            if error.kind != SETUP:
+                sentence = f"{method}() of {self.name} failed: {sentence}"
+            raise AgentCrashedError(sentence) from _there(error)
+
+    def _understood(self, method: str, read: Callable[[], T]) -> T:
+        """What its process answered, read.
+
+        Raises:
+            AgentCrashedError: it is not what BASU's own code in that process answers.
+        """
+        try:
+            return read()
+        except (UserError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError) as error:
+            self._has_failed = True
+            raise AgentCrashedError(f"{method}() of {self.name} gave no usable answer: {error}") from error
 
 
-def _raise(error: CallError) -> NoReturn:
-    """Raise here what an operation raised there; its traceback is the cause."""
-    error_class = ERRORS.get(error.kind, RuntimeError)
-    raise error_class(error.sentence) from RuntimeError(f"in the agent's process\n{error.trace}")
+def _there(error: CallError) -> RuntimeError:
+    """The traceback of an error in the agent's process, as the cause of the one here."""
+    return RuntimeError(f"in the agent's process\n{error.trace}")
 
 
-def _spec(entry: dict[str, Any]) -> SensorSpec:
-    """A sensor out of JSON."""
-    return SensorSpec(**{**entry, "attributes": tuple((name, value) for name, value in entry["attributes"])})
+def _name(given: object) -> str:
+    """A name of an agent, without what steers a terminal.
+
+    Raises:
+        TypeError: it is no text.
+    """
+    if not isinstance(given, str):
+        raise TypeError("a name is a text")
+    return "".join(each if each.isprintable() else "?" for each in given[:LONGEST_NAME])
+
+
+def _point(given: Sequence[Any]) -> RoutePoint:
+    """A point of a route out of JSON."""
+    x_m, y_m, z_m, yaw_rad = given
+    return RoutePoint(float(x_m), float(y_m), float(z_m), None if yaw_rad is None else float(yaw_rad))
+
+
+def _spec(given: dict[str, Any]) -> SensorSpec:
+    """A sensor out of JSON.
+
+    Raises:
+        TypeError: a value is of another kind than BASU's own code in that process gives.
+    """
+    entry = {**given, "attributes": tuple((str(name), str(value)) for name, value in given["attributes"])}
+    for name, value in entry.items():
+        kinds = (int, float) if name.endswith(("_m", "_deg")) else (str,) if name in {"type_id", "id"} else (object,)
+        if not isinstance(value, kinds):
+            raise TypeError(f"the sensor's {name} is {value!r}")
+    return SensorSpec(**entry)
 
 
 def _key_of(carla_map: carla.Map) -> str:

@@ -15,7 +15,7 @@ from basu.running.scenario_runs.chosen_cases import design_of, files_of
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured
 from basu.scenarios.sampling import Grid, Sweep
-from basu.scenarios.share_documents import results_from, shares_to_json
+from basu.scenarios.share_documents import not_played, results_from, shares_to_json
 from basu.scenarios.shares import crash_shares
 from basu.scenarios.tree_text import tree_of
 from basu.scenarios.verdict import judge
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
     from basu.scenarios.playable import Playable
+    from basu.scenarios.shares import Result
     from basu.scenarios.verdict import Judged
 
 
@@ -53,6 +54,7 @@ def document_of(
         "schema_version": SCHEMA_VERSION,
         **about(playable),
         "agent": loaded.name,
+        "confinement": loaded.confinement,
         "vehicle": options.vehicle or case.ego.model,
         "seed": options.drive_seed,
         "town": case.town,
@@ -158,14 +160,16 @@ def matrix_of(
 ) -> dict[str, Any]:
     """The document; ``documents`` are results and folders by number of the job, cases before agents."""
     rows: list[dict[str, Any]] = []
-    by_agent: dict[str, list[dict[str, Any]]] = {agent: [] for agent in agents}
+    by_agent: dict[str, list[Result]] = {agent: [] for agent in agents}
     for nth, playable in enumerate(playables):
         results = {}
         for column, agent in enumerate(agents):
             done = documents.get(nth * len(agents) + column)
-            if done is not None:
+            if done is None:
+                by_agent[agent].append(not_played(about(playable)))
+            else:
                 document, folder = done
-                by_agent[agent].append(document)
+                by_agent[agent] += results_from([document])
                 results[agent] = {**{key: document[key] for key in SUMMARY}, "folder": folder}
         rows.append({**about(playable), "results": results})
     return {
@@ -179,7 +183,7 @@ def matrix_of(
         "wall_s": round(wall_s, 1),
         "workers": options.workers,
         "cases": rows,
-        "shares": {agent: shares_to_json(crash_shares(results_from(by_agent[agent]))) for agent in agents},
+        "shares": {agent: shares_to_json(crash_shares(by_agent[agent])) for agent in agents},
         "versions": {"basu": basu.__version__, "carla": version("carla"), "python": platform.python_version()},
     }
 

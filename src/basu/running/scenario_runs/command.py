@@ -158,7 +158,8 @@ def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
         UserError: one cannot be had, or two have one name.
     """
     agents = [
-        find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb) for agent in options.agents
+        find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb, writes=options.agent_writes)
+        for agent in options.agents
     ]
     names = [agent.name for agent in agents]
     for name in names:

@@ -10,9 +10,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.episode import Episode, case_spec
+from basu.episode.failures import outcome_of
 from basu.episode.spec import description_of
 from basu.episode.world import asking, towns_of, weather_called, world_with
-from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
+from basu.errors import AgentCrashedError, AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
 from basu.managers.placed_scenario import call_scenario, place_scenario
 from basu.managers.sensors_manager import SensorsManager
@@ -129,8 +130,7 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
     """Drive it, or find out why that is not possible."""
     options, episode = session.options, None
     try:
-        agents = new_agents(loaded, options.run_options(loaded.name), options.drive_seed)
-        sensors = _sensors(agents, loaded)
+        agents, sensors = _agents(loaded, options)
         check_town(playable.case, session.towns.names([playable.case.town]))
         spec = case_spec(playable, vehicle=options.vehicle, timeout_s=options.timeout_s)
         if session.weather is not None:
@@ -140,7 +140,9 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
             session.simulator,
             replace(spec, config=agents.config),
             towns=session.towns,
-            sensors=lambda: SensorsManager(*sensors, late=agents.late_sensors, listener=agents),
+            sensors=lambda: SensorsManager(
+                *sensors, late=agents.late_sensors, listener=agents, by_agent=loaded.file is not None
+            ),
             participants=[agents],
             folder=folder,
         )
@@ -149,7 +151,7 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
     except UserError as error:
         return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), _streets(episode))
     except AgentError as error:
-        return _Attempt(None, None, Outcome(Status.AGENT_CRASHED, str(error)), _streets(episode))
+        return _Attempt(None, None, outcome_of(error, session.simulator.why_gone), _streets(episode))
     except SimulatorError as error:
         return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), _streets(episode))
     finally:
@@ -166,13 +168,19 @@ def _streets(episode: Episode | None) -> list[NDArray[np.float64]]:
     return [] if episode is None or episode.ground is None else episode.ground.town.streets_m
 
 
-def _sensors(agents: AgentsManager, loaded: FoundAgent) -> SensorSet:
-    """The agent's sensors; built-in agents read none, and theirs serve observers, which a case has not.
+def _agents(loaded: FoundAgent, options: ScenarioOptions) -> tuple[AgentsManager, SensorSet]:
+    """A new agent and its sensors; built-in agents read none, and theirs serve observers, which a case has not.
 
     Raises:
-        UserError: the agent asks for what is no sensor set.
+        AgentError: the agent failed, or asks for what is no sensor set: it was loaded, so that is its own failure.
     """
-    return SensorSet((), loaded.name) if loaded.file is None else sensor_set(agents, loaded)
+    try:
+        agents = new_agents(loaded, options.run_options(loaded.name), options.drive_seed)
+        return agents, SensorSet((), loaded.name) if loaded.file is None else sensor_set(agents, loaded)
+    except UserError as error:
+        if loaded.file is None:
+            raise
+        raise AgentCrashedError(str(error)) from error
 
 
 def drawn(options: ScenarioOptions, form: str) -> str:

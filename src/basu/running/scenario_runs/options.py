@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 from basu.errors import UserError
-from basu.options.agent import AgentMemory, Debug, InProcess, StepLimit, check_agent_process
+from basu.options.agent import AgentMemory, AgentWrites, Debug, InProcess, StepLimit, check_agent_process
 from basu.options.folders import Output
 from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
 from basu.options.run import RunOptions
@@ -92,6 +92,7 @@ class ScenarioOptions(Settings):
     step_limit_s: StepLimit = 10.0
     in_process: InProcess = False
     agent_memory_gb: AgentMemory = None
+    agent_writes: AgentWrites = ()
     debug: Debug = False
     seed: Annotated[
         int,
@@ -133,7 +134,7 @@ class ScenarioOptions(Settings):
         for name in ("what", "agents"):
             if not getattr(self, name):
                 raise UserError(f"{name} is empty; it must name at least one")
-        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb)
+        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb, writes=self.agent_writes)
 
     @property
     def drive_seed(self) -> int:

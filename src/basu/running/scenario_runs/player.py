@@ -58,7 +58,9 @@ def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, Loade
     """
     library = open_library(files_of(options))
     agents: Mapping[str, FoundAgent] = given or {
-        agent: find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb)
+        agent: find_agent(
+            agent, in_process=options.in_process, memory_gb=options.agent_memory_gb, writes=options.agent_writes
+        )
         for agent in options.agents
     }
     ending = ENDING_IN_PROCESS if options.in_process or given else ENDING

@@ -90,5 +90,5 @@ def test_a_sensor_that_the_simulator_lacks_gets_a_sentence(run: Runner, tmp_path
     path = tmp_path / "seeing.py"
     path.write_text(SEEING.replace("sensor.other.radar", "sensor.other.can_bus"))
     code, result = run(path)
-    assert (code, result["status"]) == (2, "SetupFailed")
+    assert (code, result["status"]) == (1, "AgentCrashed")
     assert "sensor 'RADAR' has the type 'sensor.other.can_bus', which the simulator does not have" in result["message"]

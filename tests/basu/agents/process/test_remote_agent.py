@@ -94,6 +94,7 @@ def test_a_process_that_died_is_replaced(tmp_path: Path) -> None:
     agent = found(tmp_path)
     remote = RemoteAgent(agent, 10.0, 0)
     os.kill(remote._process._process.pid, signal.SIGKILL)
+    remote._process._process.wait(20.0)
     with pytest.raises(
         AgentCrashedError, match=r"Mine died in get_initial_route_locations\(\): its process was ended by"
     ):

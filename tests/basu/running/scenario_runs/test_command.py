@@ -12,6 +12,7 @@ import pytest
 from basu.cli import main
 from basu.jobs.pool import Pool
 from basu.running.scenario_runs import command
+from cheating_agent import BENCHMARK
 from servers import RunningServer
 
 AGENTS = """
@@ -156,7 +157,7 @@ def drives(output: Path) -> dict[str, tuple[bytes, dict[str, Any], dict[str, Any
     """The bytes of each drive of the newest run, its result and its config, without wall times."""
     found = {}
     for path in (output / "latest").glob("*/*/result.json"):
-        result = json.loads(path.read_text(encoding="utf-8")) | {"wall_s": 0.0}
+        result = json.loads(path.read_text(encoding="utf-8")) | {"wall_s": 0.0, "confinement": None}
         config = json.loads(path.with_name("config.json").read_text(encoding="utf-8")) | {"session": None}
         found[result["id"]] = (path.with_name("history.parquet").read_bytes(), result, config)
     return found
@@ -210,7 +211,7 @@ def test_a_process_that_dies_costs_its_own_case_only(
     """It is not tried again here: tests/basu/jobs/test_pool.py has the tries."""
     monkeypatch.setattr(command, "Pool", partial(Pool, attempts=1))
     bad = tmp_path / "bad.py"
-    deed = kills("os.getppid()", "signal.SIGKILL")
+    deed = kills(BENCHMARK, "signal.SIGKILL")
     bad.write_text(AGENTS.replace("pass  # ends the worker", deed), encoding="utf-8")
     words = ["goes_well", "--scenarios", files, "--agent", f"{bad}:EndsTheWorker", "--agent", "basic", "--workers", 2]
     code = main(["scenario", "run", *map(str, (*words, "--output", tmp_path))])
@@ -225,7 +226,7 @@ def test_ctrl_c_ends_the_run_and_what_was_played_is_written(
     simulator: RunningServer, files: Path, tmp_path: Path, kills: Callable[[str, str], str]
 ) -> None:
     agent = tmp_path / "bad.py"
-    agent.write_text(AGENTS.replace("time.sleep(60.0)", kills("os.getppid()", "signal.SIGINT")), encoding="utf-8")
+    agent.write_text(AGENTS.replace("time.sleep(60.0)", kills(BENCHMARK, "signal.SIGINT")), encoding="utf-8")
     words = ("goes_well:ahead=30", "goes_well", "--scenarios", files, "--agent", "basic", "--agent", f"{agent}:Hangs")
     assert run(simulator, tmp_path, *words) == 130
     results = [case["results"] for case in matrix(tmp_path)["cases"]]

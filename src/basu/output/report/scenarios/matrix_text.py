@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.output.report.scenarios.shares import shares_text
 from basu.output.report.scenarios.sweep.boundary import boundary
-from basu.output.report.scenarios.tally import LOOKS, blocks, counted, tally
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -36,7 +36,7 @@ class Cell(NamedTuple):
 
 def matrix_text(matrix: dict[str, Any], *, colour: bool = False) -> str:
     """The matrix as lines of text; ``colour`` for a terminal that shows it, and nothing is said by colour alone."""
-    parts = [_headline(matrix)]
+    parts = [f"{_headline(matrix)}\n{textwrap.fill(judged_share(matrix), WIDTH)}"]
     parts += [_table(matrix, agents, colour=colour) for agents in _side_by_side(matrix)]
     parts += [_key(matrix), _endings(matrix, colour=colour)]
     parts.append("\n".join(textwrap.fill(sentence, WIDTH, subsequent_indent="  ") for sentence in boundary(matrix)))

@@ -102,6 +102,16 @@ def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
     )
 
 
+def judged_share(matrix: dict[str, Any]) -> str:
+    """What share of the suite was judged, passed or failed, for each agent: the rest counts as not passed."""
+    cases = matrix["cases"]
+    parts = []
+    for agent in matrix["agents"]:
+        judged = tally(cases, agent).judged
+        parts.append(f"{agent} {judged} of {len(cases)} ({100.0 * judged / len(cases) if cases else 0.0:.0f} %)")
+    return f"judged: {', '.join(parts)}"
+
+
 def _least(results: Sequence[dict[str, Any]], margin: str) -> float | None:
     """The least of a margin, over results with one."""
     found = [result["margins"].get(margin) for result in results]

@@ -17,7 +17,7 @@ from basu.output.report.scenarios.shares import shares_view
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import drawing
-from basu.output.report.scenarios.tally import LOOKS, blocks, counted, tally
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally
 from basu.output.report.templates import DASH, render
 
 if TYPE_CHECKING:
@@ -73,7 +73,7 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
     body = render(
         "templates/matrix.j2",
         what=textwrap.shorten(matrix["what"], MOST_OF_TITLE, placeholder=" …"),
-        summary=_summary(matrix),
+        summary=f"{_sentence(judged_share(matrix))} {_summary(matrix)}",
         shares=shares_view(matrix),
         sweeps=list(_sweeps(matrix)),
         verdict_key=[(style, look.sign, OF_STYLE.get(style, look.word)) for style, look in _looks().items()],
@@ -125,6 +125,11 @@ def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dic
     for number, cell in enumerate(cells):
         cards.setdefault(cell.case["id"], []).append(made[number])
     return cards
+
+
+def _sentence(text: str) -> str:
+    """A text with a capital letter and a full stop."""
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def _summary(matrix: dict[str, Any]) -> str:
