@@ -95,3 +95,11 @@ def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
             main([*command, "--help"])
         assert ended.value.code == 0
         assert "usage: basu" in capsys.readouterr().out
+
+
+def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    shown = capsys.readouterr()
+    assert "usage: basu" in shown.out
+    assert "drive a route and score the drive" in shown.out
+    assert shown.err == ""
