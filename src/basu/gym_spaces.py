@@ -87,7 +87,7 @@ def control_from(action: ArrayLike) -> carla.VehicleControl:
     if not np.all(np.abs(values) <= 1.0):  # false for NaN
         given = ", ".join(f"{value:g}" for value in values)
         raise UserError(
-            f"the action is [{given}]; both numbers must be in -1..1 (gymnasium.wrappers.ClipAction clips those of a policy)"
+            f"the action is [{given}]; both numbers must be in -1..1 (to clip them: gymnasium.wrappers.ClipAction)"
         )
     pedals, steer = values.tolist()
     return carla.VehicleControl(throttle=max(0.0, pedals), brake=max(0.0, -pedals), steer=steer)

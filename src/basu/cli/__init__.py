@@ -89,7 +89,12 @@ def parser(words: Sequence[str]) -> argparse.ArgumentParser:
     whole = Parser(prog="basu", description=basu.__doc__, epilog=EXIT_CODES)
     whole.add_argument("--version", action="version", version=f"basu {basu.__version__}")
     commands = whole.add_subparsers(title="commands", required=bool(words), metavar="COMMAND")
-    whole.set_defaults(command=lambda _: whole.print_help() or Fault.SETUP.value)
+
+    def show_help(_: argparse.Namespace) -> int:
+        whole.print_help()
+        return Fault.SETUP.value
+
+    whole.set_defaults(command=show_help)  # without a command
     typed = next((word for word in words if not word.startswith("-")), None)
     if typed is not None and typed not in COMMANDS:
         raise UserError(f"there is no command '{typed}'; {suggestion(typed, COMMANDS)}")
