@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import carla
 
 from basu.errors import SimulatorError, UserError
+from basu.home import replaced_home
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -312,6 +313,9 @@ def connect(host: str, port: int, timeout_s: float) -> carla.Client:
         ) from error
     try:
         client = carla.Client(host, port)
+        home = replaced_home()
+        if home is not None:
+            client.set_files_base_folder(str(home))
         client.set_timeout(timeout_s)
         client.get_server_version()
     except RuntimeError as error:

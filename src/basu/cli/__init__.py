@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import basu
 from basu import client_threads
 from basu.errors import AgentError, SimulatorError, UserError
+from basu.home import replaced_home
 from basu.outcome import EXIT_CODES, Fault
 from basu.settings.command_line import Parser
 from basu.settings.option import suggestion
@@ -48,6 +49,7 @@ UNREAD = 141  # 128 + SIGPIPE, as shells have it
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; what a person can mend is one sentence and an exit code."""
     words = sys.argv[1:] if argv is None else list(argv)
+    replaced_home()  # before the official client is imported
     try:
         code = _run(words)
         sys.stdout.flush()

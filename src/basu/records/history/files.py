@@ -172,6 +172,9 @@ def _history(table: pa.Table, facts: Facts) -> History:
     for name in FRAME.names or ():
         kept = name if name in table.column_names else name.removeprefix("applied_")
         frames[name] = table[kept].to_numpy()
+    for name in ("others", "collisions", "lane_invasions"):
+        if not pa.types.is_list(table[name].type):
+            raise ValueError(f"{name} in {HISTORY_FILE} holds no lists")
     nearby = table["others"].combine_chunks()
     rows = nearby.flatten()
     others = np.zeros(len(rows), dtype=OTHER)
