@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import importlib
 import os
+import signal
 import sys
+import threading
 import traceback
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -53,6 +55,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         code = _run(words)
         sys.stdout.flush()
+    except KeyboardInterrupt:  # a second one, while the first ended the command
+        code = Fault.USER.value
     except BrokenPipeError:  # the reader of our output has seen enough, such as `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = UNREAD
@@ -73,6 +77,7 @@ def _run(words: Sequence[str]) -> int:
     except SimulatorError as error:
         return _say(error, Fault.SIMULATOR)
     except KeyboardInterrupt as interruption:
+        _ignore_further_interruptions()
         return _say(str(interruption) or "interrupted", Fault.USER)
     except BrokenPipeError:
         raise  # nothing reads our output
@@ -105,6 +110,12 @@ def parser(words: Sequence[str]) -> argparse.ArgumentParser:
         if name == typed:
             getattr(importlib.import_module(f"basu.cli.{command.module}"), f"add_{name}")(one)
     return whole
+
+
+def _ignore_further_interruptions() -> None:
+    """Ignore Ctrl-C from now on: the command has ended, and a traceback of the way out helps no user."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _say(sentence: object, fault: Fault) -> int:
