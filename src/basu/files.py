@@ -6,6 +6,7 @@ import importlib.util
 import json
 import os
 import sys
+import unicodedata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -48,11 +49,50 @@ def read_json(path: Path, what: str, otherwise: str = "") -> Any:  # noqa: ANN40
     """
     advice = f"; {otherwise}" if otherwise else ""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))
+        return loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise UserError(f"{what} {path} cannot be read: {error.strerror}{advice}") from error
     except ValueError as error:
         raise UserError(f"{what} {path} is no JSON: {error}{advice}") from error
+
+
+MOST_DIGITS = 18  # of a whole number: more do not fit into 64 bits
+
+
+def loads(text: str) -> Any:  # noqa: ANN401 - whatever the text holds
+    """Return the JSON document of a text from outside; control characters but line ends and tabs become U+FFFD.
+
+    Otherwise a terminal would execute the escape sequences in an agent's name, for example.
+
+    Raises:
+        ValueError: the text is no JSON, is nested too deeply, or has a number that does not fit into 64 bits.
+    """
+    try:
+        return _printable(json.loads(text, parse_int=_whole))
+    except RecursionError:
+        raise ValueError("it is nested too deeply") from None
+
+
+def _whole(digits: str) -> int:
+    if len(digits.lstrip("-")) > MOST_DIGITS:
+        raise ValueError(f"a whole number has more than {MOST_DIGITS} digits")
+    return int(digits)
+
+
+def _printable(value: Any) -> Any:  # noqa: ANN401 - whatever the text holds
+    """Return a JSON value with control characters replaced by U+FFFD; keys and values alike."""
+    if isinstance(value, str):
+        return value if value.isprintable() else "".join(map(_shown, value))
+    if isinstance(value, list):
+        return [_printable(each) for each in value]
+    if isinstance(value, dict):
+        return {_printable(key): _printable(each) for key, each in value.items()}
+    return value
+
+
+def _shown(character: str) -> str:
+    """Return a character, or U+FFFD for a control character that is no line end or tab."""
+    return "\ufffd" if unicodedata.category(character) == "Cc" and character not in "\n\t" else character
 
 
 PACKAGE_FOLDER = Path(basu.__file__).parent

@@ -16,8 +16,8 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
 
 The values are clipped to the boxes' bounds. Reward: see ``Reward``. ``terminated`` on arrival, on leaving the route, on
 standing still for too long, and at a scenario's end; ``truncated`` when the simulated time is used up. ``info`` has
-``route_s_m``, ``infractions`` (new ones, reported and rewarded at every tenth and the last step), and at the end
-``outcome`` and ``message``.
+``route_s_m``, ``infractions`` (new ones, reported and rewarded at every tenth and the last step), ``reward_parts`` (the
+reward of the step by the names of ``Reward``'s fields), and at the end ``outcome`` and ``message``.
 """
 
 from __future__ import annotations
@@ -26,8 +26,6 @@ import contextlib
 import weakref
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-
-import carla
 
 from basu.agents.autonomous_agent import AgentConfig
 from basu.episode import Episode, EpisodeSpec, Towns, case_spec
@@ -45,7 +43,7 @@ from basu.simulator import simulator_for
 try:
     import gymnasium
 
-    from basu.gym_spaces import Preview, action_space, observation_space
+    from basu.gym_spaces import Preview, action_space, control_from, observation_space
 except ImportError as error:
     raise UserError("basu.gym needs gymnasium; install it with `pip install linden[gym]`") from error
 
@@ -147,10 +145,10 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         """Drive for 0.05 s.
 
         Raises:
+            UserError: the action has a wrong shape, or a value that is no number in -1..1.
             SimulatorError: the simulator failed.
         """
-        pedals, steer = (float(value) for value in action)
-        control = carla.VehicleControl(throttle=max(0.0, pedals), brake=max(0.0, -pedals), steer=steer)
+        control = control_from(action)
         done = self.episode.step(control)
         if done.outcome is None and done.ending is not None:  # the vehicle has arrived: its last frame is recorded
             done = self.episode.step(control)
@@ -163,23 +161,25 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         if outcome is not None or seen.frame.tick % JUDGED_TICKS == 0:
             found = self.episode.metrics.infractions_so_far()
             new, self._infractions = found[self._infractions :], len(found)
-        reward = self._worth(seen.progress.s_m - self._s_m, len(new), outcome)
+        parts = self._parts(seen.progress.s_m - self._s_m, len(new), outcome)
         self._s_m = seen.progress.s_m
-        info: dict[str, Any] = {"route_s_m": self._s_m, "infractions": new}
+        info: dict[str, Any] = {"route_s_m": self._s_m, "infractions": new, "reward_parts": parts}
         if outcome is not None:
             info |= {"outcome": outcome.status.value, "message": outcome.message}
         truncated = outcome is not None and outcome.status in TRUNCATED
-        return self._preview.of(seen), reward, outcome is not None and not truncated, truncated, info
+        terminated = outcome is not None and not truncated
+        return self._preview.of(seen), sum(parts.values()), terminated, truncated, info
 
-    def _worth(self, driven_m: float, infractions: int, outcome: Outcome | None) -> float:
-        """The reward of a step."""
-        worth = self._reward
-        total = worth.progress * driven_m + worth.time * STEP_S + worth.infraction * infractions
-        if outcome is not None and outcome.status is Status.COMPLETED:
-            total += worth.arrival
-        if outcome is not None and outcome.status in FAILED:
-            total += worth.failure
-        return total
+    def _parts(self, driven_m: float, infractions: int, outcome: Outcome | None) -> dict[str, float]:
+        """Return the parts of a step's reward, by the names of `Reward`'s fields."""
+        worth, status = self._reward, None if outcome is None else outcome.status
+        return {
+            "progress": worth.progress * driven_m,
+            "time": worth.time * STEP_S,
+            "infraction": worth.infraction * infractions,
+            "arrival": worth.arrival * (status is Status.COMPLETED),
+            "failure": worth.failure * (status in FAILED),
+        }
 
     def close(self) -> None:
         """End the episode, and the simulator where it is ours."""

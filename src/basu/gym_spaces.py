@@ -1,15 +1,18 @@
-"""Spaces and observations of the gymnasium environment; `basu.gym` describes shapes and units."""
+"""Spaces, observations and actions of the gymnasium environment; `basu.gym` describes shapes and units."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
+import carla
 import gymnasium
 import numpy as np
 
+from basu.errors import UserError
+
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from basu.episode import Episode, Observation
 
@@ -67,6 +70,27 @@ class Preview:
             place = (given[:, :2] - (ego.x_m, ego.y_m)) @ to_vehicle
             table[: len(given)] = np.column_stack([np.ones(len(given)), place, turned, given[:, 4:6] @ to_vehicle])
         return table
+
+
+def control_from(action: ArrayLike) -> carla.VehicleControl:
+    """Return the control of an action ``[pedals, steer]``, both in -1..1.
+
+    Raises:
+        UserError: the action has another shape, is no number, or lies outside of the space.
+    """
+    try:
+        values = np.asarray(action, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise UserError(f"the action is {action!r}; give two numbers in -1..1, [pedals, steer]") from None
+    if values.shape != (2,):
+        raise UserError(f"the action has the shape {values.shape}; give (2,), [pedals, steer]")
+    if not np.all(np.abs(values) <= 1.0):  # false for NaN
+        given = ", ".join(f"{value:g}" for value in values)
+        raise UserError(
+            f"the action is [{given}]; both numbers must be in -1..1 (to clip them: gymnasium.wrappers.ClipAction)"
+        )
+    pedals, steer = values.tolist()
+    return carla.VehicleControl(throttle=max(0.0, pedals), brake=max(0.0, -pedals), steer=steer)
 
 
 def action_space() -> gymnasium.spaces.Space[NDArray[np.float32]]:

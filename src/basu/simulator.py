@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 import carla
 
 from basu.errors import SimulatorError, UserError
+from basu.home import replaced_home
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -36,7 +37,7 @@ END_LIMIT_S = 10.0
 LAST_WORDS_S = 2.0  # for the pipes of an ended server to run empty
 LAST_LINES = 20  # of a server's log, kept to explain its end
 UPLOADED_NAME = "OpenDriveMap"  # CARLA's name of a map that a client sent
-UPLOAD_LIMIT_S = 300.0  # Unreal meshes a town's roads in minutes
+LONG_CALL_LIMIT_S = 300.0  # wall time of a map's load: Unreal meshes a town's roads in minutes; a busy machine is slow
 UPLOAD_VERTEX_M, UPLOAD_PIECE_M, UPLOAD_BESIDE_M = 2.0, 50.0, 0.6  # CARLA's own defaults, PythonAPI/util/config.py
 PR_SET_PDEATHSIG = 1  # Linux, prctl(2): the child gets a signal when its parent is gone, however that went
 
@@ -50,11 +51,26 @@ class Simulator:
     own: bool
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
     ended: Callable[[], bool]  # whether its process is seen to have ended; asks it nothing
+    timeout_s: float = 20.0  # of wall time, for an answer of the simulator
     uploaded: str | None = None  # the town of the map that BASU sent; the simulator calls it by UPLOADED_NAME
+
+    def long_call(self) -> contextlib.AbstractContextManager[None]:
+        """Return a context in which calls may take as long as the load of a map on a busy machine."""
+        return _longer_timeout(self.client, self.timeout_s)
 
     def map_name(self, town: str) -> str:
         """The name by which the simulator knows a town."""
         return UPLOADED_NAME if town == self.uploaded else town
+
+
+@contextlib.contextmanager
+def _longer_timeout(client: carla.Client, usual_s: float) -> Iterator[None]:
+    """Let a client wait for ``LONG_CALL_LIMIT_S`` if its usual timeout is shorter."""
+    client.set_timeout(max(usual_s, LONG_CALL_LIMIT_S))
+    try:
+        yield
+    finally:
+        client.set_timeout(usual_s)
 
 
 @contextlib.contextmanager
@@ -76,6 +92,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
             own=False,
             why_gone=lambda: _silence(client, options),
             ended=lambda: False,
+            timeout_s=options.timeout_s,
             uploaded=town,
         )
         return
@@ -83,7 +100,14 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
     try:
         server.await_ready()
         client = connect("127.0.0.1", server.port, options.timeout_s)
-        yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone, ended=server.ended)
+        yield Simulator(
+            client,
+            ("127.0.0.1", server.port),
+            own=True,
+            why_gone=server.gone,
+            ended=server.ended,
+            timeout_s=options.timeout_s,
+        )
     finally:
         server.end()
 
@@ -192,6 +216,8 @@ class OwnServer:
             except subprocess.TimeoutExpired:
                 self._process.kill()
                 self._process.wait()
+        for reader in self._readers:  # each closes its pipe
+            reader.join(LAST_WORDS_S)
 
     def _wait_until_ready(self) -> int:
         deadline = time.monotonic() + START_LIMIT_S
@@ -207,15 +233,16 @@ class OwnServer:
     def _read(self, stream: IO[str] | None) -> None:
         """Take what the server says until it ends: its port, its progress, its last words."""
         assert stream is not None, "both streams are pipes"
-        for line in stream:
-            text = line.rstrip()
-            if (found := READY.search(text)) is not None:
-                self._port = int(found.group(1))
-            else:
-                self._log.append(text)
-                if self._port is None:
-                    print(text, file=sys.stderr, flush=True)  # a first start says what it is doing
-            self._spoke.set()
+        with stream:
+            for line in stream:
+                text = line.rstrip()
+                if (found := READY.search(text)) is not None:
+                    self._port = int(found.group(1))
+                else:
+                    self._log.append(text)
+                    if self._port is None:
+                        print(text, file=sys.stderr, flush=True)  # a first start says what it is doing
+                self._spoke.set()
         self._spoke.set()
 
 
@@ -243,14 +270,18 @@ def upload(client: carla.Client, file: Path, timeout_s: float) -> str:
         smooth_junctions=True,
         enable_mesh_visibility=True,
     )
-    client.set_timeout(max(timeout_s, UPLOAD_LIMIT_S))
     try:
-        client.generate_opendrive_world(text, shape)
+        with _longer_timeout(client, timeout_s):
+            client.generate_opendrive_world(text, shape)
     except RuntimeError as error:
-        raise SimulatorError(f"the simulator made no world of {file}: {error}") from error
-    finally:
-        client.set_timeout(timeout_s)
+        raise SimulatorError(f"the simulator made no world of {file}: {reason(error)}") from error
     return file.stem
+
+
+def reason(error: RuntimeError) -> str:
+    """Return the text of an error of CARLA's client; if the error is a timeout, with the option that extends it."""
+    text = str(error)
+    return f"{text}; if the machine is busy, wait longer with --timeout S" if "time-out" in text else text
 
 
 def linden_command() -> list[str]:
@@ -282,6 +313,9 @@ def connect(host: str, port: int, timeout_s: float) -> carla.Client:
         ) from error
     try:
         client = carla.Client(host, port)
+        home = replaced_home()
+        if home is not None:
+            client.set_files_base_folder(str(home))
         client.set_timeout(timeout_s)
         client.get_server_version()
     except RuntimeError as error:

@@ -1,6 +1,8 @@
 """Claims about the gymnasium environment: it keeps gymnasium's contract, repeats by seed, and ends as a run does."""
 
+import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import gymnasium
@@ -10,6 +12,7 @@ from gymnasium.utils.env_checker import check_env
 
 from basu.errors import UserError
 from basu.gym import Reward, ShuttleEnv
+from basu.gym_spaces import control_from
 from servers import RunningServer
 
 GENTLE = np.array([0.4, 0.0], np.float32)
@@ -21,6 +24,11 @@ def env(simulator: RunningServer) -> Iterator[ShuttleEnv]:
     assert isinstance(made.unwrapped, ShuttleEnv)
     yield made.unwrapped
     made.close()
+
+
+def open_files() -> int:
+    """The number of open files of this process."""
+    return sum(1 for _ in Path("/proc/self/fd").iterdir())
 
 
 def steps(env: ShuttleEnv, seed: int, number: int = 60) -> list[Any]:
@@ -96,3 +104,61 @@ def test_leaving_the_route_terminates_with_its_outcome(env: ShuttleEnv) -> None:
 def test_an_unknown_route_is_a_sentence() -> None:
     with pytest.raises(UserError, match="has no route '77'; it has 1"):
         ShuttleEnv(route_id="77")
+
+
+def test_a_misspelt_case_gets_the_nearest_one_as_a_hint() -> None:
+    with pytest.raises(UserError, match="did you mean 'lead_vehicle_brakes_1'"):
+        ShuttleEnv(case="lead_vehicle_brake_1")
+
+
+def test_a_type_is_no_case_and_is_not_suggested_for_one() -> None:
+    with pytest.raises(UserError, match="there is no case 'qqqq'; it may be a case's id"):
+        ShuttleEnv(case="qqqq")
+
+
+@pytest.mark.parametrize(
+    ("action", "sentence"),
+    [
+        pytest.param([math.nan, 0.0], r"the action is \[nan, 0\]; both numbers must be in -1\.\.1", id="nan"),
+        pytest.param([0.0, math.inf], r"the action is \[0, inf\]", id="inf"),
+        pytest.param([5.0, 0.0], r"the action is \[5, 0\]; .*ClipAction", id="outside"),
+        pytest.param([0.0, 0.0, 0.0], r"the shape \(3,\); give \(2,\)", id="three"),
+        pytest.param(0.5, r"the shape \(\); give \(2,\)", id="scalar"),
+        pytest.param([[0.0, 0.0]], r"the shape \(1, 2\)", id="batch"),
+        pytest.param(["gas", 0.0], r"the action is \['gas', 0\.0\]; give two numbers", id="words"),
+        pytest.param(None, "give two numbers|the shape", id="none"),
+    ],
+)
+def test_an_action_outside_of_the_space_is_a_sentence(action: Any, sentence: str) -> None:
+    with pytest.raises(UserError, match=sentence):
+        control_from(action)
+
+
+def test_pedals_become_throttle_or_brake() -> None:
+    forward, back = control_from(np.array([0.5, -0.25])), control_from([-1.0, 1.0])
+    assert (forward.throttle, forward.brake, forward.steer) == (0.5, 0.0, -0.25)
+    assert (back.throttle, back.brake, back.steer) == (0.0, 1.0, 1.0)
+
+
+def test_a_refused_action_leaves_the_episode_as_it_was(env: ShuttleEnv) -> None:
+    env.reset(seed=0)
+    expected = env.step(GENTLE)[0]
+    env.reset(seed=0)
+    with pytest.raises(UserError, match="the action is"):
+        env.step(np.array([math.nan, 0.0], np.float32))
+    assert np.array_equal(env.step(GENTLE)[0]["ego"], expected["ego"])
+
+
+def test_the_parts_of_the_reward_add_up(env: ShuttleEnv) -> None:
+    env.reset(seed=0)
+    for _ in range(20):
+        _, reward, _, _, info = env.step(GENTLE)
+        assert set(info["reward_parts"]) == {"progress", "time", "infraction", "arrival", "failure"}
+        assert sum(info["reward_parts"].values()) == reward
+
+
+@pytest.mark.filterwarnings("error::ResourceWarning", "error::pytest.PytestUnraisableExceptionWarning")
+def test_a_closed_environment_leaves_no_file_open() -> None:
+    before = open_files()
+    ShuttleEnv().close()
+    assert open_files() <= before

@@ -71,3 +71,25 @@ def test_a_server_that_started_early_ends_where_no_run_takes_it_over(monkeypatch
     assert (simulator._early, ended) == ([], [True])
     with started_early(RunOptions(host="localhost")):
         assert simulator._early == []
+
+
+def test_a_timeout_names_the_option_that_extends_it() -> None:
+    late = RuntimeError("time-out of 20000ms while waiting for the simulator, make sure the simulator is ready")
+    assert simulator.reason(late).endswith("if the machine is busy, wait longer with --timeout S")
+    assert simulator.reason(RuntimeError("map not found")) == "map not found"
+
+
+def test_a_long_call_waits_longer_and_the_usual_timeout_comes_back() -> None:
+    given_s: list[float] = []
+    client = SimpleNamespace(set_timeout=given_s.append)
+    known = simulator.Simulator(
+        client,  # type: ignore[arg-type]
+        ("", 0),
+        own=True,
+        why_gone=lambda: None,
+        ended=lambda: False,
+        timeout_s=7.0,
+    )
+    with known.long_call():
+        assert given_s == [300.0]
+    assert given_s == [300.0, 7.0]

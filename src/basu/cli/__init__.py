@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import importlib
 import os
+import signal
 import sys
+import threading
 import traceback
 from typing import TYPE_CHECKING, NamedTuple
 
 import basu
 from basu import client_threads
 from basu.errors import AgentError, SimulatorError, UserError
+from basu.home import replaced_home
 from basu.outcome import EXIT_CODES, Fault
 from basu.settings.command_line import Parser
 from basu.settings.option import suggestion
@@ -48,9 +51,12 @@ UNREAD = 141  # 128 + SIGPIPE, as shells have it
 def main(argv: Sequence[str] | None = None) -> int:
     """Run a command; what a person can mend is one sentence and an exit code."""
     words = sys.argv[1:] if argv is None else list(argv)
+    replaced_home()  # before the official client is imported
     try:
         code = _run(words)
         sys.stdout.flush()
+    except KeyboardInterrupt:  # a second one, while the first ended the command
+        code = Fault.USER.value
     except BrokenPipeError:  # the reader of our output has seen enough, such as `head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         code = UNREAD
@@ -71,6 +77,7 @@ def _run(words: Sequence[str]) -> int:
     except SimulatorError as error:
         return _say(error, Fault.SIMULATOR)
     except KeyboardInterrupt as interruption:
+        _ignore_further_interruptions()
         return _say(str(interruption) or "interrupted", Fault.USER)
     except BrokenPipeError:
         raise  # nothing reads our output
@@ -88,7 +95,13 @@ def parser(words: Sequence[str]) -> argparse.ArgumentParser:
     """
     whole = Parser(prog="basu", description=basu.__doc__, epilog=EXIT_CODES)
     whole.add_argument("--version", action="version", version=f"basu {basu.__version__}")
-    commands = whole.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    commands = whole.add_subparsers(title="commands", required=bool(words), metavar="COMMAND")
+
+    def show_help(_: argparse.Namespace) -> int:
+        whole.print_help()
+        return Fault.SETUP.value
+
+    whole.set_defaults(command=show_help)  # without a command
     typed = next((word for word in words if not word.startswith("-")), None)
     if typed is not None and typed not in COMMANDS:
         raise UserError(f"there is no command '{typed}'; {suggestion(typed, COMMANDS)}")
@@ -97,6 +110,12 @@ def parser(words: Sequence[str]) -> argparse.ArgumentParser:
         if name == typed:
             getattr(importlib.import_module(f"basu.cli.{command.module}"), f"add_{name}")(one)
     return whole
+
+
+def _ignore_further_interruptions() -> None:
+    """Ignore Ctrl-C from now on: the command has ended, and a traceback of the way out helps no user."""
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _say(sentence: object, fault: Fault) -> int:

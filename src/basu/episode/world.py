@@ -13,6 +13,7 @@ from basu.managers.base_manager import Frame, ego_in
 from basu.managers.conduct import ticked
 from basu.managers.interference import taken_away
 from basu.routing import lane_graph
+from basu.simulator import reason
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -40,7 +41,7 @@ def asking(what: str) -> Iterator[None]:
     try:
         yield
     except RuntimeError as error:
-        raise SimulatorError(f"the simulator failed at {what}: {error}") from error
+        raise SimulatorError(f"the simulator failed at {what}: {reason(error)}") from error
 
 
 class Town(NamedTuple):
@@ -80,7 +81,7 @@ class Towns:
         """
         client, own = self._simulator.client, self._simulator.own
         again = reload if reload is not None else own and self._loaded is not None
-        with asking(f"loading {name}"):
+        with asking(f"loading {name}"), self._simulator.long_call():
             if again:
                 client.reload_world(reset_settings=False)
             known = self._loaded == name and (own or again)
@@ -210,7 +211,7 @@ def next_frame(run: Run, before: Frame | None) -> Frame:
         number = run.world.tick(run.timeout_s)
         snapshot = run.world.get_snapshot()
     except RuntimeError as error:
-        raise SimulatorError(f"the simulator did not make a step: {error}") from error
+        raise SimulatorError(f"the simulator did not make a step: {reason(error)}") from error
     ego = snapshot.find(run.vehicle.id)
     if ego is None and run.own_simulator:
         raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")

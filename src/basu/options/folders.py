@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal
 
 from basu.errors import UserError
 from basu.options.groups import FOLDERS
-from basu.settings.option import Option, Settings
+from basu.settings.option import Option, Settings, suggestion
+
+SCORES = ("driving", "infraction", "path_following")  # of the thesis, equations 5.1 to 5.5
 
 Output = Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)]
 
@@ -56,6 +59,18 @@ class FolderOptions(Settings):
         ),
     ] = False
     output: Output = Path("runs")
+    require: Annotated[
+        Mapping[str, float],
+        Option(
+            help="least score that a run needs for the exit status 0; may be given several times",
+            group=FOLDERS,
+            metavar="SCORE=LEAST",
+            least=0.0,
+            most=1.0,
+            default_text="none",
+            repeats=False,
+        ),
+    ] = field(default_factory=lambda: dict.fromkeys(SCORES, 0.0))
     series: Annotated[
         str | None,
         Option(
@@ -68,11 +83,14 @@ class FolderOptions(Settings):
     resume: Annotated[bool, Option(help="continue an interrupted --series", group=FOLDERS, repeats=False)] = False
 
     def check(self) -> None:
-        """Check the options of a series.
+        """Check the options of a series and the required scores.
 
         Raises:
-            UserError: there is none to continue.
+            UserError: there is none to continue, or a required score does not exist.
         """
         if self.resume and self.series is None:
             raise UserError("--resume continues a series; name it with --series, as when it was begun")
+        unknown = next((name for name in self.require if name not in SCORES), None)
+        if unknown is not None:
+            raise UserError(f"--require {unknown}: there is no such score; {suggestion(unknown, SCORES)}")
         super().check()

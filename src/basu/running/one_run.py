@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.episode import Episode, EpisodeSpec
 from basu.episode.world import weather_called
+from basu.errors import UserError
 from basu.managers.recording_manager import RecordingManager
 from basu.managers.scenario_results import results_of
 from basu.managers.sensors_manager import SensorsManager
@@ -133,18 +134,30 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     )
     met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)
-    result = write_run_folder(
-        draft,
-        driven,
-        session.scoring,
-        ground.town.lanes,
-        config,
-        met,
-        own,
-        quiet=session.quiet,
-        pictures=session.pictures,
-    )
+    try:
+        result = write_run_folder(
+            draft,
+            driven,
+            session.scoring,
+            ground.town.lanes,
+            config,
+            met,
+            own,
+            quiet=session.quiet,
+            pictures=session.pictures,
+        )
+    except UserError as error:
+        raise UserError(f"{error}; {_rest_of(draft)}") from error
     return Finished(driven.outcome, draft, result, driven.bug)
+
+
+def _rest_of(draft: Path) -> str:
+    """Return what became of the draft of a run that could not be written; an empty one is removed."""
+    try:
+        draft.rmdir()
+    except OSError:
+        return f"what could be written of the run lies in the hidden folder {draft}, which may be deleted"
+    return "nothing of the run was written"
 
 
 def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:

@@ -19,6 +19,7 @@ from basu.metrics.result import Result
 from basu.outcome import Fault, Status
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, plain, point_latest, publish, run_name
+from basu.running.exit_code import exit_code
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.simulator import simulator_for
@@ -114,14 +115,14 @@ def run_in_parallel(
         for answer in pool.play(Job(job.number, (job.number, output, names[job.number])) for job in jobs):
             print(f"run {answer.number + 1} of {len(prepared.jobs)}")
             name = plain(names[answer.number])
-            worst = max(worst, _finished(answer, by_number[answer.number], name, series, options.output))
+            worst = max(worst, _finished(answer, by_number[answer.number], name, series, options))
     finally:
         pool.close()
     return worst
 
 
-def _finished(answer: Done | Lost, job: RunJob, name: str, series: Series | None, output: Path) -> int:
-    """Give a run's folder its name, and show its result; its exit code.
+def _finished(answer: Done | Lost, job: RunJob, name: str, series: Series | None, options: RunOptions) -> int:
+    """Give a run's folder its name, show its result, and return its exit code.
 
     Raises:
         UserError: the disk does not let us.
@@ -136,9 +137,10 @@ def _finished(answer: Done | Lost, job: RunJob, name: str, series: Series | None
     result = Result.from_document(done.document)
     print(table(result))
     folder = publish(done.draft, name) if series is None else series.publish(done.draft, job, done.document)
-    point_latest(folder, output)
+    point_latest(folder, options.output)
     print(f"result folder     {folder}")
     print(f"to repeat         basu run --config {shlex.quote(str(folder / CONFIG_FILE))}")
     if done.bug is not None:
         print(done.bug)
-    return int(result.outcome.status.fault.value)
+    scores = None if result.scores is None else result.scores._asdict()
+    return exit_code(result.outcome.status, scores, options.require)

@@ -11,6 +11,7 @@ from basu.episode.world import check_towns
 from basu.errors import UserError
 from basu.outcome import Status
 from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
+from basu.running.exit_code import exit_code
 from basu.running.one_run import Session, run_one
 from basu.running.parallel_runs import check_parallel, run_in_parallel
 from basu.running.preparation import new_agents, prepare
@@ -42,7 +43,7 @@ def run(options: RunOptions, scoring: Scoring) -> int:
     prepared = prepare(options)
     series = _series(options, scoring, prepared)
     jobs = [job for job in prepared.jobs if series is None or job.number not in series.done]
-    worst = 0 if series is None else series.worst()
+    worst = 0 if series is None else series.worst(options.require)
     try:
         if jobs:
             play = run_in_parallel if options.workers > 1 and len(jobs) > 1 else _run_all
@@ -80,7 +81,8 @@ def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Seri
             print(f"to repeat         basu run --config {shlex.quote(str(folder / CONFIG_FILE))}")
             if done.bug is not None:
                 raise done.bug
-            worst = max(worst, done.outcome.status.fault.value)
+            scores = None if done.result.scores is None else done.result.scores._asdict()
+            worst = max(worst, exit_code(done.outcome.status, scores, options.require))
     return worst
 
 

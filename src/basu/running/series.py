@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
+from basu.running.exit_code import exit_code
 from basu.running.preparation import Job, Plan
 
 SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
@@ -105,9 +106,10 @@ class Series:
         """The totals as text."""
         return series_table(self.folder.name, self._document)
 
-    def worst(self) -> int:
-        """The exit code of the worst run that counts."""
-        return max((Status(each["status"]).fault.value for each in self._document["runs"]), default=0)
+    def worst(self, required: Mapping[str, float]) -> int:
+        """Return the exit code of the worst run that counts; ``required`` are the least scores by name."""
+        rows = self._document["runs"]
+        return max((exit_code(Status(each["status"]), each["scores"], required) for each in rows), default=0)
 
     def _count(self, document: Mapping[str, Any], number: int, repetition: int) -> None:
         rows = self._document["runs"]

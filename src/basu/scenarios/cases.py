@@ -144,7 +144,7 @@ class Library:
         chosen = [s for s in self.scenarios if plain(s.__name__) == kind and not wanted.startswith(GROUP)]
         chosen = chosen or [s for s in self.scenarios if plain(s.group.value) == kind]
         if not chosen:
-            raise ScenarioError(f"there is no scenario '{wanted}'; {self._close(wanted)}")
+            raise ScenarioError(f"there is no scenario '{wanted}'; {self.close_to(wanted, self._kinds())}")
         found = tuple(self.playable(case) for case in self.cases if self._is_one_of(case, chosen))
         if not found:
             raise ScenarioError(f"{chosen[0].__name__} has no case; name an XML file that has one")
@@ -162,16 +162,16 @@ class Library:
             raise ScenarioError(f"{path.with_suffix('.xml')} has no case{f' of type {class_name}' * bool(class_name)}")
         return found
 
-    def _close(self, wanted: str) -> str:
-        """What may have been meant, and where to look."""
-        groups = [group.value for group in Group]
-        names = [*(case.name for case in self.cases), *(snake(s.__name__) for s in self.scenarios), *groups, ALL]
+    def _kinds(self) -> list[str]:
+        """Return the words that mean several cases: types, groups and `all`."""
+        return [*(snake(s.__name__) for s in self.scenarios), *(group.value for group in Group), ALL]
+
+    def close_to(self, wanted: str, kinds: Sequence[str]) -> str:
+        """Return a hint for a word that means nothing: the nearest case or kind, and where to look."""
+        names = [*(case.name for case in self.cases), *kinds]
         close = difflib.get_close_matches(snake(wanted.partition(":")[0]), names, 1)
-        hint = (
-            f"did you mean '{close[0]}'?"
-            if close
-            else "it may be a case, a type, a group, FILE.xml or all, and one of yours with --scenarios FILE;"
-        )
+        words = "a case, a type, a group, FILE.xml or all" if kinds else "a case's id"
+        hint = f"did you mean '{close[0]}'?" if close else f"it may be {words}, and one of yours with --scenarios FILE;"
         return f"{hint} `basu scenario list` shows what there is"
 
 
@@ -213,9 +213,10 @@ def by_id(identity: str, files: Sequence[str | Path] = ()) -> Playable:
     Raises:
         ScenarioError: none has it.
     """
-    found = open_library(files).of_id(identity)
+    library = open_library(files)
+    found = library.of_id(identity)
     if not found:
-        raise ScenarioError(f"there is no case '{identity}'; `basu scenario list` shows what there is")
+        raise ScenarioError(f"there is no case '{identity}'; {library.close_to(identity, [])}")
     return found[0]
 
 

@@ -81,7 +81,7 @@ def _streets(path: Path | None) -> dict[str, Any]:
     data = (resources.files("linden") / "data" / _HOME_STREETS).read_bytes() if path is None else bytes_of(path)
     try:
         streets = json.loads(data)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise UserError(f"{path} is no GeoJSON: {error}") from None
     if not isinstance(streets, dict):
         raise UserError(f"{path} is no GeoJSON: it should be an object of type FeatureCollection")

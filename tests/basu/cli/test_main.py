@@ -95,3 +95,22 @@ def test_every_command_has_help(capsys: pytest.CaptureFixture[str]) -> None:
             main([*command, "--help"])
         assert ended.value.code == 0
         assert "usage: basu" in capsys.readouterr().out
+
+
+def test_a_second_interruption_is_no_traceback(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupted(_: object) -> int:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("basu.cli._run", interrupted)  # what a second Ctrl-C does while the first is handled
+    assert main(["run"]) == 130
+    assert capsys.readouterr().err == ""
+
+
+def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    shown = capsys.readouterr()
+    assert "usage: basu" in shown.out
+    assert "drive a route and score the drive" in shown.out
+    assert shown.err == ""

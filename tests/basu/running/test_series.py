@@ -122,7 +122,7 @@ def test_an_agent_that_failed_has_had_its_run(tmp_path: Path, status: Status) ->
     run(opened(tmp_path), JOBS[0], status)
     again = opened(tmp_path, resume=True)
     assert again.done == {0}
-    assert again.worst() == 1
+    assert again.worst({}) == 1
 
 
 def test_what_is_different_is_named_and_refused(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import pytest
 
+from linden.cli import main
 from linden.cli.process import GRACE_S, LossyHandler, allow_connections
 
 STUCK = """
@@ -124,3 +125,10 @@ def test_the_limit_of_open_files_is_raised_as_far_as_allowed() -> None:
         assert raised == (20_000 if hard == resource.RLIM_INFINITY else min(hard, 20_000))
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+
+
+def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == 2
+    shown = capsys.readouterr()
+    assert "usage: linden" in shown.out
+    assert shown.err == ""

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.manual.inputs import DRIVING_STRIKES, Axes, Held, Input, Strike
 from basu.errors import UserError
-from basu.files import write_bytes
+from basu.files import loads, write_bytes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -116,7 +116,7 @@ def read_session(path: Path) -> Session:
         UserError: it is not there, or no session.
     """
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = loads(path.read_text(encoding="utf-8"))
         if document["version"] != VERSION:
             raise UserError(f"the session of keys {path} has version {document['version']}; this BASU reads {VERSION}")
         return Session(

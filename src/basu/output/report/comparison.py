@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 
+COMPARED = frozenset({"basu", "carla"})  # programs of which another version may change a drive
+
+
 class Row(NamedTuple):
     """What is compared of one run."""
 
@@ -108,9 +111,45 @@ def remarks(runs: Sequence[RunRecord]) -> list[str]:
     ended = [f"{run.agent} ({run.result.outcome.status.value})" for run in runs if not run.result.is_comparable]
     if ended:
         found.append(f"These runs were ended by a failure, and their scores are not comparable: {', '.join(ended)}.")
+    found += _conditions(runs)
     if len({_rules(run.result.scoring) for run in runs}) > 1:
         found.append("These runs were scored with different penalties or weights; `basu score` scores them alike.")
     return found
+
+
+def _conditions(runs: Sequence[RunRecord]) -> list[str]:
+    """Return a sentence that names each condition in which the runs differ; nothing if they differ in none."""
+    names = [each.agent for each in rows(runs)]
+    given = [_conditions_of(run.result.meta) for run in runs]
+    differing = [name for name in dict.fromkeys(name for each in given for name in each) if _differ(given, name)]
+    if not differing:
+        return []
+    parts = [
+        f"{name} " + ", ".join(f"{each.get(name, 'none')} ({agent})" for agent, each in zip(names, given, strict=True))
+        for name in differing
+    ]
+    return [f"These runs had different conditions, which alone may explain a difference: {'; '.join(parts)}."]
+
+
+def _differ(given: Sequence[Mapping[str, str]], name: str) -> bool:
+    return len({each.get(name) for each in given}) > 1
+
+
+def _conditions_of(meta: Mapping[str, Any] | None) -> dict[str, str]:
+    """Return the conditions of a run by name, as `result.json` records them; versions are those of the benchmark."""
+    if not meta:
+        return {}
+    traffic = meta.get("traffic") or {}
+    found = {
+        "vehicle": meta.get("vehicle"),
+        "weather": meta.get("weather"),
+        "seed": meta.get("seed"),
+        "vehicles of the traffic": traffic.get("vehicles"),
+        "walkers of the traffic": traffic.get("walkers"),
+        "vehicles per km": traffic.get("density_per_km"),
+        **{f"version of {name}": value for name, value in (meta.get("versions") or {}).items() if name in COMPARED},
+    }
+    return {name: str(value) for name, value in found.items() if value is not None}
 
 
 def on_one_route(runs: Sequence[RunRecord]) -> bool:

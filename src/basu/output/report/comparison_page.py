@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 from urllib.parse import quote
+
+import numpy as np
 
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report import events
-from basu.output.report.comparison import draw, heads, remarks, rows, shared_bounds, text
+from basu.output.report.comparison import draw, heads, histories, remarks, rows, shared_bounds, text
 from basu.output.report.documents import read_run
 from basu.output.report.html.page import REPORT_FILE, legend, page
 from basu.output.report.plots.chart import Line, chart
@@ -27,9 +29,12 @@ if TYPE_CHECKING:
     from basu.output.report.streets import Bounds
 
 
+MOST_BESIDE = 4  # runs that stand as columns, so that the table fits a phone
+
+
 def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path, more: Sequence[Element] = ()) -> bytes:
     """The page, to lie in the folder ``beside``; ``more`` stands below the table."""
-    compared, shared = rows(runs), shared_bounds(runs)
+    compared, shared, axes = rows(runs), shared_bounds(runs), _axes(runs)
     named, reports = heads(compared), [folder / REPORT_FILE for folder in folders]
     body = render(
         "templates/comparison.j2",
@@ -40,10 +45,11 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
             (_address(path, beside) if path.exists() else None, [row.cell(head) for head in named])
             for row, path in zip(compared, reports, strict=True)
         ],
+        is_upright=len(runs) <= MOST_BESIDE,
         more=more,
         legend=legend(),
         figures=[
-            (row.agent, row.cell("driving score"), row.ended, _pictures(run, shared))
+            (row.agent, row.cell("driving score"), row.ended, _pictures(run, shared, axes))
             for run, row in zip(runs, compared, strict=True)
         ],
     )
@@ -55,8 +61,22 @@ def _address(report: Path, beside: Path) -> str:
     return quote(os.path.relpath(report.resolve(), beside.resolve()))
 
 
-def _pictures(run: RunRecord, shared: Bounds | None) -> list[Element]:
-    """One run: its path and its speed; none where nothing was driven."""
+class _Axes(NamedTuple):
+    """The axes that the speeds of all runs fit into."""
+
+    end_s: float
+    highest_mps: float
+
+
+def _axes(runs: Sequence[RunRecord]) -> _Axes:
+    """Return the longest time and the highest speed or limit of all runs; zeros if nothing was driven."""
+    felt = [signals(history) for history in histories(runs)]
+    highest_mps = [np.nanmax([*each.speed_mps, *each.limit_mps], initial=0.0) for each in felt]
+    return _Axes(max((float(each.t_s[-1]) for each in felt), default=0.0), float(max(highest_mps, default=0.0)))
+
+
+def _pictures(run: RunRecord, shared: Bounds | None, axes: _Axes) -> list[Element]:
+    """Return the path and the speed of a run; nothing if nothing was driven."""
     if run.history is None:
         return []
     felt = signals(run.history)
@@ -68,7 +88,14 @@ def _pictures(run: RunRecord, shared: Bounds | None) -> list[Element]:
     ]
     return [
         plain_map(run.history, run.streets, bounds, places),
-        chart(felt.t_s, curves, title="Speed", unit="m/s"),
+        chart(
+            felt.t_s,
+            curves,
+            title="Speed",
+            unit="m/s",
+            least_range=(0.0, axes.highest_mps),
+            least_end_s=axes.end_s,
+        ),
     ]
 
 

@@ -219,13 +219,36 @@ def read_run(folder: Path) -> RunRecord:
     """
     if not folder.is_dir():
         raise UserError(f"{folder} is no folder; name a run's, such as runs/latest")
-    return RunRecord(
+    document = read_result(folder)
+    run = RunRecord(
         name=folder.resolve().name,
         config=_document(folder / CONFIG_FILE),
-        result=Result.from_document(read_result(folder)),
+        result=Result.from_document(document),
         history=read_history(folder) if (folder / HISTORY_FILE).exists() else None,
         streets=read_streets(folder),
     )
+    if run.history is not None:
+        frames = range(len(run.history.frames))
+        strange = next((tick for tick in _ticks(document) if tick not in frames), None)
+        if strange is not None:
+            raise UserError(
+                f"{folder / RESULT_FILE} names frame {strange} and {HISTORY_FILE} ends at {frames[-1]}: "
+                "these are files of different runs; drive the run again"
+            )
+    return run
+
+
+def _ticks(document: object) -> Iterator[object]:
+    """Yield every number of a frame in a result; a whole number that is written as 5.0 as a text."""
+    if isinstance(document, dict):
+        for name, value in document.items():
+            if name == "tick":
+                yield value if type(value) is int else repr(value)
+            else:
+                yield from _ticks(value)
+    elif isinstance(document, list):
+        for value in document:
+            yield from _ticks(value)
 
 
 def _document(path: Path) -> dict[str, Any]:

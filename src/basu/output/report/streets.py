@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.errors import UserError
-from basu.files import write_bytes
+from basu.files import loads, write_bytes
 from basu.output.report.plots.decimate import path
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def read_streets(folder: Path) -> list[Line]:
     if not file.exists():
         return []
     try:
-        document = json.loads(file.read_text(encoding="utf-8"))
+        document = loads(file.read_text(encoding="utf-8"))
         return [[(float(x), float(y)) for x, y in lane] for lane in document["lanes_m"]]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(f"{file} is no map of streets: {error!r}; without the file, the report has none") from error

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import carla
 
 from basu.errors import UserError
+from basu.files import loads
 
 LOG_FILE, MAP_FILE = "recording.log", "map.xodr"  # in a run's folder
 RESULT_FILE, CONFIG_FILE = "result.json", "config.json"  # likewise
@@ -77,7 +77,7 @@ def read_criteria(path: Path) -> dict[str, Any]:
         UserError: it is no JSON object.
     """
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UserError(f"the criteria {path} cannot be read: {error}; name a JSON file") from error
     if not isinstance(document, dict):
@@ -95,7 +95,7 @@ def criteria_of(result: Path) -> dict[str, Any]:
         UserError: it is no result of a run.
     """
     try:
-        document = json.loads(result.read_text(encoding="utf-8"))
+        document = loads(result.read_text(encoding="utf-8"))
         kinds = [row["kind"] for row in document["infractions"]]
         judged = sorted({*document["scoring"]["penalties"], *kinds})
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -114,7 +114,7 @@ def criteria_of(result: Path) -> dict[str, Any]:
 def _why_no_log(config: Path) -> str:
     """What a run's config says about its log, and what to do."""
     try:
-        recorded = json.loads(config.read_text(encoding="utf-8"))["recording"]
+        recorded = loads(config.read_text(encoding="utf-8"))["recording"]
         return f"it is {recorded['file']} ({recorded['where']}); copy it here under that name"
     except (OSError, ValueError, KeyError, TypeError):
         return "the run was not recorded; run it with --record"

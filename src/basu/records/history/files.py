@@ -17,7 +17,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from basu.errors import UserError
-from basu.files import write_bytes
+from basu.files import loads, write_bytes
+from basu.records.history.facts_document import check_facts
 from basu.records.history.model import FRAME, OTHER, Collision, Facts, History, LaneInvasion, Vehicle
 from basu.records.history.sumo import read_sumo, write_sumo
 from basu.records.history.tables import to_arrow
@@ -26,6 +27,8 @@ from basu.routing.timetable import timetable_from_json, timetable_to_json
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from numpy.typing import NDArray
 
 
 ARRAYS = ("points_m", "s_m", "yaw_rad", "lane_width_m", "speed_limit_mps", "is_junction", "road_id", "lane_id")
@@ -127,7 +130,7 @@ def facts_to_json(facts: Facts) -> str:
 
 def facts_from_json(text: str) -> Facts:
     """Read what :func:`facts_to_json` wrote."""
-    document = json.loads(text)
+    document = loads(text)
     version = document["schema_version"]
     if version not in (WITHOUT_APPLIED, FACTS_SCHEMA_VERSION):
         lacks = ", which lacks what the metrics ask for (lanes, lights, the driver)" if version == 1 else ""
@@ -135,6 +138,7 @@ def facts_from_json(text: str) -> Facts:
             f"{FACTS_FILE} has schema version {version}{lacks}, and this one reads {FACTS_SCHEMA_VERSION}; score it "
             "with the version of basu that its config.json names, or drive it again by the command there"
         )
+    check_facts(document)
     return Facts(
         step_s=document["step_s"],
         vehicle=Vehicle(**document["vehicle"]),
@@ -144,12 +148,33 @@ def facts_from_json(text: str) -> Facts:
     )
 
 
+MAY_BE_NAN = frozenset({"lane_offset_m", "lane_heading_rad", "lane_width_m"})  # where there is no lane
+
+
+def _check_frames(frames: NDArray[np.void]) -> None:
+    """Check that frames are consecutive and finite.
+
+    Raises:
+        ValueError: they are not.
+    """
+    if not len(frames):
+        raise ValueError(f"{HISTORY_FILE} has no frame")
+    if not np.array_equal(frames["tick"], np.arange(len(frames))):
+        raise ValueError(f"the ticks of {HISTORY_FILE} do not count from 0 by 1")
+    for name in frames.dtype.names or ():
+        if name not in MAY_BE_NAN and not np.all(np.isfinite(frames[name])):
+            raise ValueError(f"{name} in {HISTORY_FILE} has a value that is no number")
+
+
 def _history(table: pa.Table, facts: Facts) -> History:
     """The record in a table of :func:`~basu.records.history.tables.to_arrow`."""
     frames = np.zeros(table.num_rows, dtype=FRAME)
     for name in FRAME.names or ():
         kept = name if name in table.column_names else name.removeprefix("applied_")
         frames[name] = table[kept].to_numpy()
+    for name in ("others", "collisions", "lane_invasions"):
+        if not pa.types.is_list(table[name].type):
+            raise ValueError(f"{name} in {HISTORY_FILE} holds no lists")
     nearby = table["others"].combine_chunks()
     rows = nearby.flatten()
     others = np.zeros(len(rows), dtype=OTHER)
@@ -157,6 +182,7 @@ def _history(table: pa.Table, facts: Facts) -> History:
     for name in OTHER.names or ():
         if name != "tick":
             others[name] = rows.field(name).to_numpy()
+    _check_frames(frames)
     contacts = zip(frames["tick"].tolist(), table["collisions"].to_pylist(), strict=True)
     crossings = zip(frames["tick"].tolist(), table["lane_invasions"].to_pylist(), strict=True)
     return History(

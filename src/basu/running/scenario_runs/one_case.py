@@ -192,7 +192,11 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     """
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
-    with simulator_for(options.run_options("basic")) as simulator, asking(f"loading {case.town}"):
+    with (
+        simulator_for(options.run_options("basic")) as simulator,
+        asking(f"loading {case.town}"),
+        simulator.long_call(),
+    ):
         check_town(case, towns_of(simulator, [case.town]))
         _, carla_map = world_with(simulator, case.town)
         route = plan(carla_map, description_of(playable, carla_map), lane_graph.build(carla_map))

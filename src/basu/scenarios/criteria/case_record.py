@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from basu.errors import UserError
+from basu.files import loads
 from basu.outcome import Outcome, Status
 from basu.records.history.files import read_history
 from basu.routing.planned_route import until
@@ -57,7 +57,7 @@ def judgements_in(folder: Path) -> tuple[Judgement, ...]:
 def _document(folder: Path) -> dict[str, Any]:
     """The result of a case."""
     try:
-        document: dict[str, Any] = json.loads((folder / RESULT_FILE).read_text(encoding="utf-8"))
+        document: dict[str, Any] = loads((folder / RESULT_FILE).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UserError(f"{folder} holds no result that can be read: {error}") from error
     return document

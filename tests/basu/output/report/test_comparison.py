@@ -1,9 +1,11 @@
 """Claims about comparisons: the columns of table 5.1, one frame for one route, a sentence for several."""
 
+import re
 from pathlib import Path
 
 import pytest
 from PIL import Image
+from playwright.sync_api import Browser
 
 from basu.cli import main
 from basu.output.report.comparison import remarks, rows, text
@@ -50,6 +52,51 @@ def test_other_rules_are_reported_of() -> None:
     other.result.scoring["penalties"]["speeding"] = 0.5
     (remark,) = remarks([record(crashing()), other])
     assert "different penalties or weights" in remark
+
+
+def test_conditions_that_differ_are_named_with_their_values() -> None:
+    one, other = record(crashing(), agent="one"), record(crashing(), agent="other")
+    other.result.meta.update(weather="HardRainNoon", seed=3, traffic={"vehicles": 30, "walkers": 0})
+    (remark,) = remarks([one, other])
+    assert "weather ClearNoon (one), HardRainNoon (other); seed 0 (one), 3 (other)" in remark
+    assert "vehicles of the traffic 0 (one), 30 (other)" in remark
+    assert "walkers" not in remark
+
+
+def test_the_speeds_of_all_runs_have_common_axes(tmp_path: Path) -> None:
+    slow, fast = record(driven(at(8.0, 25.0)), agent="slow"), record(driven(at(16.0, 12.0)), agent="fast")
+    folders = [written(tmp_path / "slow", slow), written(tmp_path / "fast", fast)]
+    assert main(["compare", *map(str, folders), "-o", str(tmp_path / "out")]) == 0
+    page = (tmp_path / "out" / "compare.html").read_text()
+    axes = [re.findall(r'class="height"[^>]*>[^<]*', part) for part in page.split("<figcaption>")[1:]]
+    drawn = [each for each in axes if each]
+    assert len(drawn) == 2
+    assert drawn[0] == drawn[1]
+
+
+@pytest.mark.parametrize("number", [2, 6])
+def test_the_page_is_no_wider_than_a_phone_and_breaks_no_word(browser: Browser, tmp_path: Path, number: int) -> None:
+    folders = [str(written(tmp_path / str(n), record(driven(at(8.0, 5.0)), agent=f"agent{n}"))) for n in range(number)]
+    assert main(["compare", *folders, "-o", str(tmp_path)]) == 0
+    for width in (390, 1280):
+        page = browser.new_page(viewport={"width": width, "height": 800})
+        page.goto((tmp_path / "compare.html").as_uri())
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        name = page.get_by_role("link", name="agent1") if page.get_by_role("link", name="agent1").count() else None
+        cell = name or page.locator("th", has_text="agent1")
+        assert cell.first.evaluate("node => node.getClientRects().length && node.offsetHeight") < 40  # one line
+        page.close()
+
+
+def test_escape_sequences_of_an_agents_name_do_not_reach_the_terminal(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = written(tmp_path / "bad", record(crashing(), agent="evil\x1b[2J\x07\x9b1m"))
+    good = written(tmp_path / "good", record(crashing(), agent="good"))
+    assert main(["compare", str(bad), str(good)]) == 0
+    shown = capsys.readouterr().out
+    assert "evil" in shown
+    assert not any(character in shown for character in "\x1b\x07\x9b")
 
 
 def test_the_command_writes_nothing_unless_a_folder_is_named(

@@ -12,6 +12,7 @@ from basu.output.report.plots.chart import Line, Mark, chart
 from basu.output.report.plots.town_map import box, view
 from basu.output.report.streets import Bounds
 from basu.output.report.templates import DASH, TIMES, e, figure, number, render
+from basu.routing.planned_route import ControlKind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,6 +27,12 @@ if TYPE_CHECKING:
 PICTURED = 60  # events with pictures; further events have words only
 CLOSE_M = (36.0, 24.0)  # half the width and half the height of a close-up
 AROUND_S = 8.0  # of speed, before and after
+SIGN_M, SIGN_BESIDE_M = 1.3, 2.2  # a sign's radius in close-ups, and its distance from the lane's edge
+SIGNS = {  # corners of a sign's outline, and the direction of the first as seen from its middle
+    ControlKind.STOP_SIGN: (8, math.pi / 8.0),
+    ControlKind.YIELD_SIGN: (3, math.pi / 2.0),  # with the tip below
+    ControlKind.TRAFFIC_LIGHT: (4, math.pi / 4.0),
+}
 UNKNOWN_HALF_M = (1.0, 0.5)  # length and width of others without a recorded size
 
 
@@ -56,6 +63,7 @@ def close_up(history: History, event: Event) -> Element:
         viewBox=view(bounds),
         role="img",
     )
+    picture.extend(_controls(history, bounds))
     for other in history.others[history.others["tick"] == event.tick]:
         half_m = history.facts.actor_sizes.get(int(other["id"]), UNKNOWN_HALF_M)
         kind = history.facts.actor_types.get(int(other["id"]), "")
@@ -66,8 +74,32 @@ def close_up(history: History, event: Event) -> Element:
     picture.append(
         _body(frame["x_m"], frame["y_m"], frame["yaw_rad"], vehicle.front_m, vehicle.rear_m, half_width_m, "own")
     )
-    caption = e("figcaption", e("b", "Place"), f", {2 * CLOSE_M[0]:g} m across; the vehicle is dark, others are light")
+    caption = e(
+        "figcaption",
+        e("b", "Place"),
+        f", {2 * CLOSE_M[0]:g} m across; the vehicle is dark, others are light; lines to stop at have their signs",
+    )
     return e("figure", caption, e("div", picture, class_="map", style=box(bounds, 480.0)))
+
+
+def _controls(history: History, bounds: Bounds) -> list[Element]:
+    """Return the lines to stop at within the bounds, each across the route's lane with its sign at the right edge."""
+    route, found = history.facts.route, []
+    for control in route.controls:
+        if not (bounds.west_m < control.x_m < bounds.east_m and bounds.north_m < control.y_m < bounds.south_m):
+            continue
+        half_m = 0.5 * float(np.interp(control.s_m, route.s_m, route.lane_width_m))
+        right = np.array([-math.sin(control.yaw_rad), math.cos(control.yaw_rad)])  # CARLA's y points south
+        middle = np.array([control.x_m, control.y_m])
+        (x1, y1), (x2, y2) = middle - half_m * right, middle + half_m * right
+        title = e("title", f"{control.kind.value.replace('_', ' ')} {control.landmark_id}")
+        line = e("path", d=f"M{number(x1)} {number(y1)}L{number(x2)} {number(y2)}", class_="stop-line")
+        corners, turn_rad = SIGNS[control.kind]
+        angles = turn_rad + np.arange(corners) * math.tau / corners
+        sign = middle + (half_m + SIGN_BESIDE_M) * right + SIGN_M * np.column_stack([np.cos(angles), np.sin(angles)])
+        points = " ".join(f"{number(x)},{number(y)}" for x, y in sign.tolist())
+        found.append(e("g", title, line, e("polygon", points=points, class_=f"road-sign {control.kind.value}")))
+    return found
 
 
 def _body(

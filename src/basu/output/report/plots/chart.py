@@ -97,9 +97,14 @@ def chart(
     shades: Sequence[Shade] = (),
     marks: Sequence[Mark] = (),
     least_range: tuple[float, float] = (0.0, 0.0),
+    least_end_s: float = 0.0,
 ) -> Element:
-    """A figure with its plot; ``levels`` are heights with a name, ``least_range`` is shown in every case."""
-    begin_s, end_s = float(t_s[0]), max(float(t_s[-1]), float(t_s[0]) + 1e-3)
+    """Return a figure with its plot.
+
+    ``levels`` are heights with a name. The axes show at least ``least_range`` and the time until ``least_end_s``, so
+    that charts can have common axes.
+    """
+    begin_s, end_s = float(t_s[0]), max(float(t_s[-1]), float(t_s[0]) + 1e-3, least_end_s)
     low, high = _range([line.values for line in lines], least_range)
     plot = e("div", class_="plot" + (" timed" if id_ else ""))
     plot.extend(_shades(shades, begin_s, end_s))

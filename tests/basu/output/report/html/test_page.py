@@ -141,3 +141,12 @@ def test_a_run_amid_sumo_s_traffic_shows_its_load_and_the_riders_of_each_stop() 
     assert "left behind" in page
     assert '<section id="sumo">' not in report(record(drive)).decode(), "a run without SUMO has no such section"
     assert "left behind" not in report(record(drive)).decode()
+
+
+def test_the_evidence_of_a_missed_stop_shows_the_line_and_the_sign() -> None:
+    page = report(record(crashing())).decode()
+    drawn = re.search(
+        r'<title>stop sign \S*</title><path d="(M[^"]*)" class="stop-line">.*?<polygon points="([^"]*)"', page
+    )
+    assert drawn is not None
+    assert len(drawn[2].split()) == 8  # an octagon
