@@ -44,7 +44,7 @@ class Segment(NamedTuple):
 class Graph(NamedTuple):
     """Segments, where nodes lie (m, x east, y north, and degrees), and which nodes stand for a small ring.
 
-    ``circulating``: ids of segments of larger rings.
+    ``circulating``: ids of segments of larger rings. ``repeated``: how many pieces of street lay on another one.
     """
 
     segments: tuple[Segment, ...]
@@ -52,6 +52,7 @@ class Graph(NamedTuple):
     degrees: Mapping[int, Point]
     rings: frozenset[int]
     circulating: frozenset[str]
+    repeated: int = 0
 
     def at(self, node: int) -> list[Segment]:
         """Return the segments that end at a node; a loop twice."""
@@ -94,13 +95,15 @@ def graph_of(extract: Extract, *, metric: bool) -> tuple[Graph, tuple[float, flo
         for way, nodes in lines
         for part in _cut(nodes, joints)
     ]
-    segments = _named(tuple(_simplified(segment, places) for segment in _joined(pieces)))
+    different = _different(pieces)
+    segments = _named(tuple(_simplified(segment, places) for segment in _joined(different)))
     circulating = frozenset(
         segment.id
         for segment in segments
         if any(extract.ways[way].tags.get("junction") in {"roundabout", "circular"} for way in segment.ways)
     )
-    return Graph(segments, places.metres, places.degrees, frozenset(rings), circulating), places.origin
+    repeated = len(pieces) - len(different)
+    return Graph(segments, places.metres, places.degrees, frozenset(rings), circulating, repeated), places.origin
 
 
 def _small_rings(ways: Sequence[OsmWay], places: _Places) -> tuple[list[int], dict[int, int]]:
@@ -182,6 +185,14 @@ def _cut(nodes: tuple[int, ...], joints: frozenset[int]) -> list[tuple[int, ...]
         else:
             parts.append(part)
     return parts
+
+
+def _different(pieces: list[Segment]) -> list[Segment]:
+    """Return the pieces without those that go through the nodes of an earlier one, as a way that is mapped twice."""
+    found: dict[tuple[int, ...], Segment] = {}
+    for piece in pieces:
+        found.setdefault(min(piece.nodes, piece.nodes[::-1]), piece)
+    return list(found.values())
 
 
 def mirrored(across: Carriageway) -> Carriageway:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from linden.authoring.openstreetmap.extract import Tags
 from linden.authoring.streets.cross_section import PARKING_M
-from linden.authoring.streets.street_facts import NARROWEST_M
+from linden.authoring.streets.street_facts import NARROWEST_M, Speed
 
 CLASS_OF = {
     "motorway": "arterial",
@@ -34,7 +34,6 @@ SPEED_KMH = {"arterial": 50.0, "collector": 50.0, "local": 50.0, "service": 20.0
 """Guessed limits: the first where the extract's limits are in mph, the second elsewhere."""
 
 TAGGED = "tagged"
-KMH_PER_MPH = 1.609344
 MOST_LANES = 12
 _FEET_M, _INCH_M = 0.3048, 0.0254
 _LENGTH = re.compile(r"^(\d+(?:\.\d+)?)\s*(m|cm|km|ft|')?$")
@@ -54,7 +53,7 @@ class Carriageway(NamedTuple):
     forward: int
     backward: int
     width_m: float
-    speed_mph: float
+    speed: Speed
     parking: tuple[bool, bool]
     sidewalk: tuple[bool, bool]
     sources: tuple[tuple[str, str], ...]
@@ -99,7 +98,7 @@ def carriageway(tags: Tags, *, metric: bool) -> Carriageway:
         walked = separate or kind in {"collector", "local"}
         sidewalk, sidewalk_source = (walked, walked), "guessed from sidewalk=separate" if separate else because
     width_m, width_source = _width(tags, forward + backward, kind, sum(parking))
-    speed_mph, speed_source = _speed(tags, kind, because, metric=metric)
+    speed, speed_source = _speed(tags, kind, because, metric=metric)
     name, name_source = _name(tags)
     return Carriageway(
         name,
@@ -107,7 +106,7 @@ def carriageway(tags: Tags, *, metric: bool) -> Carriageway:
         forward,
         backward,
         width_m,
-        speed_mph,
+        speed,
         parking,
         sidewalk,
         (
@@ -131,12 +130,12 @@ def metres(text: str) -> float | None:
     return None
 
 
-def limit_mph(text: str) -> float | None:
-    """Return a speed limit in mph, such as ``50`` (km/h) or ``25 mph``; None where it is no number."""
+def speed_limit(text: str) -> Speed | None:
+    """Return a speed limit in the unit of its tag, such as ``50`` (km/h) or ``25 mph``; None where it is no number."""
     found = _SPEED.match(text.strip().lower())
     if found is None or float(found[1]) <= 0.0:
         return None
-    return float(found[1]) if found[2] == "mph" else float(found[1]) / KMH_PER_MPH
+    return Speed(float(found[1]), "mph" if found[2] == "mph" else "km/h")
 
 
 def _lanes(tags: Tags, because: str) -> tuple[tuple[int, int], str]:
@@ -177,15 +176,14 @@ def _width(tags: Tags, lanes: int, kind: str, parked: int) -> tuple[float, str]:
     return round(lanes * lane_m + parked * PARKING_M, 2), f"guessed: lanes of {lane_m} m"
 
 
-def _speed(tags: Tags, kind: str, because: str, *, metric: bool) -> tuple[float, str]:
-    found = limit_mph(tags.get("maxspeed", ""))
+def _speed(tags: Tags, kind: str, because: str, *, metric: bool) -> tuple[Speed, str]:
+    found = speed_limit(tags.get("maxspeed", ""))
     if found is None:
-        ahead, back = (limit_mph(tags.get(f"maxspeed:{side}", "")) for side in ("forward", "backward"))
-        found = min((one for one in (ahead, back) if one is not None), default=None)
+        ahead, back = (speed_limit(tags.get(f"maxspeed:{side}", "")) for side in ("forward", "backward"))
+        found = min((one for one in (ahead, back) if one is not None), key=lambda one: one.mps, default=None)
     if found is not None:
-        return round(found, 4), TAGGED
-    guess = SPEED_KMH[kind] / KMH_PER_MPH if metric else SPEED_MPH[kind]
-    return round(guess, 4), because
+        return found, TAGGED
+    return (Speed(SPEED_KMH[kind], "km/h") if metric else Speed(SPEED_MPH[kind], "mph")), because
 
 
 def _name(tags: Tags) -> tuple[str, str]:

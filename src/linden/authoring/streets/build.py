@@ -23,6 +23,7 @@ from linden.authoring.streets.name_signs import name_signs
 from linden.authoring.streets.network import End, Leg, Network
 from linden.authoring.streets.network import build as build_network
 from linden.authoring.streets.rails import rails
+from linden.authoring.streets.rings import ISLAND_RADIUS_M
 from linden.authoring.streets.standing import standing
 from linden.authoring.streets.street_facts import Control, Facts, Intersection
 from linden.authoring.streets.writing import text
@@ -51,6 +52,8 @@ class Built(NamedTuple):
     document: Document
     left_out: tuple[str, ...] = ()
     """Ids of buildings and furniture that would stand on a street."""
+    simplified: tuple[str, ...] = ()
+    """Ids of roundabouts that became plain junctions, because their island had no room."""
 
 
 def build(streets: dict[str, object]) -> bytes:
@@ -87,6 +90,7 @@ class _Assembly:
         self.corners: list[RoadRecord] = []
         self.junctions: list[JunctionRecord] = []
         self.controllers: list[Controller] = []
+        self.simplified: list[str] = []
         self.walked_ends, self.crossings = crosswalks.mapped_crossings(facts, self.network)
 
     def result(self) -> Built:
@@ -122,7 +126,9 @@ class _Assembly:
             junctions=tuple(self.junctions),
             notes=(("elevation_confidence", self.facts.ground.confidence),),
         )
-        return Built(self.facts, self.network, street_roads, tuple(self.ways), document, placed.left_out)
+        return Built(
+            self.facts, self.network, street_roads, tuple(self.ways), document, placed.left_out, tuple(self.simplified)
+        )
 
     def _intersections(self, nodes: tuple[int, ...]) -> list[Intersection]:
         return [one for one in (self.network.nodes[node].intersection for node in nodes) if one is not None]
@@ -158,11 +164,9 @@ class _Assembly:
         for leg in legs:
             self.touches[leg.end] = roads.Touch(Link("junction", number), {})
         rules = [controls.control_of(found, self.network.nodes[leg.node].intersection) for leg in legs]
-        is_roundabout = Control.ROUNDABOUT in rules
         centre = self.network.nodes[nodes[0]].point
-        if is_roundabout and len(nodes) > 1:
-            raise UserError(f"intersection {found[0].id}: a roundabout needs more room to the next junction")
-        turns = _turns(legs, centre, is_roundabout=is_roundabout)
+        turns, rules = self._turns(nodes, legs, rules)
+        is_roundabout = Control.ROUNDABOUT in rules
         connections, turn_ids = [], []
         for turn in turns:
             record = junctions.turn_road(next(self.way_ids), number, turn, self._ids(turn.come, turn.go), height_m)
@@ -193,6 +197,31 @@ class _Assembly:
                 notes=controls.junction_notes(found, rules) if len(legs) > 1 else (("turning_circle", MADE_UP),),
             )
         )
+
+    def _turns(
+        self, nodes: tuple[int, ...], legs: tuple[Leg, ...], rules: list[Control]
+    ) -> tuple[tuple[junctions.Turn, ...], list[Control]]:
+        """Return the ways through a junction and its rules: those of a plain one where its roundabout has no room.
+
+        Raises:
+            UserError: a roundabout has no room, and the facts do not allow to simplify it.
+        """
+        centre = self.network.nodes[nodes[0]].point
+        if len(legs) == 1:
+            return roundabouts.turning_circle(legs[0], centre), rules
+        if Control.ROUNDABOUT not in rules:
+            return junctions.turns(legs), rules
+        identity = next(one.id for one in self._intersections(nodes) if one.control is Control.ROUNDABOUT)
+        why = "a roundabout needs more room to the next junction"
+        if len(nodes) == 1:
+            try:
+                return roundabouts.turns(legs, centre), rules
+            except UserError as error:
+                why = str(error)
+        if not self.facts.simplify_roundabouts:
+            raise UserError(f"intersection {identity}: {why}")
+        self.simplified.append(identity)
+        return junctions.turns(legs), [Control.NONE] * len(rules)
 
     def _ids(self, come: Leg, go: Leg) -> tuple[int, int]:
         return self.road_ids[come.end.edge], self.road_ids[go.end.edge]
@@ -252,8 +281,8 @@ class _Assembly:
     def _add_island(self, leg: Leg, centre: Point, found: list[Intersection]) -> None:
         corners = [
             (
-                centre[0] + roundabouts.ISLAND_RADIUS_M * math.cos(math.tau * i / 16),
-                centre[1] + roundabouts.ISLAND_RADIUS_M * math.sin(math.tau * i / 16),
+                centre[0] + ISLAND_RADIUS_M * math.cos(math.tau * i / 16),
+                centre[1] + ISLAND_RADIUS_M * math.sin(math.tau * i / 16),
             )
             for i in (*range(16), 0)
         ]
@@ -292,12 +321,6 @@ def off_ground_m(built: Built) -> tuple[float, float]:
             is_near = min(s_m, total_m - s_m) < ramp_m
             worst_m[is_near] = max(worst_m[is_near], apart_m)
     return worst_m[0], worst_m[1]
-
-
-def _turns(legs: tuple[Leg, ...], centre: Point, *, is_roundabout: bool) -> tuple[junctions.Turn, ...]:
-    if len(legs) == 1:
-        return roundabouts.turning_circle(legs[0], centre)
-    return roundabouts.turns(legs, centre) if is_roundabout else junctions.turns(legs)
 
 
 def _priorities(

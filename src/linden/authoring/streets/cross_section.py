@@ -60,6 +60,11 @@ class View(NamedTuple):
             at_m += lane.width_m
         raise KeyError(lane_id)
 
+    def middle_m(self, lane_id: int, *, right: bool) -> float:
+        """Return how far left of the reference line the middle of a lane of one side runs."""
+        half_m = self.lane(lane_id).width_m / 2
+        return self.inner_edge_m(lane_id) + (-half_m if right else half_m)
+
     def lane(self, lane_id: int) -> Lane:
         """Return the lane with that id."""
         return dict(self.right + self.left)[lane_id]

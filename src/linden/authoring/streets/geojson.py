@@ -26,6 +26,7 @@ from linden.authoring.streets.street_facts import (
     Place,
     Railroad,
     Route,
+    Speed,
     Stop,
     Street,
 )
@@ -34,6 +35,7 @@ from linden.errors import UserError
 _ROUTES = frozenset({"route", "route_alternative"})
 _LINES = _ROUTES | {"street", "railroad"}
 _GEOMETRY = {**dict.fromkeys(_LINES, "LineString"), "building": "Polygon"}
+_SPEEDS = {"speed_limit_mph": "mph", "speed_limit_kmh": "km/h"}
 _CHOICES = {
     "street_class": ("arterial", "collector", "local", "service"),
     "oneway": ("no", "forward"),
@@ -101,6 +103,7 @@ def read(document: object) -> Facts:
             for f in features
             if f.kind == "railroad"
         ),
+        simplify_roundabouts=bool(metadata.get("simplify_roundabouts", False)),
         street_name_signs=str(metadata.get("street_name_signs", "")),
     )
 
@@ -130,6 +133,13 @@ class _Feature:
         if isinstance(found, bool) or not isinstance(found, (int, float)) or not 0 < found < math.inf:
             raise UserError(f"{self.label}: `{key}` is {found!r}; it must be a number above 0")
         return float(found)
+
+    def speed_limit(self) -> Speed:
+        given = {key: unit for key, unit in _SPEEDS.items() if self.properties.get(key) is not None}
+        if len(given) > 1:
+            raise UserError(f"{self.label}: it has {' and '.join(given)}; keep the one that the signs show")
+        key, unit = next(iter(given.items()), ("speed_limit_mph", "mph"))
+        return Speed(self.positive(key), unit)
 
     def lonlats(self) -> list[tuple[float, float]]:
         wanted = _GEOMETRY.get(self.kind, "Point")
@@ -173,7 +183,7 @@ def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
         street_class=feature.choice("street_class"),
         lanes=lanes,
         width_m=width_m,
-        speed_limit_mph=feature.positive("speed_limit_mph"),
+        speed_limit=feature.speed_limit(),
         oneway=feature.choice("oneway") == "forward",
         parking=feature.choice("parking"),
         sidewalk=feature.choice("sidewalk"),

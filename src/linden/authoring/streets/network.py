@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from linden.authoring.streets.cross_section import Section, View, of_street, view
 from linden.authoring.streets.curves import Path, Point, Pose, length, pose_at, rounded, trimmed, turned_back, wrapped
+from linden.authoring.streets.rings import KERB_RADII_M, LANE_RADII_M, leads_in
 from linden.authoring.streets.street_facts import Control, Facts, Intersection, Street
 from linden.errors import UserError
 
@@ -196,6 +197,12 @@ def _turning_circle(leg: Leg, edge: Edge) -> list[Leg]:
     if edge.street.oneway or length(edge.path) < 4 * ROUNDABOUT_SETBACK_M:
         return []
     pose = turned_back(pose_at(_outward(edge.path, leg.end), ROUNDABOUT_SETBACK_M))
+    lanes = [(lane, side) for side in (True, False) for lane in leg.view.driving(right=side)]
+    middles_m = [leg.view.middle_m(lane, right=side) for lane, side in lanes]
+    kerbs_m = [leg.view.kerb_m(right=side) for side in (True, False)]
+    centre = pose_at(_outward(edge.path, leg.end), 0.0)[:2]
+    if not (leads_in(pose, centre, middles_m, LANE_RADII_M) and leads_in(pose, centre, kerbs_m, KERB_RADII_M)):
+        return []
     return [leg._replace(setback_m=ROUNDABOUT_SETBACK_M, pose=pose)]
 
 

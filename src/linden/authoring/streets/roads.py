@@ -9,7 +9,7 @@ from linden.authoring.streets.cross_section import KERB_HEIGHT_M, PAVED, RAISED,
 from linden.authoring.streets.curves import Path, Pose, joined, length, pose_at, turned_back
 from linden.authoring.streets.document import Cubic, LaneRecord, Link, Mark, RoadRecord, eased
 from linden.authoring.streets.network import End, Leg
-from linden.authoring.streets.street_facts import AnyGround, Street
+from linden.authoring.streets.street_facts import AnyGround, Street, slower
 
 LEVELLING_ROUNDS = 100
 KINDS = ("driving", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
@@ -102,7 +102,7 @@ def street_road(number: int, street: Street, section: Section, path: Path, heigh
         path=path,
         predecessor=None,
         successor=None,
-        speed_mph=street.speed_limit_mph,
+        speed=street.speed_limit,
         elevation=heights,
         axis=(Cubic(0.0, section.axis_m),),
         left=_lanes(section.left, 1),
@@ -144,7 +144,7 @@ def bend(number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: 
         path=path,
         predecessor=Link("road", road_ids[0], contact(come.end)),
         successor=Link("road", road_ids[1], contact(go.end)),
-        speed_mph=min(come.street.speed_limit_mph, go.street.speed_limit_mph),
+        speed=slower(come.street.speed_limit, go.street.speed_limit),
         elevation=elevation(ground, path, (None, None)),
         axis=(eased(0.0, total_m, (come.view.axis_m, -go.view.axis_m)),),
         left=strips(left, 1, total_m),

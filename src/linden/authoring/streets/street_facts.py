@@ -24,6 +24,26 @@ class Control(Enum):
     NONE = "none"
 
 
+MPS_PER_UNIT = {"mph": 0.44704, "km/h": 1.0 / 3.6}
+
+
+class Speed(NamedTuple):
+    """A speed limit as signs show it; ``unit`` is "mph" or "km/h"."""
+
+    value: float
+    unit: str
+
+    @property
+    def mps(self) -> float:
+        """The limit in m/s."""
+        return self.value * MPS_PER_UNIT[self.unit]
+
+
+def slower(one: Speed, other: Speed) -> Speed:
+    """Return the lower of two limits, in its own unit."""
+    return min(one, other, key=lambda speed: speed.mps)
+
+
 class Street(NamedTuple):
     """One centre-line with what lies across it. ``width_m`` is between the kerbs.
 
@@ -37,7 +57,7 @@ class Street(NamedTuple):
     street_class: str
     lanes: int
     width_m: float
-    speed_limit_mph: float
+    speed_limit: Speed
     oneway: bool
     parking: str
     sidewalk: str
@@ -179,7 +199,8 @@ class Facts(NamedTuple):
     """All that a map is built from.
 
     ``turning_circles``: whether traffic can turn where a street leaves the map. ``street_name_signs``: how sure it is
-    that signs at junctions name the streets; empty where there are to be none.
+    that signs at junctions name the streets; empty where there are to be none. ``simplify_roundabouts``: whether a
+    roundabout without room for its island becomes a plain junction; else the build refuses it.
     """
 
     name: str
@@ -197,3 +218,4 @@ class Facts(NamedTuple):
     furniture: tuple[Furniture, ...] = ()
     railroads: tuple[Railroad, ...] = ()
     street_name_signs: str = ""
+    simplify_roundabouts: bool = False
