@@ -77,6 +77,9 @@ class _Assembly:
         self.facts = facts
         self.network = build_network(facts)
         whole = [number for number, road in enumerate(self.network.roads) if road is not None]
+        if not whole:
+            names = ", ".join(street.id for street in facts.streets[:3])
+            raise UserError(f"no road remains beside the junctions of the streets {names}; take a larger part")
         self.road_ids = {edge: i for i, edge in enumerate(whole, start=1)}
         self.way_ids = itertools.count(len(whole) + 1)
         self.signal_ids = itertools.count(1)
@@ -164,8 +167,8 @@ class _Assembly:
         for leg in legs:
             self.touches[leg.end] = roads.Touch(Link("junction", number), {})
         rules = [controls.control_of(found, self.network.nodes[leg.node].intersection) for leg in legs]
-        centre = self.network.nodes[nodes[0]].point
-        turns, rules = self._turns(nodes, legs, rules)
+        centre = self.network.nodes[legs[0].node if len(legs) == 1 else nodes[0]].point
+        turns, rules = self._turns(nodes, legs, rules, centre)
         is_roundabout = Control.ROUNDABOUT in rules
         connections, turn_ids = [], []
         for turn in turns:
@@ -199,14 +202,13 @@ class _Assembly:
         )
 
     def _turns(
-        self, nodes: tuple[int, ...], legs: tuple[Leg, ...], rules: list[Control]
+        self, nodes: tuple[int, ...], legs: tuple[Leg, ...], rules: list[Control], centre: Point
     ) -> tuple[tuple[junctions.Turn, ...], list[Control]]:
         """Return the ways through a junction and its rules: those of a plain one where its roundabout has no room.
 
         Raises:
             UserError: a roundabout has no room, and the facts do not allow to simplify it.
         """
-        centre = self.network.nodes[nodes[0]].point
         if len(legs) == 1:
             return roundabouts.turning_circle(legs[0], centre), rules
         if Control.ROUNDABOUT not in rules:

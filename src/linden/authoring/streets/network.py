@@ -23,6 +23,9 @@ SHORTEST_SETBACK_M = 6.0
 LONGEST_SETBACK_M = 40.0
 ROUNDABOUT_SETBACK_M = 16.0
 BEND_SETBACK_M = 6.0
+ACUTEST_RAD = math.radians(5)
+"""Below that two legs run side by side, and their kerbs meet farther out than any leg is cut."""
+
 SIGHT_M = 15.0  # a leg's direction is taken this far from its node
 
 
@@ -252,7 +255,7 @@ def _corner(leg: Leg, after: Leg, radius_m: float) -> tuple[float, float]:
     """
     out, out_after = turned_back(leg.pose), turned_back(after.pose)
     between = (out_after.heading_rad - out.heading_rad) % math.tau
-    if not math.radians(15) < between < math.radians(150):
+    if not ACUTEST_RAD < between < math.radians(150):
         return 0.0, 0.0
     kerb_m = -leg.view.kerb_m(right=True)
     kerb_after_m = after.view.kerb_m(right=False)
