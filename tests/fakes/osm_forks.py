@@ -76,3 +76,14 @@ def tangle(seed: int) -> bytes:
         tags["highway"] = dice.choice(("residential", "service", "secondary", "primary"))
         draw.way(number, *places, **tags)
     return draw.text()
+
+
+def bridge(*, layer: str = "1", kind: str = "bridge") -> bytes:
+    """Return a street whose middle passes over (or under) another, and two that cross at one height."""
+    draw = Drawing()
+    draw.way(1, (-200.0, 0.0), (-30.0, 0.0), highway="secondary", name="High Street")
+    draw.way(2, (-30.0, 0.0), (30.0, 0.0), highway="secondary", name="High Street", layer=layer, **{kind: "yes"})
+    draw.way(3, (30.0, 0.0), (200.0, 0.0), highway="secondary", name="High Street")
+    draw.way(4, (0.0, -150.0), (0.0, 150.0), highway="residential", name="Low Street")
+    draw.way(5, (-100.0, -100.0), (100.0, -100.0), highway="residential", name="Level Street")
+    return draw.text()

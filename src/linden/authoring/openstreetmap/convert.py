@@ -7,7 +7,7 @@ from linden.authoring.openstreetmap import surroundings
 from linden.authoring.openstreetmap.controls import Controls, controls_of
 from linden.authoring.openstreetmap.extract import Extract, OsmWay, read_extract
 from linden.authoring.openstreetmap.graph import Graph, Segment, graph_of, mirrored
-from linden.authoring.openstreetmap.tags import TAGGED, is_street, speed_limit, street_class
+from linden.authoring.openstreetmap.tags import TAGGED, is_street, speed_limit, street_class, unbuilt_cycleways
 from linden.authoring.streets.street_facts import Control
 from linden.errors import UserError
 
@@ -98,6 +98,8 @@ def _street(segment: Segment, graph: Graph) -> dict[str, Any]:
             "oneway": "no" if across.backward else "forward",
             "parking": "both" if parked else "none",
             "sidewalk": ("none", "one", "both")[sum(across.sidewalk)],
+            **({"level": across.level} if across.level else {}),
+            "cycle_lanes": ("none", "right", "both")[sum(across.cycling)],
             **sources,
         },
     }
@@ -108,7 +110,7 @@ def _is_better_mirrored(segment: Segment) -> bool:
     across = segment.across
     if not across.forward or not across.backward:
         return not across.forward
-    for left, right in (across.sidewalk, across.parking):
+    for left, right in (across.cycling, across.sidewalk, across.parking):
         if left != right:
             return left
     return False
@@ -179,7 +181,10 @@ def _left_out(extract: Extract, graph: Graph, controls: Controls) -> Counter[str
     for way in extract.ways.values():
         if "highway" in way.tags and not is_street(way.tags):
             cars = street_class(way.tags) is not None
-            found["driveways, parking aisles, private roads" if cars else "ways for other than cars"] += 1
+            kind = f"ways of highway={way.tags['highway']}, for other than cars"
+            found["driveways, parking aisles, private roads" if cars else kind] += 1
+        elif "highway" in way.tags:
+            found["cycle lanes or tracks beside streets, against traffic or apart"] += unbuilt_cycleways(way.tags)
     for kind, count in controls.unplaced.items():
         found[f"{kind.replace('_', ' ')} nodes without a junction near them"] += count
     found["pieces of street that are mapped twice"] = graph.repeated

@@ -15,6 +15,7 @@ from shapely import LineString
 
 from linden.authoring.openstreetmap.extract import Extract, OsmWay
 from linden.authoring.openstreetmap.tags import Carriageway, carriageway, is_street
+from linden.authoring.streets.geojson import refuse_too_wide
 from linden.authoring.streets.network import ROUNDABOUT_SETBACK_M
 
 SMALL_RING_M = 14.0
@@ -87,6 +88,7 @@ def graph_of(extract: Extract, *, metric: bool) -> tuple[Graph, tuple[float, flo
     """
     ways = [way for way in extract.ways.values() if len(way.nodes) > 1 and is_street(way.tags)]
     places = _Places(extract, sorted({node for way in ways for node in way.nodes}))
+    refuse_too_wide((f"way {way.id}", (places.metres[node] for node in way.nodes)) for way in ways)
     rings, moved = _small_rings(ways, places)
     lines = [(way, nodes) for way in ways for nodes in _outside_of_rings(way.nodes, moved, places)]
     joints = _joints([nodes for _, nodes in lines])
@@ -198,7 +200,11 @@ def _different(pieces: list[Segment]) -> list[Segment]:
 def mirrored(across: Carriageway) -> Carriageway:
     """Return the same street seen in the other direction."""
     return across._replace(
-        forward=across.backward, backward=across.forward, parking=across.parking[::-1], sidewalk=across.sidewalk[::-1]
+        forward=across.backward,
+        backward=across.forward,
+        parking=across.parking[::-1],
+        sidewalk=across.sidewalk[::-1],
+        cycling=across.cycling[::-1],
     )
 
 

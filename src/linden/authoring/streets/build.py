@@ -19,6 +19,7 @@ from linden.authoring.streets.document import (
     value,
 )
 from linden.authoring.streets.geojson import read
+from linden.authoring.streets.levels import crossings, lifts
 from linden.authoring.streets.name_signs import name_signs
 from linden.authoring.streets.network import End, Leg, Network
 from linden.authoring.streets.network import build as build_network
@@ -54,6 +55,10 @@ class Built(NamedTuple):
     """Ids of buildings and furniture that would stand on a street."""
     simplified: tuple[str, ...] = ()
     """Ids of roundabouts that became plain junctions, because their island had no room."""
+    over: tuple[tuple[str, str], ...] = ()
+    """Ids of the streets that cross at different levels."""
+    through: tuple[tuple[str, str], ...] = ()
+    """Ids of the streets that cross at one level without a common point: traffic passes through each other."""
 
 
 def build(streets: dict[str, object]) -> bytes:
@@ -76,6 +81,8 @@ class _Assembly:
     def __init__(self, facts: Facts) -> None:
         self.facts = facts
         self.network = build_network(facts)
+        self.street_crossings = crossings(self.network)
+        self.lifts_m = lifts(self.network, self.street_crossings)
         whole = [number for number, road in enumerate(self.network.roads) if road is not None]
         if not whole:
             names = ", ".join(street.id for street in facts.streets[:3])
@@ -97,13 +104,13 @@ class _Assembly:
         self.walked_ends, self.crossings = crosswalks.mapped_crossings(facts, self.network)
 
     def result(self) -> Built:
-        crossings = crosswalks.nodes_at_schools(self.facts, self.network)
+        walked = crosswalks.nodes_at_schools(self.facts, self.network)
         self._level(tuple(legs for nodes, legs in self.network.junctions if not self._is_bend(nodes, legs)))
         for nodes, legs in self.network.junctions:
             if self._is_bend(nodes, legs):
                 self._add_bend((legs[0], legs[1]))
             else:
-                self._add_junction(nodes, legs, crossings)
+                self._add_junction(nodes, legs, walked)
         for edge, crosswalk in (
             *crosswalks.at_stops(self.facts, self.network, self.object_ids),
             *crosswalks.between_junctions(self.crossings, self.network, self.object_ids),
@@ -130,8 +137,22 @@ class _Assembly:
             notes=(("elevation_confidence", self.facts.ground.confidence),),
         )
         return Built(
-            self.facts, self.network, street_roads, tuple(self.ways), document, placed.left_out, tuple(self.simplified)
+            facts=self.facts,
+            network=self.network,
+            roads=street_roads,
+            ways=tuple(self.ways),
+            document=document,
+            left_out=placed.left_out,
+            simplified=tuple(self.simplified),
+            over=self._crossing_streets(is_separated=True),
+            through=self._crossing_streets(is_separated=False),
         )
+
+    def _crossing_streets(self, *, is_separated: bool) -> tuple[tuple[str, str], ...]:
+        """Return the ids of the streets that cross so without a common point."""
+        edges = self.network.edges
+        found = [one.edges for one in self.street_crossings if one.is_separated == is_separated]
+        return tuple((edges[one].street.id, edges[other].street.id) for one, other in found)
 
     def _intersections(self, nodes: tuple[int, ...]) -> list[Intersection]:
         return [one for one in (self.network.nodes[node].intersection for node in nodes) if one is not None]
@@ -147,7 +168,7 @@ class _Assembly:
         roads_m = [None if road is None else length(road) for road in self.network.roads]
         levels = roads.levels(self.facts.ground, junctions_legs, roads_m)
         for legs, height_m in zip(junctions_legs, levels, strict=True):
-            self.heights_m.update({leg.end: height_m for leg in legs})
+            self.heights_m.update({leg.end: height_m + self.lifts_m[leg.node] for leg in legs})
 
     def _road_m(self, leg: Leg) -> float:
         road = self.network.roads[leg.end.edge]
@@ -156,7 +177,7 @@ class _Assembly:
 
     def _add_bend(self, legs: tuple[Leg, Leg]) -> None:
         ids = self.road_ids[legs[0].end.edge], self.road_ids[legs[1].end.edge]
-        record = roads.bend(next(self.way_ids), legs, ids, self.facts.ground)
+        record = roads.bend(next(self.way_ids), legs, ids, self.facts.ground, self.lifts_m[legs[0].node])
         self.ways.append(Way(record, legs[0].end, legs[1].end))
         self.touches[legs[0].end], self.touches[legs[1].end] = roads.touches_of_bend(record)
 
@@ -304,8 +325,10 @@ class _Assembly:
         if path is None:
             return None
         begin, end = End(edge, at_end=False), End(edge, at_end=True)
-        heights = roads.elevation(self.facts.ground, path, (self.heights_m.get(begin), self.heights_m.get(end)))
         one = self.network.edges[edge]
+        ends_m = self.heights_m.get(begin), self.heights_m.get(end)
+        lifts_m = self.lifts_m[one.nodes[0]], self.lifts_m[one.nodes[1]]
+        heights = roads.elevation(self.facts.ground, path, ends_m, lifts_m)
         record = roads.street_road(self.road_ids[edge], one.street, one.section, path, heights)
         record = roads.linked(record, self.touches.get(begin), self.touches.get(end))
         return record._replace(signals=tuple(self.signals[edge]), objects=tuple(self.objects[edge]))

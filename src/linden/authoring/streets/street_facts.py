@@ -10,6 +10,11 @@ from typing import NamedTuple, Protocol
 from linden.authoring.streets.curves import Point
 
 NARROWEST_M = 2.0  # of a lane; a car is 1.8 m wide
+MOST_LEVELS = 5
+"""Of bridges over each other, and of tunnels."""
+WIDEST_M = 100.0
+"""Between the kerbs of a street; Buenos Aires' Avenida 9 de Julio, of several carriageways, has 140 m in all."""
+CYCLE_LANES = ("none", "right", "both")
 FURNITURE = ("bench", "bin", "mailbox")
 
 
@@ -48,7 +53,7 @@ class Street(NamedTuple):
     """One centre-line with what lies across it. ``width_m`` is between the kerbs.
 
     ``confidences``: which fact, how sure ("width_confidence", "estimated"). ``lanes_forward``: how many of the lanes
-    run along the points; None stands for half of them, the odd one too.
+    run along the points; None stands for half of them, the odd one too. ``cycle_lanes``: one of ``CYCLE_LANES``.
     """
 
     id: str
@@ -64,6 +69,8 @@ class Street(NamedTuple):
     confidences: tuple[tuple[str, str], ...]
     lanes_forward: int | None = None
     speed_posted: bool = False  # whether signs show the limit
+    cycle_lanes: str = "none"
+    level: int = 0  # of a bridge 1 or more, of a tunnel -1 or less
 
 
 class Intersection(NamedTuple):

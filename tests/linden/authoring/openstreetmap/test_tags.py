@@ -2,7 +2,16 @@
 
 import pytest
 
-from linden.authoring.openstreetmap.tags import TAGGED, carriageway, direction, is_street, metres, speed_limit
+from linden.authoring.openstreetmap.tags import (
+    TAGGED,
+    carriageway,
+    cycle_lanes,
+    direction,
+    is_street,
+    metres,
+    speed_limit,
+    unbuilt_cycleways,
+)
 
 
 def told(**tags: str) -> dict[str, str]:
@@ -98,3 +107,26 @@ def test_a_width_that_has_no_room_for_the_lanes_is_not_taken() -> None:
 def test_guessed_limits_have_the_unit_of_the_extract() -> None:
     assert carriageway(told(), metric=False).speed == (25.0, "mph")
     assert carriageway(told(), metric=True).speed == (50.0, "km/h")
+
+
+@pytest.mark.parametrize(
+    ("tags", "sides", "unbuilt"),
+    [
+        (told(), (False, False), 0),
+        (told(cycleway="lane"), (True, True), 0),
+        (told(cycleway__right="lane"), (False, True), 0),
+        (told(cycleway__both="track"), (False, False), 2),
+        (told(cycleway="lane", oneway="yes"), (False, True), 0),
+        (told(cycleway="opposite_lane", oneway="yes"), (False, False), 1),
+        (told(cycleway__left="lane", oneway="yes"), (False, False), 1),
+    ],
+)
+def test_cycle_lanes(tags: dict[str, str], sides: tuple[bool, bool], unbuilt: int) -> None:
+    assert cycle_lanes(tags) == sides
+    assert unbuilt_cycleways(tags) == unbuilt
+
+
+def test_a_width_that_cannot_be_is_guessed_instead() -> None:
+    found = carriageway(told(width="1000000000"), metric=True)
+    assert found.width_m == pytest.approx(6.1)
+    assert dict(found.sources)["width_confidence"] == "guessed: lanes of 3.05 m, width=1000000000 cannot be"
