@@ -1,4 +1,4 @@
-"""Builds every OpenStreetMap extract of a folder and prints a table: roads, junctions, findings, ASAM's issues, seconds.
+"""Builds every OpenStreetMap extract of a folder and prints a table of what came of each.
 
 ``python scripts/outside/build_extracts.py FOLDER``: the folder holds ``.osm`` files. Public extracts are under the ODbL
 and none is in this repository; the test data of osm2streets, CommonRoad and OSMnx have some thirty. Returns 1 where an
@@ -47,7 +47,7 @@ def main() -> int:
     for extract in sorted(parser.parse_args().folder.glob("*.osm")):
         try:
             print(f"| {extract.name} | {row(extract)} |", flush=True)
-        except UserError as error:
+        except UserError as error:  # noqa: PERF203 - each extract by itself
             print(f"| {extract.name} | {error} |", flush=True)
         except Exception:  # noqa: BLE001 - the table goes on; the traceback stands above the row
             traceback.print_exc()

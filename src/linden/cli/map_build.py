@@ -72,9 +72,8 @@ def _report_simplified(built: Built) -> None:
     if built.simplified:
         say(f"built as plain junctions: {len(built.simplified)} roundabouts without room: {_first(built.simplified)}")
     if built.over:
-        say(
-            f"{len(built.over)} crossings at different levels, {LEVEL_M:g} m a level: {_first(map(' / '.join, built.over))}"
-        )
+        pairs = _first(map(" / ".join, built.over))
+        say(f"{len(built.over)} crossings at different levels, {LEVEL_M:g} m a level: {pairs}")
     if built.through:
         pairs = _first(map(" / ".join, built.through))
         say(f"{len(built.through)} crossings at one height without a common point, where traffic meets unseen: {pairs}")

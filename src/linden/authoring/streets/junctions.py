@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from shapely import LineString, MultiPolygon, Point, Polygon, convex_hull, is_valid, polygons, unary_union
 
 from linden.authoring.streets.cross_section import KERB_M
@@ -190,8 +191,9 @@ def _pieces_covered(turn: Turn) -> list[Polygon]:
         pose, half_m = pose_at(turn.path, total_m * i / count), value(turn.widths, total_m * i / count) / 2
         sides.append((moved(pose, left_m=half_m)[:2], moved(pose, left_m=-half_m)[:2]))
     corners = [(left, right, right_after, left_after) for (left, right), (left_after, right_after) in pairwise(sides)]
-    found = polygons(np.array(corners))
-    pieces: list[Polygon] = np.where(is_valid(found), found, convex_hull(found)).tolist()
+    found: NDArray[np.object_] = np.asarray(polygons(np.array(corners)))
+    hulls: NDArray[np.object_] = np.asarray(convex_hull(found))
+    pieces: list[Polygon] = np.where(is_valid(found), found, hulls).tolist()
     return [piece for piece in pieces if piece.area > 0.0]
 
 
