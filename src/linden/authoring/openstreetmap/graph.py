@@ -190,7 +190,7 @@ def _cut(nodes: tuple[int, ...], joints: frozenset[int]) -> list[tuple[int, ...]
 
 
 def _different(pieces: list[Segment]) -> list[Segment]:
-    """Return the pieces without those that go through the nodes of an earlier one, as a way that is mapped twice."""
+    """Return the pieces without repeats: pieces through the nodes of an earlier one, as of a way mapped twice."""
     found: dict[tuple[int, ...], Segment] = {}
     for piece in pieces:
         found.setdefault(min(piece.nodes, piece.nodes[::-1]), piece)

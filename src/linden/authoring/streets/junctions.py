@@ -181,8 +181,8 @@ def conflicting(one: Turn, other: Turn) -> bool:
 def _pieces_covered(turn: Turn) -> list[Polygon]:
     """Return the ground under a turn's lane, metre by metre (as one outline it could cross itself).
 
-    Where a path turns within half the lane's width, the lane's inner side runs backwards and a metre of it crosses
-    itself: GEOS overlays no such ring, so the hull of its corners stands for it.
+    Where a path turns within half the lane's width, the lane's inner side runs backwards. A metre of it then crosses
+    itself. GEOS overlays no such ring, so the hull of its corners stands for it.
     """
     total_m = length(turn.path)
     count = math.ceil(total_m)
