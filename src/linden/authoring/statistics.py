@@ -105,6 +105,11 @@ def is_building(thing: RoadObject) -> bool:
     return thing.type.lower() == "building"
 
 
+def is_railroad(thing: RoadObject) -> bool:
+    """Return whether an object is a track, or its bed where a street crosses it."""
+    return thing.type.startswith("railroad")
+
+
 def _profile(opendrive: OpenDrive) -> dict[str, float]:
     """Return the least and greatest height of the roads' reference lines, and the steepest grade, every metre."""
     heights: list[NDArray[np.float64]] = []

@@ -4,16 +4,17 @@ import argparse
 import difflib
 import json
 from collections import Counter
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from importlib import resources
 from pathlib import Path
 from typing import Any
 
 from linden.authoring.openstreetmap.convert import Imported, convert
 from linden.authoring.output import write_output
-from linden.authoring.streets.build import assembled, off_ground_m
+from linden.authoring.streets.build import Built, assembled, off_ground_m
 from linden.authoring.streets.controls import without_lights
 from linden.authoring.streets.geojson import read
+from linden.authoring.streets.levels import LEVEL_M
 from linden.authoring.streets.routes import xml
 from linden.authoring.streets.terrain import with_terrain
 from linden.authoring.streets.writing import text as written
@@ -46,8 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.elevation is not None:
         away_m, near_m = off_ground_m(built)
         say(f"off the ground: {away_m:.2f} m at most, {near_m:.2f} m where roads come down to level junctions")
-    if built.left_out:
-        say(f"left out: {len(built.left_out)} buildings or things that would stand on a street")
+    _report_simplified(built)
     unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]
     if unwritten and source is not None:
         say(f"not written: {', '.join(unwritten)}; `--route {unwritten[0]}=FILE.xml` writes a route feature")
@@ -63,6 +63,26 @@ def _report(imported: Imported) -> None:
     for reason, count in sorted(imported.left_out.items()):
         if count:
             say(f"left out: {count:,} {reason}")
+
+
+def _report_simplified(built: Built) -> None:
+    """Print what is built otherwise than the streets' file says, with counts and the first ids."""
+    if built.left_out:
+        say(f"left out: {len(built.left_out)} buildings or things that would stand on a street")
+    if built.simplified:
+        say(f"built as plain junctions: {len(built.simplified)} roundabouts without room: {_first(built.simplified)}")
+    if built.over:
+        pairs = _first(map(" / ".join, built.over))
+        say(f"{len(built.over)} crossings at different levels, {LEVEL_M:g} m a level: {pairs}")
+    if built.through:
+        pairs = _first(map(" / ".join, built.through))
+        say(f"{len(built.through)} crossings at one height without a common point, where traffic meets unseen: {pairs}")
+
+
+def _first(names: Iterable[str]) -> str:
+    """Return the first five names, and how many follow."""
+    known = list(names)
+    return ", ".join(known[:5]) + (f" and {len(known) - 5} more" if len(known) > 5 else "")
 
 
 def _route_and_file(given: str, known: Collection[str]) -> tuple[str, Path]:

@@ -5,7 +5,7 @@ from linden.authoring.checks.joints import lane_joints, road_joints
 from linden.authoring.checks.lane_links import junctions, lane_ends, lane_links_returned, road_links
 from linden.authoring.checks.missing_facts import georeference, lane_changes, speed_limits
 from linden.authoring.checks.overlaps import overlaps, raised_ground
-from linden.authoring.checks.shape import lane_widths, profiles, reference_lines
+from linden.authoring.checks.shape import grades, lane_widths, profiles, reference_lines
 from linden.authoring.checks.signals import controllers, objects, signals
 from linden.maps.opendrive.model import OpenDrive
 
@@ -17,6 +17,7 @@ _CHECKS = (
     lane_changes,
     reference_lines,
     profiles,
+    grades,
     lane_widths,
     road_links,
     road_joints,

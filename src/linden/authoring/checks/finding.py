@@ -17,6 +17,7 @@ KERB_REACH_M = 0.20  # of a kerb or pavement into a lane: wheels keep further th
 LAYER_M = 2.0  # surfaces further apart in height are a bridge and a road under it
 SIGNAL_REACH_M = 12.0  # beyond the outermost lane; a signal further away belongs to no road
 SIGNAL_SHIFT_M = 0.05  # how far LibCarla may move a signal out of a lane before it counts
+STEEPEST_PERCENT = 15.0  # of a road; AASHTO's Green Book (2018) allows local streets as much
 CLOSURE_M = 0.001  # between the first and the last corner of a closed outline
 
 

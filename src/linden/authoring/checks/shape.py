@@ -4,7 +4,16 @@ import math
 
 import numpy as np
 
-from linden.authoring.checks.finding import GAP_M, JUMP_M, KINK_DEG, STEP_M, Finding, Severity, on_road
+from linden.authoring.checks.finding import (
+    GAP_M,
+    JUMP_M,
+    KINK_DEG,
+    STEEPEST_PERCENT,
+    STEP_M,
+    Finding,
+    Severity,
+    on_road,
+)
 from linden.maps.opendrive.evaluate.pieces import Pieces
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.model import Lane, LaneSection, OpenDrive
@@ -59,6 +68,26 @@ def profiles(opendrive: OpenDrive) -> list[Finding]:
         for owner, s_m, size_m in _jumps(pieces, limit_m):
             text = f"{what} jumps by {size_m:.3f} m"
             found.append(on_road(tables, owner, s_m, Severity.ERROR, kind, text, size_m))
+    return found
+
+
+def grades(opendrive: OpenDrive) -> list[Finding]:
+    """Find roads that rise or fall by more than ``STEEPEST_PERCENT``, each at its steepest place."""
+    tables = tables_of(opendrive)
+    found = []
+    for index, road in enumerate(tables.roads):
+        if not road.elevations:
+            continue
+        begins = [cubic.start_m for cubic in road.elevations]
+        worst = (0.0, 0.0)
+        for cubic, end_m in zip(road.elevations, [*begins[1:], road.length_m], strict=True):
+            along = np.linspace(0.0, max(end_m - cubic.start_m, 0.0), max(2, int(end_m - cubic.start_m) + 2))
+            percent = 100.0 * np.abs(cubic.b + along * (2.0 * cubic.c + 3.0 * along * cubic.d))
+            steepest = int(percent.argmax())
+            worst = max(worst, (float(percent[steepest]), float(cubic.start_m + along[steepest])))
+        if worst[0] > STEEPEST_PERCENT:
+            text = f"the road has a grade of {worst[0]:.0f} %; streets have {STEEPEST_PERCENT:g} % at most"
+            found.append(on_road(tables, index, worst[1], Severity.WARNING, "grade", text, worst[0]))
     return found
 
 

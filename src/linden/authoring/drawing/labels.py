@@ -6,7 +6,20 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from linden.authoring.drawing.style import GREEN, INK, OTHER_SURFACE, PAINT, RED, SPAWN, SURFACES, YELLOW, group
+from linden.authoring.drawing.style import (
+    BUILDING,
+    GREEN,
+    INK,
+    OTHER_SURFACE,
+    PAINT,
+    RAILROAD,
+    RED,
+    SPAWN,
+    SURFACES,
+    YELLOW,
+    group,
+)
+from linden.authoring.statistics import is_building, is_railroad
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
@@ -65,6 +78,9 @@ def _legend(opendrive: OpenDrive, x: float, y: float, unit_m: float) -> list[str
     rows = [(name, colour) for kind, (name, colour) in SURFACES.items() if kind in present]
     if present - SURFACES.keys() - {LaneType.NONE}:
         rows.append(OTHER_SURFACE)
+    things = [thing for road in opendrive.roads for thing in road.objects if len(thing.outline) > 2]
+    rows += [("building", BUILDING)] if any(map(is_building, things)) else []
+    rows += [("railroad", RAILROAD)] if any(map(is_railroad, things)) else []
     types = {signal.type for _, signal in opendrive.signals()}
     signs = [("stop sign", RED, "206"), ("yield sign", PAINT, "205"), ("speed limit", YELLOW, "274")]
     rows += [(name, colour) for name, colour, kind in signs if kind in types]

@@ -15,6 +15,8 @@ YELLOW = "#e8b93a"
 RED = "#c8352e"
 GREEN = "#3a9a56"
 SPAWN = "#2f78c4"
+BUILDING = "#b9a98c"
+RAILROAD = "#7a5c48"
 
 # in the order of drawing: what comes later lies on top
 SURFACES: dict[LaneType, tuple[str, str]] = {

@@ -7,8 +7,8 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.authoring.drawing.style import GREEN, INK, PAINT, RED, SPAWN, YELLOW, group, points
-from linden.authoring.statistics import is_building
+from linden.authoring.drawing.style import BUILDING, GREEN, INK, PAINT, RAILROAD, RED, SPAWN, YELLOW, group, points
+from linden.authoring.statistics import is_building, is_railroad
 from linden.maps.opendrive.evaluate.tables import Tables
 from linden.maps.opendrive.roadside import SPEED_LIMIT_TYPE, STOP_SIGN_TYPE, YIELD_SIGN_TYPE, RoadObject
 from linden.maps.records import PlacedSignal
@@ -19,8 +19,8 @@ _SIGN_M = 1.1  # half a sign's size on the picture; true ones would be specks
 
 
 def objects(tables: Tables) -> list[str]:
-    """Return crosswalks as stripes, stop and yield lines as paint, and the outlines of all else."""
-    crosswalks, lines, others, names = [], [], [], []
+    """Return crosswalks as stripes, stop and yield lines as paint, and the outlines of railroads and all else."""
+    crosswalks, lines, railroads, others, names = [], [], [], [], []
     for index, road in enumerate(tables.roads):
         for thing in road.objects:
             if len(thing.outline) < 3:
@@ -31,6 +31,8 @@ def objects(tables: Tables) -> list[str]:
                 crosswalks.append(shape)
             elif thing.type.lower() == "roadmark":
                 lines.append(shape)
+            elif is_railroad(thing):
+                railroads.append(shape)
             else:
                 others.append(shape)
             if is_building(thing) and " " in thing.name:
@@ -38,7 +40,8 @@ def objects(tables: Tables) -> list[str]:
                 names.append(f'<text x="{x:.1f}" y="{y:.1f}">{escape(thing.name)}</text>')
     edge = f'stroke="{PAINT}" stroke-width="0.3"'
     return [
-        *group("objects", f'fill="#b9a98c" stroke="{INK}" stroke-width="0.1"', others),
+        *group("railroads", f'fill="{RAILROAD}"', railroads),
+        *group("objects", f'fill="{BUILDING}" stroke="{INK}" stroke-width="0.1"', others),
         *group("crosswalks", f'fill="{PAINT}" fill-opacity="0.45" stroke-dasharray="0.6 0.6" {edge}', crosswalks),
         *group("lines", f'fill="{PAINT}"', lines),
         *group("places", f'fill="{INK}" font-size="{_PLACE_NAME_M}" text-anchor="middle"', names),

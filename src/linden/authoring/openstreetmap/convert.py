@@ -7,7 +7,7 @@ from linden.authoring.openstreetmap import surroundings
 from linden.authoring.openstreetmap.controls import Controls, controls_of
 from linden.authoring.openstreetmap.extract import Extract, OsmWay, read_extract
 from linden.authoring.openstreetmap.graph import Graph, Segment, graph_of, mirrored
-from linden.authoring.openstreetmap.tags import TAGGED, is_street, limit_mph, street_class
+from linden.authoring.openstreetmap.tags import TAGGED, is_street, speed_limit, street_class, unbuilt_cycleways
 from linden.authoring.streets.street_facts import Control
 from linden.errors import UserError
 
@@ -51,18 +51,23 @@ def convert(data: bytes, name: str) -> Imported:
         *(_spot("furniture", spot) for spot in surroundings.furniture(extract)),
     ]
     known, guessed = _counted(features)
-    metadata = {"name": name.rpartition("/")[2].removesuffix(".osm"), "origin": list(origin), "turning_circles": True}
+    metadata = {
+        "name": name.rpartition("/")[2].removesuffix(".osm"),
+        "origin": list(origin),
+        "turning_circles": True,
+        "simplify_roundabouts": True,
+    }
     document = {
         "type": "FeatureCollection",
         "metadata": {**metadata, "licence": LICENCE, "ground": {"confidence": "guessed: level"}},
         "features": features,
     }
-    return Imported(document, known, guessed, _left_out(extract, controls))
+    return Imported(document, known, guessed, _left_out(extract, graph, controls))
 
 
 def _is_metric(ways: list[OsmWay]) -> bool:
     """Return whether most limits of an extract are in km/h; an extract without any lies in the US if it lies there."""
-    limits = [way.tags["maxspeed"] for way in ways if limit_mph(way.tags.get("maxspeed", "")) is not None]
+    limits = [way.tags["maxspeed"] for way in ways if speed_limit(way.tags.get("maxspeed", "")) is not None]
     return 2 * sum("mph" in limit for limit in limits) < len(limits) or not limits
 
 
@@ -89,10 +94,12 @@ def _street(segment: Segment, graph: Graph) -> dict[str, Any]:
             "lanes": across.forward + across.backward,
             "lanes_forward": across.forward,
             "width_m": across.width_m,
-            "speed_limit_mph": across.speed_mph,
+            f"speed_limit_{across.speed.unit.replace('/', '')}": across.speed.value,
             "oneway": "no" if across.backward else "forward",
             "parking": "both" if parked else "none",
             "sidewalk": ("none", "one", "both")[sum(across.sidewalk)],
+            **({"level": across.level} if across.level else {}),
+            "cycle_lanes": ("none", "right", "both")[sum(across.cycling)],
             **sources,
         },
     }
@@ -103,7 +110,7 @@ def _is_better_mirrored(segment: Segment) -> bool:
     across = segment.across
     if not across.forward or not across.backward:
         return not across.forward
-    for left, right in (across.sidewalk, across.parking):
+    for left, right in (across.cycling, across.sidewalk, across.parking):
         if left != right:
             return left
     return False
@@ -168,15 +175,19 @@ def _counted(features: list[dict[str, Any]]) -> tuple[Counter[str], Counter[str]
     return known, guessed
 
 
-def _left_out(extract: Extract, controls: Controls) -> Counter[str]:
+def _left_out(extract: Extract, graph: Graph, controls: Controls) -> Counter[str]:
     """Return what the extract has and the facts have not."""
     found: Counter[str] = Counter()
     for way in extract.ways.values():
         if "highway" in way.tags and not is_street(way.tags):
             cars = street_class(way.tags) is not None
-            found["driveways, parking aisles, private roads" if cars else "ways for other than cars"] += 1
+            kind = f"ways of highway={way.tags['highway']}, for other than cars"
+            found["driveways, parking aisles, private roads" if cars else kind] += 1
+        elif "highway" in way.tags:
+            found["cycle lanes or tracks beside streets, against traffic or apart"] += unbuilt_cycleways(way.tags)
     for kind, count in controls.unplaced.items():
         found[f"{kind.replace('_', ' ')} nodes without a junction near them"] += count
+    found["pieces of street that are mapped twice"] = graph.repeated
     if extract.dangling:
         found["references to nodes outside of the extract"] += extract.dangling
     return found

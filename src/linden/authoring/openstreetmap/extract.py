@@ -80,10 +80,11 @@ def read_extract(data: bytes, name: str) -> Extract:
         nodes[number] = OsmNode(longitude, latitude, tags_of(element))
     ways: dict[int, OsmWay] = {}
     dangling = 0
+    first_at = _first_at(nodes)
     for element in _present(root, "way"):
         number = reader.fresh(element, ways)
         refs = [reader.whole(child, "ref") for child in element.iterchildren("nd")]
-        kept = tuple(ref for ref in refs if ref in nodes)
+        kept = tuple(first_at[nodes[ref][:2]] for ref in refs if ref in nodes)
         dangling += len(refs) - len(kept)
         ways[number] = OsmWay(number, _without_repeats(kept), tags_of(element), element.sourceline)
     relations = tuple(
@@ -113,6 +114,16 @@ def _present(root: Any, tag: str) -> list[Any]:  # noqa: ANN401 - an element of 
         for element in root.iterchildren(tag)
         if element.get("action") != "delete" and element.get("visible") != "false"
     ]
+
+
+def _first_at(nodes: Mapping[int, OsmNode]) -> dict[tuple[float, float], int]:
+    """Return the node that stands for all nodes of a place: one with tags if there is one, else the first."""
+    found: dict[tuple[float, float], int] = {}
+    for number, node in nodes.items():
+        held = found.setdefault(node[:2], number)
+        if node.tags and not nodes[held].tags:
+            found[node[:2]] = number
+    return found
 
 
 def _without_repeats(nodes: tuple[int, ...]) -> tuple[int, ...]:

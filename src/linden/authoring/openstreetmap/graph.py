@@ -15,6 +15,7 @@ from shapely import LineString
 
 from linden.authoring.openstreetmap.extract import Extract, OsmWay
 from linden.authoring.openstreetmap.tags import Carriageway, carriageway, is_street
+from linden.authoring.streets.geojson import refuse_too_wide
 from linden.authoring.streets.network import ROUNDABOUT_SETBACK_M
 
 SMALL_RING_M = 14.0
@@ -44,7 +45,7 @@ class Segment(NamedTuple):
 class Graph(NamedTuple):
     """Segments, where nodes lie (m, x east, y north, and degrees), and which nodes stand for a small ring.
 
-    ``circulating``: ids of segments of larger rings.
+    ``circulating``: ids of segments of larger rings. ``repeated``: how many pieces of street lay on another one.
     """
 
     segments: tuple[Segment, ...]
@@ -52,6 +53,7 @@ class Graph(NamedTuple):
     degrees: Mapping[int, Point]
     rings: frozenset[int]
     circulating: frozenset[str]
+    repeated: int = 0
 
     def at(self, node: int) -> list[Segment]:
         """Return the segments that end at a node; a loop twice."""
@@ -86,6 +88,7 @@ def graph_of(extract: Extract, *, metric: bool) -> tuple[Graph, tuple[float, flo
     """
     ways = [way for way in extract.ways.values() if len(way.nodes) > 1 and is_street(way.tags)]
     places = _Places(extract, sorted({node for way in ways for node in way.nodes}))
+    refuse_too_wide((f"way {way.id}", (places.metres[node] for node in way.nodes)) for way in ways)
     rings, moved = _small_rings(ways, places)
     lines = [(way, nodes) for way in ways for nodes in _outside_of_rings(way.nodes, moved, places)]
     joints = _joints([nodes for _, nodes in lines])
@@ -94,13 +97,15 @@ def graph_of(extract: Extract, *, metric: bool) -> tuple[Graph, tuple[float, flo
         for way, nodes in lines
         for part in _cut(nodes, joints)
     ]
-    segments = _named(tuple(_simplified(segment, places) for segment in _joined(pieces)))
+    different = _different(pieces)
+    segments = _named(tuple(_simplified(segment, places) for segment in _joined(different)))
     circulating = frozenset(
         segment.id
         for segment in segments
         if any(extract.ways[way].tags.get("junction") in {"roundabout", "circular"} for way in segment.ways)
     )
-    return Graph(segments, places.metres, places.degrees, frozenset(rings), circulating), places.origin
+    repeated = len(pieces) - len(different)
+    return Graph(segments, places.metres, places.degrees, frozenset(rings), circulating, repeated), places.origin
 
 
 def _small_rings(ways: Sequence[OsmWay], places: _Places) -> tuple[list[int], dict[int, int]]:
@@ -184,10 +189,22 @@ def _cut(nodes: tuple[int, ...], joints: frozenset[int]) -> list[tuple[int, ...]
     return parts
 
 
+def _different(pieces: list[Segment]) -> list[Segment]:
+    """Return the pieces without repeats: pieces through the nodes of an earlier one, as of a way mapped twice."""
+    found: dict[tuple[int, ...], Segment] = {}
+    for piece in pieces:
+        found.setdefault(min(piece.nodes, piece.nodes[::-1]), piece)
+    return list(found.values())
+
+
 def mirrored(across: Carriageway) -> Carriageway:
     """Return the same street seen in the other direction."""
     return across._replace(
-        forward=across.backward, backward=across.forward, parking=across.parking[::-1], sidewalk=across.sidewalk[::-1]
+        forward=across.backward,
+        backward=across.forward,
+        parking=across.parking[::-1],
+        sidewalk=across.sidewalk[::-1],
+        cycling=across.cycling[::-1],
     )
 
 

@@ -9,8 +9,8 @@ import re
 from typing import NamedTuple
 
 from linden.authoring.openstreetmap.extract import Tags
-from linden.authoring.streets.cross_section import PARKING_M
-from linden.authoring.streets.street_facts import NARROWEST_M
+from linden.authoring.streets.cross_section import CYCLE_LANE_M, PARKING_M
+from linden.authoring.streets.street_facts import MOST_LEVELS, NARROWEST_M, WIDEST_M, Speed
 
 CLASS_OF = {
     "motorway": "arterial",
@@ -34,19 +34,20 @@ SPEED_KMH = {"arterial": 50.0, "collector": 50.0, "local": 50.0, "service": 20.0
 """Guessed limits: the first where the extract's limits are in mph, the second elsewhere."""
 
 TAGGED = "tagged"
-KMH_PER_MPH = 1.609344
 MOST_LANES = 12
 _FEET_M, _INCH_M = 0.3048, 0.0254
 _LENGTH = re.compile(r"^(\d+(?:\.\d+)?)\s*(m|cm|km|ft|')?$")
 _FEET = re.compile(r"^(\d+)'\s*(?:(\d+(?:\.\d+)?)\")?$")
 _SPEED = re.compile(r"^(\d+(?:\.\d+)?)\s*(mph|km/h|kmh)?$")
+_SIDES = ("left", "right")
 _PARKED = frozenset({"lane", "street_side", "parallel", "diagonal", "perpendicular", "yes", "on_kerb", "half_on_kerb"})
 
 
 class Carriageway(NamedTuple):
-    """What lies across a way, in the direction of its nodes. ``left`` and ``right`` of parking and sidewalks.
+    """What lies across a way, in the direction of its nodes.
 
-    ``sources``: for each fact, whether it is tagged or guessed, and of what.
+    Parking, sidewalks and cycle lanes (``cycling``) say it for left and right. ``sources``: for each fact, whether it
+    is tagged or guessed, and of what.
     """
 
     name: str
@@ -54,9 +55,11 @@ class Carriageway(NamedTuple):
     forward: int
     backward: int
     width_m: float
-    speed_mph: float
+    speed: Speed
     parking: tuple[bool, bool]
     sidewalk: tuple[bool, bool]
+    cycling: tuple[bool, bool]
+    level: int
     sources: tuple[tuple[str, str], ...]
 
 
@@ -98,8 +101,13 @@ def carriageway(tags: Tags, *, metric: bool) -> Carriageway:
         separate = tags.get("sidewalk") == "separate" or "separate" in _side_values(tags, "sidewalk")
         walked = separate or kind in {"collector", "local"}
         sidewalk, sidewalk_source = (walked, walked), "guessed from sidewalk=separate" if separate else because
+    cycling = cycle_lanes(tags)
     width_m, width_source = _width(tags, forward + backward, kind, sum(parking))
-    speed_mph, speed_source = _speed(tags, kind, because, metric=metric)
+    if width_source.startswith("guessed"):
+        width_m = round(width_m + CYCLE_LANE_M * sum(cycling), 2)
+    elif width_m - CYCLE_LANE_M * sum(cycling) < NARROWEST_M * (forward + backward):
+        cycling = (False, False)
+    speed, speed_source = _speed(tags, kind, because, metric=metric)
     name, name_source = _name(tags)
     return Carriageway(
         name,
@@ -107,9 +115,11 @@ def carriageway(tags: Tags, *, metric: bool) -> Carriageway:
         forward,
         backward,
         width_m,
-        speed_mph,
+        speed,
         parking,
         sidewalk,
+        cycling,
+        level(tags),
         (
             ("lanes_confidence", lanes_source),
             ("name_confidence", name_source),
@@ -119,6 +129,41 @@ def carriageway(tags: Tags, *, metric: bool) -> Carriageway:
             ("width_confidence", width_source),
         ),
     )
+
+
+def cycle_lanes(tags: Tags) -> tuple[bool, bool]:
+    """Return whether a painted cycle lane lies on the left and on the right, each for the traffic of its side.
+
+    Source: OpenStreetMap Wiki, "Key:cycleway". Those on the left of a one-way street, and tracks apart, are no such.
+    """
+    found = {side: tags.get(f"cycleway:{side}", tags.get("cycleway:both", tags.get("cycleway"))) for side in _SIDES}
+    way = direction(tags)
+    return found["left"] == "lane" and way <= 0, found["right"] == "lane" and way >= 0
+
+
+def unbuilt_cycleways(tags: Tags) -> int:
+    """Return how many cycle lanes and tracks beside a street its tags have that ``cycle_lanes`` has not."""
+    keys = [key for key in ("cycleway", "cycleway:both", "cycleway:left", "cycleway:right") if key in tags]
+    tagged = sum(
+        (1 if key.endswith(_SIDES) or direction(tags) else 2)
+        for key in keys
+        if tags[key] in {"lane", "track", "opposite_lane", "opposite_track"}
+    )
+    return max(tagged - sum(cycle_lanes(tags)), 0)
+
+
+def level(tags: Tags) -> int:
+    """Return how many levels a bridge lies above the ground, a tunnel below it (negative); 0 for other streets."""
+    is_bridge = tags.get("bridge", "no") != "no"
+    is_tunnel = tags.get("tunnel", "no") not in {"no", "building_passage"}
+    if not is_bridge and not is_tunnel:
+        return 0
+    try:
+        given = int(tags.get("layer", ""))
+    except ValueError:
+        given = 0
+    usual = given if given and (given > 0) == is_bridge else 1 if is_bridge else -1
+    return max(-MOST_LEVELS, min(MOST_LEVELS, usual))
 
 
 def metres(text: str) -> float | None:
@@ -131,12 +176,12 @@ def metres(text: str) -> float | None:
     return None
 
 
-def limit_mph(text: str) -> float | None:
-    """Return a speed limit in mph, such as ``50`` (km/h) or ``25 mph``; None where it is no number."""
+def speed_limit(text: str) -> Speed | None:
+    """Return a speed limit in the unit of its tag, such as ``50`` (km/h) or ``25 mph``; None where it is no number."""
     found = _SPEED.match(text.strip().lower())
     if found is None or float(found[1]) <= 0.0:
         return None
-    return float(found[1]) if found[2] == "mph" else float(found[1]) / KMH_PER_MPH
+    return Speed(float(found[1]), "mph" if found[2] == "mph" else "km/h")
 
 
 def _lanes(tags: Tags, because: str) -> tuple[tuple[int, int], str]:
@@ -166,26 +211,27 @@ def _count(text: str | None) -> int | None:
 
 
 def _width(tags: Tags, lanes: int, kind: str, parked: int) -> tuple[float, str]:
+    because = ""
     for key in ("width:carriageway", "width", "est_width"):
         given_m = metres(tags.get(key, ""))
         if given_m is None:
             continue
-        if given_m < NARROWEST_M * lanes:
+        if not NARROWEST_M * lanes <= given_m <= WIDEST_M:
+            because = f", {key}={tags[key][:20]} cannot be"
             break
         return round(given_m, 2), TAGGED if key != "est_width" else "estimated by the mapper"
     lane_m = LANE_M[kind]
-    return round(lanes * lane_m + parked * PARKING_M, 2), f"guessed: lanes of {lane_m} m"
+    return round(lanes * lane_m + parked * PARKING_M, 2), f"guessed: lanes of {lane_m} m{because}"
 
 
-def _speed(tags: Tags, kind: str, because: str, *, metric: bool) -> tuple[float, str]:
-    found = limit_mph(tags.get("maxspeed", ""))
+def _speed(tags: Tags, kind: str, because: str, *, metric: bool) -> tuple[Speed, str]:
+    found = speed_limit(tags.get("maxspeed", ""))
     if found is None:
-        ahead, back = (limit_mph(tags.get(f"maxspeed:{side}", "")) for side in ("forward", "backward"))
-        found = min((one for one in (ahead, back) if one is not None), default=None)
+        ahead, back = (speed_limit(tags.get(f"maxspeed:{side}", "")) for side in ("forward", "backward"))
+        found = min((one for one in (ahead, back) if one is not None), key=lambda one: one.mps, default=None)
     if found is not None:
-        return round(found, 4), TAGGED
-    guess = SPEED_KMH[kind] / KMH_PER_MPH if metric else SPEED_MPH[kind]
-    return round(guess, 4), because
+        return found, TAGGED
+    return (Speed(SPEED_KMH[kind], "km/h") if metric else Speed(SPEED_MPH[kind], "mph")), because
 
 
 def _name(tags: Tags) -> tuple[str, str]:

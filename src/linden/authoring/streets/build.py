@@ -19,10 +19,12 @@ from linden.authoring.streets.document import (
     value,
 )
 from linden.authoring.streets.geojson import read
+from linden.authoring.streets.levels import crossings, lifts
 from linden.authoring.streets.name_signs import name_signs
 from linden.authoring.streets.network import End, Leg, Network
 from linden.authoring.streets.network import build as build_network
 from linden.authoring.streets.rails import rails
+from linden.authoring.streets.rings import ISLAND_RADIUS_M
 from linden.authoring.streets.standing import standing
 from linden.authoring.streets.street_facts import Control, Facts, Intersection
 from linden.authoring.streets.writing import text
@@ -51,6 +53,12 @@ class Built(NamedTuple):
     document: Document
     left_out: tuple[str, ...] = ()
     """Ids of buildings and furniture that would stand on a street."""
+    simplified: tuple[str, ...] = ()
+    """Ids of roundabouts that became plain junctions, because their island had no room."""
+    over: tuple[tuple[str, str], ...] = ()
+    """Ids of the streets that cross at different levels."""
+    through: tuple[tuple[str, str], ...] = ()
+    """Ids of the streets that cross at one level without a common point: traffic passes through each other."""
 
 
 def build(streets: dict[str, object]) -> bytes:
@@ -73,7 +81,12 @@ class _Assembly:
     def __init__(self, facts: Facts) -> None:
         self.facts = facts
         self.network = build_network(facts)
+        self.street_crossings = crossings(self.network)
+        self.lifts_m = lifts(self.network, self.street_crossings)
         whole = [number for number, road in enumerate(self.network.roads) if road is not None]
+        if not whole:
+            names = ", ".join(street.id for street in facts.streets[:3])
+            raise UserError(f"no road remains beside the junctions of the streets {names}; take a larger part")
         self.road_ids = {edge: i for i, edge in enumerate(whole, start=1)}
         self.way_ids = itertools.count(len(whole) + 1)
         self.signal_ids = itertools.count(1)
@@ -87,16 +100,17 @@ class _Assembly:
         self.corners: list[RoadRecord] = []
         self.junctions: list[JunctionRecord] = []
         self.controllers: list[Controller] = []
+        self.simplified: list[str] = []
         self.walked_ends, self.crossings = crosswalks.mapped_crossings(facts, self.network)
 
     def result(self) -> Built:
-        crossings = crosswalks.nodes_at_schools(self.facts, self.network)
+        walked = crosswalks.nodes_at_schools(self.facts, self.network)
         self._level(tuple(legs for nodes, legs in self.network.junctions if not self._is_bend(nodes, legs)))
         for nodes, legs in self.network.junctions:
             if self._is_bend(nodes, legs):
                 self._add_bend((legs[0], legs[1]))
             else:
-                self._add_junction(nodes, legs, crossings)
+                self._add_junction(nodes, legs, walked)
         for edge, crosswalk in (
             *crosswalks.at_stops(self.facts, self.network, self.object_ids),
             *crosswalks.between_junctions(self.crossings, self.network, self.object_ids),
@@ -122,7 +136,23 @@ class _Assembly:
             junctions=tuple(self.junctions),
             notes=(("elevation_confidence", self.facts.ground.confidence),),
         )
-        return Built(self.facts, self.network, street_roads, tuple(self.ways), document, placed.left_out)
+        return Built(
+            facts=self.facts,
+            network=self.network,
+            roads=street_roads,
+            ways=tuple(self.ways),
+            document=document,
+            left_out=placed.left_out,
+            simplified=tuple(self.simplified),
+            over=self._crossing_streets(is_separated=True),
+            through=self._crossing_streets(is_separated=False),
+        )
+
+    def _crossing_streets(self, *, is_separated: bool) -> tuple[tuple[str, str], ...]:
+        """Return the ids of the streets that cross so without a common point."""
+        edges = self.network.edges
+        found = [one.edges for one in self.street_crossings if one.is_separated == is_separated]
+        return tuple((edges[one].street.id, edges[other].street.id) for one, other in found)
 
     def _intersections(self, nodes: tuple[int, ...]) -> list[Intersection]:
         return [one for one in (self.network.nodes[node].intersection for node in nodes) if one is not None]
@@ -138,7 +168,7 @@ class _Assembly:
         roads_m = [None if road is None else length(road) for road in self.network.roads]
         levels = roads.levels(self.facts.ground, junctions_legs, roads_m)
         for legs, height_m in zip(junctions_legs, levels, strict=True):
-            self.heights_m.update({leg.end: height_m for leg in legs})
+            self.heights_m.update({leg.end: height_m + self.lifts_m[leg.node] for leg in legs})
 
     def _road_m(self, leg: Leg) -> float:
         road = self.network.roads[leg.end.edge]
@@ -147,7 +177,7 @@ class _Assembly:
 
     def _add_bend(self, legs: tuple[Leg, Leg]) -> None:
         ids = self.road_ids[legs[0].end.edge], self.road_ids[legs[1].end.edge]
-        record = roads.bend(next(self.way_ids), legs, ids, self.facts.ground)
+        record = roads.bend(next(self.way_ids), legs, ids, self.facts.ground, self.lifts_m[legs[0].node])
         self.ways.append(Way(record, legs[0].end, legs[1].end))
         self.touches[legs[0].end], self.touches[legs[1].end] = roads.touches_of_bend(record)
 
@@ -158,11 +188,9 @@ class _Assembly:
         for leg in legs:
             self.touches[leg.end] = roads.Touch(Link("junction", number), {})
         rules = [controls.control_of(found, self.network.nodes[leg.node].intersection) for leg in legs]
+        centre = self.network.nodes[legs[0].node if len(legs) == 1 else nodes[0]].point
+        turns, rules = self._turns(nodes, legs, rules, centre)
         is_roundabout = Control.ROUNDABOUT in rules
-        centre = self.network.nodes[nodes[0]].point
-        if is_roundabout and len(nodes) > 1:
-            raise UserError(f"intersection {found[0].id}: a roundabout needs more room to the next junction")
-        turns = _turns(legs, centre, is_roundabout=is_roundabout)
         connections, turn_ids = [], []
         for turn in turns:
             record = junctions.turn_road(next(self.way_ids), number, turn, self._ids(turn.come, turn.go), height_m)
@@ -193,6 +221,30 @@ class _Assembly:
                 notes=controls.junction_notes(found, rules) if len(legs) > 1 else (("turning_circle", MADE_UP),),
             )
         )
+
+    def _turns(
+        self, nodes: tuple[int, ...], legs: tuple[Leg, ...], rules: list[Control], centre: Point
+    ) -> tuple[tuple[junctions.Turn, ...], list[Control]]:
+        """Return the ways through a junction and its rules: those of a plain one where its roundabout has no room.
+
+        Raises:
+            UserError: a roundabout has no room, and the facts do not allow to simplify it.
+        """
+        if len(legs) == 1:
+            return roundabouts.turning_circle(legs[0], centre), rules
+        if Control.ROUNDABOUT not in rules:
+            return junctions.turns(legs), rules
+        identity = next(one.id for one in self._intersections(nodes) if one.control is Control.ROUNDABOUT)
+        why = "a roundabout needs more room to the next junction"
+        if len(nodes) == 1:
+            try:
+                return roundabouts.turns(legs, centre), rules
+            except UserError as error:
+                why = str(error)
+        if not self.facts.simplify_roundabouts:
+            raise UserError(f"intersection {identity}: {why}")
+        self.simplified.append(identity)
+        return junctions.turns(legs), [Control.NONE] * len(rules)
 
     def _ids(self, come: Leg, go: Leg) -> tuple[int, int]:
         return self.road_ids[come.end.edge], self.road_ids[go.end.edge]
@@ -252,8 +304,8 @@ class _Assembly:
     def _add_island(self, leg: Leg, centre: Point, found: list[Intersection]) -> None:
         corners = [
             (
-                centre[0] + roundabouts.ISLAND_RADIUS_M * math.cos(math.tau * i / 16),
-                centre[1] + roundabouts.ISLAND_RADIUS_M * math.sin(math.tau * i / 16),
+                centre[0] + ISLAND_RADIUS_M * math.cos(math.tau * i / 16),
+                centre[1] + ISLAND_RADIUS_M * math.sin(math.tau * i / 16),
             )
             for i in (*range(16), 0)
         ]
@@ -273,8 +325,10 @@ class _Assembly:
         if path is None:
             return None
         begin, end = End(edge, at_end=False), End(edge, at_end=True)
-        heights = roads.elevation(self.facts.ground, path, (self.heights_m.get(begin), self.heights_m.get(end)))
         one = self.network.edges[edge]
+        ends_m = self.heights_m.get(begin), self.heights_m.get(end)
+        lifts_m = self.lifts_m[one.nodes[0]], self.lifts_m[one.nodes[1]]
+        heights = roads.elevation(self.facts.ground, path, ends_m, lifts_m)
         record = roads.street_road(self.road_ids[edge], one.street, one.section, path, heights)
         record = roads.linked(record, self.touches.get(begin), self.touches.get(end))
         return record._replace(signals=tuple(self.signals[edge]), objects=tuple(self.objects[edge]))
@@ -292,12 +346,6 @@ def off_ground_m(built: Built) -> tuple[float, float]:
             is_near = min(s_m, total_m - s_m) < ramp_m
             worst_m[is_near] = max(worst_m[is_near], apart_m)
     return worst_m[0], worst_m[1]
-
-
-def _turns(legs: tuple[Leg, ...], centre: Point, *, is_roundabout: bool) -> tuple[junctions.Turn, ...]:
-    if len(legs) == 1:
-        return roundabouts.turning_circle(legs[0], centre)
-    return roundabouts.turns(legs, centre) if is_roundabout else junctions.turns(legs)
 
 
 def _priorities(

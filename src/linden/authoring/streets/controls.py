@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from linden.authoring.streets import roundabouts
 from linden.authoring.streets.cross_section import KERB_M, PAVED, View, view
 from linden.authoring.streets.curves import length
 from linden.authoring.streets.document import Object, Signal
 from linden.authoring.streets.network import Leg, Network
+from linden.authoring.streets.rings import ISLAND_RADIUS_M, LANE_M
 from linden.authoring.streets.street_facts import Control, Facts, Intersection, Street
 
 STOP, YIELD, LIGHT, SPEED_LIMIT = "206", "205", "1000001", "274"  # LibCarla's SignalType
@@ -97,8 +97,8 @@ def speed_sign(number: int, street: Street, seen: View, road_m: float, *, along:
         kind=SPEED_LIMIT,
         lanes=(min(lanes), max(lanes)),
         confidence=dict(street.confidences).get("speed_confidence", "unknown"),
-        value=street.speed_limit_mph,
-        unit="mph",
+        value=street.speed_limit.value,
+        unit=street.speed_limit.unit,
     )
 
 
@@ -173,8 +173,8 @@ def junction_notes(found: list[Intersection], rules: list[Control]) -> tuple[tup
     if control is Control.ROUNDABOUT:
         notes += [
             ("roundabout", "mini"),
-            ("island_radius_m", str(roundabouts.ISLAND_RADIUS_M)),
-            ("lane_width_m", str(roundabouts.LANE_M)),
+            ("island_radius_m", str(ISLAND_RADIUS_M)),
+            ("lane_width_m", str(LANE_M)),
         ]
     return tuple(notes)
 

@@ -8,12 +8,13 @@ from typing import NamedTuple
 from linden.authoring.streets.street_facts import Street
 
 PARKING_M = 2.1  # 7 ft
+CYCLE_LANE_M = 1.5  # 5 ft, the least that NACTO's Urban Bikeway Design Guide asks for
 NARROWEST_LANE_M = 2.85  # a 2.0 m shuttle and 0.4 m on either side
 KERB_M = 0.15
 VERGE_M = 1.2
 SIDEWALK_M = 1.5  # 5 ft, on which two wheelchairs pass
 KERB_HEIGHT_M = 0.15
-PAVED = frozenset({"driving", "parking", "shoulder"})
+PAVED = frozenset({"driving", "biking", "parking", "shoulder"})
 RAISED = frozenset({"border", "none", "sidewalk"})
 
 
@@ -60,6 +61,11 @@ class View(NamedTuple):
             at_m += lane.width_m
         raise KeyError(lane_id)
 
+    def middle_m(self, lane_id: int, *, right: bool) -> float:
+        """Return how far left of the reference line the middle of a lane of one side runs."""
+        half_m = self.lane(lane_id).width_m / 2
+        return self.inner_edge_m(lane_id) + (-half_m if right else half_m)
+
     def lane(self, lane_id: int) -> Lane:
         """Return the lane with that id."""
         return dict(self.right + self.left)[lane_id]
@@ -94,18 +100,21 @@ def of_street(street: Street) -> Section:
     """Share a street's width out among its lanes.
 
     Parking (a shoulder where parking is limited) lies on both sides where the lanes keep 3.0 m, else on the right side
-    in the direction of the street's points, else nowhere. What remains is the driving lanes', in equal parts.
+    in the direction of the street's points, else nowhere. Cycle lanes run between the driving lanes and what is parked.
+    What remains is the driving lanes', in equal parts.
     """
     right_count = street.lanes if street.oneway else street.lanes_forward or (street.lanes + 1) // 2
     left_count = street.lanes - right_count
     edge_kind = "parking" if street.parking == "both" else "shoulder"
-    edges = _edges(street, right_count + left_count)
-    lane_m = round((street.width_m - PARKING_M * sum(edges)) / street.lanes, 3)
+    cycled = _cycled(street)
+    edges = _edges(street, right_count + left_count, street.width_m - CYCLE_LANE_M * sum(cycled))
+    lane_m = round((street.width_m - PARKING_M * sum(edges) - CYCLE_LANE_M * sum(cycled)) / street.lanes, 3)
     driving = Lane("driving", lane_m)
     edge = Lane(edge_kind, PARKING_M)
-    right = (driving,) * right_count + (edge,) * edges[0]
-    left = (driving,) * left_count + (edge,) * edges[1]
-    paved_right_m = lane_m * right_count + PARKING_M * edges[0]
+    cycle = Lane("biking", CYCLE_LANE_M)
+    right = (driving,) * right_count + (cycle,) * cycled[0] + (edge,) * edges[0]
+    left = (driving,) * left_count + (cycle,) * cycled[1] + (edge,) * edges[1]
+    paved_right_m = lane_m * right_count + CYCLE_LANE_M * cycled[0] + PARKING_M * edges[0]
     return Section(
         right=right + _roadside(walk=street.sidewalk != "none"),
         left=left + _roadside(walk=street.sidewalk == "both"),
@@ -113,13 +122,19 @@ def of_street(street: Street) -> Section:
     )
 
 
-def _edges(street: Street, lanes: int) -> tuple[int, int]:
+def _cycled(street: Street) -> tuple[int, int]:
+    """Return whether a cycle lane lies on the right and on the left: on the left only where traffic drives there."""
+    is_right = street.cycle_lanes != "none"
+    return int(is_right), int(street.cycle_lanes == "both" and not street.oneway)
+
+
+def _edges(street: Street, lanes: int, width_m: float) -> tuple[int, int]:
     """Return whether a parking lane or shoulder lies on the right and on the left."""
     if lanes >= 4 or (street.parking == "none" and not street.oneway):
         return 0, 0
-    if not street.oneway and street.width_m - 2 * PARKING_M >= 3.0 * lanes:
+    if not street.oneway and width_m - 2 * PARKING_M >= 3.0 * lanes:
         return 1, 1
-    return int(street.width_m - PARKING_M >= NARROWEST_LANE_M * lanes), 0
+    return int(width_m - PARKING_M >= NARROWEST_LANE_M * lanes), 0
 
 
 def _roadside(*, walk: bool) -> tuple[Lane, ...]:

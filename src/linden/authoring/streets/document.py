@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from linden.authoring.streets.curves import Path, Point
+from linden.authoring.streets.street_facts import Speed
 
 
 class Cubic(NamedTuple):
@@ -115,7 +116,7 @@ class RoadRecord(NamedTuple):
     path: Path
     predecessor: Link | None
     successor: Link | None
-    speed_mph: float | None
+    speed: Speed | None
     elevation: tuple[Cubic, ...]
     axis: tuple[Cubic, ...]
     left: tuple[LaneRecord, ...]

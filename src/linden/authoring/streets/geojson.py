@@ -12,10 +12,14 @@ from typing import Any
 
 from pyproj import Proj
 
+from linden.authoring.streets.cross_section import CYCLE_LANE_M
 from linden.authoring.streets.curves import Point
 from linden.authoring.streets.street_facts import (
+    CYCLE_LANES,
     FURNITURE,
+    MOST_LEVELS,
     NARROWEST_M,
+    WIDEST_M,
     Building,
     Control,
     Crossing,
@@ -26,20 +30,24 @@ from linden.authoring.streets.street_facts import (
     Place,
     Railroad,
     Route,
+    Speed,
     Stop,
     Street,
 )
 from linden.errors import UserError
+from linden.maps.opendrive.limits import WIDEST_EXTENT_M
 
 _ROUTES = frozenset({"route", "route_alternative"})
 _LINES = _ROUTES | {"street", "railroad"}
 _GEOMETRY = {**dict.fromkeys(_LINES, "LineString"), "building": "Polygon"}
+_SPEEDS = {"speed_limit_mph": "mph", "speed_limit_kmh": "km/h"}
 _CHOICES = {
     "street_class": ("arterial", "collector", "local", "service"),
     "oneway": ("no", "forward"),
     "parking": ("both", "limited", "none/limited", "none"),
     "sidewalk": ("both", "one", "none"),
     "kind": FURNITURE,
+    "cycle_lanes": CYCLE_LANES,
 }
 
 
@@ -64,6 +72,7 @@ def read(document: object) -> Facts:
     def metres(lonlats: Iterable[tuple[float, float]]) -> tuple[Point, ...]:
         return tuple((round(x, 3), round(y, 3)) for x, y in (project(*lonlat) for lonlat in lonlats))
 
+    refuse_too_wide((feature.text("id"), metres(feature.lonlats())) for feature in streets)
     known = {feature.text("id") for feature in streets}
     if len(known) < len(streets):
         raise UserError("two streets share an id; each needs its own")
@@ -101,8 +110,28 @@ def read(document: object) -> Facts:
             for f in features
             if f.kind == "railroad"
         ),
+        simplify_roundabouts=bool(metadata.get("simplify_roundabouts", False)),
         street_name_signs=str(metadata.get("street_name_signs", "")),
     )
+
+
+def refuse_too_wide(streets: Iterable[tuple[str, Iterable[Point]]]) -> None:
+    """Check that streets, each with its id and its points in m, lie within the extent of a map.
+
+    Raises:
+        UserError: two of them lie too far apart; with their ids.
+    """
+    places = [(point, identity) for identity, points in streets for point in points]
+    for axis in (0, 1):
+        (low, low_id), (high, high_id) = (
+            extreme((point[axis], identity) for point, identity in places) for extreme in (min, max)
+        )
+        if not high - low <= WIDEST_EXTENT_M:
+            far = f"{(high - low) / 1000:,.0f} km" if math.isfinite(high - low) else "thousands of km"
+            raise UserError(
+                f"the streets {low_id} and {high_id} lie {far} apart; a map has at most {WIDEST_EXTENT_M / 1000:g} km, "
+                "so keep the streets of one town"
+            )
 
 
 class _Feature:
@@ -131,6 +160,19 @@ class _Feature:
             raise UserError(f"{self.label}: `{key}` is {found!r}; it must be a number above 0")
         return float(found)
 
+    def speed_limit(self) -> Speed:
+        given = {key: unit for key, unit in _SPEEDS.items() if self.properties.get(key) is not None}
+        if len(given) > 1:
+            raise UserError(f"{self.label}: it has {' and '.join(given)}; keep the one that the signs show")
+        key, unit = next(iter(given.items()), ("speed_limit_mph", "mph"))
+        return Speed(self.positive(key), unit)
+
+    def level(self) -> int:
+        found = self.properties.get("level", 0)
+        if not isinstance(found, int) or abs(found) > MOST_LEVELS:
+            raise UserError(f"{self.label}: `level` is {found!r}; it is a whole number up to {MOST_LEVELS}")
+        return found
+
     def lonlats(self) -> list[tuple[float, float]]:
         wanted = _GEOMETRY.get(self.kind, "Point")
         geometry = self.geometry if isinstance(self.geometry, dict) else {}
@@ -158,6 +200,15 @@ class _Feature:
 
 def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
     lanes, width_m = int(feature.positive("lanes")), feature.positive("width_m")
+    if width_m > WIDEST_M:
+        raise UserError(f"{feature.label}: `width_m` is {width_m:g}; a street has at most {WIDEST_M:g} m between kerbs")
+    cycle_lanes = feature.choice("cycle_lanes") if "cycle_lanes" in feature.properties else "none"
+    cycle_m = CYCLE_LANE_M * CYCLE_LANES.index(cycle_lanes)
+    if width_m - cycle_m < NARROWEST_M * lanes <= width_m:
+        raise UserError(
+            f"{feature.label}: {lanes} lanes and cycle lanes of {CYCLE_LANE_M} m do not fit between kerbs {width_m} m "
+            "apart; widen the street, or leave `cycle_lanes` out"
+        )
     if lanes != feature.properties["lanes"] or width_m < NARROWEST_M * lanes:
         raise UserError(
             f"{feature.label}: {feature.properties['lanes']} lanes do not fit between kerbs {width_m} m apart; "
@@ -173,7 +224,7 @@ def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
         street_class=feature.choice("street_class"),
         lanes=lanes,
         width_m=width_m,
-        speed_limit_mph=feature.positive("speed_limit_mph"),
+        speed_limit=feature.speed_limit(),
         oneway=feature.choice("oneway") == "forward",
         parking=feature.choice("parking"),
         sidewalk=feature.choice("sidewalk"),
@@ -182,6 +233,8 @@ def _street(feature: _Feature, points: tuple[Point, ...]) -> Street:
         ),
         lanes_forward=forward,
         speed_posted=feature.properties.get("speed_posted") is True,
+        cycle_lanes=cycle_lanes,
+        level=feature.level(),
     )
 
 

@@ -6,13 +6,15 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from shapely import LineString, MultiPolygon, Point, Polygon, polygons, unary_union
+from numpy.typing import NDArray
+from shapely import LineString, MultiPolygon, Point, Polygon, convex_hull, is_valid, polygons, unary_union
 
 from linden.authoring.streets.cross_section import KERB_M
 from linden.authoring.streets.curves import Path, Pose, joined, length, moved, pose_at, sampled, turned_back, wrapped
 from linden.authoring.streets.document import Connection, Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
 from linden.authoring.streets.network import Leg
 from linden.authoring.streets.roads import blended, contact, strips
+from linden.authoring.streets.street_facts import slower
 
 SHARES_OF_ROOM = (1.0, 0.9, 0.8, 0.7)  # for the arc of a turn; a tighter one keeps further off the kerb
 KERB_TOUCHED_M2 = 0.005
@@ -61,12 +63,12 @@ def lane_pairs(legs: tuple[Leg, ...]) -> list[tuple[int, int, int, int]]:
 
 def pose_in(leg: Leg, lane: int) -> Pose:
     """Return where the middle of an incoming lane meets the junction, looking into it."""
-    return moved(leg.pose, left_m=leg.view.inner_edge_m(lane) - leg.view.lane(lane).width_m / 2)
+    return moved(leg.pose, left_m=leg.view.middle_m(lane, right=True))
 
 
 def pose_out(leg: Leg, lane: int) -> Pose:
     """Return where the middle of an outgoing lane leaves the junction, looking out."""
-    return turned_back(moved(leg.pose, left_m=leg.view.inner_edge_m(lane) + leg.view.lane(lane).width_m / 2))
+    return turned_back(moved(leg.pose, left_m=leg.view.middle_m(lane, right=False)))
 
 
 def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int], height_m: float) -> RoadRecord:
@@ -81,7 +83,7 @@ def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int],
         path=turn.path,
         predecessor=Link("road", road_ids[0], contact(turn.come.end)),
         successor=Link("road", road_ids[1], contact(turn.go.end)),
-        speed_mph=min(turn.come.street.speed_limit_mph, turn.go.street.speed_limit_mph),
+        speed=slower(turn.come.street.speed_limit, turn.go.street.speed_limit),
         elevation=(Cubic(0.0, height_m),),
         axis=tuple(Cubic(w.s_m, w.a / 2, w.b / 2, w.c / 2, w.d / 2) for w in turn.widths),
         left=(),
@@ -98,7 +100,8 @@ def corner_kerb(come: Leg, go: Leg) -> Path:
 
 def surface(ways: tuple[Turn, ...]) -> Polygon | MultiPolygon:
     """Return the ground that the lanes of a junction's turns cover."""
-    found = unary_union([piece for turn in ways for piece in _pieces_covered(turn)])
+    pieces = [piece for turn in ways for piece in _pieces_covered(turn)]
+    found = unary_union(pieces) if pieces else Polygon()  # one-way streets may all lead away from each other
     assert isinstance(found, (Polygon, MultiPolygon)), "lanes cover an area"
     return found
 
@@ -127,7 +130,7 @@ def corner_road(
         path=path,
         predecessor=Link("road", road_ids[0], contact(come.end)),
         successor=Link("road", road_ids[1], contact(go.end)),
-        speed_mph=min(come.street.speed_limit_mph, go.street.speed_limit_mph),
+        speed=slower(come.street.speed_limit, go.street.speed_limit),
         elevation=(Cubic(0.0, height_m),),
         axis=(),
         left=_shoulder(path, driven),
@@ -176,7 +179,11 @@ def conflicting(one: Turn, other: Turn) -> bool:
 
 
 def _pieces_covered(turn: Turn) -> list[Polygon]:
-    """Return the ground under a turn's lane, metre by metre (as one outline it could cross itself)."""
+    """Return the ground under a turn's lane, metre by metre (as one outline it could cross itself).
+
+    Where a path turns within half the lane's width, the lane's inner side runs backwards. A metre of it then crosses
+    itself. GEOS overlays no such ring, so the hull of its corners stands for it.
+    """
     total_m = length(turn.path)
     count = math.ceil(total_m)
     sides = []
@@ -184,8 +191,10 @@ def _pieces_covered(turn: Turn) -> list[Polygon]:
         pose, half_m = pose_at(turn.path, total_m * i / count), value(turn.widths, total_m * i / count) / 2
         sides.append((moved(pose, left_m=half_m)[:2], moved(pose, left_m=-half_m)[:2]))
     corners = [(left, right, right_after, left_after) for (left, right), (left_after, right_after) in pairwise(sides)]
-    pieces: list[Polygon] = np.asarray(polygons(np.array(corners))).tolist()
-    return pieces
+    found: NDArray[np.object_] = np.asarray(polygons(np.array(corners)))
+    hulls: NDArray[np.object_] = np.asarray(convex_hull(found))
+    pieces: list[Polygon] = np.where(is_valid(found), found, hulls).tolist()
+    return [piece for piece in pieces if piece.area > 0.0]
 
 
 @lru_cache(256)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from linden.authoring.streets.cross_section import Section, View, of_street, view
 from linden.authoring.streets.curves import Path, Point, Pose, length, pose_at, rounded, trimmed, turned_back, wrapped
+from linden.authoring.streets.rings import KERB_RADII_M, LANE_RADII_M, leads_in
 from linden.authoring.streets.street_facts import Control, Facts, Intersection, Street
 from linden.errors import UserError
 
@@ -22,6 +23,9 @@ SHORTEST_SETBACK_M = 6.0
 LONGEST_SETBACK_M = 40.0
 ROUNDABOUT_SETBACK_M = 16.0
 BEND_SETBACK_M = 6.0
+ACUTEST_RAD = math.radians(5)
+"""Below that two legs run side by side, and their kerbs meet farther out than any leg is cut."""
+
 SIGHT_M = 15.0  # a leg's direction is taken this far from its node
 
 
@@ -196,6 +200,12 @@ def _turning_circle(leg: Leg, edge: Edge) -> list[Leg]:
     if edge.street.oneway or length(edge.path) < 4 * ROUNDABOUT_SETBACK_M:
         return []
     pose = turned_back(pose_at(_outward(edge.path, leg.end), ROUNDABOUT_SETBACK_M))
+    lanes = [(lane, side) for side in (True, False) for lane in leg.view.driving(right=side)]
+    middles_m = [leg.view.middle_m(lane, right=side) for lane, side in lanes]
+    kerbs_m = [leg.view.kerb_m(right=side) for side in (True, False)]
+    centre = pose_at(_outward(edge.path, leg.end), 0.0)[:2]
+    if not (leads_in(pose, centre, middles_m, LANE_RADII_M) and leads_in(pose, centre, kerbs_m, KERB_RADII_M)):
+        return []
     return [leg._replace(setback_m=ROUNDABOUT_SETBACK_M, pose=pose)]
 
 
@@ -245,7 +255,7 @@ def _corner(leg: Leg, after: Leg, radius_m: float) -> tuple[float, float]:
     """
     out, out_after = turned_back(leg.pose), turned_back(after.pose)
     between = (out_after.heading_rad - out.heading_rad) % math.tau
-    if not math.radians(15) < between < math.radians(150):
+    if not ACUTEST_RAD < between < math.radians(150):
         return 0.0, 0.0
     kerb_m = -leg.view.kerb_m(right=True)
     kerb_after_m = after.view.kerb_m(right=False)

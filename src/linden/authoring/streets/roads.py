@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from linden.authoring.streets.cross_section import KERB_HEIGHT_M, PAVED, RAISED, Lane, Section
 from linden.authoring.streets.curves import Path, Pose, joined, length, pose_at, turned_back
-from linden.authoring.streets.document import Cubic, LaneRecord, Link, Mark, RoadRecord, eased
+from linden.authoring.streets.document import Cubic, LaneRecord, Link, Mark, RoadRecord, eased, value
 from linden.authoring.streets.network import End, Leg
-from linden.authoring.streets.street_facts import AnyGround, Street
+from linden.authoring.streets.street_facts import AnyGround, Street, slower
 
 LEVELLING_ROUNDS = 100
-KINDS = ("driving", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
+KINDS = ("driving", "biking", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
 
 Numbered = tuple[tuple[int, Lane], ...]
 
@@ -44,10 +44,15 @@ def slope(ground: AnyGround, pose: Pose) -> float:
     return north * math.sin(pose.heading_rad) + east * math.cos(pose.heading_rad)
 
 
-def elevation(ground: AnyGround, path: Path, ends_m: tuple[float | None, float | None]) -> tuple[Cubic, ...]:
+def elevation(
+    ground: AnyGround,
+    path: Path,
+    ends_m: tuple[float | None, float | None],
+    lifts_m: tuple[float, float] = (0.0, 0.0),
+) -> tuple[Cubic, ...]:
     """Return the height along a path: on the ground, but level and at the given height where it meets a junction.
 
-    ``None`` stands for an end where the ground goes on.
+    ``None`` stands for an end where the ground goes on. ``lifts_m``: how far both ends lie above the ground.
     """
     total_m = length(path)
     ramp_m = min(ground.profile.ramp_m, total_m / 2)
@@ -58,6 +63,12 @@ def elevation(ground: AnyGround, path: Path, ends_m: tuple[float | None, float |
         knots = [0.0, total_m]
     poses = [pose_at(path, s) for s in knots]
     points = [(height(ground, pose), slope(ground, pose)) for pose in poses]
+    if lifts_m != (0.0, 0.0):
+        rise = eased(0.0, total_m, lifts_m)
+        points = [
+            (z + value((rise,), s), g + s * (2 * rise.c + 3 * rise.d * s))
+            for s, (z, g) in zip(knots, points, strict=True)
+        ]
     for index, end_m in ((0, ends_m[0]), (-1, ends_m[1])):
         if end_m is not None:
             points[index] = (end_m, 0.0)
@@ -102,7 +113,7 @@ def street_road(number: int, street: Street, section: Section, path: Path, heigh
         path=path,
         predecessor=None,
         successor=None,
-        speed_mph=street.speed_limit_mph,
+        speed=street.speed_limit,
         elevation=heights,
         axis=(Cubic(0.0, section.axis_m),),
         left=_lanes(section.left, 1),
@@ -130,8 +141,10 @@ def linked(road: RoadRecord, before: Touch | None, after: Touch | None) -> RoadR
     )
 
 
-def bend(number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: AnyGround) -> RoadRecord:
-    """Return the road that goes on from one road into another where just two meet."""
+def bend(
+    number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: AnyGround, lift_m: float = 0.0
+) -> RoadRecord:
+    """Return the road that goes on from one road into another where just two meet, so far above the ground."""
     come, go = legs
     path = joined(come.pose, turned_back(go.pose))
     total_m = length(path)
@@ -144,8 +157,8 @@ def bend(number: int, legs: tuple[Leg, Leg], road_ids: tuple[int, int], ground: 
         path=path,
         predecessor=Link("road", road_ids[0], contact(come.end)),
         successor=Link("road", road_ids[1], contact(go.end)),
-        speed_mph=min(come.street.speed_limit_mph, go.street.speed_limit_mph),
-        elevation=elevation(ground, path, (None, None)),
+        speed=slower(come.street.speed_limit, go.street.speed_limit),
+        elevation=elevation(ground, path, (None, None), (lift_m, lift_m)),
         axis=(eased(0.0, total_m, (come.view.axis_m, -go.view.axis_m)),),
         left=strips(left, 1, total_m),
         right=strips(right, -1, total_m),

@@ -6,7 +6,6 @@ lane is where these roads lie on each other; ``docs/decisions/0011-roundabouts.m
 
 import itertools
 import math
-from typing import NamedTuple
 
 from linden.authoring.streets.cross_section import KERB_HEIGHT_M, KERB_M
 from linden.authoring.streets.curves import (
@@ -18,31 +17,12 @@ from linden.authoring.streets.curves import (
     joined,
     length,
     moved,
-    seen_from,
     turned_back,
 )
 from linden.authoring.streets.document import Cubic, LaneRecord, Mark, RoadRecord, eased
 from linden.authoring.streets.junctions import Turn, lane_pairs, pose_in, pose_out
 from linden.authoring.streets.network import Leg
-from linden.errors import UserError
-
-ISLAND_RADIUS_M = 4.3
-LANE_M = 4.6
-"""Island and lane give an inscribed circle of 17.8 m; mini-roundabouts have 15 to 27 m (FHWA, Public Roads 11/2012)."""
-
-KERB_RADII_M = (5.0, ISLAND_RADIUS_M + LANE_M + 0.3)
-"""Of the kerb about a turning circle: of its bends, and of the circle."""
-
-RING_RADIUS_M = ISLAND_RADIUS_M + LANE_M / 2
-BEND_RADIUS_M = 7.5
-"""Of the middle of the lane in the bends in and out: at 1 m/s² sideways, 10 km/h."""
-
-
-class _Approach(NamedTuple):
-    """A straight and a right-hand bend that ends on the ring, seen in the direction of entry (or left, mirrored)."""
-
-    straight_m: float
-    turn_rad: float
+from linden.authoring.streets.rings import ISLAND_RADIUS_M, KERB_RADII_M, LANE_M, LANE_RADII_M, round_ring
 
 
 def turns(legs: tuple[Leg, ...], centre: Point) -> tuple[Turn, ...]:
@@ -72,7 +52,7 @@ def circle_kerb(leg: Leg, centre: Point) -> Path:
     """Return the kerb line round a turning circle, from the right side of its street to the left."""
     begin = moved(leg.pose, left_m=leg.view.kerb_m(right=True))
     end = turned_back(moved(leg.pose, left_m=leg.view.kerb_m(right=False)))
-    return tuple(piece for piece in _round(begin, end, centre, KERB_RADII_M) if piece.length_m > 1e-4)
+    return tuple(piece for piece in round_ring(begin, end, centre, KERB_RADII_M) if piece.length_m > 1e-4)
 
 
 def island(number: int, centre: Point, height_m: float) -> RoadRecord:
@@ -87,7 +67,7 @@ def island(number: int, centre: Point, height_m: float) -> RoadRecord:
         path=(first, second),
         predecessor=None,
         successor=None,
-        speed_mph=None,
+        speed=None,
         elevation=(Cubic(0.0, height_m),),
         axis=(),
         left=(
@@ -103,8 +83,8 @@ def island(number: int, centre: Point, height_m: float) -> RoadRecord:
 
 def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -> tuple[Path, tuple[Cubic, ...]]:
     """Return the path of the lane's middle, and the lane's width along it."""
-    pieces = _round(begin, end, centre, (BEND_RADIUS_M, RING_RADIUS_M))
-    if pieces[2].length_m > RING_RADIUS_M * math.radians(300):
+    pieces = round_ring(begin, end, centre, LANE_RADII_M)
+    if pieces[2].length_m > LANE_RADII_M[1] * math.radians(300):
         path = joined(begin, end)
         return path, (eased(0.0, length(path), widths_m),)
     lengths_m = [piece.length_m for piece in pieces]
@@ -117,39 +97,3 @@ def _way(begin: Pose, end: Pose, centre: Point, widths_m: tuple[float, float]) -
         Cubic(ends_m[3], widths_m[1]),
     )
     return tuple(piece for piece in pieces if piece.length_m > 1e-4), widths
-
-
-def _round(begin: Pose, end: Pose, centre: Point, radii_m: tuple[float, float]) -> tuple[Piece, ...]:
-    """Return straight, bend, ring, bend, straight; ``radii_m`` of the bends and of the ring."""
-    entry = _approach(seen_from(begin, centre), radii_m)
-    ahead_m, left_m = seen_from(end, centre)
-    leave = _approach((-ahead_m, left_m), radii_m)
-    on_ring_rad = (end.heading_rad - begin.heading_rad + entry.turn_rad + leave.turn_rad) % math.tau
-    pieces = [Piece(begin, entry.straight_m, 0.0)]
-    at = moved(begin, forward_m=entry.straight_m)
-    for turn_rad, radius_m in (
-        (-entry.turn_rad, radii_m[0]),
-        (on_ring_rad, radii_m[1]),
-        (-leave.turn_rad, radii_m[0]),
-    ):
-        piece = Piece(at, abs(turn_rad) * radius_m, math.copysign(1 / radius_m, turn_rad))
-        pieces.append(piece)
-        at = along(piece, piece.length_m)
-    pieces.append(Piece(at, leave.straight_m, 0.0))
-    return tuple(pieces)
-
-
-def _approach(centre: Point, radii_m: tuple[float, float]) -> _Approach:
-    """Return the way in for a centre so far ahead and to the left: the bend touches the ring's middle from outside.
-
-    The bend's centre is its radius to the right; its distance to the island's centre is the sum of the radii.
-    """
-    ahead_m, left_m = centre
-    apart_m = sum(radii_m)
-    beside_m = left_m + radii_m[0]
-    before_m = math.sqrt(max(apart_m**2 - beside_m**2, 0.0))
-    if before_m == 0.0 or ahead_m < before_m:
-        raise UserError(
-            "a street leads past the middle of a roundabout, not to it; straighten its last 20 m or change the control"
-        )
-    return _Approach(ahead_m - before_m, math.atan2(before_m, beside_m))

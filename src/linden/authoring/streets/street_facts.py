@@ -10,6 +10,11 @@ from typing import NamedTuple, Protocol
 from linden.authoring.streets.curves import Point
 
 NARROWEST_M = 2.0  # of a lane; a car is 1.8 m wide
+MOST_LEVELS = 5
+"""Of bridges over each other, and of tunnels."""
+WIDEST_M = 100.0
+"""Between the kerbs of a street; Buenos Aires' Avenida 9 de Julio, of several carriageways, has 140 m in all."""
+CYCLE_LANES = ("none", "right", "both")
 FURNITURE = ("bench", "bin", "mailbox")
 
 
@@ -24,11 +29,31 @@ class Control(Enum):
     NONE = "none"
 
 
+MPS_PER_UNIT = {"mph": 0.44704, "km/h": 1.0 / 3.6}
+
+
+class Speed(NamedTuple):
+    """A speed limit as signs show it; ``unit`` is "mph" or "km/h"."""
+
+    value: float
+    unit: str
+
+    @property
+    def mps(self) -> float:
+        """The limit in m/s."""
+        return self.value * MPS_PER_UNIT[self.unit]
+
+
+def slower(one: Speed, other: Speed) -> Speed:
+    """Return the lower of two limits, in its own unit."""
+    return min(one, other, key=lambda speed: speed.mps)
+
+
 class Street(NamedTuple):
     """One centre-line with what lies across it. ``width_m`` is between the kerbs.
 
     ``confidences``: which fact, how sure ("width_confidence", "estimated"). ``lanes_forward``: how many of the lanes
-    run along the points; None stands for half of them, the odd one too.
+    run along the points; None stands for half of them, the odd one too. ``cycle_lanes``: one of ``CYCLE_LANES``.
     """
 
     id: str
@@ -37,13 +62,15 @@ class Street(NamedTuple):
     street_class: str
     lanes: int
     width_m: float
-    speed_limit_mph: float
+    speed_limit: Speed
     oneway: bool
     parking: str
     sidewalk: str
     confidences: tuple[tuple[str, str], ...]
     lanes_forward: int | None = None
     speed_posted: bool = False  # whether signs show the limit
+    cycle_lanes: str = "none"
+    level: int = 0  # of a bridge 1 or more, of a tunnel -1 or less
 
 
 class Intersection(NamedTuple):
@@ -179,7 +206,8 @@ class Facts(NamedTuple):
     """All that a map is built from.
 
     ``turning_circles``: whether traffic can turn where a street leaves the map. ``street_name_signs``: how sure it is
-    that signs at junctions name the streets; empty where there are to be none.
+    that signs at junctions name the streets; empty where there are to be none. ``simplify_roundabouts``: whether a
+    roundabout without room for its island becomes a plain junction; else the build refuses it.
     """
 
     name: str
@@ -197,3 +225,4 @@ class Facts(NamedTuple):
     furniture: tuple[Furniture, ...] = ()
     railroads: tuple[Railroad, ...] = ()
     street_name_signs: str = ""
+    simplify_roundabouts: bool = False

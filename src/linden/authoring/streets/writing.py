@@ -17,6 +17,7 @@ from linden.authoring.streets.document import (
     Signal,
     SignalReference,
 )
+from linden.authoring.streets.street_facts import Speed
 
 
 def text(document: Document) -> bytes:
@@ -84,8 +85,9 @@ def _add_road(root: etree._Element, road: RoadRecord) -> None:
         if end is not None:
             contact = {} if end.contact is None else {"contactPoint": end.contact}
             _add(link, tag, elementType=end.element, elementId=end.id, **contact)
-    if road.speed_mph is not None:
-        _add(_add(element, "type", s=0, type="town"), "speed", max=_fixed(road.speed_mph, 3), unit="mph")
+    if road.speed is not None:  # the 1.4 schema has whole numbers here, and fractions at lanes
+        whole = max(1, round(road.speed.value))
+        _add(_add(element, "type", s=0, type="town"), "speed", max=whole, unit=road.speed.unit)
     _add_plan(element, road.path)
     profile = _add(element, "elevationProfile")
     for cubic in road.elevation:
@@ -134,16 +136,16 @@ def _add_lanes(parent: etree._Element, road: RoadRecord) -> None:
     if road.left:
         side = _add(section, "left")
         for lane in reversed(road.left):
-            _add_lane(side, lane, road.speed_mph)
+            _add_lane(side, lane, road.speed)
     centre = _add(_add(section, "center"), "lane", id=0, type="none", level="false")
     _add_mark(centre, road.centre)
     if road.right:
         side = _add(section, "right")
         for lane in road.right:
-            _add_lane(side, lane, road.speed_mph)
+            _add_lane(side, lane, road.speed)
 
 
-def _add_lane(parent: etree._Element, lane: LaneRecord, speed_mph: float | None) -> None:
+def _add_lane(parent: etree._Element, lane: LaneRecord, speed: Speed | None) -> None:
     element = _add(parent, "lane", id=lane.id, type=lane.kind, level="false")
     link = _add(element, "link")
     if lane.predecessor is not None:
@@ -153,8 +155,8 @@ def _add_lane(parent: etree._Element, lane: LaneRecord, speed_mph: float | None)
     for cubic in lane.widths:
         _add(element, "width", **_cubic(cubic, "sOffset"))
     _add_mark(element, lane.mark)
-    if lane.kind == "driving" and speed_mph is not None:  # SUMO's netconvert reads no speed of a road
-        _add(element, "speed", sOffset=0, max=_fixed(speed_mph, 3), unit="mph")
+    if lane.kind == "driving" and speed is not None:  # SUMO's netconvert reads no speed of a road
+        _add(element, "speed", sOffset=0, max=_fixed(speed.value, 3), unit=speed.unit)
     if lane.height_m:
         _add(element, "height", sOffset=0, inner=_metres(lane.height_m), outer=_metres(lane.height_m))
 

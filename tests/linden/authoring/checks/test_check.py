@@ -195,3 +195,12 @@ def test_lanes_that_do_not_name_each_other_are_found() -> None:
         2, 30.0, line(0, 30, 0, 0, 30), section(right=lane(-1)), link=touches("predecessor", "road", 1, "end")
     )
     assert [(finding.kind, finding.road_id) for finding in found(opendrive(first, second))] == [("lane link", 1)]
+
+
+@pytest.mark.parametrize(("percent", "count"), [(14.9, 0), (15.1, 1), (-40.0, 1)])
+def test_a_road_that_is_steeper_than_streets_are_is_found(percent: float, count: int) -> None:
+    steep = f'<elevationProfile><elevation s="0" a="3" b="{percent / 100}" c="0" d="0"/></elevationProfile>'
+    text = opendrive(road(1, 80.0, line(0, 0, 0, 0, 80), section(right=lane(-1)))).replace(
+        "<lanes", f"{steep}<lanes", 1
+    )
+    assert [one.kind for one in found(text)] == ["grade"] * count

@@ -73,3 +73,12 @@ def test_no_word_of_the_legend_lies_on_the_map() -> None:
     rows = [text for text in frame.iter("{*}text") if text.get("font-weight") is None and text.text != "N"]
     ends_m = [float(t.get("x", "")) + 0.6 * float(t.get("font-size", "")) * len(t.text or "") for t in rows]
     assert max(ends_m) < west_m
+
+
+def test_the_legend_names_buildings_and_railroads_where_the_map_has_them() -> None:
+    def legend(text: str) -> list[str | None]:
+        return [word.text for word in groups(text)["frame"].iterchildren("{*}text")]
+
+    assert not {"building", "railroad"} & set(legend(TEXT))
+    things = [STOP_LINE.replace('type="roadMark"', f'type="{kind}"') for kind in ("building", "railroadCrossing")]
+    assert {"building", "railroad"} <= set(legend(TEXT.replace(STOP_LINE, "".join(things))))

@@ -2,7 +2,16 @@
 
 import pytest
 
-from linden.authoring.openstreetmap.tags import TAGGED, carriageway, direction, is_street, limit_mph, metres
+from linden.authoring.openstreetmap.tags import (
+    TAGGED,
+    carriageway,
+    cycle_lanes,
+    direction,
+    is_street,
+    metres,
+    speed_limit,
+    unbuilt_cycleways,
+)
 
 
 def told(**tags: str) -> dict[str, str]:
@@ -31,12 +40,19 @@ def test_lanes(tags: dict[str, str], lanes: tuple[int, int], *, is_tagged: bool)
 
 
 @pytest.mark.parametrize(
-    ("text", "mph"),
-    [("25 mph", 25.0), ("50", 31.07), ("50 km/h", 31.07), ("walk", None), ("none", None), ("0", None), ("", None)],
+    ("text", "limit"),
+    [
+        ("25 mph", (25.0, "mph")),
+        ("50", (50.0, "km/h")),
+        ("50 km/h", (50.0, "km/h")),
+        ("walk", None),
+        ("none", None),
+        ("0", None),
+        ("", None),
+    ],
 )
-def test_limits(text: str, mph: float | None) -> None:
-    found = limit_mph(text)
-    assert found is None if mph is None else found == pytest.approx(mph, abs=0.005)
+def test_a_limit_keeps_the_unit_of_its_tag(text: str, limit: tuple[float, str] | None) -> None:
+    assert speed_limit(text) == limit
 
 
 @pytest.mark.parametrize(
@@ -89,5 +105,28 @@ def test_a_width_that_has_no_room_for_the_lanes_is_not_taken() -> None:
 
 
 def test_guessed_limits_have_the_unit_of_the_extract() -> None:
-    assert carriageway(told(), metric=False).speed_mph == 25.0
-    assert carriageway(told(), metric=True).speed_mph == pytest.approx(50 / 1.609344, abs=1e-4)
+    assert carriageway(told(), metric=False).speed == (25.0, "mph")
+    assert carriageway(told(), metric=True).speed == (50.0, "km/h")
+
+
+@pytest.mark.parametrize(
+    ("tags", "sides", "unbuilt"),
+    [
+        (told(), (False, False), 0),
+        (told(cycleway="lane"), (True, True), 0),
+        (told(cycleway__right="lane"), (False, True), 0),
+        (told(cycleway__both="track"), (False, False), 2),
+        (told(cycleway="lane", oneway="yes"), (False, True), 0),
+        (told(cycleway="opposite_lane", oneway="yes"), (False, False), 1),
+        (told(cycleway__left="lane", oneway="yes"), (False, False), 1),
+    ],
+)
+def test_cycle_lanes(tags: dict[str, str], sides: tuple[bool, bool], unbuilt: int) -> None:
+    assert cycle_lanes(tags) == sides
+    assert unbuilt_cycleways(tags) == unbuilt
+
+
+def test_a_width_that_cannot_be_is_guessed_instead() -> None:
+    found = carriageway(told(width="1000000000"), metric=True)
+    assert found.width_m == pytest.approx(6.1)
+    assert dict(found.sources)["width_confidence"] == "guessed: lanes of 3.05 m, width=1000000000 cannot be"

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from linden.authoring.streets.cross_section import of_street
 from linden.authoring.streets.geojson import read
 from linden.authoring.streets.street_facts import Control
 from linden.errors import UserError
@@ -105,3 +106,33 @@ def test_a_shuttle_stop_on_an_unknown_street_is_refused(sketch: Any) -> None:
     stop = sketch.point("shuttle_stop", "S9", (0.0, 0.0), street_id="nowhere")
     with pytest.raises(UserError, match="shuttle_stop S9: no street has the id 'nowhere'"):
         read(sketch.collection([*sketch.crossing(), stop]))
+
+
+def test_a_limit_is_given_in_one_unit(sketch: Any) -> None:
+    one = sketch.street("a", (0.0, 0.0), (100.0, 0.0), speed_limit_mph=None, speed_limit_kmh=30)
+    assert read(sketch.collection([one])).streets[0].speed_limit == (30.0, "km/h")
+    with pytest.raises(UserError, match="street a: it has speed_limit_mph and speed_limit_kmh; keep the one"):
+        read(sketch.collection([sketch.street("a", (0.0, 0.0), (100.0, 0.0), speed_limit_kmh=30)]))
+
+
+def test_a_width_beyond_all_streets_is_named(sketch: Any) -> None:
+    with pytest.raises(UserError, match="street a: `width_m` is 1e\\+09; a street has at most 100 m between kerbs"):
+        read(sketch.collection([sketch.street("a", (0.0, 0.0), (100.0, 0.0), width_m=1e9)]))
+
+
+def test_streets_of_two_continents_are_refused(sketch: Any) -> None:
+    far = sketch.street("b", (0.0, 0.0), (100.0, 0.0))
+    far["geometry"]["coordinates"] = [[13.4, 52.5], [13.41, 52.5]]
+    with pytest.raises(UserError, match=r"the streets a and b lie .* apart; a map has at most 50 km"):
+        read(sketch.collection([sketch.street("a", (0.0, 0.0), (100.0, 0.0)), far]))
+
+
+def test_cycle_lanes_run_between_traffic_and_what_is_parked(sketch: Any) -> None:
+    one = sketch.street("a", (0.0, 0.0), (100.0, 0.0), width_m=14.0, cycle_lanes="both")
+    section = of_street(read(sketch.collection([one])).streets[0])
+    assert [lane.kind for lane in section.right[:3]] == ["driving", "biking", "parking"]
+    assert [lane.kind for lane in section.left[:3]] == ["driving", "biking", "parking"]
+    assert section.paved_m(section.left) + section.paved_m(section.right) == pytest.approx(14.0)
+    narrow = sketch.street("a", (0.0, 0.0), (100.0, 0.0), width_m=6.0, cycle_lanes="both")
+    with pytest.raises(UserError, match=r"2 lanes and cycle lanes of 1\.5 m do not fit between kerbs 6\.0 m apart"):
+        read(sketch.collection([narrow]))

@@ -84,7 +84,7 @@ def test_limits_stand_where_streets_with_sourced_limits_begin(linden_built: Buil
     signs = [(road, s) for road in linden_built.document.roads for s in road.signals if s.kind == "274"]
     assert {(sign.value, sign.unit) for _, sign in signs} == {(25.0, "mph"), (35.0, "mph")}
     for road, sign in signs:
-        assert sign.value == road.speed_mph
+        assert (sign.value, sign.unit) == road.speed
         assert "one source" in sign.confidence
         before_m = sign.s_m if sign.lanes[0] < 0 else sum(piece.length_m for piece in road.path) - sign.s_m
         assert before_m == pytest.approx(25.0)

@@ -12,7 +12,8 @@ from linden.authoring.streets.document import value
 from linden.authoring.streets.geojson import read
 from linden.authoring.streets.junctions import Turn
 from linden.authoring.streets.network import ROUNDABOUT_SETBACK_M, build
-from linden.authoring.streets.roundabouts import BEND_RADIUS_M, ISLAND_RADIUS_M, LANE_M, RING_RADIUS_M, turns
+from linden.authoring.streets.rings import BEND_RADIUS_M, ISLAND_RADIUS_M, LANE_M, LANE_RADII_M
+from linden.authoring.streets.roundabouts import turns
 from linden.errors import UserError
 
 
@@ -49,15 +50,15 @@ def test_the_ways_are_smooth_and_wide_enough_to_be_driven(ways: tuple[Turn, ...]
             end = along(piece, piece.length_m)
             assert math.dist(end[:2], after.start[:2]) < 1e-6
             assert abs(wrapped(end.heading_rad - after.start.heading_rad)) < 1e-6
-        assert max(abs(piece.curvature_per_m) for piece in turn.path) <= 1 / min(RING_RADIUS_M, BEND_RADIUS_M) + 1e-9
+        assert max(abs(piece.curvature_per_m) for piece in turn.path) <= 1 / min(LANE_RADII_M[1], BEND_RADIUS_M) + 1e-9
 
 
 def test_ways_that_share_the_ring_share_its_lane(ways: tuple[Turn, ...]) -> None:
-    ring = pytest.approx(1 / RING_RADIUS_M)
+    ring = pytest.approx(1 / LANE_RADII_M[1])
     found = [(turn, piece) for turn in ways for piece in turn.path if piece.curvature_per_m == ring]
     assert len(found) >= 8  # right turns may pass outside
     for turn, piece in found:
-        assert math.hypot(*piece.start[:2]) == pytest.approx(RING_RADIUS_M, abs=1e-6)
+        assert math.hypot(*piece.start[:2]) == pytest.approx(LANE_RADII_M[1], abs=1e-6)
         before_m = length(turn.path[: turn.path.index(piece)])
         assert value(turn.widths, before_m) == pytest.approx(LANE_M)
 
