@@ -9,8 +9,8 @@ import importlib
 import itertools
 import os
 import signal
-from collections.abc import Callable, Generator
-from contextlib import ExitStack, suppress
+from collections.abc import Callable, Generator, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 
 import coverage
@@ -124,7 +124,9 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
     Of the examples of hypothesis the first ones are measured: the others take the same lines.
     """
     with measured(item.nodeid), ExitStack() as stack:
-        if not item.get_closest_marker("measured_processes"):
+        if item.get_closest_marker("measured_processes"):
+            stack.enter_context(writable_coverage())
+        else:
             stack.enter_context(untraced_processes())
         if item.get_closest_marker("slow"):
             stack.enter_context(untraced())
@@ -134,6 +136,21 @@ def pytest_runtest_protocol(item: pytest.Item) -> Generator[None, object, object
             stack.callback(setattr, random, "inner_test", random.inner_test)
             random.inner_test = traced_first(random.inner_test, stack)
         return (yield)
+
+
+@contextmanager
+def writable_coverage() -> Iterator[None]:
+    """Let agents' processes write where coverage keeps its files: they are confined to folders of their own."""
+    if coverage.Coverage.current() is None:
+        yield
+        return
+    from basu.agents.process import agent_process  # noqa: PLC0415 - most tests start no agent
+
+    before, agent_process.ALSO_WRITABLE = agent_process.ALSO_WRITABLE, (str(Path.cwd()),)
+    try:
+        yield
+    finally:
+        agent_process.ALSO_WRITABLE = before
 
 
 def traced_first(test: Callable[..., object], stack: ExitStack) -> Callable[..., object]:
