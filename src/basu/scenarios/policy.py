@@ -15,7 +15,9 @@ A near miss is one of these, with any actor in the record:
 
 Which of these sources could be read, and which are quoted from memory: `docs/decisions/0054-verdicts.md`.
 
-Frames count in which the ego moved faster than 0.5 m/s. An actor that comes near a standing ego has done so alone.
+Frames count in which the ego moved faster than 0.5 m/s. With a walker, a cyclist, or any actor that itself moves
+faster than 0.5 m/s, frames count in which the ego was not at rest (0.1 m/s): to creep up to a standing vehicle is no
+danger, to creep past a child is. An actor that comes near an ego at rest has done so alone.
 """
 
 from __future__ import annotations
@@ -27,6 +29,7 @@ import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
+from basu.metrics.path_following import AT_REST_MPS
 from basu.outcome import Fault
 from basu.scenarios.continuations import MOVING_MPS
 from basu.scenarios.criteria.contact import NoCollision
@@ -41,12 +44,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.outcome import Outcome
+    from basu.records.history import History
     from basu.scenarios.criteria.criterion import Judgement, Played
     from basu.scenarios.criteria.margin import Present
 
 NEAR_TTC_S = 1.0
 NEAR_PET_S = 1.0
 NEAR_M = 0.45
+UNPROTECTED = ("walker.", "vehicle.bh.crossbike", "vehicle.diamondback.century", "vehicle.gazelle.omafiets")
+"""Blueprints of people that no body shell protects: walkers and CARLA's bicycles."""
 
 
 class Assessment(NamedTuple):
@@ -141,10 +147,20 @@ def most_serious(pairs: Sequence[tuple[Criterion, Judgement]]) -> Judgement | No
     return pairs[min(failed)[2]][1] if failed else None
 
 
+def _counting(history: History, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """(M,) which rows of the others count as near, for the ego's speed in ``ticks`` (M,) and the other's own."""
+    others = history.others
+    exposed = [key for key, kind in history.facts.actor_types.items() if kind.startswith(UNPROTECTED)]
+    theirs_mps = np.hypot(others["velocity_x_mps"], others["velocity_y_mps"])
+    careful = np.isin(others["id"], exposed) | (theirs_mps > MOVING_MPS)
+    counts: NDArray[np.bool_] = history.speed_mps()[ticks] > np.where(careful, AT_REST_MPS, MOVING_MPS)
+    return counts
+
+
 def _moving_rows(present: Present) -> NDArray[np.int64]:
-    """Rows of the others in frames in which the ego moves."""
+    """Rows of the others in frames that count."""
     history = present.history
-    return np.flatnonzero(history.speed_mps()[history.others["tick"]] > MOVING_MPS)
+    return np.flatnonzero(_counting(history, history.others["tick"].astype(np.int64)))
 
 
 def _ttc(present: Present) -> NearMiss | None:
@@ -157,11 +173,11 @@ def _ttc(present: Present) -> NearMiss | None:
 
 
 def _pet(present: Present) -> NearMiss | None:
-    """The least post-encroachment time, where it is below its limit and the ego moved when the second one came."""
+    """The least post-encroachment time, where it is below its limit and the frame counts in which the second came."""
     history = present.history
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
     found_s, later = post_encroachment_s(history, own, others, NEAR_PET_S)
-    rows = np.flatnonzero((later >= 0) & (history.speed_mps()[np.maximum(later, 0)] > MOVING_MPS))
+    rows = np.flatnonzero((later >= 0) & _counting(history, np.maximum(later, 0)))
     words = "and the ego took the same place {:.2f} s apart"
     return _least(present, rows, found_s[rows], later[rows], (NEAR_PET_S, "s", words))
 
