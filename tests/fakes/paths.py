@@ -1,4 +1,4 @@
-"""Records of drives along any path, as the benchmark would have made them: progress by its own search, lanes by formula."""
+"""Records of drives along any path: progress by the benchmark's own search, lanes by formula."""
 
 import math
 from collections.abc import Sequence

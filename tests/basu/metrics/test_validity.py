@@ -24,6 +24,7 @@ from fakes.played import played
 
 LENGTH_M = 200.0
 LEFT_M = -3.5  # the middle of the oncoming lane
+FAR_LEFT_M = -4.2  # in the oncoming lane, left of its middle
 STOP = Stop(id="A", name="A", s_m=100.0, x_m=100.0, y_m=0.0, z_m=0.0, yaw_rad=0.0)
 BLOCK = route_along([(0, 0), (30, 0), (30, 35), (50, 35), (50, 0), (130, 0)])
 
@@ -98,7 +99,7 @@ def test_the_end_of_a_drive_with_a_jump_says_what_was_left_out() -> None:
 
 def test_an_opposite_lane_at_each_line_is_no_way_round_the_stop_signs() -> None:
     route = straight_route(controls=(stop_sign(60.0), stop_sign(140.0, "8")))
-    way = [*beside(45.0, 75.0, LEFT_M)[:-1], *beside(125.0, 155.0, LEFT_M)[1:]]
+    way = [*beside(45.0, 75.0, FAR_LEFT_M)[:-1], *beside(125.0, 155.0, FAR_LEFT_M)[1:]]
     history = along(route, way)
     assert len(stop_signs(history)) == 2
     result = judge(Outcome(Status.COMPLETED, "arrived"), history)
