@@ -27,10 +27,10 @@ class RoutesManager(BaseManager):
     """Follows the vehicle along the route and says when the run is over.
 
     Attributes:
-        progress: the place along the route, wherever the vehicle is.
-        lane: the lane under the vehicle.
-        valid: the valid progress, and whether the latest frame counts.
-        outcome: the end of the run; None while it goes on.
+        progress: The place along the route, wherever the vehicle is.
+        lane: The lane under the vehicle.
+        valid: The valid progress. Its check says whether the latest frame counts.
+        outcome: The end of the run. None while it goes on.
     """
 
     valid: Follower

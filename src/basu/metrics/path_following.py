@@ -91,8 +91,8 @@ def path_following(history: History) -> PathFollowing:
 def compared(driven_m: float, valid_m: float, planned_m: float) -> PathFollowing:
     """Equation 5.3, which assumes that both paths follow the route to its end.
 
-    Where more of the route was not validly driven than a vehicle may leave at the end, that does not hold, and driving
-    in circles or beside the route would add length; then no more than the valid progress along the plan counts.
+    If more of the route was not validly driven than a vehicle may leave at the end, that does not hold. Then no more
+    than the valid progress along the plan counts: driving in circles or beside the route would add length.
     """
     counted_m = driven_m if planned_m - valid_m <= PARKED_M else min(driven_m, valid_m)
     return PathFollowing(driven_m, valid_m, planned_m, min(1.0, counted_m / planned_m))

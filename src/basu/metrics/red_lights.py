@@ -6,8 +6,8 @@ of half its length behind its middle to 1 m behind its bumper. So a vehicle that
 yellow and has its tail on the line when it turns red has run it; one that stops beyond the line with its tail still
 before it has not. The record also states what the light showed when the front crossed.
 
-The line of a light on the route is crossed in whichever lane the vehicle is. Off the planned lane, leaving the zone of
-another light forwards while it is red has run that light: the simulator says under which light a vehicle stands.
+The line of a light on the route is crossed in whichever lane the vehicle is. Off the planned lane, a vehicle also runs
+another light: it leaves its zone forwards on red. The simulator says under which light a vehicle stands.
 """
 
 from __future__ import annotations

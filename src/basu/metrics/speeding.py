@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of driving
 SHARE_M = 2.23 * 15.0
-"""Way gained on the limit, the excess summed over time, that one infraction stands for. nuPlan's speed limit compliance
-is 0 where the excess is 2.23 m/s (5 mph) in the mean of a scenario of 15 s (``speed_limit_compliance.py``)."""
+"""Way gained on the limit that one infraction stands for, the excess summed over time.
+
+nuPlan's speed limit compliance is 0 for an excess of 2.23 m/s (5 mph) in the mean of a scenario of 15 s."""
 
 
 @dataclass(slots=True)

@@ -2,8 +2,8 @@
 
 A frame counts where three conditions hold:
 
-- Place: the vehicle's origin is at most `BEYOND_M` beyond the edge of the planned lane, or it is in another lane of the
-  planned road in the planned direction, such as a parking lane.
+- Place: the vehicle's origin is at most `BEYOND_M` beyond the edge of the planned lane. Another lane of the planned road
+  in the planned direction will do, such as a parking lane.
 - Direction: the vehicle neither points nor moves against the route.
 - Progress: the place along the route did not jump ahead of the way that the vehicle moved.
 
@@ -42,8 +42,9 @@ PASSING_M = 50.0
 of W S²/60 for a shift of 12 ft at 25 mph) beside a city bus of 12.2 m (AASHTO 2011, table 2-1b). As much way in the own
 lane earns it anew. BASU's own drivers need up to 26 m in the shipped cases."""
 SLIP_M = 5.0
-"""Way off the lane and off the road that is forgiven, and lead of the progress over the vehicle: the place along the
-route is that of the nearest point, which leaps by up to a lane's width where a route changes lanes or bends sharply."""
+"""Way off the lane and off the road that is forgiven. The progress may also lead the vehicle by so much.
+
+The nearest point of the route leaps by a lane's width where a route changes lanes or bends sharply."""
 NEAR_POINTS = (
     5  # points of the route, a metre apart, to both sides: a planned road's end need not be the lane's to the metre
 )
@@ -115,10 +116,8 @@ class Gap(NamedTuple):
 class Follower:
     """The valid progress of a vehicle along its route; ``step`` takes one frame after the other.
 
-    Attributes:
-        check: of the latest frame.
-        reached_m: the farthest place along the route in a frame that counts.
-        gaps: pieces before that place that were not driven.
+    ``check`` is that of the latest frame. ``reached_m`` is the farthest place along the route in a frame that counts,
+    and ``gaps`` are the pieces before it that were not driven.
     """
 
     def __init__(self, route: Route) -> None:

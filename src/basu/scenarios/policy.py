@@ -15,9 +15,10 @@ A near miss is one of these, with any actor in the record:
 
 Which of these sources could be read, and which are quoted from memory: `docs/decisions/0054-verdicts.md`.
 
-Frames count in which the ego moved faster than 0.5 m/s. With a walker, a cyclist, or any actor that itself moves
-faster than 0.5 m/s, frames count in which the ego was not at rest (0.1 m/s): to creep up to a standing vehicle is no
-danger, to creep past a child is. An actor that comes near an ego at rest has done so alone.
+Frames count in which the ego moved faster than 0.5 m/s. The clearance also counts at a creep, from 0.1 m/s on. Then the
+other must be a walker, a cyclist, or itself faster than 0.5 m/s. To creep up to a standing vehicle is no danger, to
+creep past a child is. The times do not count at a creep: they are then of the other's making. An actor that comes near
+an ego at rest has done so alone.
 """
 
 from __future__ import annotations
@@ -147,20 +148,19 @@ def most_serious(pairs: Sequence[tuple[Criterion, Judgement]]) -> Judgement | No
     return pairs[min(failed)[2]][1] if failed else None
 
 
-def _counting(history: History, ticks: NDArray[np.int64]) -> NDArray[np.bool_]:
-    """(M,) which rows of the others count as near, for the ego's speed in ``ticks`` (M,) and the other's own."""
+def _moving_rows(present: Present) -> NDArray[np.int64]:
+    """Rows of the others in frames in which the ego moves."""
+    history = present.history
+    return np.flatnonzero(history.speed_mps()[history.others["tick"]] > MOVING_MPS)
+
+
+def passing_rows(history: History) -> NDArray[np.int64]:
+    """Rows of the others in frames in which the ego moves, or creeps near an actor that a creep endangers."""
     others = history.others
     exposed = [key for key, kind in history.facts.actor_types.items() if kind.startswith(UNPROTECTED)]
     theirs_mps = np.hypot(others["velocity_x_mps"], others["velocity_y_mps"])
-    careful = np.isin(others["id"], exposed) | (theirs_mps > MOVING_MPS)
-    counts: NDArray[np.bool_] = history.speed_mps()[ticks] > np.where(careful, AT_REST_MPS, MOVING_MPS)
-    return counts
-
-
-def _moving_rows(present: Present) -> NDArray[np.int64]:
-    """Rows of the others in frames that count."""
-    history = present.history
-    return np.flatnonzero(_counting(history, history.others["tick"].astype(np.int64)))
+    endangered = np.isin(others["id"], exposed) | (theirs_mps > MOVING_MPS)
+    return np.flatnonzero(history.speed_mps()[others["tick"]] > np.where(endangered, AT_REST_MPS, MOVING_MPS))
 
 
 def _ttc(present: Present) -> NearMiss | None:
@@ -173,18 +173,18 @@ def _ttc(present: Present) -> NearMiss | None:
 
 
 def _pet(present: Present) -> NearMiss | None:
-    """The least post-encroachment time, where it is below its limit and the frame counts in which the second came."""
+    """The least post-encroachment time, where it is below its limit and the ego moved when the second one came."""
     history = present.history
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
     found_s, later = post_encroachment_s(history, own, others, NEAR_PET_S)
-    rows = np.flatnonzero((later >= 0) & _counting(history, np.maximum(later, 0)))
+    rows = np.flatnonzero((later >= 0) & (history.speed_mps()[np.maximum(later, 0)] > MOVING_MPS))
     words = "and the ego took the same place {:.2f} s apart"
     return _least(present, rows, found_s[rows], later[rows], (NEAR_PET_S, "s", words))
 
 
 def _clearance(present: Present) -> NearMiss | None:
     """The least distance between boxes, where it is below its limit."""
-    history, rows = present.history, _moving_rows(present)
+    history, rows = present.history, passing_rows(present.history)
     others = history.others[rows]
     own = own_boxes(history.facts, history.frames)[others["tick"]]
     ticks = others["tick"].astype(np.int64)
