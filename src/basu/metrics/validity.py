@@ -2,8 +2,8 @@
 
 A frame counts where three conditions hold:
 
-- Place: the vehicle's origin is at most `BEYOND_M` beyond the edge of the planned lane. Another lane of the planned road
-  in the planned direction will do, such as a parking lane.
+- Place: the vehicle's origin is at most `BEYOND_M` beyond the edge of the planned lane. Another lane of the planned
+  road in the planned direction will do, such as a parking lane.
 - Direction: the vehicle neither points nor moves against the route.
 - Progress: the place along the route did not jump ahead of the way that the vehicle moved.
 
@@ -116,8 +116,8 @@ class Gap(NamedTuple):
 class Follower:
     """The valid progress of a vehicle along its route; ``step`` takes one frame after the other.
 
-    ``check`` is that of the latest frame. ``reached_m`` is the farthest place along the route in a frame that counts,
-    and ``gaps`` are the pieces before it that were not driven.
+    ``check`` is that of the latest frame. ``reached_m`` is the farthest place along the route in a frame that counts.
+    ``gaps`` are the pieces before it that were not driven.
     """
 
     def __init__(self, route: Route) -> None:
