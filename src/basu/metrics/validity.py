@@ -116,8 +116,8 @@ class Gap(NamedTuple):
 class Follower:
     """The valid progress of a vehicle along its route; ``step`` takes one frame after the other.
 
-    ``check`` is that of the latest frame. ``reached_m`` is the farthest place along the route in a frame that counts.
-    ``gaps`` are the pieces before it that were not driven.
+    The ``check`` is that of the latest frame. The place ``reached_m`` is the farthest one in a frame that counts. The
+    ``gaps`` are the pieces of the route before it that were not driven.
     """
 
     def __init__(self, route: Route) -> None:
