@@ -1,4 +1,4 @@
-"""What SUMO's road users do that a passenger's verdict must not meet: vanish, stand on crosswalks, overlap, jump, brake.
+"""What SUMO's road users do amiss: vanish in sight, stand on crosswalks, overlap, jump aside, brake hard.
 
     python benchmarks/sumo_conduct.py --folder net/ [--run RUN] [--random N] [--minutes M] [--seed S]
 
@@ -60,10 +60,16 @@ class Map:
         self.outlines = [Polygon(shapes[0][:, :2]) for shapes in found]
         self.crosswalks = STRtree(self.outlines)
         net = read_net(next(folder.glob("*.net.xml")))
-        dead = {node for node, kind in net.node_types.items() if kind == "dead_end"}
+        neighbours = defaultdict(set)
+        for edge in net.car_edges():
+            neighbours[edge.start].add(edge.end)
+            neighbours[edge.end].add(edge.start)
+        dead = {node for node, others in neighbours.items() if len(others) == 1}
         x_m, y_m = net.offset_m
         lanes = [(edge, lane) for edge in net.car_edges() for lane in edge.car_lanes]
-        ends = [lane.shape[at] for edge, lane in lanes for node, at in ((edge.start, 0), (edge.end, -1)) if node in dead]
+        ends = [
+            lane.shape[at] for edge, lane in lanes for node, at in ((edge.start, 0), (edge.end, -1)) if node in dead
+        ]
         self.ends_m = np.array([(end[0] - x_m, y_m - end[1]) for end in ends]).reshape(-1, 2)
 
     def is_end(self, at_m: tuple[float, float]) -> bool:
@@ -225,7 +231,10 @@ class _World:
         half_m = self.library.facts[SHUTTLE.removeprefix("vehicle.")]["half_m"]
         extent = carla.Vector3D(*half_m)
         self._shuttle = SimpleNamespace(
-            id=SHUTTLE_ID, type_id=SHUTTLE, attributes={"role_name": "hero"}, bounding_box=SimpleNamespace(extent=extent)
+            id=SHUTTLE_ID,
+            type_id=SHUTTLE,
+            attributes={"role_name": "hero"},
+            bounding_box=SimpleNamespace(extent=extent),
         )
 
     def get_blueprint_library(self) -> _Library:
@@ -264,14 +273,16 @@ def drive(folder: Path, the_map: Map, track: np.ndarray, options: argparse.Names
     bridge = Bridge(link, None, world, None, lights="none")
     bridge.display = shown = _Shown(actors={}, users={}, waiting={}, shown=0)
     if options.random is not None:
-        bridge.before_step = RandomTrips(link, options.random, options.seed).fill
+        bridge.before_step = RandomTrips(link, options.random, options.seed, bridge.viewers_m).fill
     sizes = {f"vehicle.{name}": (2 * fact["half_m"][0], 2 * fact["half_m"][1])
              for name, fact in world.library.facts.items()}  # fmt: skip
     watch = Watch(the_map, sizes)
     for tick in range(round(options.minutes * 60.0 / STEP_S)):
         world.tick = tick
         bridge.step(world)
-        parked = {name for name in shown.users if not name.startswith("person ") and link.api.vehicle.isStoppedParking(name)}
+        parked = {
+            name for name in shown.users if not name.startswith("person ") and link.api.vehicle.isStoppedParking(name)
+        }
         at = track[min(tick, len(track) - 1)]
         watch.see(shown.users, (float(at[0]), float(at[1])), link, parked)
     bridge.close()
@@ -307,7 +318,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=7)
     parser.add_argument("--verbose", action="store_true")
     options = parser.parse_args()
-    table = pq.read_table(options.run / "history.parquet", columns=["x_m", "y_m", "z_m", "yaw_rad"]) if options.run else None
+    table = (
+        pq.read_table(options.run / "history.parquet", columns=["x_m", "y_m", "z_m", "yaw_rad"])
+        if options.run
+        else None
+    )
     track = np.full((1, 4), 1e5) if table is None else np.column_stack([column.to_numpy() for column in table.columns])
     the_map = Map(options.folder)
     ways = (False, True) if options.run else (False,)
@@ -325,7 +340,13 @@ def main() -> None:
     for said, values in rows:
         print(f"{said:62}" + "".join(f"{value:>10}" for value in values))
     for watch in watches if options.verbose else ():
-        print(*(f"braking at {t:.2f} s: {name}, {more:.1f} m/s2 beyond its type, {away:.0f} m" for t, name, more, away in watch.brakings), sep="\n")
+        print(
+            *(
+                f"braking at {t:.2f} s: {name}, {more:.1f} m/s2 beyond its type, {away:.0f} m"
+                for t, name, more, away in watch.brakings
+            ),
+            sep="\n",
+        )
         print({key: value for key, value in watch.counts.items() if key.startswith("crosswalk ")})
 
 

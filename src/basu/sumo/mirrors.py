@@ -35,6 +35,7 @@ class Mirrors:
         self._walkers: set[int] = set()
         self._beginning: str | None = None  # of people: an edge that they may use
         self._has_looked = False
+        self.places_m: tuple[tuple[float, float], ...] = ()  # of the vehicles, after the last move
         self.known: set[int] = set()  # actors that were looked at, or that a bridge has spawned
 
     @property
@@ -57,13 +58,16 @@ class Mirrors:
                 if is_road_user and actor.attributes.get("role_name") != ROLE:
                     self._add(actor)
         self._remove(ids)
-        vehicle = self._link.api.vehicle
+        vehicle, places_m = self._link.api.vehicle, []
         for actor_id, half_m in self._half_m.items():
             pose = snapshot.find(actor_id).get_transform()
             at = to_sumo(pose.location.x, pose.location.y, pose.rotation.yaw, half_m, self._link.offset_m)
             vehicle.moveToXY(_name(actor_id), "", -1, *at, keepRoute=EXACT)
             if actor_id in self._walkers:
                 self._move_person(_name(actor_id), *at)
+            else:
+                places_m.append((float(pose.location.x), float(pose.location.y)))
+        self.places_m = tuple(places_m)
 
     def _move_person(self, name: str, x_m: float, y_m: float, angle_deg: float) -> None:
         """Move a person; SUMO refuses a place far from any lane for people, and the person stays where it was."""

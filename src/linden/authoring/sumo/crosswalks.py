@@ -1,9 +1,10 @@
 """Marked crosswalks at junctions: their streets end at the stop line, and people cross on the marking alone.
 
-OpenDRIVE's roads end behind a crosswalk, and netconvert makes a lane of a whole road. So SUMO's drivers would stop on the
-crosswalk, and netconvert's own crossings lie beside it, inside the junction.
+OpenDRIVE's roads end behind a crosswalk, and netconvert makes a lane of a whole road. So SUMO's drivers would stop on
+the crosswalk, and netconvert's own crossings lie beside it, inside the junction.
 """
 
+import itertools
 import math
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
@@ -60,7 +61,7 @@ def _leg(net: Net, edge: NetEdge, shape: Sequence[Place]) -> Leg | None:
     lane = edge.car_lanes[-1]
     if net.node_types[edge.end] == "dead_end":
         return None
-    line_m = sum(math.dist(first[:2], second[:2]) for first, second in zip(lane.shape, lane.shape[1:], strict=False))
+    line_m = sum(math.dist(first[:2], second[:2]) for first, second in itertools.pairwise(lane.shape))
     at_m = [along(lane, *corner)[1] for corner in shape]
     cut_m = line_m - min(at_m) + LINE_M
     if cut_m - LINE_M > AT_JUNCTION_M or lane.length_m - cut_m < SHORTEST_M:
@@ -108,7 +109,7 @@ def end_at_lines(root: "etree._Element", legs: Iterable[Leg]) -> None:
 def _without_begin(points: list[tuple[float, ...]], cut_m: float) -> list[tuple[float, ...]]:
     """Return a line without its first metres."""
     rest_m = cut_m
-    for number, (first, second) in enumerate(zip(points, points[1:], strict=False)):
+    for number, (first, second) in enumerate(itertools.pairwise(points)):
         length_m = math.dist(first[:2], second[:2])
         if length_m > rest_m:
             share = rest_m / length_m
