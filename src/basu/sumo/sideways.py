@@ -16,8 +16,7 @@ ALONG_M = 5.0  # ahead in one step, likewise
 TURNED_DEG = 15.0  # in one step: a vehicle that turns has moved along a curve
 STANDING_MPS = 1.0  # aside, of a vehicle that stands: 3 m to a parking space take 3 s
 STEEPEST, FASTEST_MPS = 0.35, 1.2
-"""Aside for each metre ahead, as at the kerb, and at most: a change of lanes of 3.3 m takes 2.8 s, within the 2.3 to 6 s
-that Toledo and Zohar, "Modeling Duration of Lane Changes" (2007), observed."""
+"""Aside for each metre ahead, as at the kerb, and at most: a change of lanes of 3.3 m takes 2.8 s; estimates."""
 TURN_DEG_S = 30.0  # of the nose towards the way that is shown
 
 
