@@ -60,15 +60,13 @@ class Map:
         self.outlines = [Polygon(shapes[0][:, :2]) for shapes in found]
         self.crosswalks = STRtree(self.outlines)
         net = read_net(next(folder.glob("*.net.xml")))
-        neighbours = defaultdict(set)
-        for edge in net.car_edges():
-            neighbours[edge.start].add(edge.end)
-            neighbours[edge.end].add(edge.start)
-        dead = {node for node, others in neighbours.items() if len(others) == 1}
         x_m, y_m = net.offset_m
         lanes = [(edge, lane) for edge in net.car_edges() for lane in edge.car_lanes]
         ends = [
-            lane.shape[at] for edge, lane in lanes for node, at in ((edge.start, 0), (edge.end, -1)) if node in dead
+            lane.shape[at]
+            for edge, lane in lanes
+            for node, at in ((edge.start, 0), (edge.end, -1))
+            if node in net.outer
         ]
         self.ends_m = np.array([(end[0] - x_m, y_m - end[1]) for end in ends]).reshape(-1, 2)
 
@@ -236,6 +234,11 @@ class _World:
             attributes={"role_name": "hero"},
             bounding_box=SimpleNamespace(extent=extent),
         )
+
+    @property
+    def timestamp(self) -> Any:  # noqa: ANN401
+        """Return the snapshot's time."""
+        return SimpleNamespace(elapsed_seconds=self.tick * STEP_S)
 
     def get_blueprint_library(self) -> _Library:
         return self.library

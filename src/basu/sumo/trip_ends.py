@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 SIGHT_M = 150.0  # no trip ends so near to a vehicle of the simulator: the range of the longest sensors of road vehicles
 LAST_EDGES = 2  # of a route: a vehicle on one of them is near its end
 LOOK_STEPS = 10  # between two looks at who is near its end
+THERE_AND_BACK = 2  # edges of one street: where no other ends, the network ends
 ATTEMPTS = 50  # destinations drawn for a vehicle until a route leads there
 
 
@@ -39,11 +40,11 @@ class Streets:
             ends = {edge: (api.edge.getFromJunction(edge), api.edge.getToJunction(edge)) for edge in self.edges}
         if not self.edges:
             raise UserError("SUMO's network has no street for cars; make one with `linden map sumo`")
-        neighbours: dict[str, set[str]] = defaultdict(set)
+        ways: dict[str, list[str]] = defaultdict(list)
         for start, end in ends.values():
-            neighbours[start].add(end)
-            neighbours[end].add(start)
-        outer = {node for node, others in neighbours.items() if len(others) == 1}
+            ways[start].append(end)
+            ways[end].append(start)
+        outer = {node for node, others in ways.items() if len(set(others)) == 1 and len(others) <= THERE_AND_BACK}
         self.exits = {edge for edge in self.edges if ends[edge][1] in outer}
 
     def beginning_m(self, edge: str) -> tuple[float, float]:

@@ -20,6 +20,7 @@ LINE_M = 1.8  # from a crosswalk to where vehicles stop: MUTCD 3B.16 asks for 4 
 SHORTEST_M = 5.0  # of a street between two crosswalks; one that would be shorter keeps its ends
 
 Place = tuple[float, float]
+Point = tuple[float, float, float]
 
 
 class Leg(NamedTuple):
@@ -29,7 +30,7 @@ class Leg(NamedTuple):
     coming: str  # the edge into the junction
     going: str | None  # the edge out of it
     cut_m: float  # from the stop line to the end of the street
-    ends_m: tuple[Place, Place]  # of the crosswalk, from left to right for traffic into the junction
+    ends_m: tuple[Point, Point]  # of the crosswalk, from left to right for traffic into the junction
     width_m: float
 
 
@@ -69,12 +70,16 @@ def _leg(net: Net, edge: NetEdge, shape: Sequence[Place]) -> Leg | None:
     back = (each for each in net.car_edges() if each.start == edge.end and each.end == edge.start)
     going = next((each.id for each in back if _roads_of(each) & _roads_of(edge)), None)
     (x0_m, y0_m), (x1_m, y1_m) = lane.shape[-2][:2], lane.shape[-1][:2]
-    ends_m, width_m = _axis(shape, ((x1_m - x0_m), (y1_m - y0_m)))
+    z_m = lane.shape[-1][2] if len(lane.shape[-1]) > 2 else 0.0
+    ends_m, width_m = _axis(shape, ((x1_m - x0_m), (y1_m - y0_m)), z_m)
     return Leg(edge.end, edge.id, going, cut_m, ends_m, width_m)
 
 
-def _axis(shape: Sequence[Place], heading: Place) -> tuple[tuple[Place, Place], float]:
-    """Return the ends of a crosswalk's axis, from left to right of ``heading``, and its width along the street."""
+def _axis(shape: Sequence[Place], heading: Place, z_m: float) -> tuple[tuple[Point, Point], float]:
+    """Return the ends of a crosswalk's axis, from left to right of ``heading``, and its width along the street.
+
+    Both ends have the height of the street's end. Without one, people would walk at height 0.
+    """
     size = math.hypot(*heading)
     ahead = (heading[0] / size, heading[1] / size)
     right = (ahead[1], -ahead[0])
@@ -82,7 +87,7 @@ def _axis(shape: Sequence[Place], heading: Place) -> tuple[tuple[Place, Place], 
     aside_m = [(x - middle[0]) * right[0] + (y - middle[1]) * right[1] for x, y in shape]
     ahead_m = [(x - middle[0]) * ahead[0] + (y - middle[1]) * ahead[1] for x, y in shape]
     left, right_end = (
-        (middle[0] + far_m * right[0], middle[1] + far_m * right[1]) for far_m in (min(aside_m), max(aside_m))
+        (middle[0] + far_m * right[0], middle[1] + far_m * right[1], z_m) for far_m in (min(aside_m), max(aside_m))
     )
     return (left, right_end), max(ahead_m) - min(ahead_m)
 
@@ -124,7 +129,7 @@ def crossing_patch(legs: Iterable[Leg]) -> bytes:
     root = etree.Element("connections")
     for leg in legs:
         edges = [each for each in (leg.going, leg.coming) if each is not None]
-        shape = " ".join(f"{x_m:.2f},{y_m:.2f}" for x_m, y_m in leg.ends_m)
+        shape = " ".join(",".join(f"{value:.2f}" for value in end) for end in leg.ends_m)
         given = {"node": leg.node, "edges": " ".join(edges), "shape": shape, "width": f"{leg.width_m:.2f}"}
         etree.SubElement(root, "crossing", given)
     return etree.tostring(root, pretty_print=True)

@@ -14,6 +14,7 @@ from lxml import etree
 
 DRIVING_TYPE, SIDEWALK_TYPE, PARKING_TYPE = "driving", "sidewalk", "parking"
 NO_TRAFFIC = "all"
+THERE_AND_BACK = 2  # edges of one street
 WIDTH_M = 3.2  # of a lane without a width: SUMO's documentation, "Networks/SUMO Road Networks"
 
 
@@ -106,11 +107,13 @@ class Net:
     @cached_property
     def outer(self) -> frozenset[str]:
         """The nodes at which the network ends for cars: one street leads there, and back."""
-        neighbours: dict[str, set[str]] = defaultdict(set)
+        ways: dict[str, list[str]] = defaultdict(list)
         for edge in self.car_edges():
-            neighbours[edge.start].add(edge.end)
-            neighbours[edge.end].add(edge.start)
-        return frozenset(node for node, others in neighbours.items() if len(others) == 1)
+            ways[edge.start].append(edge.end)
+            ways[edge.end].append(edge.start)
+        return frozenset(
+            node for node, others in ways.items() if len(set(others)) == 1 and len(others) <= THERE_AND_BACK
+        )
 
     def car_edges(self) -> Iterator[NetEdge]:
         """Yield the edges that cars may use."""
