@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 ROLE = "sumo"  # role_name of what a bridge has spawned: what is left over is found by it
 EXACT = 2  # keepRoute of moveToXY: the place is taken as it is, on a road or not (TraCI protocol)
+AT_ONCE_MPS2 = 1000.0
+"""Deceleration of a mirrored actor. SUMO's own driver for it knows no way beyond its street and would stop at the end.
+SUMO reports that as emergency braking. The other drivers expect the apparent deceleration, which is SUMO's usual."""
 TO_THE_END_M = -1.0  # arrival position of a walk, SUMO's word for the end of the edge
 
 
@@ -83,8 +86,8 @@ class Mirrors:
     def _set_speed(self, actor_id: int, at_m: tuple[float, float], t_s: float) -> None:
         """Tell SUMO how fast an actor is.
 
-        SUMO's own figure is the distance along its lanes. Where the actor comes from one lane to another that begins
-        elsewhere, as within junctions, it is 0 for some steps, and the drivers behind brake as hard as they can.
+        SUMO's own figure is the distance along its lanes. Within junctions, a mirrored actor changes to lanes that begin
+        elsewhere. Then SUMO's figure is 0 for some steps, and the drivers behind brake as hard as they can.
         """
         last = self._last.get(actor_id)
         if last is None or t_s <= last.t_s:  # several steps of SUMO in one tick keep the speed
@@ -117,6 +120,10 @@ class Mirrors:
         api.vehicletype.setLength(name, 2.0 * extent.x)
         api.vehicletype.setWidth(name, 2.0 * extent.y)
         api.vehicletype.setHeight(name, 2.0 * extent.z)
+        expected_mps2 = api.vehicletype.getDecel(name)
+        api.vehicletype.setEmergencyDecel(name, AT_ONCE_MPS2)
+        api.vehicletype.setDecel(name, AT_ONCE_MPS2)
+        api.vehicletype.setApparentDecel(name, expected_mps2)
         api.route.add(name, [self._street()])
         api.vehicle.add(name, name, typeID=name)
         self._half_m[int(actor.id)] = float(extent.x)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SIGHT_M = 150.0  # no trip ends so near to a vehicle of the simulator: the range of the longest sensors of road vehicles
 LAST_EDGES = 2  # of a route: a vehicle on one of them is near its end
-LOOK_STEPS = 10  # between two looks at who is near its end
+LOOK_STEPS = 10  # between two looks for vehicles that are near their ends
 THERE_AND_BACK = 2  # edges of one street: where no other ends, the network ends
 ATTEMPTS = 50  # destinations drawn for a vehicle until a route leads there
 
@@ -54,7 +54,8 @@ class Streets:
 
     def draw(self, dice: random.Random) -> str:
         """Return a street; the longer it is, the likelier."""
-        return dice.choices(self.edges, self.lengths_m)[0]
+        edge: str = dice.choices(self.edges, self.lengths_m)[0]
+        return edge
 
 
 class TripEnds:
