@@ -86,8 +86,8 @@ class Mirrors:
     def _set_speed(self, actor_id: int, at_m: tuple[float, float], t_s: float) -> None:
         """Tell SUMO how fast an actor is.
 
-        SUMO's own figure is the distance along its lanes. Within junctions, a mirrored actor changes to lanes that begin
-        elsewhere. Then SUMO's figure is 0 for some steps, and the drivers behind brake as hard as they can.
+        SUMO's own figure is the distance along its lanes. Within junctions, a mirrored actor changes to lanes that
+        begin elsewhere. Then SUMO's figure is 0 for some steps, and the drivers behind brake as hard as they can.
         """
         last = self._last.get(actor_id)
         if last is None or t_s <= last.t_s:  # several steps of SUMO in one tick keep the speed
