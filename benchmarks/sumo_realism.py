@@ -48,6 +48,7 @@ def ways(trips: RandomTrips, link: Link, length_m: float) -> Iterator[list[str]]
         driven_m = 0.0
         while driven_m < length_m:
             part = trips._route()  # noqa: SLF001 - the same draw as in a run
+            assert part is not None, "nothing sees it"
             if way:
                 joined = link.api.simulation.findRoute(way[-1], part[0], "DEFAULT_VEHTYPE").edges
                 if not joined:

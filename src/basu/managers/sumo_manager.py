@@ -61,7 +61,7 @@ class SumoManager(BaseManager):
         self._check(bridge, run)
         self._step_s, self._stops = run.step_s, run.route.stops
         if self._sumo.is_random:
-            bridge.before_step = RandomTrips(link, self._sumo.vehicles, run.seed).fill
+            bridge.before_step = RandomTrips(link, self._sumo.vehicles, run.seed, bridge.viewers_m).fill
         self._load, self._passengers = Load(link, run.step_s), Passengers(link, [stop.id for stop in self._stops])
         self._changes: WorldChanges = run.changes
         bridge.step(run.world.get_snapshot())

@@ -12,6 +12,7 @@ from basu.sumo.lights import Lights
 from basu.sumo.mirrors import ROLE, Mirrors
 from basu.sumo.models import Models
 from basu.sumo.road_users import People, RoadUser, Vehicles
+from basu.sumo.trip_ends import TripEnds
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -63,6 +64,7 @@ class Bridge:
         models = Models(world.get_blueprint_library())
         self.mirrors = Mirrors(link, world, models)
         self.vehicles, self.people = Vehicles(link, models), People(link, models)
+        self.trip_ends = TripEnds(link)
         self.display = Display(client, world, carla_map, radius_m)
         self.before_step: Callable[[], object] = lambda: None  # is called before each step of SUMO
         self._lights = None
@@ -143,7 +145,14 @@ class Bridge:
         self.link.step()
         with self.link.answering("naming its road users"):
             people = {f"{PERSON}{name}": user for name, user in self.people.read().items()}
-            return {**self.vehicles.read(), **people}
+            vehicles = self.vehicles.read()
+        with self.link.answering("prolonging trips"):
+            self.trip_ends.look(vehicles, self.mirrors.places_m)
+        return {**vehicles, **people}
+
+    def viewers_m(self) -> tuple[tuple[float, float], ...]:
+        """Return the places of the simulator's vehicles: no vehicle of SUMO begins or ends a trip in their sight."""
+        return self.mirrors.places_m
 
     def _centre(self, snapshot: carla.WorldSnapshot) -> carla.Location | None:
         """Where the circle of what is shown has its middle."""

@@ -6,7 +6,8 @@ person and as a vehicle of a person's size. SUMO ignores a vehicle that stands b
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
+from typing import TYPE_CHECKING, NamedTuple
 
 from basu.sumo.frames import to_sumo
 from basu.sumo.models import CLASSES
@@ -22,7 +23,18 @@ if TYPE_CHECKING:
 
 ROLE = "sumo"  # role_name of what a bridge has spawned: what is left over is found by it
 EXACT = 2  # keepRoute of moveToXY: the place is taken as it is, on a road or not (TraCI protocol)
+AT_ONCE_MPS2 = 1000.0
+"""Deceleration of a mirrored actor. SUMO's own driver for it knows no way beyond its street and would stop at the end.
+SUMO reports that as emergency braking. The other drivers expect the apparent deceleration, which is SUMO's usual."""
 TO_THE_END_M = -1.0  # arrival position of a walk, SUMO's word for the end of the edge
+
+
+class _Seen(NamedTuple):
+    """What was last seen of an actor, CARLA's frame."""
+
+    t_s: float
+    at_m: tuple[float, float]
+    speed_mps: float
 
 
 class Mirrors:
@@ -32,9 +44,11 @@ class Mirrors:
         """Mirror nothing yet."""
         self._link, self._world, self._models = link, world, models
         self._half_m: dict[int, float] = {}  # half length of vehicles and walkers
+        self._last: dict[int, _Seen] = {}
         self._walkers: set[int] = set()
         self._beginning: str | None = None  # of people: an edge that they may use
         self._has_looked = False
+        self.places_m: tuple[tuple[float, float], ...] = ()  # of the vehicles, after the last move
         self.known: set[int] = set()  # actors that were looked at, or that a bridge has spawned
 
     @property
@@ -57,13 +71,33 @@ class Mirrors:
                 if is_road_user and actor.attributes.get("role_name") != ROLE:
                     self._add(actor)
         self._remove(ids)
-        vehicle = self._link.api.vehicle
+        t_s, vehicle, places_m = float(snapshot.timestamp.elapsed_seconds), self._link.api.vehicle, []
         for actor_id, half_m in self._half_m.items():
             pose = snapshot.find(actor_id).get_transform()
             at = to_sumo(pose.location.x, pose.location.y, pose.rotation.yaw, half_m, self._link.offset_m)
             vehicle.moveToXY(_name(actor_id), "", -1, *at, keepRoute=EXACT)
+            self._set_speed(actor_id, (float(pose.location.x), float(pose.location.y)), t_s)
             if actor_id in self._walkers:
                 self._move_person(_name(actor_id), *at)
+            else:
+                places_m.append((float(pose.location.x), float(pose.location.y)))
+        self.places_m = tuple(places_m)
+
+    def _set_speed(self, actor_id: int, at_m: tuple[float, float], t_s: float) -> None:
+        """Tell SUMO how fast an actor is.
+
+        SUMO's own figure is the distance along its lanes. Within junctions, a mirrored actor changes to lanes that
+        begin elsewhere. Then SUMO's figure is 0 for some steps, and the drivers behind brake as hard as they can.
+        """
+        last = self._last.get(actor_id)
+        if last is None or t_s <= last.t_s:  # several steps of SUMO in one tick keep the speed
+            speed_mps = 0.0 if last is None else last.speed_mps
+            t_s = t_s if last is None else last.t_s
+        else:
+            speed_mps = math.dist(at_m, last.at_m) / (t_s - last.t_s)
+        self._last[actor_id] = _Seen(t_s, at_m, speed_mps)
+        if last is not None:  # SUMO takes a speed of what is on the road: not before the first step
+            self._link.api.vehicle.setPreviousSpeed(_name(actor_id), speed_mps)
 
     def _move_person(self, name: str, x_m: float, y_m: float, angle_deg: float) -> None:
         """Move a person; SUMO refuses a place far from any lane for people, and the person stays where it was."""
@@ -86,6 +120,10 @@ class Mirrors:
         api.vehicletype.setLength(name, 2.0 * extent.x)
         api.vehicletype.setWidth(name, 2.0 * extent.y)
         api.vehicletype.setHeight(name, 2.0 * extent.z)
+        expected_mps2 = api.vehicletype.getDecel(name)
+        api.vehicletype.setEmergencyDecel(name, AT_ONCE_MPS2)
+        api.vehicletype.setDecel(name, AT_ONCE_MPS2)
+        api.vehicletype.setApparentDecel(name, expected_mps2)
         api.route.add(name, [self._street()])
         api.vehicle.add(name, name, typeID=name)
         self._half_m[int(actor.id)] = float(extent.x)
@@ -107,6 +145,7 @@ class Mirrors:
         for actor_id in [actor_id for actor_id in self._half_m if actor_id not in ids]:
             name = _name(actor_id)
             del self._half_m[actor_id]
+            self._last.pop(actor_id, None)
             if name in vehicle.getIDList():
                 vehicle.remove(name)
             if actor_id in self._walkers:

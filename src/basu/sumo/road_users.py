@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import carla
 
 from basu.sumo.frames import Pose, from_sumo
+from basu.sumo.sideways import Sideways
 
 if TYPE_CHECKING:
     from basu.sumo.link import Link
@@ -57,6 +58,7 @@ class Vehicles:
         self._link, self._models = link, models
         self._looks: dict[str, Look] = {}
         self._stand_ins: set[str] = set()
+        self._sideways = Sideways(float(link.api.simulation.getDeltaT()))
         self.departed = self.most = self.present = 0
 
     def read(self) -> dict[str, RoadUser]:
@@ -69,6 +71,7 @@ class Vehicles:
         found = {name: self._user(name, states[name]) for name in sorted(states) if not name.startswith(MIRROR)}
         for name in self._looks.keys() - found.keys():
             del self._looks[name]
+            self._sideways.forget(name)
         self.present, self.most = len(found), max(self.most, len(found))
         return found
 
@@ -81,7 +84,7 @@ class Vehicles:
     def _user(self, name: str, state: dict[int, Any]) -> RoadUser:
         look = self._looks[name]
         pose = from_sumo(state[POSITION], state[ANGLE], state[SLOPE], look.length_m, self._link.offset_m)
-        return RoadUser(look, pose, _lamps(state[SIGNALS]), 0.0)
+        return RoadUser(look, self._sideways.shown(name, pose), _lamps(state[SIGNALS]), 0.0)
 
     def _look(self, name: str) -> Look:
         """What is known of a vehicle; says once of each type that a stand-in shows it."""

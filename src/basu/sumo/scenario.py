@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 DEFAULT_HOUR = 9.5  # of a demand for a route without a timetable
 LIMIT_S = 600.0  # a network of Linden takes 5 s
-FORMAT = 2  # of the folders that `linden map sumo` writes: an older one that is kept is made again
+FORMAT = 3  # of the folders that `linden map sumo` writes: an older one that is kept is made again
 
 
 class RouteStop(NamedTuple):

@@ -1,16 +1,19 @@
 """Bus stops on a SUMO network, where a route file has the shuttle's stops; parking areas along its parking lanes."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 from lxml import etree
 
-from linden.authoring.sumo.net import PARKING_TYPE, Net, along
+from linden.authoring.sumo.net import PARKING_TYPE, Net, along, point_at
 from linden.errors import UserError
 
 LENGTH_M = 12.0  # of a bus stop: the shuttle's 4 m twice, and room to pull in
 SPACE_M, CORNER_M = 6.7, 10.0
 """A space at the kerb is 22 feet long; none lies near a corner (Manual on Uniform Traffic Control Devices, 3B.19)."""
+STOP_CLEAR_M = 24.0  # of a bus stop: room for the shuttle to pull in and out
 REACH_M = 8.0  # from a stop's place to the middle of its lane
 
 
@@ -44,25 +47,35 @@ def read_stops(path: Path) -> tuple[RouteStop, ...]:
 
 
 class ParkingArea(NamedTuple):
-    """Parking at the roadside: the lane beside it, from and to along the lane, how many cars it holds."""
+    """One parking space at the roadside: the lane beside it, from and to along the lane, the space's width."""
 
     id: str
+    edge: str
     lane: str
     from_m: float
     to_m: float
-    capacity: int
+    width_m: float
 
 
-def parking_areas(net: Net) -> tuple[ParkingArea, ...]:
-    """An area for each parking lane that lies beside a lane for cars; none near the ends of the street."""
+def parking_areas(net: Net, taken_m: Sequence[tuple[float, float, float]] = ()) -> tuple[ParkingArea, ...]:
+    """Return the spaces of each parking lane beside a lane for cars; none near the ends of the street.
+
+    ``taken_m`` are x and y in SUMO's frame, and the radius about them, in which nothing may park. A space is an area of
+    its own: SUMO gives the next free space of an area to whatever comes, so that a demand could not choose one.
+    """
+    taken = np.asarray(taken_m, np.float64).reshape(-1, 3)
     areas = []
     for edge in net.car_edges():
         lane = edge.car_lanes[0]
-        length_m = lane.length_m - 2.0 * CORNER_M
-        if any(each.type == PARKING_TYPE for each in edge.lanes) and length_m >= SPACE_M:
-            capacity = int(length_m / SPACE_M)
-            area = ParkingArea(f"parking{edge.id}", lane.id, CORNER_M, CORNER_M + capacity * SPACE_M, capacity)
-            areas.append(area)
+        beside = edge.lanes[max(0, edge.lanes.index(lane) - 1)]
+        if beside.type != PARKING_TYPE:
+            continue
+        for number in range(int((lane.length_m - 2.0 * CORNER_M) / SPACE_M)):
+            from_m = CORNER_M + number * SPACE_M
+            middle_m = point_at(beside, (from_m + 0.5 * SPACE_M) / lane.length_m)
+            if not (np.hypot(*(taken[:, :2] - middle_m).T) < taken[:, 2] + 0.5 * SPACE_M).any():
+                name = f"parking{edge.id}.{number}"
+                areas.append(ParkingArea(name, edge.id, lane.id, from_m, from_m + SPACE_M, beside.width_m))
     return tuple(areas)
 
 
@@ -103,7 +116,7 @@ def stops_file(stops: tuple[BusStop, ...], areas: tuple[ParkingArea, ...]) -> by
         along_lane = {"startPos": f"{stop.from_m:.2f}", "endPos": f"{stop.to_m:.2f}"}
         etree.SubElement(root, "busStop", given | along_lane)
     for area in areas:
-        given = {"id": area.id, "lane": area.lane, "roadsideCapacity": str(area.capacity)}
+        given = {"id": area.id, "lane": area.lane, "roadsideCapacity": "1", "width": f"{area.width_m:.2f}"}
         along_lane = {"startPos": f"{area.from_m:.2f}", "endPos": f"{area.to_m:.2f}"}
         etree.SubElement(root, "parkingArea", given | along_lane)
     return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8")

@@ -8,7 +8,7 @@ import networkx as nx
 
 from linden.authoring.sumo.net import Net
 from linden.authoring.sumo.network import Converted
-from linden.maps.navigation.areas import crosswalk_places
+from linden.maps.navigation.areas import crosswalk_outlines
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
 
@@ -65,7 +65,9 @@ def _people(converted: Converted) -> Compared:
     A network without crossings was made for cars alone.
     """
     net = converted.net
-    places = [(x_m + net.offset_m[0], y_m + net.offset_m[1]) for x_m, y_m in crosswalk_places(converted.opendrive)]
+    outlines = [outline_m for _, outline_m in crosswalk_outlines(converted.opendrive)]
+    middles = [(sum(x for x, _ in each) / len(each), sum(y for _, y in each) / len(each)) for each in outlines]
+    places = [(x_m + net.offset_m[0], y_m + net.offset_m[1]) for x_m, y_m in middles]
     marked = [place for place in places if _nearest_m(place, net.ends) < AT_JUNCTION_M]
     crossed, parts = sum(_nearest_m(place, net.crossing_middles) < CROSSWALK_M for place in marked), walkable(net)
     table = (

@@ -7,9 +7,10 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from linden.authoring.sumo.bus_stops import ParkingArea
 from linden.authoring.sumo.net import Net, NetEdge
 from linden.authoring.sumo.places import SCHOOL, TRANSIT, Place, car_streets
-from linden.authoring.sumo.vehicle_types import MIX
+from linden.authoring.sumo.vehicle_types import KERB_MIX, MIX
 from linden.errors import UserError
 
 BUSY_TRIPS_PER_KM = 14.0
@@ -29,7 +30,7 @@ TO_SCHOOL_H, FROM_SCHOOL_H = (8.0, 9.5), (14.0, 15.5)
 """When schools begin and end: the Linden LEAP paused in these hours (docs/reference/passengers.md)."""
 SCHOOL_SHARE, TRANSIT_SHARE = 0.12, 0.06
 """Shares of the trips that bring to or fetch from a school at those hours, and a transit station at all: estimates."""
-PARKING_SHARE = 0.3  # of the trips that end at homes with parking at the kerb and stay there: an estimate
+PULL_OUT_S = 5.0  # a vehicle stands at the kerb for so long before it leaves
 
 HOME_SPEED_MPS = 12.0  # streets up to 25 mph have homes; the faster ones are arterials
 MEAN_TRIP_S = 200.0  # observed on Linden: so many seconds' trips are under way at the beginning
@@ -52,7 +53,8 @@ class Trip(NamedTuple):
     start: str
     end: str
     is_under_way: bool
-    parking: str | None = None  # the parking area that it ends in
+    from_space: str | None = None  # the parking area that it begins in
+    to_space: str | None = None  # the parking area that it ends in
 
 
 class HomeWard(enum.Enum):
@@ -89,10 +91,11 @@ def trips_per_hour(net: Net, demand: Demand) -> float:
     return BUSY_TRIPS_PER_KM * lane_km * HOUR_SHARES[int(demand.hour)] * demand.scale
 
 
-def draw(net: Net, demand: Demand, places: tuple[Place, ...] = (), parking: frozenset[str] = frozenset()) -> list[Trip]:
-    """The trips of a demand in the order of their departure: those under way first.
+def draw(net: Net, demand: Demand, places: tuple[Place, ...] = (), spaces: Sequence[ParkingArea] = ()) -> list[Trip]:
+    """Return the trips of a demand in the order of their departure: those under way first.
 
-    ``parking`` are the edges with a parking area.
+    A trip from or to a home begins or ends in one of the ``spaces``, as long as there are free ones; other trips begin
+    and end where the network ends.
 
     Raises:
         UserError: the network has no street to begin or end at.
@@ -100,8 +103,8 @@ def draw(net: Net, demand: Demand, places: tuple[Place, ...] = (), parking: froz
     check(demand)
     dice = random.Random(demand.seed)  # noqa: S311 - to be had again by its seed, not to be a secret
     homes = [edge for edge in net.car_edges() if _limit_mps(edge) <= HOME_SPEED_MPS] or list(net.car_edges())
-    entries = [edge for edge in net.car_edges() if net.node_types[edge.start] == "dead_end"] or homes
-    exits = [edge for edge in net.car_edges() if net.node_types[edge.end] == "dead_end"] or homes
+    entries = [edge for edge in net.car_edges() if edge.start in net.outer] or homes
+    exits = [edge for edge in net.car_edges() if edge.end in net.outer] or homes
     if not homes:
         raise UserError("the network has no lane for cars; a demand needs some")
     shares = MORNING if demand.hour < 10.0 else EVENING if 15.0 <= demand.hour < 20.0 else ELSE
@@ -111,17 +114,40 @@ def draw(net: Net, demand: Demand, places: tuple[Place, ...] = (), parking: froz
     departures = [0.0] * under_way + sorted(round(dice.uniform(0.0, demand.duration_s), 2) for _ in range(later))
     schools, stations = car_streets(net, places, SCHOOL), car_streets(net, places, TRANSIT)
     likelihood = likelihoods(net.car_edges())
+    kerb = _Kerb(spaces, dice)
     trips = []
     for number, depart_s in enumerate(departures):
         purpose = dice.choices(PURPOSES, shares)[0]
-        starts = homes if purpose in ("out", "within") else entries
-        ends = homes if purpose in ("home", "within") else exits
+        starts = kerb.with_room(homes) if purpose in ("out", "within") else entries
+        ends = kerb.with_room(homes) if purpose in ("home", "within") else exits
         start = drawn(starts, likelihood, dice)
         end = drawn(_elsewhere(ends, start) or homes, likelihood, dice)
         start, end = _by_place(start, end, dice, demand.hour, (schools, stations))
-        parks = end.id in parking and ends is homes and dice.random() < PARKING_SHARE
-        trips.append(Trip(depart_s, start.id, end.id, number < under_way, end.id if parks else None))
+        is_under_way = number < under_way
+        from_space = None if is_under_way or start in entries else kerb.take(start)
+        to_space = None if end in exits else kerb.take(end)
+        trips.append(Trip(depart_s, start.id, end.id, is_under_way, from_space, to_space))
     return trips
+
+
+class _Kerb:
+    """The parking spaces that are still free: each is given away once in a demand."""
+
+    def __init__(self, spaces: Sequence[ParkingArea], dice: random.Random) -> None:
+        """Begin with all ``spaces`` free."""
+        self._dice = dice
+        self._free: dict[str, list[str]] = {}
+        for space in spaces:
+            self._free.setdefault(space.edge, []).append(space.id)
+
+    def with_room(self, edges: Sequence[NetEdge]) -> Sequence[NetEdge]:
+        """Return the streets with a free space; all where none has one."""
+        return [edge for edge in edges if self._free.get(edge.id)] or edges
+
+    def take(self, edge: NetEdge) -> str | None:
+        """Return a free space of a street and give it away; None where it has none."""
+        free = self._free.get(edge.id)
+        return free.pop(self._dice.randrange(len(free))) if free else None
 
 
 def _by_place(
@@ -166,9 +192,10 @@ def trips_file(trips: Sequence[Trip]) -> bytes:
     """SUMO's route file of the trips."""
     root = etree.Element("routes")
     for number, trip in enumerate(trips):
+        at_kerb = trip.from_space is not None or trip.to_space is not None
         given = {
             "id": f"trip{number}",
-            "type": MIX,
+            "type": KERB_MIX if at_kerb else MIX,
             "depart": f"{trip.depart_s:.2f}",
             "from": trip.start,
             "to": trip.end,
@@ -177,7 +204,10 @@ def trips_file(trips: Sequence[Trip]) -> bytes:
         }
         if trip.is_under_way:
             given |= {"departEdge": "random", "departPos": "random_free"}
+        if trip.from_space is not None:
+            given |= {"departPos": "stop", "departSpeed": "0"}
         element = etree.SubElement(root, "trip", given)
-        if trip.parking is not None:
-            etree.SubElement(element, "stop", {"parkingArea": f"parking{trip.parking}", "duration": f"{HOUR_S:g}"})
+        for space, duration_s in ((trip.from_space, PULL_OUT_S), (trip.to_space, HOUR_S)):
+            if space is not None:
+                etree.SubElement(element, "stop", {"parkingArea": space, "duration": f"{duration_s:g}"})
     return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8")

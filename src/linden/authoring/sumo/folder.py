@@ -6,13 +6,20 @@ from typing import NamedTuple
 from lxml import etree
 
 from linden.authoring.output import staged_folder
-from linden.authoring.sumo.bus_stops import RouteStop, bus_stops, parking_areas, stops_file
+from linden.authoring.sumo.bus_stops import STOP_CLEAR_M, BusStop, RouteStop, bus_stops, parking_areas, stops_file
 from linden.authoring.sumo.demand import Demand, check, draw, trips_file
 from linden.authoring.sumo.network import Converted, convert
 from linden.authoring.sumo.people import draw_riders, draw_walks, people_file
 from linden.authoring.sumo.places import places_of
 from linden.authoring.sumo.vehicle_types import types_file
+from linden.maps.facts import derive
+from linden.maps.library import HOME_MAPS
+from linden.maps.navigation.areas import crosswalk_outlines
+from linden.scenery.scene.objects import Kind
+from linden.scenery.scene.south_linden import home
 
+CROSSWALK_CLEAR_M = 6.1  # 20 feet, as Columbus City Code 2151.01 asks for
+CAR_CLEAR_M = 2.8  # half a parked car, and room before it
 STEP_S = 0.05  # as a benchmark's tick
 OURS = (".net.xml", ".rou.xml", ".add.xml", ".sumocfg")  # ends of the names of files in such a folder
 
@@ -51,8 +58,9 @@ def write_folder(
     with staged_folder(folder, lambda entry: entry.endswith(OURS)) as stage:
         converted = convert(text, stage / f"{name}.net.xml", people=people)
         net, found = converted.net, places_of(places, converted.opendrive.geo_origin)
-        at_kerbs, (at_stops, lost) = parking_areas(net), bus_stops(net, stops)
-        trips = draw(net, demand, found, frozenset(area.id.removeprefix("parking") for area in at_kerbs))
+        at_stops, lost = bus_stops(net, stops)
+        at_kerbs = parking_areas(net, _taken(converted, text, name, at_stops))
+        trips = draw(net, demand, found, at_kerbs)
         walks = draw_walks(net, demand, found) if people else []
         riders = draw_riders(net, demand, at_stops) if people else []
         (stage / f"{name}.rou.xml").write_bytes(trips_file(trips))
@@ -63,6 +71,24 @@ def write_folder(
         (stage / f"{name}.empty.sumocfg").write_bytes(_config(name, demand, has_trips=False))
     configs = folder / f"{name}.sumocfg", folder / f"{name}.empty.sumocfg"
     return Written(converted, *configs, len(trips), len(walks), len(riders), lost)
+
+
+def _taken(
+    converted: Converted, text: bytes, name: str, stops: tuple[BusStop, ...]
+) -> list[tuple[float, float, float]]:
+    """Return where nothing may park, x, y and radius in SUMO's frame: crosswalks, bus stops, and the map's parked cars.
+
+    Only the maps of Linden have parked cars in their scenery.
+    """
+    x_m, y_m = converted.net.offset_m
+    taken = [(*stop.at_m, STOP_CLEAR_M) for stop in stops]
+    for _, outline_m in crosswalk_outlines(converted.opendrive):
+        taken += [(x + x_m, y + y_m, CROSSWALK_CLEAR_M) for x, y in outline_m]
+    if name in HOME_MAPS:
+        things = home(derive(text.decode())).things
+        for at_m in things["base"][things["kind"] == Kind.PARKED_CAR]:
+            taken.append((float(at_m[0]) + x_m, y_m - float(at_m[1]), CAR_CLEAR_M))
+    return taken
 
 
 def _config(name: str, demand: Demand, *, has_trips: bool) -> bytes:

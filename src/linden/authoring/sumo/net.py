@@ -1,5 +1,6 @@
 """A SUMO network as frozen values: edges with lanes, connections, nodes, and the OpenDRIVE lanes they were made of."""
 
+import itertools
 import math
 from collections import defaultdict
 from collections.abc import Iterator
@@ -13,6 +14,8 @@ from lxml import etree
 
 DRIVING_TYPE, SIDEWALK_TYPE, PARKING_TYPE = "driving", "sidewalk", "parking"
 NO_TRAFFIC = "all"
+THERE_AND_BACK = 2  # edges of one street
+WIDTH_M = 3.2  # of a lane without a width: SUMO's documentation, "Networks/SUMO Road Networks"
 
 
 class NetLane(NamedTuple):
@@ -22,6 +25,7 @@ class NetLane(NamedTuple):
     type: str
     speed_mps: float
     length_m: float
+    width_m: float
     shape: tuple[tuple[float, ...], ...]  # SUMO's frame, m
     for_cars: bool
     for_people: bool
@@ -100,6 +104,17 @@ class Net:
         """Where the lanes of all streets end, SUMO's frame."""
         return [lane.shape[-1][:2] for edge in self.edges.values() for lane in edge.lanes]
 
+    @cached_property
+    def outer(self) -> frozenset[str]:
+        """The nodes at which the network ends for cars: one street leads there, and back."""
+        ways: dict[str, list[str]] = defaultdict(list)
+        for edge in self.car_edges():
+            ways[edge.start].append(edge.end)
+            ways[edge.end].append(edge.start)
+        return frozenset(
+            node for node, others in ways.items() if len(set(others)) == 1 and len(others) <= THERE_AND_BACK
+        )
+
     def car_edges(self) -> Iterator[NetEdge]:
         """Yield the edges that cars may use."""
         return (edge for edge in self.edges.values() if edge.car_lanes)
@@ -155,6 +170,7 @@ def _lane(element: "etree._Element") -> NetLane:
         type=str(element.get("type", "")),
         speed_mps=float(str(element.get("speed"))),
         length_m=float(str(element.get("length"))),
+        width_m=float(str(element.get("width", WIDTH_M))),
         shape=tuple(tuple(float(value) for value in point.split(",")) for point in str(element.get("shape")).split()),
         for_cars=not closed and ("passenger" in allow if allow else "passenger" not in disallow),
         for_people=not closed and ("pedestrian" in allow if allow else "pedestrian" not in disallow),
@@ -188,3 +204,15 @@ def along(lane: NetLane, x_m: float, y_m: float) -> tuple[float, float]:
             best = min(best, (away_m, passed_m + share * length_m))
         passed_m += length_m
     return best
+
+
+def point_at(lane: NetLane, share: float) -> tuple[float, float]:
+    """Return the place at a share of a lane's length."""
+    rest_m = share * sum(math.dist(first[:2], second[:2]) for first, second in itertools.pairwise(lane.shape))
+    for first, second in itertools.pairwise(lane.shape):
+        length_m = math.dist(first[:2], second[:2])
+        if length_m >= rest_m > 0.0:
+            part = rest_m / length_m
+            return first[0] + part * (second[0] - first[0]), first[1] + part * (second[1] - first[1])
+        rest_m -= length_m
+    return lane.shape[0 if share <= 0.0 else -1][0], lane.shape[0 if share <= 0.0 else -1][1]

@@ -15,6 +15,7 @@ from linden.authoring.sumo.controls import (
     node_patch,
     node_types,
 )
+from linden.authoring.sumo.crosswalks import crossing_patch, end_at_lines, marked_legs
 from linden.authoring.sumo.net import Net, read_net
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.parse import parse
@@ -85,9 +86,15 @@ def convert(text: bytes, target: Path, *, people: bool = True) -> Converted:
         controls = controls_of(net, placed, opendrive)
         (folder / "signs.nod.xml").write_bytes(node_patch(node_types(net, controls)))
         (folder / "signs.edg.xml").write_bytes(edge_patch(net, controls))
+        legs = marked_legs(net, opendrive)
+        first_pass = etree.parse(str(folder / "first.net.xml"))
+        end_at_lines(first_pass.getroot(), legs)
+        first_pass.write(str(folder / "lines.net.xml"))
+        (folder / "marked.con.xml").write_bytes(crossing_patch(legs))
         second = (
-            *("--sumo-net-file", "first.net.xml", "--node-files", "signs.nod.xml", "--edge-files", "signs.edg.xml"),
-            *("--offset.disable-normalization", "--output.original-names", *(PEOPLE if people else ())),
+            *("--sumo-net-file", "lines.net.xml", "--node-files", "signs.nod.xml", "--edge-files", "signs.edg.xml"),
+            *("--offset.disable-normalization", "--output.original-names"),
+            *(("--connection-files", "marked.con.xml", *PEOPLE) if people else ()),
             *("-o", "second.net.xml"),
         )
         programs.run("netconvert", second, folder)

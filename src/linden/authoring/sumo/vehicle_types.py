@@ -26,6 +26,10 @@ RARE = frozenset({"carlamotors.firetruck", "ford.ambulance", "easymile.ez10", "c
 MIX = "traffic"
 """The name of the distribution that all of a demand's vehicles are drawn from."""
 
+KERB_MIX = "kerb"
+"""The name of the distribution of trips that begin or end in a parking space: the vehicles that fit in one."""
+KERB_LENGTH_M = 6.2  # of a space of 6.7 m at the kerb
+
 SHADES = {"passenger": "yellow", "delivery": "orange", "truck": "orange", "bus": "red", "motorcycle": "cyan",
           "bicycle": "green"}  # fmt: skip
 
@@ -56,11 +60,24 @@ def types_file() -> bytes:
         etree.SubElement(root, "vType", attributes)
         if name not in RARE and fact["base_type"] in common:
             common[fact["base_type"]].append(f"vehicle.{name}")
-    names = [name for kind in SHARES for name in common[kind]]
-    weights = [SHARES[kind] / len(common[kind]) for kind in SHARES for _ in common[kind]]
-    etree.SubElement(
-        root,
-        "vTypeDistribution",
-        {"id": MIX, "vTypes": " ".join(names), "probabilities": " ".join(f"{weight:.5f}" for weight in weights)},
-    )
+    etree.SubElement(root, "vTypeDistribution", _mix(MIX, common))
+    short = {
+        kind: [name for name in names if _length_m(facts, name) <= KERB_LENGTH_M] for kind, names in common.items()
+    }
+    etree.SubElement(root, "vTypeDistribution", _mix(KERB_MIX, {kind: short[kind] for kind in ("car", "van")}))
     return etree.tostring(root, pretty_print=True, xml_declaration=True, encoding="UTF-8")
+
+
+def _mix(name: str, types: dict[str, list[str]]) -> dict[str, str]:
+    """Return the attributes of a distribution of ``types`` by their base type."""
+    names = [each for kind in types for each in types[kind]]
+    weights = [SHARES[kind] / len(types[kind]) for kind in types for _ in types[kind]]
+    return {
+        "id": name,
+        "vTypes": " ".join(names),
+        "probabilities": " ".join(f"{weight:.5f}" for weight in weights),
+    }
+
+
+def _length_m(facts: dict[str, Any], name: str) -> float:
+    return 2.0 * float(facts[name.removeprefix("vehicle.")]["half_m"][0])

@@ -76,17 +76,20 @@ def crosswalks(
     return found
 
 
-def crosswalk_places(opendrive: OpenDrive) -> list[tuple[float, float]]:
-    """Return the middle of every crosswalk in OpenDRIVE's frame, m."""
+def crosswalk_outlines(opendrive: OpenDrive) -> list[tuple[int, list[tuple[float, float]]]]:
+    """Return the road and the outline of every crosswalk in OpenDRIVE's frame, m."""
     tables = tables_of(opendrive)
     outlines = [
-        _outline(tables, index, thing)
+        (road.id, _outline(tables, index, thing))
         for index, road in enumerate(opendrive.roads)
         for thing in road.objects
         if thing.is_crosswalk
     ]
-    middles = (outline_m[:, :2].mean(axis=0) for outline_m in outlines if len(outline_m) >= 3)
-    return [(float(x_m), -float(y_m)) for x_m, y_m in middles]
+    return [
+        (road_id, [(float(x_m), -float(y_m)) for x_m, y_m in outline_m[:, :2]])
+        for road_id, outline_m in outlines
+        if len(outline_m) >= 3
+    ]
 
 
 def _outline(tables: Tables, road_index: int, thing: RoadObject) -> F64:

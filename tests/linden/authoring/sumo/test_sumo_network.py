@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
+from shapely.geometry import LineString, Point, Polygon
 
 from linden.authoring.sumo import programs
 from linden.authoring.sumo.bus_stops import RouteStop, bus_stops, stops_file
@@ -14,6 +15,7 @@ from linden.authoring.sumo.demand import Demand, draw, trips_per_hour
 from linden.authoring.sumo.network import Converted, convert, with_lane_speeds
 from linden.authoring.sumo.vehicle_types import MIX, blueprints, types_file
 from linden.errors import UserError
+from linden.maps.navigation.areas import crosswalk_outlines
 
 pytest.importorskip("sumo", reason="the extra for SUMO is not installed")
 
@@ -62,6 +64,35 @@ def test_lights_have_the_server_s_program_and_name_their_heads(linden: tuple[Con
         states = [str(phase.get("state")) for phase in light.iter("phase")]
         assert all(set(state) <= set("r") for state in states[2::3]), "between two turns all are red"
         assert all(any(state[link] in "Gg" for state in states) for link in range(len(states[0])))
+
+
+def test_streets_end_at_the_stop_line_before_a_marked_crosswalk_and_people_cross_on_the_marking(
+    linden: tuple[Converted, Path],
+) -> None:
+    converted, path = linden
+    net = converted.net
+    root = etree.parse(str(path)).getroot()
+    crossings = {str(each.get("id")): each for each in root.iter("edge") if each.get("function") == "crossing"}
+    marked = 0
+    for road_id, outline in crosswalk_outlines(converted.opendrive):
+        shape = Polygon([(x_m + net.offset_m[0], y_m + net.offset_m[1]) for x_m, y_m in outline])
+        lanes = [lane for edge in net.car_edges() for lane in edge.car_lanes]
+        if any(LineString(lane.shape).intersects(shape) for lane in lanes):
+            continue  # within a street: SUMO has no crossing there
+        marked += 1
+        ends = [Point(lane.shape[-1]) for lane in lanes if f"{road_id}_" in " ".join(lane.origins)]
+        assert min(end.distance(shape) for end in ends) == pytest.approx(1.8, abs=0.6)
+        lines = [lane_line(each) for each in crossings.values()]
+        (line,) = [line for line in lines if line.intersection(shape).length > 0.9 * line.length]
+        assert line.length > 5.0
+        assert all(z_m > 200.0 for *_, z_m in line.coords), "as high as the street"
+    assert marked == 36
+
+
+def lane_line(edge: etree._Element) -> LineString:
+    """Return the line of an edge's lane, in SUMO's frame."""
+    shape = str(next(edge.iter("lane")).get("shape"))
+    return LineString([tuple(map(float, point.split(","))) for point in shape.split()])
 
 
 def test_lanes_without_a_speed_take_that_of_their_road() -> None:

@@ -13,6 +13,7 @@ from linden.authoring.sumo import programs, write_folder
 from linden.authoring.sumo.bus_stops import BusStop, RouteStop, bus_stops, parking_areas
 from linden.authoring.sumo.check import compare, walkable
 from linden.authoring.sumo.demand import Demand, draw
+from linden.authoring.sumo.net import point_at
 from linden.authoring.sumo.network import Converted
 from linden.authoring.sumo.people import FARTHER_M, WALK_REACH_M, draw_riders, draw_walks, people_file
 from linden.authoring.sumo.places import SCHOOL, TRANSIT, Place, car_streets, pavements, places_of
@@ -78,12 +79,34 @@ def test_walks_follow_seed_hour_and_scale_and_lead_to_schools_when_these_begin(
 def test_cars_fetch_from_schools_and_park_at_homes(linden: tuple[Converted, Path], places: tuple[Place, ...]) -> None:
     net = linden[0].net
     schools = {edge.id for edge in car_streets(net, places, SCHOOL)}
-    at_kerbs = frozenset(area.id.removeprefix("parking") for area in parking_areas(net))
-    trips = draw(net, Demand(hour=14.5), places, at_kerbs)
+    spaces = parking_areas(net)
+    trips = draw(net, Demand(hour=14.5), places, spaces)
     assert sum(trip.start in schools for trip in trips) > 0.08 * len(trips)
-    parked = [trip for trip in trips if trip.parking is not None]
-    assert 10 < len(parked) < 0.3 * len(trips)
-    assert all(trip.parking == trip.end and trip.end in at_kerbs for trip in parked)
+    edge_of = {space.id: space.edge for space in spaces}
+    used = [space for trip in trips for space in (trip.from_space, trip.to_space) if space is not None]
+    assert len(used) > 0.5 * len(trips)
+    assert len(used) == len(set(used)), "no space is given away twice"
+    assert all(trip.to_space is None or edge_of[trip.to_space] == trip.end for trip in trips)
+    assert all(trip.from_space is None or edge_of[trip.from_space] == trip.start for trip in trips)
+
+
+def test_a_trip_ends_in_a_parking_space_or_where_the_network_ends(linden: tuple[Converted, Path]) -> None:
+    net = linden[0].net
+    trips = draw(net, Demand(), (), parking_areas(net))
+    assert len(net.outer) == 11, "the ends of Linden's map"
+    ends = [trip.to_space is not None or net.edges[trip.end].end in net.outer for trip in trips]
+    assert sum(ends) == len(ends)
+    assert all(trip.is_under_way or trip.from_space or net.edges[trip.start].start in net.outer for trip in trips)
+
+
+def test_parking_spaces_keep_clear_of_what_stands_at_the_kerb(linden: tuple[Converted, Path]) -> None:
+    net = linden[0].net
+    spaces = parking_areas(net)
+    space = spaces[len(spaces) // 2]
+    at_m = point_at(net.edges[space.edge].lanes[0], (space.from_m + 3.0) / net.edges[space.edge].length_m)
+    fewer = parking_areas(net, [(*at_m, 10.0)])
+    assert space not in fewer
+    assert 0 < len(spaces) - len(fewer) < 10
 
 
 def test_passengers_ride_onwards_and_never_to_the_other_side_of_the_street(
