@@ -36,7 +36,7 @@ docs: pages  ## the documentation site, in site/
 	@echo "to read it, with search: $(BIN)/python -m http.server --directory site"
 
 pages:  ## the generated pages and tables of docs/
-	@scripts/setup dev
+	@scripts/setup docs
 	$(BIN)/python scripts/make_supported.py
 	$(BIN)/python scripts/make_scenarios_page.py
 	$(BIN)/python scripts/make_options_tables.py
