@@ -89,9 +89,7 @@ def rclpy_peer(rclpy_python: Path) -> Iterator[Starts]:
     with ExitStack() as stack:
 
         def start(*words: str, domain: int | None = None, messages: str = "messages") -> "subprocess.Popen[str]":
-            made = str(PLACE / messages)
-            own = {"AMENT_PREFIX_PATH": str(PLACE), "PYTHONPATH": made, "LD_LIBRARY_PATH": made}
-            environment = {**os.environ, **own}
+            environment = {**os.environ, "AMENT_PREFIX_PATH": str(PLACE), "PYTHONPATH": str(PLACE / messages)}
             if domain is not None:
                 environment["ROS_DOMAIN_ID"] = str(domain)
             process = stack.enter_context(

@@ -62,7 +62,6 @@ def compile_package(made: Path, out: Path) -> None:
     sources = [str(file) for file in sorted(made.rglob("*.c"))]
     command = ["gcc", *flags, "-shared", *sources, f"{every}.o", "-o", str(target), *libraries, "-lstdc++"]
     subprocess.run([*command, f"-Wl,-rpath,{PREFIX / 'lib'}"], check=True)
-    (out / f"lib{made.name}__rosidl_typesupport_fastrtps_c.so").symlink_to(target)  # the middleware opens it by name
 
 
 def main(definitions: str, out: str) -> None:

@@ -41,6 +41,7 @@ def hear() -> None:
     while not (len(heard) == len(wanted) and names(node)) and node.get_clock().now().nanoseconds * 1e-9 < until_s:
         rclpy.spin_once(node, timeout_sec=0.1)
     sys.stdout.write(json.dumps([described(node, name, each) for name, each in heard.items()]) + "\n")
+    sys.stdout.flush()
 
 
 def names(node: Node) -> list[str]:

@@ -25,9 +25,12 @@ ANY_NETWORK = f"<CycloneDDS><Domain>{FAST_DDS}</Domain></CycloneDDS>"
 """The settings of Cyclone DDS on all networks."""
 ONLY_HERE = f"""<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
 <AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>
-<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
+<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1" PruneDelay="inf"/></Peers>
+<SPDPInterval>1s</SPDPInterval></Discovery>
 {FAST_DDS}</Domain></CycloneDDS>"""
-"""The settings of Cyclone DDS for this machine alone: the loopback interface, without multicast."""
+"""The settings of Cyclone DDS for this machine alone: the loopback interface, without multicast.
+
+A node of Fast DDS that comes later does not call us there, so we call each second, and without an end."""
 
 _domains: dict[int, Any] = {}
 
