@@ -58,7 +58,7 @@ def described(node: Node, name: str, message: object) -> dict[str, object]:
         "bytes": serialize_message(message).hex(),
         "frame": None if header is None else header.frame_id,
         "stamp": None if header is None else [header.stamp.sec, header.stamp.nanosec],
-        "node": publisher.node_name,
+        "nodes": names(node),
         "type": publisher.topic_type,
         "hash": str(publisher.topic_type_hash),
         "latched": publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL,

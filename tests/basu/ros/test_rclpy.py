@@ -90,7 +90,7 @@ def agrees(heard: dict[str, dict[str, object]], node: Node, messages: list[Messa
         found = heard[topic.name]
         assert found["bytes"] == bytes(node.types.data(content)).hex(), topic
         assert (found["type"], found["hash"]) == (topic.type, node.types.store.hash_rihs01(topic.type)), topic
-        assert (found["latched"], found["reliable"], found["node"]) == (topic.is_latched, topic.is_reliable, "basu")
+        assert (found["latched"], found["reliable"], found["nodes"]) == (topic.is_latched, topic.is_reliable, ["basu"])
         header = getattr(content, "header", None)
         if header is not None:
             stamp = [header.stamp.sec, header.stamp.nanosec]
