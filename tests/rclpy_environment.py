@@ -20,7 +20,9 @@ ROOT = Path(__file__).parents[1]
 SIDE = ROOT / "tests" / "rclpy_side"
 PLACE, REQUIREMENTS = ROOT / ".venv" / "rclpy", SIDE / "requirements.txt"
 DEFINITIONS = ROOT / "src" / "basu" / "ros" / "definitions"
-OTHER_VERSION = "ackermann_msgs/AckermannDrive.msg"  # without its last field
+OTHER_VERSION = (
+    "ackermann_msgs/AckermannDrive.msg"  # with another name of its last field: the bytes fit, the meaning does not
+)
 Starts = Callable[..., "subprocess.Popen[str]"]
 
 
@@ -66,8 +68,8 @@ def _make() -> None:
             raise MissingError(f"the wheels of rclpy cannot be installed: {done.stderr.strip()[-300:]}")
     other = PLACE / "other"
     (other / "definitions" / "ackermann_msgs").mkdir(parents=True)
-    fields = (DEFINITIONS / OTHER_VERSION).read_text(encoding="utf-8").rstrip().splitlines()[:-1]
-    (other / "definitions" / OTHER_VERSION).write_text("\n".join(fields) + "\n", encoding="utf-8")
+    text = (DEFINITIONS / OTHER_VERSION).read_text(encoding="utf-8").rstrip()
+    (other / "definitions" / OTHER_VERSION).write_text(f"{text}_of_another_name\n", encoding="utf-8")
     for definitions, out in ((DEFINITIONS, PLACE / "messages"), (other / "definitions", other / "messages")):
         subprocess.run([str(made), str(SIDE / "messages.py"), str(definitions), str(out)], check=True)
 
