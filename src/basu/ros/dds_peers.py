@@ -68,7 +68,7 @@ class Publishers:
         self._alive = ReadCondition(self._reader, SampleState.Any | ViewState.Any | InstanceState.Alive)
 
     def unheard(self, topic: Topic, dds_topic: str, types: Types, heard: set[Any]) -> list[str]:
-        """Return why each publisher on a topic is not heard by a reader of ours, whose publishers ``heard`` names."""
+        """Return why each publisher on a topic is not heard by a reader of ours; ``heard`` are its peers."""
         found = self._reader.read(N=MOST, condition=self._alive)
         return [
             _reason(topic, types, each)

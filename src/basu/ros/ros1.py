@@ -156,7 +156,7 @@ class Node:
         return len(self.peers_of(topic))
 
     def unheard(self, topic: Topic) -> list[str]:
-        """Return what rospy said of peers whose version of a topic's type is not ours."""
+        """Return what rospy said of peers with another version of a topic's type."""
         return [f"that rospy refused: {text}" for text in list(self.warnings) if topic.name in text]
 
     def readers_of(self, topic: Topic) -> int:

@@ -185,7 +185,7 @@ class LockstepAgent(AutonomousAgent):
             time.sleep(SLICE_S)  # discovery has no event that this could wait for
 
     def _unheard(self) -> list[str]:
-        """The topics of commands whose publishers do not fit, each with the reason."""
+        """The topics of commands with publishers that do not fit, each with the reason."""
         return [f"{topic.name} {reason}" for topic in self.commands() for reason in self.node.unheard(topic)]
 
     def _check_alone(self) -> None:
