@@ -13,9 +13,10 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from basu.ros.dds import ONLY_HERE
+from basu.ros.dds import node_list_types
+from basu.ros.dds_domain import ONLY_HERE
 from basu.ros.dds_types import idl_structure
-from basu.ros.types import Generation, types_of
+from basu.ros.types import Generation, Types, types_of
 
 TYPES = types_of(Generation.ROS_2)
 LONGEST = duration(seconds=30)
@@ -27,8 +28,8 @@ def main(domain: int) -> None:
     volatile = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
     latched = Qos(*volatile, Policy.Durability.TransientLocal)
 
-    def listen(name: str, kind: str, qos: Qos) -> tuple[DataReader, ReadCondition]:
-        reader = DataReader(participant, Topic(participant, name, idl_structure(TYPES, kind)), qos)
+    def listen(name: str, kind: str, qos: Qos, types: Types = TYPES) -> tuple[DataReader, ReadCondition]:
+        reader = DataReader(participant, Topic(participant, name, idl_structure(types, kind)), qos)
         return reader, ReadCondition(reader, SampleState.NotRead | ViewState.Any | InstanceState.Alive)
 
     def next_of(heard: tuple[DataReader, ReadCondition]) -> object:
@@ -41,7 +42,7 @@ def main(domain: int) -> None:
     still = listen("rt/tf_static", "tf2_msgs/msg/TFMessage", latched)
     places = listen("rt/carla/hero/odometry", "nav_msgs/msg/Odometry", volatile)
     clouds = listen("rt/carla/hero/LIDAR", "sensor_msgs/msg/PointCloud2", volatile)
-    nodes = listen("ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo", latched)
+    nodes = listen("ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo", latched, node_list_types())
     control = idl_structure(TYPES, "carla_msgs/msg/CarlaEgoVehicleControl")
     commands = DataWriter(participant, Topic(participant, "rt/carla/hero/vehicle_control_cmd", control), volatile)
     tree, place, cloud, entry = (next_of(each) for each in (still, places, clouds, nodes))

@@ -7,19 +7,21 @@ from __future__ import annotations
 
 import os
 import time
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from basu.errors import UserError
 from basu.extras import CYCLONEDDS
+from basu.ros.dds_domain import domain_of_environment, joined
+from basu.ros.dds_peers import Publishers, SameType, user_data
 from basu.ros.dds_types import dds_type
 from basu.ros.topics import Topic
-from basu.ros.types import Generation, types_of
+from basu.ros.types import HUMBLE, KILTED, Generation, Types, types_of
 
 try:
     from cyclonedds.core import (
-        DDSException,
         InstanceState,
         Policy,
         Qos,
@@ -28,7 +30,6 @@ try:
         ViewState,
         WaitSet,
     )
-    from cyclonedds.domain import Domain, DomainParticipant
     from cyclonedds.pub import DataWriter
     from cyclonedds.sub import DataReader
     from cyclonedds.topic import Topic as DdsTopic
@@ -41,37 +42,9 @@ if TYPE_CHECKING:
 
     from basu.ros.topics import Message
 
-DOMAINS = 232  # the highest domain: its ports still lie below 65536 (DDSI-RTPS 2.3, 9.6.1.1)
 DISCOVERY = Topic("ros_discovery_info", "rmw_dds_common/msg/ParticipantEntitiesInfo", is_latched=True, depth=1)
-GID_BYTES = 24  # rmw_dds_common/Gid of Humble
+BEFORE_IRON = ("foxy", "galactic", "humble")  # an identifier of an endpoint has 24 bytes there, 16 since
 NS_PER_S = 1_000_000_000
-ONLY_HERE = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface address="127.0.0.1"/></Interfaces>
-<AllowMulticast>false</AllowMulticast></General><Discovery><ParticipantIndex>auto</ParticipantIndex>
-<MaxAutoParticipantIndex>60</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
-</Domain></CycloneDDS>"""
-"""The settings of Cyclone DDS for this machine alone: the loopback interface, without multicast."""
-
-_domains: dict[int, Any] = {}
-
-
-def domain_of_environment() -> int:
-    """Return the domain that ``ROS_DOMAIN_ID`` names, 0 without it.
-
-    Raises:
-        UserError: it names none.
-    """
-    text = os.environ.get("ROS_DOMAIN_ID", "").strip() or "0"
-    if not text.isdecimal() or int(text) > DOMAINS:
-        raise UserError(f"ROS_DOMAIN_ID is '{text}'; it must be a number from 0 to {DOMAINS}")
-    return int(text)
-
-
-def is_local() -> bool:
-    """Return whether ROS is to stay on this machine, by ``ROS_LOCALHOST_ONLY`` or ``ROS_AUTOMATIC_DISCOVERY_RANGE``."""
-    return (
-        os.environ.get("ROS_LOCALHOST_ONLY", "").strip() == "1"
-        or os.environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "").strip().upper() == "LOCALHOST"
-    )
 
 
 class Node:
@@ -93,15 +66,9 @@ class Node:
         self._writers: dict[str, Any] = {}
         self._readers: dict[str, tuple[Topic, Any]] = {}
         self._waits: dict[tuple[Topic, ...], Any] = {}
-        try:
-            if is_local() and self.domain not in _domains:
-                _domains[self.domain] = Domain(self.domain, ONLY_HERE)
-            self._participant: Any = DomainParticipant(self.domain)
-        except DDSException as error:
-            raise UserError(
-                f"DDS cannot join the domain {self.domain}: {error}; see ROS_DOMAIN_ID, CYCLONEDDS_URI and whether "
-                "this machine has a network, or set ROS_LOCALHOST_ONLY=1"
-            ) from error
+        self._same: dict[str, SameType] = {}
+        self._publishers: Publishers | None = None
+        self._participant: Any = joined(self.domain)
 
     def announce(self, *topics: Topic) -> None:
         """Make writers, so that peers find the topics before the first message, and enter them in the list of nodes."""
@@ -113,7 +80,9 @@ class Node:
         """Make readers, and enter them in the list of nodes."""
         for topic in topics:
             if topic.name not in self._readers:
-                self._readers[topic.name] = (topic, DataReader(self._participant, self._topic(topic), _qos(topic)))
+                reader = DataReader(*self._endpoint(topic))
+                self._readers[topic.name] = (topic, reader)
+                self._same[topic.name] = SameType(self.types, topic.type, reader.get_matched_publication_data)
         self._enter()
 
     def publish(self, *messages: Message) -> None:
@@ -124,11 +93,12 @@ class Node:
     def received(self, topic: Topic) -> list[Any]:
         """Return the messages that have arrived since the last call, the oldest first.
 
-        DDS has compared their types with ours before: a peer with another version of a type is no peer.
+        A peer with another version of the type is no peer.
         """
-        _, reader = self._readers[topic.name]
-        samples = reader.take(N=topic.depth)
-        return [self.types.parsed(sample.data, topic.type) for sample in samples if hasattr(sample, "data")]
+        same = self._same[topic.name]
+        samples = [each for each in self._readers[topic.name][1].take(N=topic.depth) if hasattr(each, "data")]
+        ours = [each for each in samples if same.has(each.sample_info.publication_handle)]
+        return [self.types.parsed(sample.data, topic.type) for sample in ours]
 
     def wait(self, topic: Topic, timeout_s: float) -> bool:
         """Wait until something has arrived on a topic; whether it has."""
@@ -151,7 +121,17 @@ class Node:
 
     def writers_of(self, topic: Topic) -> int:
         """Return how many peers publish on a topic that this node listens to."""
-        return len(self._readers[topic.name][1].get_matched_publications())
+        return self._same[topic.name].count(self._readers[topic.name][1].get_matched_publications())
+
+    def unheard(self, topic: Topic) -> list[str]:
+        """Return why each peer that publishes on a topic, and that this node does not hear, does not fit."""
+        if self._publishers is None:
+            self._publishers = Publishers(self._participant)
+        reader, same = self._readers[topic.name][1], self._same[topic.name]
+        matched = [each for each in reader.get_matched_publications() if same.has(each)]
+        peers = [reader.get_matched_publication_data(each) for each in matched]
+        heard = {peer.key for peer in peers if peer is not None}
+        return self._publishers.unheard(topic, _dds_topic(topic), self.types, heard)
 
     def readers_of(self, topic: Topic) -> int:
         """Return how many peers listen to a topic of this node."""
@@ -168,49 +148,68 @@ class Node:
 
     def close(self) -> None:
         """Leave the domain."""
-        self._waits, self._writers, self._readers, self._participant = {}, {}, {}, None
+        self._waits, self._writers, self._readers, self._same = {}, {}, {}, {}
+        self._publishers = self._participant = None
 
     def _writer(self, topic: Topic) -> Any:  # noqa: ANN401 - of cyclonedds
         """The writer of a topic, made at its first use."""
         if topic.name not in self._writers:
-            self._writers[topic.name] = DataWriter(self._participant, self._topic(topic), _qos(topic))
+            self._writers[topic.name] = DataWriter(*self._endpoint(topic))
         return self._writers[topic.name]
 
-    def _topic(self, topic: Topic) -> Any:  # noqa: ANN401 - of cyclonedds
-        """A topic as ROS 2 names it in DDS: with rt before its name (design.ros2.org, topic and service names)."""
-        name = f"rt{topic.name}" if topic.name.startswith("/") else topic.name
-        return DdsTopic(self._participant, name, dds_type(self.types, topic.type))
+    def _endpoint(self, topic: Topic) -> tuple[Any, Any, Any]:
+        """What a reader or a writer is made of."""
+        types = _types_for(topic, self.types)
+        made = DdsTopic(self._participant, _dds_topic(topic), dds_type(types, topic.type))
+        return self._participant, made, _qos(topic, types)
 
     def _enter(self) -> None:
         """Tell the readers and writers of this node to ROS 2's list of nodes."""
         own = [writer for name, writer in self._writers.items() if name != DISCOVERY.name]
-        make = self.types.message
-        node = make(
+        types = node_list_types()
+        node = types.message(
             "rmw_dds_common/msg/NodeEntitiesInfo",
             node_namespace="/",
             node_name=self.name,
             reader_gid_seq=[self._gid(reader) for _, reader in self._readers.values()],
             writer_gid_seq=[self._gid(writer) for writer in own],
         )
-        entry = make(DISCOVERY.type, gid=self._gid(self._participant), node_entities_info_seq=[node])
-        self._writer(DISCOVERY).write(_sample(self.types, DISCOVERY, entry))
+        entry = types.message(DISCOVERY.type, gid=self._gid(self._participant), node_entities_info_seq=[node])
+        self._writer(DISCOVERY).write(_sample(types, DISCOVERY, entry))
 
     def _gid(self, entity: Any) -> Any:  # noqa: ANN401 - of cyclonedds in, a message out
         """The identifier of an entity as ROS 2 writes it."""
-        data = np.zeros(GID_BYTES, dtype=np.uint8)
-        data[:16] = np.frombuffer(entity.guid.bytes, dtype=np.uint8)
-        return self.types.message("rmw_dds_common/msg/Gid", data=data)
+        gid = node_list_types().message("rmw_dds_common/msg/Gid")
+        gid.data[:16] = np.frombuffer(entity.guid.bytes, dtype=np.uint8)
+        return gid
+
+
+@cache
+def node_list_types() -> Types:
+    """Return the types of ROS 2's list of nodes: those since Iron, or those before it where ``ROS_DISTRO`` says so."""
+    is_old = os.environ.get("ROS_DISTRO", "").strip().lower() in BEFORE_IRON
+    return Types(Generation.ROS_2, release=HUMBLE if is_old else KILTED)
+
+
+def _types_for(topic: Topic, types: Types) -> Types:
+    return node_list_types() if topic.name == DISCOVERY.name else types
+
+
+def _dds_topic(topic: Topic) -> str:
+    """The name of a topic as ROS 2 has it in DDS: with rt before it (design.ros2.org, topic and service names)."""
+    return f"rt{topic.name}" if topic.name.startswith("/") else topic.name
 
 
 def _sample(types: Any, topic: Topic, content: Any) -> Any:  # noqa: ANN401 - as above
     return dds_type(types, topic.type)(types.data(content))
 
 
-def _qos(topic: Topic) -> Any:  # noqa: ANN401 - of cyclonedds
+def _qos(topic: Topic, types: Types) -> Any:  # noqa: ANN401 - of cyclonedds
     """The QoS of a topic, as ROS 2's profiles have it."""
     return Qos(
         Policy.Reliability.Reliable(duration(milliseconds=100)) if topic.is_reliable else Policy.Reliability.BestEffort,
         Policy.Durability.TransientLocal if topic.is_latched else Policy.Durability.Volatile,
         Policy.History.KeepLast(topic.depth),
+        user_data(types, topic.type),
         Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False),
     )

@@ -110,12 +110,13 @@ class Moment(NamedTuple):
     """One frame of a simulated vehicle."""
 
     t_s: float  # simulated time
-    frame: int  # its number
+    frame: int  # its number, from 0
     motion: Motion
     control: Control  # as applied
     others: Sequence[Actor] = ()
     lights: Sequence[Light] = ()
     measured: Sequence[Measurement] = ()  # in this frame
+    server_frame: int | None = None  # CARLA's number of it; None where bytes must not depend on earlier drives
 
 
 class Vehicle(NamedTuple):

@@ -38,6 +38,9 @@ class RosNode(Protocol):
     def writers_of(self, topic: Topic) -> int:
         """Return how many peers publish on a topic that this node listens to."""
 
+    def unheard(self, topic: Topic) -> list[str]:
+        """Return why each peer that publishes on a topic, and that this node does not hear, does not fit."""
+
     def readers_of(self, topic: Topic) -> int:
         """Return how many peers listen to a topic of this node."""
 

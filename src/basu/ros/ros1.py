@@ -155,6 +155,10 @@ class Node:
         """Return how many peers publish on a topic that this node listens to."""
         return len(self.peers_of(topic))
 
+    def unheard(self, topic: Topic) -> list[str]:
+        """Return what rospy said of peers with another version of a topic's type."""
+        return [f"that rospy refused: {text}" for text in list(self.warnings) if topic.name in text]
+
     def readers_of(self, topic: Topic) -> int:
         """Return how many peers listen to a topic of this node."""
         self.announce(topic)

@@ -120,7 +120,7 @@ def moment_messages(types: Types, vehicle: Vehicle, moment: Moment) -> Iterator[
     role, t_s = vehicle.role, moment.t_s
     yield Message(CLOCK, of_vehicle.clock(types, t_s))
     yield Message(TF, of_vehicle.transforms(types, t_s, of_vehicle.moving_tree(vehicle, moment.motion)))
-    yield Message(STATUS, of_vehicle.simulator_status(types, moment.frame, vehicle.step_s))
+    yield Message(STATUS, of_vehicle.simulator_status(types, moment, vehicle.step_s))
     child = of_vehicle.BASE if vehicle.rear_axle_m else role
     yield Message(odometry_of(role), of_vehicle.odometry(types, vehicle, moment, child))
     yield Message(status_of(role), of_vehicle.status(types, moment))

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from rosbags.typesys.store import Typestore
 
+NOETIC, HUMBLE, KILTED = Stores.ROS1_NOETIC, Stores.ROS2_HUMBLE, Stores.ROS2_KILTED
 DEFINITIONS = Path(__file__).parent / "definitions"
 
 
@@ -28,11 +29,16 @@ class Generation(enum.Enum):
 class Types:
     """The message types of one generation: those of Noetic or Humble, CARLA's, Autoware's and Ackermann's."""
 
-    def __init__(self, generation: Generation, foreign: Mapping[str, str] | None = None) -> None:
-        """Read all definitions; ``foreign`` are definitions of other versions, with all that they hold, by type."""
+    def __init__(
+        self, generation: Generation, foreign: Mapping[str, str] | None = None, release: Stores | None = None
+    ) -> None:
+        """Read all definitions; ``foreign`` are definitions of other versions, with all that they hold, by type.
+
+        ``release`` has the standard types, by default Noetic or Humble.
+        """
         self.generation = generation
-        is_first = generation is Generation.ROS_1
-        self.store: Typestore = get_typestore(Stores.ROS1_NOETIC if is_first else Stores.ROS2_HUMBLE)
+        usual = NOETIC if generation is Generation.ROS_1 else HUMBLE
+        self.store: Typestore = get_typestore(release or usual)
         own: dict[str, Any] = {}
         for name, text in (foreign or {}).items():
             found = get_types_from_msg(text, name)

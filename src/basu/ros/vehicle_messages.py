@@ -132,11 +132,11 @@ def status(types: Types, moment: Moment) -> Any:  # noqa: ANN401 - a message
     )
 
 
-def simulator_status(types: Types, frame: int, step_s: float) -> Any:  # noqa: ANN401 - a message
-    """Return the number of the frame, and that the simulator runs in steps of ``step_s``."""
+def simulator_status(types: Types, moment: Moment, step_s: float) -> Any:  # noqa: ANN401 - a message
+    """Return CARLA's number of the frame, else the moment's own, and that the simulator runs in steps."""
     return types.message(
         "carla_msgs/msg/CarlaStatus",
-        frame=frame,
+        frame=moment.frame if moment.server_frame is None else moment.server_frame,
         fixed_delta_seconds=step_s,
         synchronous_mode=True,
         synchronous_mode_running=True,

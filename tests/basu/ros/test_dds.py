@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from basu.errors import UserError
-from basu.ros.dds import Node, domain_of_environment, is_local
+from basu.ros.dds import Node
+from basu.ros.dds_domain import domain_of_environment, is_local
 from basu.ros.dds_types import dds_name, dds_type
 from basu.ros.topics import (
     TF_STATIC,
@@ -119,8 +120,10 @@ def test_the_environment_may_keep_ros_on_this_machine(monkeypatch: pytest.Monkey
     assert is_local()
 
 
-def test_without_the_wheel_there_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "cyclonedds.domain", None)
-    monkeypatch.delitem(sys.modules, "basu.ros.dds")
+@pytest.mark.parametrize("module", ["dds", "dds_domain", "dds_peers", "dds_types"])
+def test_without_the_wheel_there_is_a_sentence(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    for part in ("core", "idl", "builtin"):
+        monkeypatch.setitem(sys.modules, f"cyclonedds.{part}", None)
+    monkeypatch.delitem(sys.modules, f"basu.ros.{module}")
     with pytest.raises(UserError, match=r'pip install "linden\[ros2\]"'):
-        importlib.import_module("basu.ros.dds")
+        importlib.import_module(f"basu.ros.{module}")

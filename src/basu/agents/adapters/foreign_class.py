@@ -116,7 +116,8 @@ def _check(agent_class: type[Any], path: str) -> None:
             ) from error
     if (version := _ros_version(agent_class, path)) in (1, 2):
         raise UserError(
-            f"{agent_class.__name__} in {path} is an agent for ROS {version}; BASU has no bridge to ROS yet"
+            f"{agent_class.__name__} in {path} is an agent for ROS {version}, which the leaderboard's own "
+            f"bridge serves; start its software by itself and drive with basu run {'ros1' if version == 1 else 'ros'}"
         )
 
 

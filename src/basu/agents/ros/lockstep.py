@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from basu.ros.node import RosNode
 
 APPEARS_S = SETUP_LIMIT_S - 20.0  # wall time for the software to appear on the domain: it may load maps and networks
+UNHEARD_S = 5.0  # wall time for DDS to compare types, and for another node to appear beside one that cannot be heard
 SLICE_S = 0.02  # of waiting: in between, the step's time limit can interrupt
 NODE = "basu"
 
@@ -164,10 +165,17 @@ class LockstepAgent(AutonomousAgent):
         """Wait until a peer publishes commands.
 
         Raises:
-            AgentTimedOutError: none appears.
+            AgentTimedOutError: none appears, or none that can be heard.
         """
         until_s = time.monotonic() + self.appears_s
+        unheard_since_s = math.inf
         while not any(self.node.writers_of(topic) for topic in self.commands()):
+            unheard = self._unheard()
+            unheard_since_s = min(unheard_since_s, time.monotonic()) if unheard else math.inf
+            if unheard and time.monotonic() > min(until_s, unheard_since_s + UNHEARD_S):
+                raise AgentTimedOutError(
+                    f"no command can be heard: a {self.node.kind} node of {self.node.realm} publishes on {unheard[0]}"
+                )
             if time.monotonic() > until_s:
                 names = " or ".join(topic.name for topic in self.commands())
                 raise AgentTimedOutError(
@@ -175,6 +183,10 @@ class LockstepAgent(AutonomousAgent):
                     f"start the software, and give both the same {self.node.settings}"
                 )
             time.sleep(SLICE_S)  # discovery has no event that this could wait for
+
+    def _unheard(self) -> list[str]:
+        """The topics of commands with publishers that do not fit, each with the reason."""
+        return [f"{topic.name} {reason}" for topic in self.commands() for reason in self.node.unheard(topic)]
 
     def _check_alone(self) -> None:
         """Check that one node drives. One that was killed stays on the domain until DDS misses it, so this waits.

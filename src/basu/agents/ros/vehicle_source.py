@@ -65,6 +65,7 @@ class VehicleSource:
             control=control,
             lights=lights if changed else (),
             measured=self._measured(sensor_data),
+            server_frame=snapshot.frame,
         )
 
     def _measured(self, sensor_data: Mapping[str, tuple[int, Any]]) -> list[Measurement]:

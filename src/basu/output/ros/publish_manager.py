@@ -46,7 +46,7 @@ class PublishManager(BaseManager):
     def tick(self, frame: Frame) -> None:
         """Publish a frame."""
         if self._node is not None:
-            moment = self._source.moment(frame)
+            moment = self._source.moment(frame)._replace(server_frame=frame.server_frame)
             self._node.publish(*moment_messages(self._node.types, self._source.vehicle, moment))
 
     def close(self) -> None:

@@ -111,7 +111,7 @@ def replaced(line: str, by: str) -> str:
         ),
         pytest.param(
             replaced("    def destroy", "    @staticmethod\n    def get_ros_version(): return 2\n    def destroy"),
-            "is an agent for ROS 2; BASU has no bridge",
+            "is an agent for ROS 2, which the leaderboard",
             id="ros",
         ),
         pytest.param(

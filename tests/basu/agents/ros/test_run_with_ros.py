@@ -11,8 +11,12 @@ from pathlib import Path
 import pytest
 
 from basu.agents.ros.ros2 import RosAgent
+from basu.records.history.files import read_history
+from rclpy_environment import rclpy_peer, rclpy_python
 from ros_runs import FOLLOWER, STACK, has_failed, has_followed_the_route, run
 from servers import RunningServer
+
+__all__ = ["rclpy_peer", "rclpy_python"]
 
 DOMAINS = itertools.count(1)
 Starts = Callable[..., "subprocess.Popen[bytes]"]
@@ -22,7 +26,7 @@ Starts = Callable[..., "subprocess.Popen[bytes]"]
 def starts(monkeypatch: pytest.MonkeyPatch) -> Iterator[Starts]:
     """Starts software on a domain of this test's own, and ends it: what was killed stays on its domain for 10 s."""
     monkeypatch.setenv("ROS_LOCALHOST_ONLY", "1")
-    monkeypatch.setenv("ROS_DOMAIN_ID", str(1 + (os.getpid() + next(DOMAINS)) % 200))
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(1 + (os.getpid() + next(DOMAINS)) % 90))
     with ExitStack() as stack:
 
         def start(file: Path, *words: str) -> "subprocess.Popen[bytes]":
@@ -77,3 +81,30 @@ def test_software_that_never_appears_is_a_time_out_with_a_sentence(
     assert (result["status"], result["fault"]) == ("AgentTimedOut", "agent")
     assert "publishes on /carla/hero/vehicle_control_cmd or /carla/hero/ackermann_cmd within" in result["message"]
     assert "give both the same ROS_DOMAIN_ID" in result["message"]
+
+
+def test_real_rclpy_drives_the_shuttle(
+    simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts, rclpy_peer: Starts
+) -> None:
+    del starts  # but its domain
+    rclpy_peer("drive", "good")
+    _, result, folder = run("ros", simulator, route_file, tmp_path, "--stop-after", "3")
+    assert result["status"] == "Stopped", result["message"]
+    assert read_history(folder).frames["route_s_m"][-1] > 1.0
+
+
+@pytest.mark.parametrize(
+    ("kind", "says"),
+    [
+        ("dies", "the ROS 2 software left the domain"),
+        ("best-effort", "vehicle_control_cmd with the QoS reliability BEST_EFFORT; it must be RELIABLE"),
+    ],
+)
+def test_real_rclpy_that_fails_is_a_time_out_with_the_cause(
+    kind: str, says: str, simulator: RunningServer, route_file: Path, tmp_path: Path, starts: Starts, rclpy_peer: Starts
+) -> None:
+    del starts  # but its domain
+    rclpy_peer("drive", kind)
+    _, result, _ = run("ros", simulator, route_file, tmp_path, "--step-limit", "25")
+    assert (result["status"], result["fault"]) == ("AgentTimedOut", "agent"), result["message"]
+    assert says in result["message"]

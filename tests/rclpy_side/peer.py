@@ -1,0 +1,102 @@
+"""Nodes of real rclpy, in its environment: `peer.py hear`, `peer.py drive KIND`, `peer.py publish TOPIC TYPE`.
+
+`hear` reads a JSON list of topics from its standard input and prints what it heard as soon as every topic has spoken.
+"""
+
+import importlib
+import json
+import sys
+
+import rclpy
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
+
+LONGEST_S = 40.0
+GOOD = 5  # commands before the one that fails
+
+
+def class_of(name: str) -> type:
+    package, _, message = name.split("/")
+    return getattr(importlib.import_module(f"{package}.msg"), message)
+
+
+def profile(*, is_latched: bool = False, is_reliable: bool = True) -> QoSProfile:
+    return QoSProfile(
+        depth=10,
+        reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.TRANSIENT_LOCAL if is_latched else DurabilityPolicy.VOLATILE,
+    )
+
+
+def hear() -> None:
+    """Listen to every topic, and print each first message with what the graph says of its publisher."""
+    node, heard = Node("listener"), {}
+    wanted = json.loads(sys.stdin.readline())
+    for name, kind, is_latched, is_reliable in wanted:
+        qos = profile(is_latched=is_latched, is_reliable=is_reliable)
+        node.create_subscription(class_of(kind), name, lambda each, name=name: heard.setdefault(name, each), qos)
+    until_s = node.get_clock().now().nanoseconds * 1e-9 + LONGEST_S
+    while not (len(heard) == len(wanted) and names(node)) and node.get_clock().now().nanoseconds * 1e-9 < until_s:
+        rclpy.spin_once(node, timeout_sec=0.1)
+    sys.stdout.write(json.dumps([described(node, name, each) for name, each in heard.items()]) + "\n")
+    sys.stdout.flush()
+
+
+def names(node: Node) -> list[str]:
+    """The other nodes."""
+    return [name for name in node.get_node_names() if name != node.get_name()]
+
+
+def described(node: Node, name: str, message: object) -> dict[str, object]:
+    """A message and its publisher."""
+    header = getattr(message, "header", None)
+    [publisher] = node.get_publishers_info_by_topic(name)
+    return {
+        "topic": name,
+        "bytes": serialize_message(message).hex(),
+        "frame": None if header is None else header.frame_id,
+        "stamp": None if header is None else [header.stamp.sec, header.stamp.nanosec],
+        "nodes": names(node),
+        "type": publisher.topic_type,
+        "hash": str(publisher.topic_type_hash),
+        "latched": publisher.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL,
+        "reliable": publisher.qos_profile.reliability == ReliabilityPolicy.RELIABLE,
+    }
+
+
+def drive(kind: str) -> None:
+    """Answer each odometry with a command until the run is over, or publish commands that cannot be heard."""
+    command_type = class_of("carla_msgs/msg/CarlaEgoVehicleControl")
+    node, given = Node("driver"), []
+    reliability = {"best-effort": False}.get(kind, True)
+    publisher = node.create_publisher(command_type, "/carla/hero/vehicle_control_cmd", profile(is_reliable=reliability))
+
+    def answer(odometry: Odometry) -> None:
+        command = command_type(throttle=0.5)
+        command.header.stamp = odometry.header.stamp
+        given.append(command)
+        if kind == "dies" and len(given) > GOOD:
+            raise SystemExit
+        publisher.publish(command)
+
+    node.create_subscription(Odometry, "/carla/hero/odometry", answer, profile())
+    rclpy.spin(node)
+
+
+def publish(name: str, kind: str) -> None:
+    """Publish an empty message again and again."""
+    node = Node("talker")
+    publisher = node.create_publisher(class_of(kind), name, profile())
+    node.create_timer(0.05, lambda: publisher.publish(class_of(kind)()))
+    rclpy.spin(node)
+
+
+def main(role: str, *words: str) -> None:
+    rclpy.init()
+    {"hear": hear, "drive": drive, "publish": publish}[role](*words)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
