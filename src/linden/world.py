@@ -48,6 +48,7 @@ class World:
         self.settings = settings
         self.frame = 0
         self.episode_id = 0
+        self._first_actor_id = 1
         self._next_stream = FIRST_SENSOR_STREAM
         self.recorder = Recorder()
         self.replayer = Replayer()
@@ -55,9 +56,10 @@ class World:
         self._begin(world_map)
 
     def load(self, world_map: LoadedMap, *, reset_settings: bool) -> None:
-        """End the episode and begin another; actors, weather and lights start anew."""
+        """End the episode and begin another: actors, weather and lights start anew; ids of actors are counted on."""
         if reset_settings:
             self.settings = EpisodeSettings()
+        self._first_actor_id = self.episode.actors.first_free_id
         self._begin(world_map)
 
     @staticmethod
@@ -69,7 +71,7 @@ class World:
         self.episode_id += 1
         self.recorder.stop()
         self.replayer.forget()
-        self.episode = Episode(world_map, first_frame=self.frame)
+        self.episode = Episode(world_map, first_frame=self.frame, first_actor_id=self._first_actor_id)
         self.sensors = EpisodeSensors()
         self.sensor_scene.leave(self.episode)
         self.delta_s = self.settings.fixed_delta_seconds or 0.0
