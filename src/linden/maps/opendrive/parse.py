@@ -48,7 +48,8 @@ def _collector_paused() -> Iterator[None]:
 
 
 def _read(root: etree._Element) -> OpenDrive:
-    roads = tuple(read_road(node) for node in root.iterchildren("road"))
+    found = [read_road(node) for node in root.iterchildren("road")]
+    roads = tuple(road for road in found if road is not None)
     total_m = sum(road.length_m for road in roads)
     refuse_beyond(total_m / 1000.0, LONGEST_TOTAL_M / 1000.0, "km of roads")
     refuse_beyond(sum(len(road.signals) for road in roads), MOST_SIGNALS, "signals")

@@ -18,6 +18,7 @@ from linden.protocol.values.episode import EpisodeSettings, MapInfo, OpendriveGe
 from linden.protocol.values.space import Transform
 from linden.protocol.wire.decode import U16, U32
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, Token
+from linden.server.frame_clock import LONGEST_STEP_S
 from linden.server.rpc.context import Context, PendingLoad
 from linden.server.rpc.registry import Long, method
 from linden.simulation.walkers import mesh_file
@@ -29,6 +30,13 @@ _HALF_TURN_DEG = 180.0
 
 MAX_FIXED_DELTA_S = 10.0
 """Longest fixed step accepted; CARLA sets none, but a step of minutes can only be a unit mixed up."""
+
+MOST_SUBSTEPS = 100
+"""Most substeps of a frame. Unreal's editor offers 16 at most, and a step of 1 s in substeps of 10 ms takes 100.
+
+CARLA takes any number, and then stands still. One vehicle's substep takes up to 0.1 ms here, so a frame of 100 vehicles
+takes at most a second.
+"""
 
 
 class EpisodeInfo(NamedTuple):
@@ -191,6 +199,13 @@ def _check(settings: EpisodeSettings) -> None:
         raise Refusal(
             f"substepping needs max_substep_delta_time above 0 and max_substeps of at least 1, not "
             f"{settings.max_substep_delta_time:g} and {settings.max_substeps}; or set substepping to False"
+        )
+    wanted = min(settings.max_substeps, (fixed_s or LONGEST_STEP_S) / settings.max_substep_delta_time)
+    if wanted > MOST_SUBSTEPS + 1e-6:  # the quotient is rounded
+        raise Refusal(
+            f"max_substeps {settings.max_substeps} and max_substep_delta_time {settings.max_substep_delta_time:g} make "
+            f"{wanted:.0f} substeps of a frame, and {MOST_SUBSTEPS} are the most; raise max_substep_delta_time, lower "
+            "max_substeps or fixed_delta_seconds"
         )
     reach_s = settings.max_substep_delta_time * settings.max_substeps
     if fixed_s is not None and fixed_s > reach_s * (1.0 + 1e-6):
