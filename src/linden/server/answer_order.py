@@ -97,8 +97,10 @@ class AnswerOrder:
         self._of: dict[RpcPeer, _Waits] = {}  # of clients of which something has waited
 
     def forget(self, peer: RpcPeer) -> None:
-        """Drop what a client that has gone waited for; long work goes on, and its result is dropped."""
-        self._of.pop(peer, None)
+        """Drop what a client that has gone waited for, and end its long work."""
+        waits = self._of.pop(peer, None)
+        if waits is not None and waits.work is not None:
+            waits.work.give_up()
         self.expected.forget(peer.number)
 
     # -- before a call -------------------------------------------------------------------------------------------

@@ -23,6 +23,7 @@ import pkgutil
 from collections.abc import Callable, Generator
 from concurrent.futures import Future
 from dataclasses import dataclass
+from threading import Event
 from typing import Any, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
 
 import linden.server.rpc
@@ -134,7 +135,12 @@ class SuspendedCall:
     def __init__(self, call: Call, steps: "Generator[Work, Any, Any]", work: Work) -> None:
         self.call = call
         self.steps = steps
-        self.made: Future[Any] = in_background(work)
+        self._unwanted = Event()
+        self.made: Future[Any] = in_background(work, self._unwanted)
+
+    def give_up(self) -> None:
+        """End the work at its next checkpoint: the client has gone."""
+        self._unwanted.set()
 
 
 def dispatch(context: Context, call: Call) -> bytes | SuspendedCall:

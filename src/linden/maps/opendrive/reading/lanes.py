@@ -4,6 +4,7 @@ import logging
 
 from lxml.etree import _Element as Element
 
+from linden.background import checkpoint
 from linden.maps.opendrive.limits import MOST_LANES, MapError
 from linden.maps.opendrive.model import Cubic, Height, Lane, LaneSection, RoadMark, Speed
 from linden.maps.opendrive.reading.attributes import (
@@ -44,6 +45,7 @@ def read_sections(lanes: Element, road_length_m: float) -> tuple[LaneSection, ..
     ends = [*starts[1:], road_length_m]
     sections = []
     for node, start_m, end_m in zip(nodes, starts, ends, strict=True):
+        checkpoint()
         if start_m == end_m:
             log.warning("line %d: a <laneSection> without length at s=%g m is left out", line_of(node), start_m)
             continue
