@@ -4,8 +4,8 @@ import logging
 
 import carla
 import pytest
-from fakes.ring_map import ring
 
+from fakes.ring_map import ring
 from linden.maps.derivation import facts_of
 from linden.maps.opendrive.limits import MapError
 from linden.maps.opendrive.parse import parse
