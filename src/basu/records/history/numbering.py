@@ -1,7 +1,7 @@
 """`Numbering`: numbers of the other actors in a record, which do not depend on the ids that the simulator gave them.
 
-A simulator counts its ids for as long as it lives, as CARLA does: the second run on one server has other ids than the
-first. A record counts actors from 1 in the order in which it first names them, so that one seed leaves one record.
+A simulator counts its ids for as long as it lives, as CARLA does. So the second run on one server has other ids
+than the first. A record counts actors from 1, in the order in which it first names them.
 """
 
 from __future__ import annotations
