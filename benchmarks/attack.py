@@ -2,7 +2,7 @@
 
     python benchmarks/attack.py [--packets 100000] [--seed 1]
 
-One packet in ``CRAFTED_EACH`` is a crafted map (roads on one place, lane sections, widths) or settings with 10^6 substeps.
+One packet in ``CRAFTED_EACH`` is a crafted map (roads on one place, lane sections, widths) or crafted settings.
 Packets are noise, requests cut off or changed, right types with values that make no sense, and large ones: texts and
 arrays that are announced and do not come, deep nesting, 250,000 empty arrays, pictures of a million pixels.
 Meanwhile a client that behaves ticks a synchronous world with a car. Its wait is that for the server's main thread:
