@@ -47,13 +47,13 @@ def open_at_once(path: str, flags: int) -> int:
     """Return a descriptor of a file, as an opener of ``open``; a pipe would let the server wait for its other end.
 
     Raises:
-        OSError: it cannot be opened, or is a pipe or a device.
+        OSError: it cannot be opened, or is a pipe.
     """
     descriptor = os.open(path, flags | getattr(os, "O_NONBLOCK", 0), 0o666)
     kind = os.fstat(descriptor).st_mode
-    if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind)):
+    if stat.S_ISFIFO(kind):
         os.close(descriptor)
-        raise OSError(errno.EINVAL, "it is a pipe or a device, not a file", path)
+        raise OSError(errno.EINVAL, "it is a pipe, not a file", path)
     return descriptor
 
 

@@ -55,7 +55,7 @@ def test_without_a_folder_it_is_the_users_own(tmp_path: Path, monkeypatch: pytes
 
 def test_a_pipe_among_recordings_is_refused_at_once(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "drive.log")
-    with pytest.raises(OSError, match="a pipe or a device"):
+    with pytest.raises(OSError, match="it is a pipe"):
         Recording(tmp_path / "drive.log")
     with pytest.raises(OSError, match=r"drive\.log"):
         RecordingWriter(tmp_path / "drive.log", "Linden", 0)
