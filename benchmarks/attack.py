@@ -2,6 +2,7 @@
 
     python benchmarks/attack.py [--packets 100000] [--seed 1]
 
+One packet in ``CRAFTED_EACH`` is a crafted map (roads on one place, lane sections, widths) or crafted settings.
 Packets are noise, requests cut off or changed, right types with values that make no sense, and large ones: texts and
 arrays that are announced and do not come, deep nesting, 250,000 empty arrays, pictures of a million pixels.
 Meanwhile a client that behaves ticks a synchronous world with a car. Its wait is that for the server's main thread:
@@ -20,6 +21,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import msgpack
 import psutil
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
@@ -33,6 +35,10 @@ OPENING = b"\x94\x00\x01\xa7version\x92\x91\xc2"  # a request, up to where its a
 PIXELS = b"\x94\x00\x01\xbeapply_color_texture_to_objects\x94\x91\xc2\x91\xa1a\x00\x93\xcd\x04\x00\xcd\x04\x00\xdd"
 LARGE_EACH = 250
 """Packets, of which one is large."""
+CRAFTED_EACH = 2000
+"""Packets, of which one is a crafted map or crafted settings."""
+ENDLESS = [True, False, [True, 0.05], True, 1e-6, 10**6, 0.0, True, 3000.0, 2000.0, True]
+MAP_PARAMETERS = [2.0, 50.0, 1.0, 0.6, True, True, True]
 SETTINGS = [True, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
 GONE = (EOFError, OSError, ValueError, RuntimeError, AssertionError)
 
@@ -52,15 +58,50 @@ def large(chance: random.Random) -> bytes:
     )()
 
 
+def road(number: int, length_m: float, sections: str) -> str:
+    line = f'<geometry s="0" x="0" y="0" hdg="0" length="{length_m}"><line/></geometry>'
+    plan = f"<planView>{line}</planView><lanes>{sections}</lanes>"
+    return f'<road name="" length="{length_m}" id="{number}" junction="-1">{plan}</road>'
+
+
+def section(s_m: float, widths: str) -> str:
+    lane = f'<right><lane id="-1" type="driving">{widths}</lane></right>'
+    return f'<laneSection s="{s_m}"><center><lane id="0" type="none"/></center>{lane}</laneSection>'
+
+
+def width(s_m: float) -> str:
+    return f'<width sOffset="{s_m}" a="3.5" b="0" c="0" d="0"/>'
+
+
+def crafted(chance: random.Random) -> bytes:
+    """Return a call that asks for far more work than its bytes are."""
+    many = chance.choice([1000, 4000, 20_000])
+    roads = chance.choice(
+        [
+            lambda: "".join(road(number, 100.0, section(0.0, width(0.0))) for number in range(many)),
+            lambda: road(1, 0.5 * many, "".join(section(0.5 * n, width(0.0)) for n in range(many))),
+            lambda: road(1, 0.5 * many, section(0.0, "".join(width(0.5 * n) for n in range(many)))),
+        ]
+    )
+    if chance.random() < 0.2:
+        return msgpack.packb([0, 1, "set_episode_settings", [[False], ENDLESS]])
+    text = f"<OpenDRIVE><header/>{roads()}</OpenDRIVE>"
+    return msgpack.packb([0, 1, "copy_opendrive_to_file", [[False], text, MAP_PARAMETERS]])
+
+
 def packets(seed: int, count: int) -> Iterator[list[bytes]]:
     """Yield the packets of one connection after another, ``count`` in all."""
-    chance, sent, since_large = random.Random(seed), 0, 0
+    chance, sent, since_large, since_crafted = random.Random(seed), 0, 0, 0
     for group in connections(seed, count):
         yield group
         sent, since_large = sent + len(group), since_large + len(group)
+        since_crafted += len(group)
         if since_large >= LARGE_EACH:
             since_large = 0
             yield [large(chance)]
+        if since_crafted >= CRAFTED_EACH:
+            since_crafted = 0
+            yield [crafted(chance)]
 
 
 class Behaved(threading.Thread):

@@ -221,3 +221,14 @@ def test_the_box_of_a_destroyed_actor_is_empty_and_no_error(server, world, car) 
     assert there[1][0] > 1.0
     assert there[3] == car.id
     assert gone == [[0, 0, 0], [0, 0, 0], [0, 0, 0], 0]
+
+
+def test_an_old_handle_does_not_act_on_an_actor_of_the_next_episode(client, world, point) -> None:
+    blueprint = world.get_blueprint_library().find("vehicle.tesla.model3")
+    old = world.spawn_actor(blueprint, point)
+    world = client.reload_world(False)
+    new = world.spawn_actor(blueprint, point)
+    assert new.id > old.id
+    old.set_light_state(carla.VehicleLightState.All)  # the client does not wait for an answer
+    world.tick()
+    assert new.get_light_state() == carla.VehicleLightState.NONE

@@ -165,6 +165,8 @@ class Episode:
         try:
             with asking("getting the vehicle ready"):
                 self._resources.enter_context(ticked_by_us(world, spec.step_s))
+                if not self._simulator.own:
+                    world.reset_all_traffic_lights()  # nothing was loaded anew: they show what the drive before left
                 vehicle = self._resources.enter_context(vehicle_at_start(world, ground.route, spec.config.vehicle))
                 world.set_weather(spec.weather)
                 if not spec.is_case:
@@ -312,7 +314,7 @@ class Episode:
                     self._run.world.tick(self._run.timeout_s)
                     time.sleep(LATE_EVENTS_S)
                 sumo = None if self._managers.sumo is None else self._managers.sumo.record()
-                self.history = replace(self._managers.metrics.history(), sumo=sumo)
+                self.history = replace(self._run.numbering.applied(self._managers.metrics.history()), sumo=sumo)
         self.close()
 
     def close(self) -> None:

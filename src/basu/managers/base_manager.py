@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
+from basu.records.history.numbering import Numbering
 from basu.records.motion import VehicleMotion, motion_of
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ class Run:
     own_simulator: bool = False  # nothing but this run and its agent is connected to it
     neighbours: Neighbours | None = None  # other actors near the vehicle, shared by record and checks
     changes: WorldChanges = field(default_factory=WorldChanges)  # what the benchmark itself has changed
+    numbering: Numbering = field(default_factory=Numbering)  # of other actors in the record
 
 
 class Ego(VehicleMotion):

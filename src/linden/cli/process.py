@@ -21,45 +21,70 @@ GRACE_S = 1.0
 """How long what is being done at a signal may take: any call but the loading of an unusual map."""
 MOST_FILES = 20_000
 """What the limit of open files is raised to where the system allows it: all connections the server takes, and more."""
-LAST_WORK_S = 3.0
-"""How long the end of the process waits for work in the background: the largest part of a scene takes a second."""
+LAST_WORK_S = 0.8
+"""How long the end of the process waits for work in the background, after :data:`GRACE_S`: a user waits 2 s at most."""
+AT_ONCE_S = 0.4
+"""How long a break-off in Python may take; where the main thread is in compiled code, none comes."""
 WHOLE_WRITE_BYTES = 4096
 """What a pipe that can be written to takes without making the writer wait (PIPE_BUF of Linux)."""
 
 
 class Ending:
-    """While it lasts, SIGINT and SIGTERM end the program with 0, whatever it is doing; the old handlers come back."""
+    """While it lasts, SIGINT and SIGTERM end the program with 0, whatever it is doing; the old handlers come back.
+
+    Python runs handlers between two steps of the main thread, and a kernel may take long. So a thread reads the signals
+    too, as Python's own handler writes them to a pipe at once. It ends the process if the main thread does not.
+    """
 
     def __enter__(self) -> Self:
         self._ask: Callable[[], None] | None = None
-        self._reminder: threading.Timer | None = None
+        self._signals = 0
+        self._signals_read, self._signals_written = os.pipe()
+        os.set_blocking(self._signals_written, False)
+        self._pipe_before = signal.set_wakeup_fd(self._signals_written, warn_on_full_buffer=False)
         self._before = {number: signal.signal(number, self._signalled) for number in (signal.SIGINT, signal.SIGTERM)}
+        threading.Thread(target=self._watch, name="signals", daemon=True).start()
         return self
 
     def __exit__(self, kind: type[BaseException] | None, _error: BaseException | None, _: TracebackType | None) -> None:
-        if self._reminder is not None:
-            self._reminder.cancel()
         for number, handler in self._before.items():
             signal.signal(number, handler)
+        signal.set_wakeup_fd(self._pipe_before)
+        os.close(self._signals_written)  # the thread reads the end of the pipe, and ends
 
     def ask_first(self, stop: Callable[[], None]) -> None:
         """From now on ask by ``stop`` and wait :data:`GRACE_S`, or for the second signal, before breaking off."""
         self._ask = stop
 
-    def _signalled(self, number: int, _frame: FrameType | None) -> None:
-        ask = None if self._reminder is not None else self._ask
-        self._remind(number)
-        if ask is None:
-            raise SystemExit(0)  # where a callback of the compiler's swallows it, the reminder comes again
-        ask()
+    def _signalled(self, _number: int, _frame: FrameType | None) -> None:
+        self._signals += 1
+        if self._signals > 1 or self._ask is None:
+            raise SystemExit(0)  # where a callback of the compiler's swallows it, the thread sends it again
+        self._ask()
 
-    def _remind(self, number: int) -> None:
-        """Send the signal again after a moment."""
-        if self._reminder is not None:
-            self._reminder.cancel()
-        self._reminder = threading.Timer(GRACE_S, signal.raise_signal, (number,))
-        self._reminder.daemon = True
-        self._reminder.start()
+    def _watch(self) -> None:
+        """Send the first signal again after :data:`GRACE_S`, and end the process if that does not."""
+        with os.fdopen(self._signals_read, "rb", buffering=0) as signals:
+            number = signals.read(1)
+            if not number:
+                return
+            again, _, _ = select.select([signals], [], [], GRACE_S)
+            if not again:
+                signal.raise_signal(number[0])
+            if signals.read(1) == b"":
+                return
+            over, _, _ = select.select([signals], [], [], AT_ONCE_S)
+            if over and signals.read(1) == b"":
+                return
+            end_now()
+
+
+def end_now() -> None:
+    """End the process with 0 without running anything more, after its output is written."""
+    logging.shutdown()
+    with suppress(OSError, ValueError):  # a closed pipe, a full disk
+        sys.stdout.flush()
+    os._exit(0)
 
 
 @contextmanager
@@ -154,10 +179,7 @@ def background_work_ended() -> Iterator[None]:
         raise
     finally:
         if not end_all(LAST_WORK_S) and not has_failed:
-            logging.shutdown()
-            with suppress(OSError):  # a closed pipe, a full disk
-                sys.stdout.flush()
-            os._exit(0)
+            end_now()
 
 
 def give_up_stdout() -> None:

@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from linden.compiled import kernel
+from linden.background import checkpoint
+from linden.compiled import kernel, unlocked
 
 F64 = NDArray[np.float64]
 I32 = NDArray[np.int32]
@@ -24,6 +25,7 @@ _FINEST_TERRAIN_M = 2.0
 _FINEST_BIN_M = 1.0
 _SMOOTHINGS = 24  # sweeps over the terrain between the roads: takes the edges off the nearest-height pattern
 _EDGE_TOLERANCE = 1e-4  # in barycentric units: points on a shared edge belong to either triangle
+_POINTS_AT_ONCE = 20_000  # between two looks whether the work is still wanted
 _LEAST_AREA_M2 = 1e-9  # seen from above; steeper triangles are walls, not ground
 
 
@@ -69,7 +71,12 @@ class Ground(NamedTuple):
     def surfaces_under(self, points_m: ArrayLike) -> tuple[F64, I32]:
         """Return heights (N,) and triangle numbers (N,), -1 on terrain, under ``points_m`` (N, 3), z being the hint."""
         points = np.ascontiguousarray(points_m, np.float64).reshape(-1, 3)
-        return _surfaces_under(self, points)
+        heights, triangles = np.empty(len(points)), np.empty(len(points), np.int32)
+        for first in range(0, len(points), _POINTS_AT_ONCE):
+            checkpoint()
+            some = slice(first, first + _POINTS_AT_ONCE)
+            _surfaces_under(self, points[some], heights[some], triangles[some])
+        return heights, triangles
 
 
 def _corners(vertices: ArrayLike, triangles: ArrayLike) -> F64:
@@ -115,7 +122,7 @@ def _bin_of(at_m: float, origin_m: float, per_m: float, count: float) -> int:
     return int(min(place, count - 1.0))
 
 
-@kernel
+@unlocked
 def _fill_bins(corners_m: F64, planes: F64, frame: F64) -> tuple[I32, I32]:
     """Return bin_start and bin_items: each triangle goes into every bin that its bounding rectangle touches."""
     columns = int(frame[3])
@@ -158,7 +165,7 @@ def _terrain(corners_m: F64, planes: F64, low_m: F64, high_m: F64) -> tuple[F64,
     return heights, frame
 
 
-@kernel
+@unlocked
 def _seed_terrain(heights_m: F64, corners_m: F64, planes: F64, frame: F64) -> None:
     """Give the nodes inside triangles, else those nearest to a corner, the lowest height found there."""
     rows, columns = heights_m.shape
@@ -184,7 +191,7 @@ def _seed_terrain(heights_m: F64, corners_m: F64, planes: F64, frame: F64) -> No
                 heights_m[row, column] = min(corners_m[t, k, 2], heights_m[row, column])
 
 
-@kernel
+@unlocked
 def _spread_terrain(heights_m: F64) -> None:
     """Fill the empty (inf) nodes from the nearest filled one, then smooth what was empty; in place.
 
@@ -299,10 +306,8 @@ def _terrain_under(ground: Ground, x: float, y: float) -> tuple[float, float, fl
     return z, -slope_x * up, -slope_y * up, up, -1
 
 
-@kernel
-def _surfaces_under(ground: Ground, points_m: F64) -> tuple[F64, I32]:
-    """Ask :func:`surface_under` for each row of (N, 3)."""
-    heights, triangles = np.empty(len(points_m)), np.empty(len(points_m), np.int32)
+@unlocked
+def _surfaces_under(ground: Ground, points_m: F64, heights_m: F64, triangles: I32) -> None:
+    """Write what :func:`surface_under` finds for each row of (N, 3)."""
     for i in range(len(points_m)):
-        heights[i], _, _, _, triangles[i] = surface_under(ground, points_m[i, 0], points_m[i, 1], points_m[i, 2])
-    return heights, triangles
+        heights_m[i], _, _, _, triangles[i] = surface_under(ground, points_m[i, 0], points_m[i, 1], points_m[i, 2])

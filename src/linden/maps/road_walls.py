@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.background import checkpoint
 from linden.geometry import points_from_opendrive
 from linden.maps.ground import Ground
 from linden.maps.opendrive.evaluate.strips import Edges, edges_of, strips_of
@@ -73,6 +74,7 @@ def _lines(tables: Tables) -> Iterator[tuple[_Side, F64]]:
     begins = np.flatnonzero(np.concatenate([[True], ~strips.continues[:-1]]))
     of_lane = {int(strips.lane[begin]): at for begin, at in zip(begins, pairwise([*begins, None]), strict=True)}
     for side in sides:
+        checkpoint()
         if side.lane in of_lane:  # a section shorter than any piece has no places
             begin, end = of_lane[side.lane]
             yield side, (edges.outer if side.is_outer else edges.inner)[begin:end]

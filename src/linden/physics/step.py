@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.compiled import kept_part, kernel, part
+from linden.compiled import kept_part, part, unlocked
 from linden.maps.ground import Ground
 from linden.physics.contact.impulses import JX, PX, TOUCHED, part_bodies
 from linden.physics.contact.pairs import find_pairs, is_fixed
@@ -155,7 +155,7 @@ def _build(sources: int) -> _Advance:
                 watch_rollover(v, dt_s)
         return _report(pairs, account)
 
-    return kernel(advance)
+    return unlocked(advance)  # a frame of many bodies may take seconds, and a signal is to end the server
 
 
 _advance = _build(SOURCES)

@@ -170,7 +170,7 @@ def states(found: StructuredArray) -> list[LightState]:
 
 
 def _byte(share: float) -> int:
-    return round(min(max(share, 0.0), 1.0) * _FULL)
+    return round(min(max(share, 0.0), 1.0) * _FULL) if share == share else 0  # noqa: PLR0124 - a damaged file's nan
 
 
 _RANK = {Kind.VEHICLE: 1, Kind.WALKER: 2}

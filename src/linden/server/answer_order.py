@@ -97,8 +97,10 @@ class AnswerOrder:
         self._of: dict[RpcPeer, _Waits] = {}  # of clients of which something has waited
 
     def forget(self, peer: RpcPeer) -> None:
-        """Drop what a client that has gone waited for; long work goes on, and its result is dropped."""
-        self._of.pop(peer, None)
+        """Drop what a client that has gone waited for, and end its long work."""
+        waits = self._of.pop(peer, None)
+        if waits is not None and waits.work is not None:
+            waits.work.give_up()
         self.expected.forget(peer.number)
 
     # -- before a call -------------------------------------------------------------------------------------------
@@ -155,11 +157,16 @@ class AnswerOrder:
         return max(0.0, min(times) - now_s) if times else None
 
     def hears(self, peer: RpcPeer) -> bool:
-        """Return whether to read on from a client although calls of its wait, since what they wait for is a call."""
+        """Return whether to read on from a client although calls of its wait: for a call, or for the client's end."""
         waits = self._of.get(peer)
         if waits is None or len(peer.calls) >= CALLS_PER_TURN:
             return False
-        return waits.load is not None or (waits.cue is not None and bool(waits.cue.tick))
+        return waits.work is not None or waits.load is not None or (waits.cue is not None and bool(waits.cue.tick))
+
+    def has_long_work(self, peer: RpcPeer) -> bool:
+        """Return whether a client's call waits for work in the background."""
+        waits = self._of.get(peer)
+        return waits is not None and waits.work is not None
 
     def is_synchronous(self) -> bool:
         """Return whether frames are made by calls alone."""

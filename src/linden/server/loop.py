@@ -260,6 +260,10 @@ class Server:
                 self._acceptor.has_spoken(peer)
             if peer.held()[0] > HOARD_BYTES:
                 self._refuse_to_hoard()
+        elif self._calls.order.has_long_work(peer):
+            log.info("%s has left before its answer; the work for it ends", peer)
+            self._close(peer)
+            return
         else:
             peer.at_end = True
         self._calls.carry_out(peer)

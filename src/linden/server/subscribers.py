@@ -93,24 +93,39 @@ class Subscribers:
 
     def congested(self, now_s: float) -> list[StreamPeer]:
         """Return the subscribers that frames wait for, and close subscribers that have run out of time."""
-        if not self._behind:
-            return []
         for peer in tuple(self._behind):
             self._weigh(peer, now_s)
-            if peer.congested_since_s is not None and now_s - peer.congested_since_s >= PATIENCE_S:
-                log.warning(
-                    "%s is closed: in synchronous mode it held up the frames for %.0f s with %d bytes unread",
-                    peer,
-                    now_s - peer.congested_since_s,
-                    peer.outgoing.waiting_bytes,
-                )
-                self._close(peer)
+        for peer in self._overdue(now_s):
+            log.warning(
+                "%s is closed: in synchronous mode it held up the frames for %.0f s with %d bytes unread",
+                peer,
+                now_s - (peer.congested_since_s or now_s - PATIENCE_S),
+                peer.outgoing.waiting_bytes,
+            )
+            self._close(peer)
         return [peer for peer in self._behind if peer.congested_since_s is not None]
+
+    def _overdue(self, now_s: float) -> list[StreamPeer]:
+        """Return the subscribers to close, all at once: no frame was made meanwhile, so all had the same time to read.
+
+        The share of the others grows with each that is closed. So those near it would become congested later, one
+        after the other, with as much patience each.
+        """
+        since_s = min(
+            (peer.congested_since_s for peer in self._behind if peer.congested_since_s is not None), default=None
+        )
+        if since_s is None or now_s - since_s < PATIENCE_S:
+            return []
+        return [peer for peer in self._behind if peer.outgoing.waiting_bytes > 0.5 * self._share_bytes()]
+
+    def _share_bytes(self) -> int:
+        """Return how much may wait for each of the slow subscribers."""
+        return min(QUEUED_BYTES, QUEUED_BYTES_OF_ALL // len(self._behind))
 
     def _weigh(self, peer: StreamPeer, now_s: float) -> None:
         """Note whether more waits for a peer than its share, and since when."""
         waiting = peer.outgoing.waiting_bytes
-        if waiting > min(QUEUED_BYTES, QUEUED_BYTES_OF_ALL // len(self._behind)):
+        if waiting > self._share_bytes():
             if peer.congested_since_s is None:
                 peer.congested_since_s = now_s
             return

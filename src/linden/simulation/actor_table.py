@@ -19,8 +19,8 @@ NO_BODY = -1
 """Slot of an actor that occupies no space."""
 
 
-_LARGEST_WISH = 2**31
-"""Ids wished for end here; those counted go on behind the largest, and have 32 bits."""
+_LARGEST_WISH = 2**30
+"""Ids wished for end here; those counted go on behind the largest, for the life of the server, and have 31 bits."""
 
 
 class ActorRefusal(Refusal):
@@ -56,11 +56,12 @@ class ActorTable:
         rows: (capacity,) the packed rows of the snapshot; the first ``len(table)`` are meant.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, first_id: int = 1) -> None:
+        """Begin without actors; the ids are counted from ``first_id`` on."""
         self._records: dict[int, ActorRecord] = {}
         self._row_of: dict[int, int] = {}
         self._by_slot: dict[int, ActorRecord] = {}
-        self._next_id = 1
+        self._next_id = first_id
         self._wish = 0
         self._dying: list[int] = []
         self._told: list[int] = []
@@ -141,8 +142,13 @@ class ActorTable:
         finally:
             self._wish = 0
 
+    @property
+    def first_free_id(self) -> int:
+        """The id from which on none was ever used; the next episode's table begins there."""
+        return self._next_id
+
     def next_id(self) -> int:
-        """Return an id never used before in this episode, or the one that :meth:`preferring` asks for."""
+        """Return an id never used before, or the one that :meth:`preferring` asks for."""
         if self._wish:
             wish, self._wish = self._wish, 0
             self._next_id = max(self._next_id, wish + 1)

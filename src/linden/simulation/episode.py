@@ -50,8 +50,8 @@ class Episode(EpisodeState):
     walkers: Walkers
     poses: Poses
 
-    def __init__(self, world_map: LoadedMap, *, first_frame: int) -> None:
-        super().__init__(world_map, first_frame)
+    def __init__(self, world_map: LoadedMap, *, first_frame: int, first_actor_id: int = 1) -> None:
+        super().__init__(world_map, first_frame, first_actor_id)
         self.walkers, self.poses = Walkers(), Poses()
         scenery = scenery_of(world_map)
         self.surroundings = Surroundings(scenery)

@@ -56,11 +56,11 @@ class EpisodeState(ABC):
     walkers: WalkerFacts
     poses: PoseFacts
 
-    def __init__(self, world_map: LoadedMap, first_frame: int) -> None:
+    def __init__(self, world_map: LoadedMap, first_frame: int, first_actor_id: int) -> None:
         self.map = world_map
         self.first_frame = first_frame
         self.elapsed_s = 0.0
-        self.actors = ActorTable()
+        self.actors = ActorTable(first_actor_id)
         self.bodies = Bodies()
         self.below_ground = BelowGround(world_map.ground, self.bodies)
         self.weather: WeatherParameters = CLEAR_NOON

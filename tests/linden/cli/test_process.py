@@ -132,3 +132,28 @@ def test_no_command_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     shown = capsys.readouterr()
     assert "usage: linden" in shown.out
     assert shown.err == ""
+
+
+IN_A_KERNEL = """
+import os
+from linden.cli.process import Ending
+with Ending() as ending:
+    ending.ask_first(lambda: None)
+    os.write(1, b"busy\\n")
+    import ctypes
+    while True:  # compiled code that no handler of Python's interrupts
+        ctypes.CDLL(None).sleep(60)
+"""
+
+
+@pytest.mark.parametrize(("signals", "most_s"), [(1, 2.0), (2, 1.0)])
+def test_compiled_code_does_not_keep_a_server_from_its_end(signals: int, most_s: float) -> None:
+    with subprocess.Popen([sys.executable, "-c", IN_A_KERNEL], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "busy\n"
+        began_s = time.monotonic()
+        for _ in range(signals):
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.05)  # two of one kind at once are one to the kernel
+        assert process.wait(10) == 0
+        assert time.monotonic() - began_s < most_s

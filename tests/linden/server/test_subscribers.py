@@ -157,3 +157,15 @@ def test_nothing_is_kept_of_subscribers_that_have_left(house: House) -> None:
     assert house.table.listened() == set()
     assert house.subscribers._by_stream == {}
     assert house.subscribers._behind == {}
+
+
+def test_subscribers_that_do_not_read_wait_together_once_though_their_shares_grow(
+    house: House, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(subscribers, "QUEUED_BYTES_OF_ALL", 6_000_000)
+    mark = 0
+    while not house.subscribers.congested(10.0):
+        mark += 1
+        house.publish(mark % 251, 10.0, may_drop=False)
+    assert house.subscribers.congested(10.0 + PATIENCE_S) == []
+    assert len(house.closed) == 3

@@ -141,3 +141,10 @@ def test_lamps_are_those_of_the_vehicles_that_are_there() -> None:
     assert table.lamps() == [(cars[0], 0), (cars[1], 5), (cars[2], 0)]
     table.remove(cars[0], announce=False)
     assert table.lamps() == [(cars[1], 5), (cars[2], 0)]
+
+
+def test_the_next_episode_counts_on_from_the_last_one() -> None:
+    before = ActorTable()
+    used = [add(before).id for _ in range(3)]
+    after = ActorTable(before.first_free_id)
+    assert add(after).id == max(used) + 1

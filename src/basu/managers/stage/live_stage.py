@@ -56,13 +56,13 @@ class LiveStage:
 
     @property
     def roles(self) -> Mapping[int, str]:
-        """The roles of all actors that were ever in the cast, by id."""
-        return self._roles
+        """The roles of all actors that were ever in the cast, by their number in the record."""
+        return {self._run.numbering.of(actor_id): role for actor_id, role in self._roles.items()}
 
     @property
     def types(self) -> Mapping[int, str]:
         """Their blueprints' ids, likewise."""
-        return self._types
+        return {self._run.numbering.of(actor_id): type_id for actor_id, type_id in self._types.items()}
 
     def enter(self, specs: Sequence[ActorSpec]) -> None:
         """Bring a part of the cast into the world; no actor moves yet, and vehicles are held by their brakes.

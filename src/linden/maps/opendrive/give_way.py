@@ -73,7 +73,7 @@ class _Ways:
         for road_id, lane_id, s_m in signal.lanes:
             index = self._road_index[road_id]
             road = self.tables.roads[index]
-            rows = {self.tables.lane_row[index, road.sections.index(road.section_at(s_m)), lane_id]}
+            rows = {self.tables.lane_row[index, road.section_index_at(s_m), lane_id]}
             for _ in range(len(road.sections) + 1):  # through the later sections of the same road
                 entered |= {row for row in rows if self._in_junction(row)}
                 rows = {after for row in rows if not self._in_junction(row) for after in self.links.successors[row]}

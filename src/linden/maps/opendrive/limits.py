@@ -33,6 +33,9 @@ MOST_PLACES = 5_000_000
 """Places where lanes are looked at, of all lanes together; some 2 GB of memory, and 1 million in the largest towns."""
 MOST_OVERLAPS = 64
 """Triangles of lanes over one place, on an average; junctions have 10."""
+MOST_IN_A_PLACE = 2000
+"""Pieces of lanes in one square metre, on the average of all pieces; each look at the ground goes through them. The
+middle of a star of 24 legs has some 500."""
 MOST_SIGNALS = 10_000
 """Each is an actor, with a row in every snapshot; CARLA's largest towns have some 2,000."""
 MOST_ELEMENTS = 3_000_000

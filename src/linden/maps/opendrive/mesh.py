@@ -15,6 +15,7 @@ from linden.maps.opendrive.evaluate.strips import edges_of, strips_of
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.limits import (
     HIGHEST_M,
+    MOST_IN_A_PLACE,
     MOST_OVERLAPS,
     WIDEST_EXTENT_M,
     WIDEST_LANE_M,
@@ -102,6 +103,10 @@ def _refuse_overlaps(corners_m: F64) -> None:
     place_m = max(1.0, float(np.sqrt(size_m.prod() / (2.0 * len(corners_m) + 64.0))))
     touched = (np.floor((high - low) / place_m) + 1.0).prod(axis=1).sum()
     refuse_beyond(touched / (len(corners_m) + 1000), MOST_OVERLAPS, "lanes over one another, on an average")
+    column, row = np.floor((corners_m.mean(axis=1) - low.min(axis=0)) / place_m).astype(np.int64).T
+    _, crowd = np.unique(column * (int(row.max()) + 1) + row, return_counts=True)
+    crowded = float((crowd.astype(np.float64) ** 2).sum() / len(corners_m))
+    refuse_beyond(crowded, MOST_IN_A_PLACE, "pieces of lanes in one place, on an average")
 
 
 def _triangles(quads: I64, places: int, is_left: NDArray[np.bool_]) -> I64:

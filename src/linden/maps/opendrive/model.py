@@ -5,6 +5,7 @@ meaning: ASAM OpenDRIVE 1.4 to 1.7. Superelevation and crossfall are left out, a
 map are computed once and kept as long as the map, since many modules use them.
 """
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property, wraps
@@ -168,7 +169,11 @@ class Road:
 
     def section_at(self, s_m: float) -> LaneSection:
         """Return the lane section that holds at ``s_m``."""
-        return next((section for section in reversed(self.sections) if section.s_m <= s_m), self.sections[0])
+        return self.sections[self.section_index_at(s_m)]
+
+    def section_index_at(self, s_m: float) -> int:
+        """Return the index of the lane section that holds at ``s_m``, counted from 0."""
+        return max(0, bisect_right(self.sections, s_m, key=lambda section: section.s_m) - 1)
 
 
 class Connection(NamedTuple):

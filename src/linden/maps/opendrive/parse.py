@@ -3,13 +3,14 @@
 import gc
 import hashlib
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, cast
 from weakref import WeakValueDictionary
 
 from lxml import etree
 
+from linden.background import checkpoint
 from linden.maps.opendrive.limits import LONGEST_TOTAL_M, MOST_ELEMENTS, MOST_SIGNALS, MapError, refuse_beyond
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.reading.attributes import line_of
@@ -48,7 +49,8 @@ def _collector_paused() -> Iterator[None]:
 
 
 def _read(root: etree._Element) -> OpenDrive:
-    roads = tuple(read_road(node) for node in root.iterchildren("road"))
+    found = [read_road(node) for node in _wanted(root.iterchildren("road"))]
+    roads = tuple(road for road in found if road is not None)
     total_m = sum(road.length_m for road in roads)
     refuse_beyond(total_m / 1000.0, LONGEST_TOTAL_M / 1000.0, "km of roads")
     refuse_beyond(sum(len(road.signals) for road in roads), MOST_SIGNALS, "signals")
@@ -63,6 +65,13 @@ def _read(root: etree._Element) -> OpenDrive:
         junctions=junctions,
         controllers=read_controllers(root),
     )
+
+
+def _wanted(nodes: Iterable[etree._Element]) -> Iterator[etree._Element]:
+    """Yield nodes for as long as the map is wanted: a client may leave before its map is read."""
+    for node in nodes:
+        checkpoint()
+        yield node
 
 
 def _root(text: str | bytes) -> etree._Element:

@@ -124,11 +124,10 @@ def _driving_lanes(tables: Tables, reference: _Reference) -> list[LanePlace]:
     road_index, s_m, validities = reference
     road = tables.roads[road_index]
     at_m = min(max(s_m, 0.0), road.length_m)
-    section = road.section_at(at_m)
-    section_index = road.sections.index(section)
+    section_index = road.section_index_at(at_m)
     return [
         LanePlace(tables.lane_row[road_index, section_index, lane.id], at_m)
-        for lane in section.lanes
+        for lane in road.sections[section_index].lanes
         if lane.type is LaneType.DRIVING
         and lane.id != 0
         and any(min(validity) <= lane.id <= max(validity) for validity in validities)

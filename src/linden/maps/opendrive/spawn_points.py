@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from linden.background import checkpoint
 from linden.geometry import from_opendrive
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.model import OpenDrive, Road
@@ -46,12 +47,12 @@ def _on_road(tables: Tables, road_index: int, road: Road) -> list[tuple[int, flo
     count = int(usable_m // SPACING_M) + 1
     first_m = END_MARGIN_M + (usable_m - (count - 1) * SPACING_M) / 2.0
     found = []
+    checkpoint()
     for s_m in (first_m + nth * SPACING_M for nth in range(count)):
-        section = road.section_at(s_m)
-        section_index = road.sections.index(section)
+        section_index = road.section_index_at(s_m)
         found += [
             (road.id, s_m, lane.id, tables.lane_row[road_index, section_index, lane.id])
-            for lane in section.lanes
+            for lane in road.sections[section_index].lanes
             if lane.type is LaneType.DRIVING and lane.id != 0
         ]
     return found

@@ -1,6 +1,8 @@
 """``RecordingFolder`` resolves a file name in the folder for recordings. See docs/decisions/0020-recordings.md."""
 
+import errno
 import os
+import stat
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
 from linden.errors import Refusal
@@ -39,6 +41,20 @@ class RecordingFolder:
                 f"without folders, or start the server with --recordings DIR, DIR being the folder you mean"
             )
         return found
+
+
+def open_at_once(path: str, flags: int) -> int:
+    """Return a descriptor of a file, as an opener of ``open``; a pipe would let the server wait for its other end.
+
+    Raises:
+        OSError: it cannot be opened, or is a pipe.
+    """
+    descriptor = os.open(path, flags | getattr(os, "O_NONBLOCK", 0), 0o666)
+    kind = os.fstat(descriptor).st_mode
+    if stat.S_ISFIFO(kind):
+        os.close(descriptor)
+        raise OSError(errno.EINVAL, "it is a pipe, not a file", path)
+    return descriptor
 
 
 def _of_user() -> Path:

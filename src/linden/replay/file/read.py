@@ -20,6 +20,7 @@ import numpy as np
 
 from linden.replay.file import layouts
 from linden.replay.file.decode import DISPUTED_IDS, Cursor, Packet, decode, name_of
+from linden.replay.file.folder import open_at_once
 from linden.replay.file.layouts import PacketId
 from linden.replay.file.packets import CutShortError, Frame, Header, NoRecordingError, RecordingError
 
@@ -61,7 +62,7 @@ class Recording:
             RecordingError: it is not a recording.
         """
         self.path = path
-        self._file = path.open("rb")
+        self._file = open(path, "rb", opener=open_at_once)  # noqa: SIM115 - Path.open takes no opener
         try:
             self._size = self._file.seek(0, io.SEEK_END)
             self._file.seek(0)

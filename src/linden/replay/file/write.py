@@ -14,6 +14,7 @@ from pathlib import Path
 
 from linden.protocol.values.actors import AttributeValue
 from linden.protocol.values.control import VehiclePhysicsControl
+from linden.replay.file.folder import open_at_once
 from linden.replay.file.layouts import FRAME_START, MAGIC, VERSION, PacketId
 from linden.replay.file.packets import ActorAdded, PhysicsRecord, Records, WheelTurns
 
@@ -137,7 +138,7 @@ class RecordingWriter:
         self.path = path
         self.elapsed_s = 0.0
         self._frames = 0
-        self._file: io.FileIO = path.open("wb", buffering=0)
+        self._file: io.FileIO = open(path, "wb", buffering=0, opener=open_at_once)  # noqa: SIM115 - as in read
         self._end = 0
         self._last_duration_at = 0
         try:

@@ -203,7 +203,7 @@ def _pieces(opendrive: OpenDrive, tables: Tables) -> Iterator[F64]:
     for approach, ways in _ways(opendrive, tables).items():
         road = tables.roads[approach.road]
         s_m = road.length_m - _BEFORE_M if approach.forwards else _BEFORE_M
-        section = road.sections.index(road.section_at(s_m))
+        section = road.section_index_at(s_m)
         rows = {lane_id: tables.lane_row.get((approach.road, section, lane_id), -1) for lane_id in ways}
         driven = {row: ways[lane_id] for lane_id, row in rows.items() if row >= 0 and _is_driven(tables, row)}
         if road.length_m < _SHORTEST_ROAD_M or len({frozenset(way) for way in driven.values()}) < 2:

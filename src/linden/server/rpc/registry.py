@@ -27,7 +27,7 @@ from typing import Any, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
 
 import linden.server.rpc
 from linden import CARLA_VERSION, __version__
-from linden.background import in_background
+from linden.background import Unwanted, in_background
 from linden.errors import Refusal
 from linden.protocol.wire import rpc
 from linden.protocol.wire.client_functions import CARLA_FUNCTIONS
@@ -134,7 +134,12 @@ class SuspendedCall:
     def __init__(self, call: Call, steps: "Generator[Work, Any, Any]", work: Work) -> None:
         self.call = call
         self.steps = steps
-        self.made: Future[Any] = in_background(work)
+        self._unwanted = Unwanted()
+        self.made: Future[Any] = in_background(work, self._unwanted)
+
+    def give_up(self) -> None:
+        """End the work at its next checkpoint: the client has gone."""
+        self._unwanted.set()
 
 
 def dispatch(context: Context, call: Call) -> bytes | SuspendedCall:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linden import CARLA_VERSION
+from linden.background import give_memory_back
 from linden.errors import Refusal
 from linden.maps.library import LoadedMap
 from linden.maps.navigation.library import MeshFile
@@ -18,6 +19,7 @@ from linden.protocol.values.episode import EpisodeSettings, MapInfo, OpendriveGe
 from linden.protocol.values.space import Transform
 from linden.protocol.wire.decode import U16, U32
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, Token
+from linden.server.frame_clock import LONGEST_STEP_S
 from linden.server.rpc.context import Context, PendingLoad
 from linden.server.rpc.registry import Long, method
 from linden.simulation.walkers import mesh_file
@@ -29,6 +31,15 @@ _HALF_TURN_DEG = 180.0
 
 MAX_FIXED_DELTA_S = 10.0
 """Longest fixed step accepted; CARLA sets none, but a step of minutes can only be a unit mixed up."""
+
+LARGE_TEXT = 1_000_000
+"""Characters of a map after which memory is given back to the system; Town04 has 6 million."""
+MOST_SUBSTEPS = 100
+"""Most substeps of a frame. Unreal's editor offers 16 at most, and a step of 1 s in substeps of 10 ms takes 100.
+
+CARLA takes any number, and then stands still. One vehicle's substep takes up to 0.1 ms here, so a frame of 100 vehicles
+takes at most a second.
+"""
 
 
 class EpisodeInfo(NamedTuple):
@@ -83,8 +94,17 @@ def copy_opendrive_to_file(context: Context, opendrive: str, parameters: Opendri
     Walls are built as high and as far beyond driving lanes as the parameters say. The others say how a mesh is cut and
     smoothed; here the surface follows from the text alone, and goes on beside the road, so that none of them shows.
     """
-    maps, beyond_m = context.maps, max(0.0, parameters.additional_width)
-    maps.keep((yield lambda: maps.from_opendrive(opendrive, wall_height_m=parameters.wall_height, beyond_m=beyond_m)))
+    maps, beyond_m, refused = context.maps, max(0.0, parameters.additional_width), ""
+    try:
+        made = yield lambda: maps.from_opendrive(opendrive, wall_height_m=parameters.wall_height, beyond_m=beyond_m)
+    except Refusal as refusal:
+        refused = str(refusal)  # the refusal itself would hold what was made of the text so far
+    else:
+        maps.keep(made)
+    if len(opendrive) > LARGE_TEXT:
+        yield give_memory_back
+    if refused:
+        raise Refusal(refused)
 
 
 @method("get_map_info")
@@ -191,6 +211,13 @@ def _check(settings: EpisodeSettings) -> None:
         raise Refusal(
             f"substepping needs max_substep_delta_time above 0 and max_substeps of at least 1, not "
             f"{settings.max_substep_delta_time:g} and {settings.max_substeps}; or set substepping to False"
+        )
+    wanted = min(settings.max_substeps, (fixed_s or LONGEST_STEP_S) / settings.max_substep_delta_time)
+    if wanted > MOST_SUBSTEPS + 1e-6:  # the quotient is rounded
+        raise Refusal(
+            f"max_substeps {settings.max_substeps} and max_substep_delta_time {settings.max_substep_delta_time:g} make "
+            f"{wanted:.0f} substeps of a frame, and {MOST_SUBSTEPS} are the most; raise max_substep_delta_time, lower "
+            "max_substeps or fixed_delta_seconds"
         )
     reach_s = settings.max_substep_delta_time * settings.max_substeps
     if fixed_s is not None and fixed_s > reach_s * (1.0 + 1e-6):

@@ -1,9 +1,15 @@
+import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from linden.errors import Refusal
 from linden.replay.file.folder import RecordingFolder
+from linden.replay.file.layouts import SCENE_LIGHT
+from linden.replay.file.read import Recording
+from linden.replay.file.write import RecordingWriter
+from linden.replay.frame_records import states
 
 
 @pytest.mark.parametrize(
@@ -45,3 +51,17 @@ def test_without_a_folder_it_is_the_users_own(tmp_path: Path, monkeypatch: pytes
     monkeypatch.setenv("XDG_DATA_HOME", "relative/paths/are/to/be/ignored")
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     assert RecordingFolder().path == tmp_path / "home" / ".local" / "share" / "linden" / "recordings"
+
+
+def test_a_pipe_among_recordings_is_refused_at_once(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "drive.log")
+    with pytest.raises(OSError, match="it is a pipe"):
+        Recording(tmp_path / "drive.log")
+    with pytest.raises(OSError, match=r"drive\.log"):
+        RecordingWriter(tmp_path / "drive.log", "Linden", 0)
+
+
+def test_a_damaged_colour_of_a_lamp_is_black() -> None:
+    lamp = np.zeros(1, SCENE_LIGHT)
+    lamp["rgba"] = [np.nan, 1.0, np.inf, 1.0]
+    assert states(lamp)[0].color == (0, 255, 255)

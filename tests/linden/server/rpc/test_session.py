@@ -101,6 +101,16 @@ def test_substeps_shorter_than_the_step_are_warned_about(context: Context, caplo
     assert "longer than max_substeps" in caplog.text
 
 
+@pytest.mark.parametrize("fixed_s", [0.05, None])
+def test_a_frame_of_a_million_substeps_is_refused(context: Context, fixed_s: float | None) -> None:
+    endless = EpisodeSettings(fixed_delta_seconds=fixed_s, max_substeps=10**6, max_substep_delta_time=1e-6)
+    with pytest.raises(Refusal, match="substeps of a frame, and 100 are the most"):
+        session.set_episode_settings(context, endless)
+    session.set_episode_settings(
+        context, EpisodeSettings(fixed_delta_seconds=0.05, max_substeps=100, max_substep_delta_time=0.0005)
+    )
+
+
 def test_without_substepping_their_figures_do_not_matter(context: Context) -> None:
     settings = EpisodeSettings(substepping=False, max_substeps=0, max_substep_delta_time=0.0)
     assert session.set_episode_settings(context, settings) == 0

@@ -50,14 +50,6 @@ def within(node: Element, attribute: str, least: float, most: float) -> float:
     return value
 
 
-def positive(node: Element, attribute: str) -> float:
-    """Return a number greater than zero."""
-    value = number(node, attribute)
-    if value <= 0.0:
-        reject(node, attribute, "greater than 0")
-    return value
-
-
 def whole(node: Element, attribute: str) -> int:
     """Return a whole number that has to be there, in the range of the 32-bit ids CARLA keeps."""
     try:

@@ -1,7 +1,10 @@
 """Reads <lanes>: offsets, sections and all that belongs to a lane."""
 
+import logging
+
 from lxml.etree import _Element as Element
 
+from linden.background import checkpoint
 from linden.maps.opendrive.limits import MOST_LANES, MapError
 from linden.maps.opendrive.model import Cubic, Height, Lane, LaneSection, RoadMark, Speed
 from linden.maps.opendrive.reading.attributes import (
@@ -14,6 +17,8 @@ from linden.maps.opendrive.reading.attributes import (
     whole,
 )
 from linden.protocol.values.enums import LaneType
+
+log = logging.getLogger("linden")
 
 # LibCarla reads lane types in any case and takes anything else for NONE (RoadParser.cpp, StringToLaneType).
 _LANE_TYPES = {
@@ -40,12 +45,18 @@ def read_sections(lanes: Element, road_length_m: float) -> tuple[LaneSection, ..
     ends = [*starts[1:], road_length_m]
     sections = []
     for node, start_m, end_m in zip(nodes, starts, ends, strict=True):
+        checkpoint()
+        if start_m == end_m:
+            log.warning("line %d: a <laneSection> without length at s=%g m is left out", line_of(node), start_m)
+            continue
         if not 0.0 <= start_m < end_m:
             raise MapError(
                 f"<laneSection> from s={start_m:g} to {end_m:g} m is empty or outside its road of {road_length_m:g} m",
                 line_of(node),
             )
         sections.append(LaneSection(s_m=start_m, end_m=end_m, lanes=_lanes_of(node)))
+    if not sections:
+        raise MapError("no <laneSection> of this road has a length; it needs at least one", line_of(lanes))
     return tuple(sections)
 
 

@@ -4,9 +4,11 @@ A junction has connections, lane links, controllers and priorities. A road has l
 elevation. Lanes and objects have readers in files of their own.
 """
 
+import logging
+
 from lxml.etree import _Element as Element
 
-from linden.maps.opendrive.limits import LONGEST_ROAD_M, SHORTEST_ROAD_M, MapError
+from linden.maps.opendrive.limits import LARGEST_NUMBER, LONGEST_ROAD_M, SHORTEST_ROAD_M, MapError
 from linden.maps.opendrive.model import (
     NO_JUNCTION,
     Arc,
@@ -26,7 +28,6 @@ from linden.maps.opendrive.reading.attributes import (
     line_of,
     number,
     number_or,
-    positive,
     reject,
     speed_mps,
     user_data,
@@ -40,6 +41,8 @@ from linden.maps.opendrive.reading.roadside import (
     read_signals,
     read_speed_stencils,
 )
+
+log = logging.getLogger("linden")
 
 
 def read_junction(node: Element) -> Junction:
@@ -74,9 +77,15 @@ def _connection(node: Element) -> Connection:
 _STRAIGHT_PER_M = 1e-15
 
 
-def read_road(node: Element) -> Road:
-    """Return one road with everything along it."""
-    length_m = within(node, "length", SHORTEST_ROAD_M, LONGEST_ROAD_M)
+def read_road(node: Element) -> Road | None:
+    """Return one road with everything along it; None for a road too short to be looked at, which the log names.
+
+    Editors leave such roads behind, between two junctions that touch. LibCarla reads past them too.
+    """
+    length_m = within(node, "length", 0.0, LONGEST_ROAD_M)
+    if length_m < SHORTEST_ROAD_M:
+        log.warning("line %d: road %s is %g m long and is left out", line_of(node), node.get("id"), length_m)
+        return None
     parts = {child.tag: child for child in node}
     lanes, link, profile = parts.get("lanes"), parts.get("link"), parts.get("elevationProfile")
     if lanes is None:
@@ -127,19 +136,28 @@ def _road_type(node: Element) -> RoadType:
 
 def _reference_line(road: Element, plan_view: Element | None) -> tuple[Geometry, ...]:
     nodes = [] if plan_view is None else list(plan_view.iterchildren("geometry"))
+    nodes = [node for node in nodes if not _is_empty(node)]
     if not nodes:
-        raise MapError(f"road {road.get('id')} has no <planView> with a <geometry>", line_of(road))
+        raise MapError(f"road {road.get('id')} has no <planView> with a <geometry> of some length", line_of(road))
     return tuple(
         Geometry(
             s_m=number(node, "s"),
             x_m=number(node, "x"),
             y_m=number(node, "y"),
             heading_rad=number(node, "hdg"),
-            length_m=positive(node, "length"),
+            length_m=number(node, "length"),
             shape=_shape(node),
         )
         for node in nodes
     )
+
+
+def _is_empty(geometry: Element) -> bool:
+    """Return whether a piece of a reference line has no length; the log names it."""
+    length_m = within(geometry, "length", 0.0, LARGEST_NUMBER)
+    if length_m == 0.0:
+        log.warning("line %d: a <geometry> without length is left out", line_of(geometry))
+    return length_m == 0.0
 
 
 def _shape(geometry: Element) -> Line | Arc | Spiral | ParamPoly3:
