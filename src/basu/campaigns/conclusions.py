@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pyarrow.compute as pc
 
-from basu.campaigns.intervals import Interval, Paired, bootstrap, clopper_pearson, mcnemar, sign_test, wilson
+from basu.intervals import Interval, Paired, bootstrap, clopper_pearson, mcnemar, sign_test, wilson
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
