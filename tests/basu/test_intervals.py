@@ -71,6 +71,6 @@ def test_a_fair_coin_is_never_surprised_by_nothing() -> None:
     ("trials", "caution", "is_shown"),
     [(0, "", False), (1, "one drive: no interval", False), (19, "only 19 drives", True), (20, "", True)],
 )
-def test_few_trials_carry_a_caution_and_one_has_no_interval(trials: int, caution: str, is_shown: bool) -> None:
+def test_few_trials_carry_a_caution_and_one_has_no_interval(trials: int, caution: str, is_shown: object) -> None:
     for found in (wilson(trials, trials), clopper_pearson(trials, trials), bootstrap(np.ones(trials))):
         assert (found.caution, found.is_shown) == (caution, is_shown)

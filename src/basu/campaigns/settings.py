@@ -231,7 +231,39 @@ def _sentence(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
         return f"{place} is empty, so there is nothing to drive; name at least one"
     if kind == "value_error":
         return f"{place}: {mistake['ctx']['error']}".removeprefix(": ")
+    if kind == "string_pattern_mismatch":
+        return (
+            f"{place} is {mistake['input']!r}; use letters, digits, '.', '_' and '-', and begin with a letter or digit"
+        )
+    if kind == "model_type":
+        return f"{place} is {mistake['input']!r}; write a table with {', '.join(_keys_of(mistake['loc']))}"
+    wanted = _WANTED.get(kind)
+    if wanted is not None:
+        return f"{place} is {mistake['input']!r}; write {wanted}"
     return f"{place} is {mistake['input']!r}; {mistake['msg'][0].lower()}{mistake['msg'][1:]}"
+
+
+def _keys_of(place: tuple[Any, ...]) -> list[str]:
+    """Return the keys of the table at a place of the file."""
+    if "normal" in place:
+        return list(Normal.model_fields)
+    model = next(_TABLES[name] for name in reversed(place) if name in _TABLES)
+    return [field.alias or name for name, field in model.model_fields.items()]
+
+
+_WANTED = {
+    "string_pattern_mismatch": "use letters, digits, '.', '_' and '-', and begin with a letter or digit",
+    "tuple_type": "write a list in square brackets",
+    "dict_type": "write a table: {KEY = VALUE}",
+    "string_type": "write a text in quotation marks",
+    "int_type": "write a whole number",
+    "int_from_float": "write a whole number",
+    "int_parsing": "write a whole number",
+    "float_type": "write a number",
+    "float_parsing": "write a number",
+    "bool_type": "write true or false",
+    "bool_parsing": "write true or false",
+}
 
 
 _TABLES: dict[str, type[Table]] = {

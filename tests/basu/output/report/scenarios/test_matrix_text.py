@@ -71,7 +71,7 @@ def test_what_the_shares_assume_stands_with_them() -> None:
     assert line_of(text, "crash cost").split()[2:] == [
         "81",
         "%",
-        "(52-94)",
+        "(43-98)",
         "100",
         "%",
         "(67-100)",
