@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.compute as pc
 
 from basu.campaigns.columns import VOLATILE
@@ -15,7 +16,6 @@ from basu.intervals import Interval, Paired, bootstrap, clopper_pearson, mcnemar
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import pyarrow as pa
     from numpy.typing import NDArray
 
 HOUR_S = 3_600.0

@@ -218,29 +218,25 @@ def checked(document: dict[str, Any], source: str) -> Campaign:
 
 
 def _sentence(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
-    """The first mistake: its place and what it must be."""
+    """Return the first mistake: its place and what it must be."""
     place = ".".join(str(part) for part in mistake["loc"])
     kind = mistake["type"]
     if kind == "extra_forbidden":
         table = next((model for name, model in _TABLES.items() if name in mistake["loc"][:-1]), Campaign)
         known = [field.alias or name for name, field in table.model_fields.items()]
         return f"{place} means nothing here; {suggestion(str(mistake['loc'][-1]), known)}"
-    if kind == "missing":
-        return f"{place} is missing; every campaign has name, agents and [[drives]]"
-    if kind == "too_short":
-        return f"{place} is empty, so there is nothing to drive; name at least one"
     if kind == "value_error":
         return f"{place}: {mistake['ctx']['error']}".removeprefix(": ")
-    if kind == "string_pattern_mismatch":
-        return (
-            f"{place} is {mistake['input']!r}; use letters, digits, '.', '_' and '-', and begin with a letter or digit"
-        )
-    if kind == "model_type":
-        return f"{place} is {mistake['input']!r}; write a table with {', '.join(_keys_of(mistake['loc']))}"
-    wanted = _WANTED.get(kind)
-    if wanted is not None:
-        return f"{place} is {mistake['input']!r}; write {wanted}"
-    return f"{place} is {mistake['input']!r}; {mistake['msg'][0].lower()}{mistake['msg'][1:]}"
+    if kind in _NOTHING:
+        return f"{place} {_NOTHING[kind]}"
+    return f"{place} is {mistake['input']!r}; {_wanted(mistake)}"
+
+
+def _wanted(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
+    """Return what must stand in the place of a value, in words of the file and not of the library."""
+    if mistake["type"] == "model_type":
+        return f"write a table with {', '.join(_keys_of(mistake['loc']))}"
+    return _WANTED.get(mistake["type"], f"{mistake['msg'][0].lower()}{mistake['msg'][1:]}")
 
 
 def _keys_of(place: tuple[Any, ...]) -> list[str]:
@@ -251,6 +247,10 @@ def _keys_of(place: tuple[Any, ...]) -> list[str]:
     return [field.alias or name for name, field in model.model_fields.items()]
 
 
+_NOTHING = {
+    "missing": "is missing; every campaign has name, agents and [[drives]]",
+    "too_short": "is empty, so there is nothing to drive; name at least one",
+}
 _WANTED = {
     "string_pattern_mismatch": "use letters, digits, '.', '_' and '-', and begin with a letter or digit",
     "tuple_type": "write a list in square brackets",

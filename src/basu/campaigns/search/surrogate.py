@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 LENGTH, LENGTHS = 0.2, (0.05, 0.3)  # of the unit cube: where the fit begins, and its limits
-HEIGHT, HEIGHTS = 300.0, (100.0, 1e4)  # variance of the latent function, likewise
+HEIGHT, HEIGHTS = 100.0, (30.0, 1e4)  # variance of the latent function, likewise
 # Longer lengths and lower variances explain a few failures among many successes as noise, and verdicts have none.
 LEAST_DEVIATION = 1e-9
 THREADS = ThreadpoolController()  # matrices are small, and the workers have the processors

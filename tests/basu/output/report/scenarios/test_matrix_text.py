@@ -74,7 +74,7 @@ def test_what_the_shares_assume_stands_with_them() -> None:
         "(43-98)",
         "100",
         "%",
-        "(67-100)",
+        "(65-100)",
         "0",
         "%",
         "(0-33)",
