@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from basu.campaigns.command import describe
 from basu.campaigns.planning import plan_of
 from basu.campaigns.settings import checked, read_campaign
 from basu.campaigns.shuffle import Shuffle
@@ -128,3 +129,8 @@ def test_a_value_of_the_wrong_kind_is_named_in_words_of_the_file(key: str, value
     with pytest.raises(UserError) as caught:
         checked(document, "campaign.toml")
     assert str(caught.value) == f"campaign.toml: {sentence}"
+
+
+def test_a_dry_run_warns_of_seeds_that_change_nothing(campaign: Write) -> None:
+    assert "its 3 seeds change nothing in the world" in describe(campaign())
+    assert "warning" not in describe(campaign(("number = 3", "number = 1")))

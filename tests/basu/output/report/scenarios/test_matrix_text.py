@@ -77,7 +77,7 @@ def test_what_the_shares_assume_stands_with_them() -> None:
         "(65-100)",
         "0",
         "%",
-        "(0-33)",
+        "(0-35)",
     ]
     assert "shown of all crash cost" in text
     for assumption in document["shares"]["basic"]["assumptions"]:
