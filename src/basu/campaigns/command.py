@@ -76,7 +76,7 @@ def describe(file: Path) -> str:
 
 
 def _same_drives(plan: CampaignPlan) -> list[str]:
-    """Return a warning for each [[drives]] whose seeds change nothing but an agent's own draws."""
+    """Return a warning for each [[drives]] in which seeds change nothing but an agent's own draws."""
     return [
         f"warning   {part.subjects[0].name}: its {part.seeds.number} seeds change nothing in the world, since there is "
         "no random traffic. If the agent draws nothing at random, all but one are the same drive and count once; take "

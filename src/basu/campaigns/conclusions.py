@@ -95,7 +95,7 @@ def first_of_equal(table: pa.Table) -> NDArray[np.int64]:
 
 
 def distinct(table: pa.Table) -> pa.Table:
-    """Return the rows without those that only repeat another under a different seed."""
+    """Return the rows without repetitions of another row under a different seed."""
     return table.filter(pa.array(first_of_equal(table) == table["number"].to_numpy()))
 
 
