@@ -71,7 +71,20 @@ def describe(file: Path) -> str:
             f"drives    {shown}: {len(part.subjects)} variants, {len(part.weather)} weathers, {over}: "
             f"{part.size} conditions"
         )
+    lines += _same_drives(plan)
     return "\n".join([*lines, f"in all    {plan.conditions} conditions, {plan.size} drives"])
+
+
+def _same_drives(plan: CampaignPlan) -> list[str]:
+    """Return a warning for each [[drives]] in which seeds change nothing but an agent's own draws."""
+    return [
+        f"warning   {part.subjects[0].name}: its {part.seeds.number} seeds change nothing in the world, since there is "
+        "no random traffic. If the agent draws nothing at random, all but one are the same drive and count once; take "
+        "a larger sweep and one seed"
+        for part in plan.parts
+        if part.seeds.number > 1
+        and not any(other.vehicles or other.walkers or other.density_per_km for other in part.traffic)
+    ]
 
 
 def player_settings(plan: CampaignPlan, folder: Path, settings: RunSettings) -> PlayerSettings:

@@ -7,17 +7,19 @@ import math
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import pyarrow as pa
 import pyarrow.compute as pc
 
-from basu.campaigns.intervals import Interval, Paired, bootstrap, clopper_pearson, mcnemar, sign_test, wilson
+from basu.campaigns.columns import VOLATILE
+from basu.intervals import Interval, Paired, bootstrap, clopper_pearson, mcnemar, sign_test, wilson
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import pyarrow as pa
     from numpy.typing import NDArray
 
 HOUR_S = 3_600.0
+OWN = frozenset({"number", "id", "seed", "records_bytes", *VOLATILE})  # columns in which equal drives may differ
 
 
 class Rate(NamedTuple):
@@ -72,6 +74,31 @@ MEANS = (
 )
 
 
+def first_of_equal(table: pa.Table) -> NDArray[np.int64]:
+    """Return for every row (N,) the number of the first row that is equal in condition and outcome but for the seed.
+
+    A drive that does not react to its seed says the same thing again, so it is no independent evidence.
+    """
+    rows = pa.table(
+        {name: table[name] for name in table.column_names if name not in OWN and not pa.types.is_null(table[name].type)}
+    ).append_column("number", table["number"])
+    keys = [name for name in rows.column_names if name != "number"]
+    groups = rows.group_by(keys, use_threads=False).aggregate([("number", "min"), ("number", "list")])
+    numbers = table["number"].to_numpy()
+    members = groups["number_list"].combine_chunks()
+    sizes = pc.list_value_length(members).to_numpy(zero_copy_only=False)
+    first = np.repeat(groups["number_min"].to_numpy(), sizes)
+    flat = members.flatten().to_numpy(zero_copy_only=False)
+    order = np.argsort(flat)
+    found: NDArray[np.int64] = first[order][np.searchsorted(flat[order], numbers)]
+    return found
+
+
+def distinct(table: pa.Table) -> pa.Table:
+    """Return the rows without repetitions of another row under a different seed."""
+    return table.filter(pa.array(first_of_equal(table) == table["number"].to_numpy()))
+
+
 def rates(table: pa.Table, agents: Sequence[str], confidence: float) -> list[Rate]:
     """The success rate of every agent in a table."""
     return [_rate(table.filter(pc.equal(table["agent"], agent)), agent, confidence) for agent in agents]
@@ -88,8 +115,8 @@ def _rate(table: pa.Table, agent: str, confidence: float) -> Rate:
 
 
 def pairs(table: pa.Table, agents: Sequence[str]) -> list[Pair]:
-    """Every two agents, compared on the conditions in which both were judged."""
-    number = table["number"].to_numpy() // len(agents)
+    """Return every two agents, compared on the conditions in which both were judged; equal pairs count once."""
+    number, equal = table["number"].to_numpy() // len(agents), first_of_equal(table)
     names = np.array(table["agent"].to_pylist(), dtype=object)
     judged = table["judged"].to_numpy(zero_copy_only=False).astype(bool)
     success = np.array(table["success"].fill_null(False).to_numpy(zero_copy_only=False), dtype=bool)
@@ -99,6 +126,8 @@ def pairs(table: pa.Table, agents: Sequence[str]) -> list[Pair]:
         one, other = (np.flatnonzero((names == agent) & judged) for agent in (first, second))
         _, at_one, at_other = np.intersect1d(number[one], number[other], return_indices=True)
         one, other = one[at_one], other[at_other]
+        _, kept = np.unique(np.stack([equal[one], equal[other]]), axis=1, return_index=True)  # equal pairs count once
+        one, other = one[kept], other[kept]
         found.append(Pair(first, second, mcnemar(success[one], success[other]), sign_test(score[one], score[other])))
     return found
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from basu.campaigns.intervals import wilson
+from basu.intervals import wilson
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -11,7 +11,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from basu.campaigns.campaign_folder import STOP_FILE, read_campaign_document
-from basu.campaigns.conclusions import breakdown, costs, means, pairs, rates, services
+from basu.campaigns.conclusions import breakdown, costs, distinct, means, pairs, rates, services
 from basu.campaigns.drive_table import read_drives
 from basu.campaigns.plan import CASE
 from basu.campaigns.records import FAILURE, FAULT, SAMPLE, folder_of, kept_in
@@ -64,7 +64,8 @@ def write_campaign_report(folder: Path) -> Path:
 def campaign_page(folder: Path, document: dict[str, Any], table: pa.Table) -> bytes:
     """The page of a campaign with this document and these rows."""
     agents, confidence = document["agents"], document["settings"]["confidence"]
-    parts, search = breakdown(table, agents, confidence), _search(folder, table, confidence)
+    apart = distinct(table)
+    parts, search = breakdown(apart, agents, confidence), _search(folder, table, confidence)
     body = render(
         "templates/campaign.j2",
         name=document["name"],
@@ -73,14 +74,14 @@ def campaign_page(folder: Path, document: dict[str, Any], table: pa.Table) -> by
         confidence=confidence,
         agents=agents,
         search=search,
-        rates=rates(table, agents, confidence),
+        rates=rates(apart, agents, confidence),
         pairs=pairs(table, agents) if search is None else [],
         breakdown=parts[:MOST_ROWS],
         left_out=max(0, len(parts) - MOST_ROWS),
         studies=_shown(studies_of(table, agents)) if search is None else [],
         worst=_worst(folder, agents),
-        means=means(table, agents, confidence),
-        services=services(table, agents, confidence),
+        means=means(apart, agents, confidence),
+        services=services(apart, agents, confidence),
         costs=costs(table, agents),
         made_with=_made_with(document),
     )
@@ -120,6 +121,12 @@ def _remarks(folder: Path, document: dict[str, Any], table: pa.Table) -> Iterato
         )
     elif table.num_rows < document["planned"]:
         yield "The campaign is not finished: the figures are of the drives so far."
+    repeated = table.num_rows - distinct(table).num_rows
+    if repeated:
+        yield (
+            f"{counted(table.num_rows, 'drive')}, {table.num_rows - repeated} of them distinct: the others equal one "
+            "of these in all but the seed. Equal drives count once in all rates, intervals and tests."
+        )
     faults = table.filter(pc.is_in(table["fault"], value_set=pa.array(["simulator", "benchmark", "setup"])))
     if faults.num_rows:
         first = faults["message"][0].as_py()

@@ -219,20 +219,52 @@ def checked(document: dict[str, Any], source: str) -> Campaign:
 
 
 def _sentence(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
-    """The first mistake: its place and what it must be."""
+    """Return the first mistake: its place and what it must be."""
     place = ".".join(str(part) for part in mistake["loc"])
     kind = mistake["type"]
     if kind == "extra_forbidden":
         table = next((model for name, model in _TABLES.items() if name in mistake["loc"][:-1]), Campaign)
         known = [field.alias or name for name, field in table.model_fields.items()]
         return f"{place} means nothing here; {suggestion(str(mistake['loc'][-1]), known)}"
-    if kind == "missing":
-        return f"{place} is missing; every campaign has name, agents and [[drives]]"
-    if kind == "too_short":
-        return f"{place} is empty, so there is nothing to drive; name at least one"
     if kind == "value_error":
         return f"{place}: {mistake['ctx']['error']}".removeprefix(": ")
-    return f"{place} is {mistake['input']!r}; {mistake['msg'][0].lower()}{mistake['msg'][1:]}"
+    if kind in _NOTHING:
+        return f"{place} {_NOTHING[kind]}"
+    return f"{place} is {mistake['input']!r}; {_wanted(mistake)}"
+
+
+def _wanted(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
+    """Return what must stand in the place of a value, in words of the file and not of the library."""
+    if mistake["type"] == "model_type":
+        return f"write a table with {', '.join(_keys_of(mistake['loc']))}"
+    return _WANTED.get(mistake["type"], f"{mistake['msg'][0].lower()}{mistake['msg'][1:]}")
+
+
+def _keys_of(place: tuple[Any, ...]) -> list[str]:
+    """Return the keys of the table at a place of the file."""
+    if "normal" in place:
+        return list(Normal.model_fields)
+    model = next(_TABLES[name] for name in reversed(place) if name in _TABLES)
+    return [field.alias or name for name, field in model.model_fields.items()]
+
+
+_NOTHING = {
+    "missing": "is missing; every campaign has name, agents and [[drives]]",
+    "too_short": "is empty, so there is nothing to drive; name at least one",
+}
+_WANTED = {
+    "string_pattern_mismatch": "use letters, digits, '.', '_' and '-', and begin with a letter or digit",
+    "tuple_type": "write a list in square brackets",
+    "dict_type": "write a table: {KEY = VALUE}",
+    "string_type": "write a text in quotation marks",
+    "int_type": "write a whole number",
+    "int_from_float": "write a whole number",
+    "int_parsing": "write a whole number",
+    "float_type": "write a number",
+    "float_parsing": "write a number",
+    "bool_type": "write true or false",
+    "bool_parsing": "write true or false",
+}
 
 
 _TABLES: dict[str, type[Table]] = {

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE, is_locked, read_campaign_document
 from basu.campaigns.drive_table import DRIVES, journal_rows, open_drives
-from basu.campaigns.intervals import wilson
 from basu.files import read_json
+from basu.intervals import wilson
 
 if TYPE_CHECKING:
     from pathlib import Path

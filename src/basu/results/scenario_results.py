@@ -101,7 +101,7 @@ class ScenarioResults:
 
     @property
     def shares(self) -> dict[str, Any]:
-        """The share of the crash cost that each agent's passed cases stand for, as docs/scenarios.md describes it."""
+        """The crash-cost share of each agent's passed cases, as docs/reference/scenarios.md describes it."""
         return dict(self.document["shares"])
 
     def to_pandas(self) -> pd.DataFrame:

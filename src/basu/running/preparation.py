@@ -154,7 +154,7 @@ def camera_hint(specs: tuple[SensorSpec, ...]) -> str | None:
     which = "1 camera is" if count == 1 else f"{count} cameras are"
     return (
         f"{which} drawn on the CPU, which takes most of the run's time; smaller pictures or a sensor_tick make it "
-        "faster, and so does a GPU: `linden serve --device cuda` and --host (docs/cameras.md)"
+        "faster, and so does a GPU: `linden serve --device cuda` and --host (docs/reference/cameras.md)"
     )
 
 

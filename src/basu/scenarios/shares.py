@@ -8,16 +8,16 @@ Two figures come of this. *Of the exercised*: the passed part of the cases in wh
 the passed part of all cases of the suite, over all nine groups; what was not exercised, not represented, not played or
 not judged counts as not passed. Absence from a conflict cannot raise the second figure, and no fault can.
 
-Intervals are those of Wilson 1927 at 95 % for each scenario's cases, combined over scenarios by the method of variance
-estimates recovery (Zou and Donner 2008, equation 5). They cover the number of cases alone.
+Intervals are those of a weighted rate at 95 % (`basu.intervals.weighted`). They cover the number of cases alone.
+`tests/basu/scenarios/test_share_coverage.py` holds how often they cover.
 """
 
 from __future__ import annotations
 
-import math
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
+from basu.intervals import Stratum, weighted
 from basu.scenarios.nhtsa import BURDENS, PRE_CRASH, Group, stands_for
 from basu.scenarios.verdict import Verdict
 
@@ -30,7 +30,6 @@ CONTROL_DRIVERS = {
     "standing": "never moves",
 }
 MARGINS = ("distance_m", "ttc_s", "pet_s")
-Z = 1.959964  # of the normal distribution, two-sided 95 %
 
 
 class Result(NamedTuple):
@@ -94,22 +93,6 @@ class CrashShares(NamedTuple):
     narrowest: tuple[Narrowest, ...]  # by scenario, in the order in which they come
 
 
-class _Stratum(NamedTuple):
-    """The cases of one scenario, and its weight within its group."""
-
-    weight: float
-    passed: int
-    cases: int
-
-
-def wilson(passed: int, cases: int) -> Estimate:
-    """The interval of a proportion: Wilson 1927, equation 4."""
-    share, z2 = passed / cases, Z * Z
-    middle = (share + z2 / (2.0 * cases)) / (1.0 + z2 / cases)
-    half = Z / (1.0 + z2 / cases) * math.sqrt(share * (1.0 - share) / cases + z2 / (4.0 * cases * cases))
-    return Estimate(share, max(0.0, min(share, middle - half)), min(1.0, max(share, middle + half)))
-
-
 def crash_shares(results: Sequence[Result]) -> CrashShares:
     """Weigh the results of one agent."""
     counted = [result for result in results if result.verdict.counts]
@@ -141,7 +124,7 @@ def crash_shares(results: Sequence[Result]) -> CrashShares:
     )
 
 
-def _strata(group: Group, results: Sequence[Result], *, whole_group: bool = False) -> list[_Stratum]:
+def _strata(group: Group, results: Sequence[Result], *, whole_group: bool = False) -> list[Stratum]:
     """The scenarios of a group with their weights.
 
     Weights sum to 1; with ``whole_group``, to the part of the group's crashes covered by the played scenarios.
@@ -163,27 +146,20 @@ def _strata(group: Group, results: Sequence[Result], *, whole_group: bool = Fals
     if whole_group and known:
         total = max(total, float(sum(kind.thousands for kind in PRE_CRASH.values() if kind.group is group)))
     return [
-        _Stratum(weights[name] / total, sum(one.verdict is Verdict.SUCCESS for one in of), len(of))
+        Stratum(weights[name] / total, sum(one.verdict is Verdict.SUCCESS for one in of), len(of))
         for name, of in by_scenario.items()
     ]
 
 
-def _combined(strata: Iterable[_Stratum]) -> Estimate:
-    """The weighted sum of proportions: Zou and Donner 2008, equation 5."""
-    share = below = above = 0.0
-    for weight, passed, cases in strata:
-        one = wilson(passed, cases)
-        share += weight * one.share
-        below += (weight * (one.share - one.low)) ** 2
-        above += (weight * (one.high - one.share)) ** 2
-    share = min(1.0, share)  # weights sum to 1 but for rounding
-    return Estimate(share, max(0.0, share - math.sqrt(below)), min(1.0, share + math.sqrt(above)))
+def _combined(strata: Iterable[Stratum]) -> Estimate:
+    """Return the weighted sum of the scenarios' shares."""
+    return Estimate(*weighted(strata)[:3])
 
 
 def _group_share(
     group: Group,
-    exercised: Sequence[_Stratum],
-    shown: Sequence[_Stratum],
+    exercised: Sequence[Stratum],
+    shown: Sequence[Stratum],
     counted: Sequence[Result],
     absent: Sequence[Result],
 ) -> GroupShare:
@@ -198,7 +174,7 @@ def _group_share(
     )
 
 
-def _weighed(strata: Mapping[Group, Sequence[_Stratum]], groups: Sequence[Group], key: str) -> Estimate | None:
+def _weighed(strata: Mapping[Group, Sequence[Stratum]], groups: Sequence[Group], key: str) -> Estimate | None:
     """The strata of several groups, each group weighed by its burden."""
     if not groups:
         return None

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from basu.campaigns.command import describe
 from basu.campaigns.planning import plan_of
-from basu.campaigns.settings import read_campaign
+from basu.campaigns.settings import checked, read_campaign
 from basu.campaigns.shuffle import Shuffle
 from basu.errors import UserError
 from basu.scenarios.cases import open_library
@@ -110,3 +111,26 @@ def test_a_file_of_scenarios_is_found_beside_the_campaign_and_workers_open_it(ca
     file = campaign((usual, 'cases = ["van.xml"]'))
     with pytest.raises(UserError, match=r"scenario file 'van\.xml' was not found"):
         plan_of(read_campaign(file), file)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "sentence"),
+    [
+        ("seeds", 3, "seeds is 3; write a table with first, number"),
+        ("name", "a b", "name is 'a b'; use letters, digits, '.', '_' and '-', and begin with a letter or digit"),
+        ("agents", "basic", "agents is 'basic'; write a list in square brackets"),
+        ("vehicle", 3, "vehicle is 3; write a text in quotation marks"),
+        ("keep", {"failures": "many"}, "keep.failures is 'many'; write a whole number"),
+        ("scoring", 3, "scoring is 3; write a table: {KEY = VALUE}"),
+    ],
+)
+def test_a_value_of_the_wrong_kind_is_named_in_words_of_the_file(key: str, value: object, sentence: str) -> None:
+    document = {"name": "x", "agents": ["basic"], "drives": [{"cases": ["all"]}], key: value}
+    with pytest.raises(UserError) as caught:
+        checked(document, "campaign.toml")
+    assert str(caught.value) == f"campaign.toml: {sentence}"
+
+
+def test_a_dry_run_warns_of_seeds_that_change_nothing(campaign: Write) -> None:
+    assert "its 3 seeds change nothing in the world" in describe(campaign())
+    assert "warning" not in describe(campaign(("number = 3", "number = 1")))

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from basu.scenarios.nhtsa import BURDENS, Group
 from basu.scenarios.share_documents import ASSUMPTIONS, results_from, sentence, shares_to_json
-from basu.scenarios.shares import Result, crash_shares, wilson
+from basu.scenarios.shares import Result, crash_shares
 from basu.scenarios.verdict import Verdict
 
 OK, LOST, BROKE, SPOILT = Verdict.SUCCESS, Verdict.FAILURE, Verdict.AGENT_FAULT, Verdict.SIMULATOR_FAULT
@@ -141,11 +141,12 @@ def test_how_narrowly_is_the_least_of_the_cases_that_were_passed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("passed", "cases", "low", "high"), [(8, 10, 0.4902, 0.9433), (0, 10, 0.0, 0.2775), (10, 10, 0.7225, 1.0)]
+    ("passed", "cases", "low", "high"), [(8, 10, 0.4439, 0.9748), (0, 10, 0.0, 0.3085), (10, 10, 0.6915, 1.0)]
 )
-def test_the_interval_is_wilsons(passed: int, cases: int, low: float, high: float) -> None:
-    """Figures of the closed form, as Newcombe 1998 tabulates method 3."""
-    assert wilson(passed, cases) == pytest.approx((passed / cases, low, high), abs=1e-4)
+def test_the_interval_of_one_scenario_is_the_exact_one(passed: int, cases: int, low: float, high: float) -> None:
+    """Figures of Clopper and Pearson, as tables of the binomial distribution have them."""
+    found = crash_shares([result(Group.ANIMAL, "DeerAtDusk", n, OK if n < passed else LOST) for n in range(cases)]).cost
+    assert found == pytest.approx((passed / cases, low, high), abs=1e-4)
 
 
 def test_more_cases_narrow_the_interval() -> None:
@@ -202,6 +203,6 @@ def test_the_documents_of_cases_are_read_and_the_figures_written_with_their_assu
     assert written["assumptions"] == list(ASSUMPTIONS)
     assert written["narrowest"][0]["least"]["distance_m"] == 1.5
     assert written["sentence"].startswith(
-        "2 of 2 cases judged: it passes situations that stand for 50 % (9 to 91) of the crash cost of the one group "
+        "2 of 2 cases judged: it passes situations that stand for 50 % (1 to 99) of the crash cost of the one group "
         "exercised, which is 1 % of all, and shows 1 % (0 to 1) of all crash cost; not exercised: control loss"
     )

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 CANDIDATE_BITS = 12  # 4,096 candidates for proposals, the same in every round
 EXPLORES = 4  # every so-many-th proposal is the farthest from all drives
 APART = 0.01  # of the cube's side: least distance from one drive to the next
-NEAR = 0.15  # of the cube's side: a drive nearer than this makes a candidate worth less
+NEAR = 0.1  # of the cube's side: a drive nearer than this makes a candidate worth less
 NEIGHBOURS = 5  # their judgement says whether a candidate will be judged
 LEAST_JUDGED = 0.1  # the weight of a candidate among drives that were not judged
 

@@ -28,8 +28,20 @@ if TYPE_CHECKING:
 
 LENGTH, LENGTHS = 0.3, (0.05, 5.0)  # of the unit cube: where the fit begins, and its limits
 HEIGHT, HEIGHTS = 10.0, (1.0, 1e3)  # variance of the latent function, likewise
+SHORT, SHORTS = 0.2, (0.05, 0.3)  # lengths of a fit that must keep every drive on its side
+TALL, TALLS = 100.0, (30.0, 1e4)  # variance, likewise
 LEAST_DEVIATION = 1e-9
 THREADS = ThreadpoolController()  # matrices are small, and the workers have the processors
+
+
+OPTIMIZER = "fmin_l_bfgs_b"
+
+
+def _kernel(
+    dimensions: int, height: float, heights: tuple[float, float], length: float, lengths: tuple[float, float]
+) -> ConstantKernel:
+    """Return a squared-exponential kernel with a length for each dimension, and the limits of its fit."""
+    return ConstantKernel(height, heights) * RBF(np.full(dimensions, length), lengths)
 
 
 class Surrogate:
@@ -43,13 +55,21 @@ class Surrogate:
         Needs one failure and one success at least.
         """
         self._points, self._failed = points, failed
-        usual = ConstantKernel(HEIGHT, HEIGHTS) * RBF(np.full(points.shape[1], LENGTH), LENGTHS)
-        self._model = GaussianProcessClassifier(
-            usual if kernel is None else kernel, optimizer="fmin_l_bfgs_b" if kernel is None else None
-        )
+        if kernel is not None:
+            self._model = self._fitted(kernel, None)
+            return
+        self._model = self._fitted(_kernel(points.shape[1], HEIGHT, HEIGHTS, LENGTH, LENGTHS), OPTIMIZER)
+        if ((self.latent(points)[0] > 0.0) != failed).any():
+            # the likeliest fit takes a few failures among many successes for noise; verdicts have none
+            self._model = self._fitted(_kernel(points.shape[1], TALL, TALLS, SHORT, SHORTS), OPTIMIZER)
+
+    def _fitted(self, kernel: ConstantKernel, optimizer: str | None) -> GaussianProcessClassifier:
+        """Return a classifier fitted to the drives, with this kernel to begin from."""
+        model = GaussianProcessClassifier(kernel, optimizer=optimizer)
         with THREADS.limit(limits=1), warnings.catch_warnings():
             warnings.simplefilter("ignore", ConvergenceWarning)  # at a limit: the limits are wide enough to draw by
-            self._model.fit(points, failed)
+            model.fit(self._points, self._failed)
+        return model
 
     def latent(self, at: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(M,) mean and deviation of the latent function at points (M, D)."""

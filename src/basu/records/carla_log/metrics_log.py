@@ -1,7 +1,7 @@
 """Questions to a recording, under the names of ScenarioRunner's ``MetricsLog``, so that its metric classes run on it.
 
 Frames count from 1. An actor is named by its id or its role name. What the recording does not have
-is None. Where the answers differ from ScenarioRunner's, and why: docs/recording.md.
+is None. Where the answers differ from ScenarioRunner's, and why: docs/how-to/recording.md.
 """
 
 from __future__ import annotations

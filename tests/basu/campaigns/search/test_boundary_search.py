@@ -114,3 +114,16 @@ def test_a_search_avoids_places_where_drives_are_not_judged() -> None:
 )
 def test_rounds_have_all_drives(first: int, drives: int, batch: int, sizes: tuple[int, ...]) -> None:
     assert round_sizes(first, drives, batch) == sizes
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_few_failures_among_many_successes_are_not_taken_for_noise(seed: int) -> None:
+    """A disc of 4.5 % of the square: every known failure lies on the failing side."""
+
+    def small(points: Points) -> NDArray[np.bool_]:
+        return np.hypot(points[:, 0] - 0.7, points[:, 1] - 0.3) < 0.12
+
+    points = np.vstack([space_filling(25, 2, seed), [[0.7, 0.3]]])
+    assert 1 <= small(points).sum() <= 4
+    mean, _ = Surrogate(points, small(points)).latent(points[small(points)])
+    assert (mean > 0.0).all()

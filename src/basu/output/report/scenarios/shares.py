@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING, Any
 
+from basu.intervals import FEW
 from basu.output.report.templates import render
 from basu.scenarios.shares import CONTROL_DRIVERS
 
@@ -168,5 +169,7 @@ def _bar(group: dict[str, Any] | None, weight: float | None) -> dict[str, Any]:
     if passed is None:
         return {"is_weighed": False, "text": f"{absent} not exercised"}
     counts = [f"{group[key]} {key[: None if group[key] != 1 else -1]}" for key in ("cases", "scenarios")]
-    text = f"{interval(passed)} of {' of '.join(counts)}" + (f", {absent} not exercised" if absent else "")
+    known = percent_of(passed["share"]) if group["cases"] == 1 else interval(passed)
+    few = f", fewer than {FEW}" if 1 < group["cases"] < FEW else ", no interval" if group["cases"] == 1 else ""
+    text = f"{known} of {' of '.join(counts)}{few}" + (f", {absent} not exercised" if absent else "")
     return {"is_weighed": True, "weight": weight, "filled": passed["share"], "text": text}

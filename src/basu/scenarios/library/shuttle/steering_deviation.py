@@ -27,7 +27,7 @@ class SteeringDeviation(Scenario):
 
     On that day a shuttle in Linden stopped hard over such a deviation at 7.1 mph, and a passenger slid to the floor. A
     driver steers against it and goes on. An ego that stops hard for no reason fails, and so does one that drifts out of
-    its lane. How large the deviation was is not known: see `docs/passengers.md`.
+    its lane. How large the deviation was is not known: see `docs/reference/passengers.md`.
     """
 
     group = Group.SHUTTLE

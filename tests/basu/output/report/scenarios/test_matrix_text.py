@@ -71,13 +71,13 @@ def test_what_the_shares_assume_stands_with_them() -> None:
     assert line_of(text, "crash cost").split()[2:] == [
         "81",
         "%",
-        "(52-94)",
+        "(43-98)",
         "100",
         "%",
-        "(67-100)",
+        "(65-100)",
         "0",
         "%",
-        "(0-33)",
+        "(0-35)",
     ]
     assert "shown of all crash cost" in text
     for assumption in document["shares"]["basic"]["assumptions"]:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from basu.campaigns.intervals import binomial_tail, bootstrap, clopper_pearson, fair_coin, mcnemar, sign_test, wilson
+from basu.intervals import binomial_tail, bootstrap, clopper_pearson, fair_coin, mcnemar, sign_test, wilson
 
 
 @pytest.mark.parametrize(
@@ -65,3 +65,12 @@ def test_mcnemar_and_the_sign_test_count_discordant_pairs() -> None:
 
 def test_a_fair_coin_is_never_surprised_by_nothing() -> None:
     assert fair_coin(0, 0) == fair_coin(5, 5) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("trials", "caution", "is_shown"),
+    [(0, "", False), (1, "one drive: no interval", False), (19, "only 19 drives", True), (20, "", True)],
+)
+def test_few_trials_carry_a_caution_and_one_has_no_interval(trials: int, caution: str, is_shown: object) -> None:
+    for found in (wilson(trials, trials), clopper_pearson(trials, trials), bootstrap(np.ones(trials))):
+        assert (found.caution, found.is_shown) == (caution, is_shown)

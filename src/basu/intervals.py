@@ -1,6 +1,6 @@
-"""Intervals and tests: rates (Wilson, Clopper and Pearson), means (bootstrap), pairs (McNemar and sign test, exact).
+"""Intervals of rates, weighted rates and means, and exact tests of pairs (McNemar, sign test).
 
-All are small closed forms or sums of binomial terms, so that a report needs no further library.
+The binomial distribution and the quantiles of the beta distribution are scipy's.
 """
 
 from __future__ import annotations
@@ -10,15 +10,16 @@ from statistics import NormalDist
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from scipy.special import bdtrc, betaincinv
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Iterable
 
     from numpy.typing import NDArray
 
 RESAMPLES = 2_000  # of a bootstrap: Efron and Tibshirani 1993, section 13.3, name 1,000 for percentiles
-BISECTIONS = 60  # halvings of [0, 1]: down to the last digit of a float
 CHUNK = 4_000_000  # numbers drawn at once by a bootstrap, for the memory
+FEW = 20  # trials below which an interval is shown with a caution; from one trial none is shown
 
 
 class Interval(NamedTuple):
@@ -27,6 +28,19 @@ class Interval(NamedTuple):
     value: float
     low: float
     high: float
+    trials: float = math.inf  # from which it comes
+
+    @property
+    def caution(self) -> str:
+        """What a reader must know beside the interval: "" from ``FEW`` trials on."""
+        if self.trials >= FEW or self.trials == 0:
+            return ""
+        return "one drive: no interval" if self.trials <= 1 else f"only {self.trials:g} drives"
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether there is an interval to show: from two trials on."""
+        return self.trials > 1
 
     @property
     def width(self) -> float:
@@ -40,40 +54,63 @@ def wilson(successes: int, trials: int, confidence: float = 0.95) -> Interval:
     Without trials the interval is all of [0, 1] and the value NaN.
     """
     if trials == 0:
-        return Interval(math.nan, 0.0, 1.0)
+        return Interval(math.nan, 0.0, 1.0, 0)
     z = NormalDist().inv_cdf(0.5 + confidence / 2.0)
     share, squared = successes / trials, z * z
     centre = (share + squared / (2.0 * trials)) / (1.0 + squared / trials)
     half = z / (1.0 + squared / trials) * math.sqrt(share * (1.0 - share) / trials + squared / (4.0 * trials**2))
     low = 0.0 if successes == 0 else max(0.0, centre - half)
-    return Interval(share, low, 1.0 if successes == trials else min(1.0, centre + half))
+    return Interval(share, low, 1.0 if successes == trials else min(1.0, centre + half), trials)
 
 
-def clopper_pearson(successes: int, trials: int, confidence: float = 0.95) -> Interval:
-    """The rate of successes with its exact interval, which is never too narrow: Clopper and Pearson 1934.
+def clopper_pearson(successes: float, trials: float, confidence: float = 0.95) -> Interval:
+    """Return the rate of successes with its exact interval, which is never too narrow: Clopper and Pearson 1934.
 
-    Each end is the rate at which a result as extreme has the probability ``(1 - confidence) / 2``.
+    Each end is the rate at which a result as extreme has the probability ``(1 - confidence) / 2``: a quantile of the
+    beta distribution. Effective numbers (see ``weighted``) need not be whole.
     """
     if trials == 0:
-        return Interval(math.nan, 0.0, 1.0)
+        return Interval(math.nan, 0.0, 1.0, 0)
     tail = (1.0 - confidence) / 2.0
-    low, high = 0.0, 1.0
-    if successes > 0:
-        low = _rate_where(lambda rate: binomial_tail(successes, trials, rate) < tail)
-    if successes < trials:
-        high = _rate_where(lambda rate: 1.0 - binomial_tail(successes + 1, trials, rate) > tail)
-    return Interval(successes / trials, low, high)
+    low = float(betaincinv(successes, trials - successes + 1.0, tail)) if successes > 0 else 0.0
+    high = float(betaincinv(successes + 1.0, trials - successes, 1.0 - tail)) if successes < trials else 1.0
+    return Interval(successes / trials, low, high, trials)
+
+
+class Stratum(NamedTuple):
+    """Trials of one kind, with the weight of their rate in a sum."""
+
+    weight: float
+    successes: int
+    trials: int  # 1 or more
+
+
+def weighted(strata: Iterable[Stratum], confidence: float = 0.95) -> Interval:
+    """Return the weighted sum of the strata's rates with its interval; weights sum to 1 at most.
+
+    The interval is that of Clopper and Pearson at the effective number of trials (Kish 1965, section 11.7; Korn and
+    Graubard 1998, "Confidence intervals for proportions with small expected number of positive counts"). A stratum
+    without a failure widens it as well, because failures elsewhere say how uncertain a stratum of so few trials is.
+    What is missing from a sum of 1 counts as failed for certain.
+    """
+    known = [each for each in strata if each.weight > 0.0]
+    whole = sum(each.weight for each in known)
+    if not known:
+        return Interval(0.0, 0.0, 0.0, 0)
+    effective = whole**2 / sum(each.weight**2 / each.trials for each in known)
+    rate = sum(each.weight * (each.successes / each.trials) for each in known) / whole
+    failures = sum(each.trials - each.successes for each in known)
+    successes = effective * rate if failures else effective  # all of them, whatever the rounding
+    found = clopper_pearson(min(successes, effective), effective, confidence)
+    part = min(1.0, whole)  # 1 but for rounding
+    return Interval(part * found.value, part * found.low, part * found.high, sum(each.trials for each in known))
 
 
 def binomial_tail(least: int, trials: int, rate: float) -> float:
-    """The probability of at least so many successes in independent trials, each with ``rate``."""
+    """Return the probability of at least so many successes in independent trials, each with ``rate``."""
     if least <= 0:
         return 1.0
-    if rate <= 0.0 or least > trials:
-        return 0.0
-    if rate >= 1.0:
-        return 1.0
-    return min(1.0, math.fsum(_terms(least, trials, trials, rate)))
+    return float(bdtrc(least - 1, trials, rate)) if least <= trials else 0.0
 
 
 def bootstrap(values: NDArray[np.float64], confidence: float = 0.95, seed: int = 0) -> Interval:
@@ -83,7 +120,7 @@ def bootstrap(values: NDArray[np.float64], confidence: float = 0.95, seed: int =
     """
     known = values[np.isfinite(values)]
     if len(known) == 0:
-        return Interval(math.nan, math.nan, math.nan)
+        return Interval(math.nan, math.nan, math.nan, 0)
     rng, means = np.random.default_rng(seed), np.empty(RESAMPLES)
     step = max(1, CHUNK // len(known))
     for begin in range(0, RESAMPLES, step):
@@ -91,7 +128,7 @@ def bootstrap(values: NDArray[np.float64], confidence: float = 0.95, seed: int =
         means[begin : begin + count] = known[rng.integers(0, len(known), (count, len(known)))].mean(axis=1)
     tail = (1.0 - confidence) / 2.0
     low, high = np.quantile(means, [tail, 1.0 - tail])
-    return Interval(float(known.mean()), float(low), float(high))
+    return Interval(float(known.mean()), float(low), float(high), len(known))
 
 
 class Paired(NamedTuple):
@@ -129,22 +166,3 @@ def fair_coin(heads: int, tails: int) -> float:
     if throws == 0:
         return 1.0
     return min(1.0, 2.0 * binomial_tail(max(heads, tails), throws, 0.5))
-
-
-def _terms(least: int, most: int, trials: int, rate: float) -> list[float]:
-    """The binomial probabilities of least to most successes."""
-    log_rate, log_rest = math.log(rate), math.log1p(-rate)
-    whole = math.lgamma(trials + 1)
-    return [
-        math.exp(whole - math.lgamma(k + 1) - math.lgamma(trials - k + 1) + k * log_rate + (trials - k) * log_rest)
-        for k in range(least, most + 1)
-    ]
-
-
-def _rate_where(is_below: Callable[[float], bool]) -> float:
-    """The rate in [0, 1] at which a function turns from true to false."""
-    low, high = 0.0, 1.0
-    for _ in range(BISECTIONS):
-        middle = (low + high) / 2.0
-        low, high = (middle, high) if is_below(middle) else (low, middle)
-    return (low + high) / 2.0
