@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING
 
 import carla
 
+from basu.agents.process.gate import Gate
 from basu.errors import SimulatorError, UserError
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ class Simulator:
     own: bool
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
     ended: Callable[[], bool]  # whether its process is seen to have ended; asks it nothing
+    gate: Gate | None = None  # for agents in processes of their own; None: they connect to the simulator itself
     uploaded: str | None = None  # the town of the map that BASU sent; the simulator calls it by UPLOADED_NAME
 
     def map_name(self, town: str) -> str:
@@ -70,22 +72,37 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         client = connect(options.host, options.port, options.timeout_s)
         address = (options.host, options.port)
         town = None if options.upload_map is None else upload(client, options.upload_map, options.timeout_s)
-        yield Simulator(
-            client,
-            address,
-            own=False,
-            why_gone=lambda: _silence(client, options),
-            ended=lambda: False,
-            uploaded=town,
-        )
+        with gate_before(*address) as gate:
+            yield Simulator(
+                client,
+                address,
+                own=False,
+                why_gone=lambda: _silence(client, options),
+                ended=lambda: False,
+                gate=gate,
+                uploaded=town,
+            )
         return
     server = _early.pop() if _early else own_server(options)
     try:
         server.await_ready()
         client = connect("127.0.0.1", server.port, options.timeout_s)
-        yield Simulator(client, ("127.0.0.1", server.port), own=True, why_gone=server.gone, ended=server.ended)
+        with gate_before("127.0.0.1", server.port) as gate:
+            yield Simulator(
+                client, ("127.0.0.1", server.port), own=True, why_gone=server.gone, ended=server.ended, gate=gate
+            )
     finally:
         server.end()
+
+
+@contextlib.contextmanager
+def gate_before(host: str, port: int) -> Iterator[Gate]:
+    """A gate before a simulator; its process ends with the block."""
+    gate = Gate([*linden_command(), "gate", "--host", host, "--port", str(port)])
+    try:
+        yield gate
+    finally:
+        gate.end()
 
 
 _early: list[OwnServer] = []  # at most one: a server that started ahead of its run

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.manual.inputs import Person
+    from basu.agents.process.gate import Gate
     from basu.managers.observations import Neighbours
     from basu.records.history import Collision
     from basu.routing import Route
@@ -53,6 +54,7 @@ class Run:
     timeout_s: float  # of wall time to wait for the simulator
     folder: Path  # of the run; has another name until the run is over
     server_address: tuple[str, int] = ("127.0.0.1", 2000)
+    gate: Gate | None = None  # between the simulator and an agent with a process of its own
     weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
     own_simulator: bool = False  # nothing but this run and its agent is connected to it
     neighbours: Neighbours | None = None  # other actors near the vehicle, shared by record and checks

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -35,6 +36,33 @@ AgentMemory = Annotated[
         default_text="no limit",
     ),
 ]
+
+
+class Track(enum.Enum):
+    """What an agent learns of other actors; scores of different tracks are never compared."""
+
+    WORLD = "world"
+    OBJECTS = "objects"
+    SENSORS = "sensors"
+
+
+TrackWish = Annotated[
+    Track | None,
+    Option(
+        help="what the agent learns of others: all (world), those in line of sight (objects), nothing but its sensors",
+        group=AGENT,
+        metavar="TRACK",
+        default_text="as config() asks, else world",
+    ),
+]
+Open = Annotated[
+    bool,
+    Option(
+        help="connect the agent to the simulator itself, without the gate, for development; the score is marked as not "
+        "comparable",
+        group=AGENT,
+    ),
+]
 Debug = Annotated[bool, Option(help="show the traceback of an agent that fails", group=AGENT, repeats=False)]
 
 
@@ -65,6 +93,8 @@ class AgentOptions(Settings):
     step_limit_s: StepLimit = 10.0
     in_process: InProcess = False
     agent_memory_gb: AgentMemory = None
+    track: TrackWish = None
+    open: Open = False
     debug: Debug = False
 
     def check(self) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated
 
 from basu.errors import UserError
-from basu.options.agent import AgentMemory, Debug, InProcess, StepLimit, check_agent_process
+from basu.options.agent import AgentMemory, Debug, InProcess, Open, StepLimit, TrackWish, check_agent_process
 from basu.options.folders import Output
 from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
 from basu.options.run import RunOptions
@@ -92,6 +92,8 @@ class ScenarioOptions(Settings):
     step_limit_s: StepLimit = 10.0
     in_process: InProcess = False
     agent_memory_gb: AgentMemory = None
+    track: TrackWish = None
+    open: Open = False
     debug: Debug = False
     seed: Annotated[
         int,
