@@ -54,7 +54,6 @@ def run(arguments: argparse.Namespace) -> int:
 
     if arguments.vehicle is None:
         relay.watch(sys.stdin.fileno(), order)
-        _say("linden: gate ready")
     else:
         ports = relay.open_gate(Track(arguments.track), arguments.vehicle, ())
         relay.add_sensors(arguments.sensor)

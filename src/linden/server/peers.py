@@ -8,6 +8,7 @@ import socket
 from collections import deque
 from collections.abc import Container
 
+from linden.gate.session import Gate
 from linden.protocol.wire.rpc import Call, RpcConnection
 from linden.protocol.wire.stream import Subscription, size_prefix
 from linden.server.outgoing import Outgoing
@@ -29,6 +30,8 @@ class Peer:
         self.interest = 0
         """Which events the selector watches for; 0 where it does not know the socket."""
         self.is_open = True
+        self.gate: Gate | None = None
+        """What an agent's connection may do; None for connections that may do everything."""
         host, port, *_ = sock.getpeername()
         self.address = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
@@ -106,6 +109,8 @@ class StreamPeer(Peer):
         """Messages it did not get, because a newer one took their place before it had read those before."""
         self.congested_since_s: float | None = None
         """When it fell behind by more than is queued for it, in synchronous mode."""
+        self.held: bytes | None = None
+        """A snapshot that waits until its gate knows what the agent sees in it."""
         self._newest: bytes | None = None  # kept until all before it is sent; asynchronous mode
 
     def __str__(self) -> str:
