@@ -121,7 +121,6 @@ class AgentsManager(BaseManager):
         if self._is_watched:
             self._conduct.begin(run)
         self._agent.setup(binding, run.timeout_s)
-        self._conduct.set_up()
 
     def perceive(self, sensor_data: dict[str, tuple[int, Any]]) -> None:
         """Lay what the sensors measured before the agent for its next step."""
@@ -132,15 +131,10 @@ class AgentsManager(BaseManager):
         self._conduct.before(frame)
         self._passage.see(frame)
         self.control = self.requested = self._agent.step(frame.server_frame, self._sensor_data)
-        self._conduct.after(frame)
         if self.person is not None:
             by_hand = self.person.step(frame.tick, self._step_s, self.control)
             self._by_hand = by_hand is not None
             self.control = by_hand or self.control
-
-    def finish(self) -> None:
-        """Check after the last step that the agent has changed nothing."""
-        self._conduct.finish()
 
     def close(self) -> None:
         """Let the agent put its things away, where it was bound, and close its gate."""
