@@ -187,6 +187,11 @@ class OwnServer:
             self.end()
             raise
 
+    @property
+    def pid(self) -> int:
+        """The number of its process."""
+        return self._process.pid
+
     def send_order(self, line: str) -> None:
         """Send an order for the gate.
 

@@ -99,6 +99,11 @@ class Relay:
         self._command = tuple(command)
         self._process: subprocess.Popen[str] | None = None
 
+    @property
+    def pid(self) -> int | None:
+        """The number of the process; None before the first order."""
+        return None if self._process is None else self._process.pid
+
     def send_order(self, line: str) -> None:
         """Send one line.
 
