@@ -3,8 +3,8 @@
     python benchmarks/gate.py [--ticks 400] [--rounds 3] [--actors 30]
 
 A client ticks, and a second one, an agent's, waits for the snapshot of that frame: directly, through a gate of the
-server's, or through ``linden gate``. A row has the time from the tick to the snapshot (median and quarters of all ticks,
-ms) and the processor time of server and relay together (ms a tick). Rounds alternate between the ways.
+server's, or through ``linden gate``. A row has the time from the tick to the snapshot (median and quarters, ms)
+and the processor time of server and relay together (ms a tick). Rounds alternate between the ways.
 """
 
 import argparse

@@ -64,7 +64,7 @@ class AgentsManager(BaseManager):
         config = self._agent.config()
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
         if track is not None:
-            self.config = replace(self.config, track=track.value)
+            self.config = replace(self.config, track=track)
         self.control = self.requested = carla.VehicleControl(brake=1.0)
 
     @property

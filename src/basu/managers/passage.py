@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import RemoteAgent
 from basu.agents.sight import Sight
-from basu.options.agent import Track
+from basu.options.agent import OBJECTS, WORLD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +52,7 @@ class Passage:
             self._is_open = self._is_open or self._is_remote
             return run.server_address
         self._gate, known = run.gate, []
-        if track == Track.OBJECTS.value:
+        if track == OBJECTS:
             known = [actor.id for actor in run.world.get_actors().filter(MAP_ACTORS)]
             self._sight = Sight(run.world, run.vehicle)
         address = self._gate.open(track, run.vehicle.id, known)
@@ -64,7 +64,7 @@ class Passage:
 
         The name of a case says which conflict comes, and so may the file of a route.
         """
-        if self._is_remote and not self._is_open and config_values["track"] != Track.WORLD.value:
+        if self._is_remote and not self._is_open and config_values["track"] != WORLD:
             route, config_values = replace(route, id=UNNAMED), {**config_values, "routes": "", "sumo": None}
         return {"route": route, "config_values": config_values}
 
@@ -83,7 +83,8 @@ class Passage:
         Raises:
             SimulatorError: the gate has ended.
         """
-        self._see(frame.snapshot)
+        if self._sight is not None:
+            self._see(frame.snapshot)
 
     def close(self) -> None:
         """Close the gate, and take down what it refused."""

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import enum
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 from basu.errors import UserError
 from basu.options.groups import AGENT
@@ -37,15 +36,10 @@ AgentMemory = Annotated[
     ),
 ]
 
-
-class Track(enum.Enum):
-    """What an agent learns of other actors; scores of different tracks are never compared."""
-
-    WORLD = "world"
-    OBJECTS = "objects"
-    SENSORS = "sensors"
-
-
+Track = Literal["world", "objects", "sensors"]
+"""What an agent learns of other actors; scores of different tracks are never compared."""
+WORLD, OBJECTS = "world", "objects"
+TRACKS: tuple[str, ...] = get_args(Track)
 TrackWish = Annotated[
     Track | None,
     Option(

@@ -133,16 +133,13 @@ def test_nothing_that_an_agent_tries_changes_others(
 
 
 @pytest.mark.usefixtures("one_server")
-def test_a_server_of_our_own_has_the_gate_in_itself_and_no_door_beside_it(
-    route_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_server_of_our_own_has_the_gate_in_itself_and_no_door_beside_it(route_file: Path, tmp_path: Path) -> None:
     connected = simulator_module.connect
 
     def noted(host: str, port: int, timeout_s: float) -> carla.Client:
         (tmp_path / "port").write_text(str(port))
         return connected(host, port, timeout_s)
 
-    monkeypatch.setattr(simulator_module, "connect", noted)
     more = f"""def walk_round(self):
         with open({str(tmp_path / "port")!r}) as file:
             port = int(file.read())
@@ -159,7 +156,9 @@ def test_a_server_of_our_own_has_the_gate_in_itself_and_no_door_beside_it(
 """
     agent = cheating_agent(tmp_path, "cheat", when="== 2", deed="self.walk_round()", more=more)
     options = ["--routes", str(route_file), "--output", str(tmp_path / "runs"), "--stop-after", "1"]
-    main(["run", str(agent), *options])
+    with pytest.MonkeyPatch.context() as patch:  # undone before the server that is kept is given back
+        patch.setattr(simulator_module, "connect", noted)
+        main(["run", str(agent), *options])
     result = result_of(tmp_path / "runs")
     assert result["status"] == "Stopped", result["message"]
     assert result["meta"]["access"]["refused"]["tick_cue"] == 1
