@@ -32,17 +32,19 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--actors", type=int, default=30, help="vehicles beside the agent's")
     arguments = parser.parse_args()
-    server = OwnServer(gates=True)
-    relay = Relay([*linden_command(), "gate", "--port", str(server.port)])
+    gated, plain = OwnServer(gates=True), OwnServer()  # a server with gates lets no relay in
+    relay = Relay([*linden_command(), "gate", "--port", str(plain.port)])
     try:
-        client = connect("127.0.0.1", server.port, TIMEOUT_S)
-        vehicles = spawned(client, 1 + arguments.actors)
-        keepers = {"in the server": Gate(server), "relay": Gate(relay)}
+        clients = {server: connect("127.0.0.1", server.port, TIMEOUT_S) for server in (gated, plain)}
+        vehicles = {server: spawned(client, 1 + arguments.actors) for server, client in clients.items()}
+        ways = {"no gate": (plain, None), "in the server": (gated, Gate(gated)), "relay": (plain, Gate(relay))}
         rows: dict[tuple[str, str], list[tuple[float, float]]] = {}
         for _ in range(arguments.rounds):
-            for name, track in [("no gate", ""), *((name, track) for name in keepers for track in TRACKS)]:
-                with agent_of(client, keepers.get(name), track, vehicles, server.port) as (agent, gate):
-                    cost = measured(client, agent, gate, vehicles, arguments.ticks, [server, relay])
+            for name, track in [("no gate", ""), *((name, track) for name in list(ways)[1:] for track in TRACKS)]:
+                server, keeper = ways[name]
+                client, own = clients[server], vehicles[server]
+                with agent_of(client, keeper, track, own, server.port) as (agent, gate):
+                    cost = measured(client, agent, gate, own, arguments.ticks, [server, relay])
                 rows.setdefault((name, track), []).extend(cost)
         print(f"{'gate':<16}{'track':<10}{'to the snapshot, ms':>24}{'processor, ms a tick':>24}")
         for (name, track), costs in rows.items():
@@ -51,7 +53,8 @@ def main() -> None:
             print(f"{name:<16}{track:<10}{f'{middle:.2f} ({low:.2f} to {high:.2f})':>24}{processor_ms:>24.2f}")
     finally:
         relay.end()
-        server.end()
+        gated.end()
+        plain.end()
 
 
 def spawned(client: carla.Client, count: int) -> list[carla.Actor]:

@@ -9,6 +9,7 @@ import struct
 import sys
 from pathlib import Path
 
+_READINGS = 5  # the table is not read at once: a row may be missed where others come and go
 _LOCAL, _REMOTE, _INODE = 1, 2, 9  # columns of /proc/net/tcp
 
 
@@ -21,14 +22,19 @@ def belongs_to(sock: socket.socket, process: int) -> bool:
         return True
     try:
         near, far = _column(sock.getsockname()), _column(sock.getpeername())
-        rows = map(str.split, Path("/proc/net/tcp").read_text("ascii").splitlines()[1:])
-        inode = next((row[_INODE] for row in rows if (row[_LOCAL], row[_REMOTE]) == (far, near)), None)
+        inode = next(filter(None, (_inode(far, near) for _ in range(_READINGS))), None)
         if inode is None:
             return False
         wanted = f"socket:[{inode}]"
         return any(_target(file) == wanted for file in Path(f"/proc/{process}/fd").iterdir())
     except OSError:  # one of the two is gone
         return False
+
+
+def _inode(local: str, remote: str) -> str | None:
+    """Return the inode of the socket with these two addresses, None where the table does not show it."""
+    rows = map(str.split, Path("/proc/net/tcp").read_text("ascii").splitlines()[1:])
+    return next((row[_INODE] for row in rows if (row[_LOCAL], row[_REMOTE]) == (local, remote)), None)
 
 
 def _column(address: tuple[str, int]) -> str:
