@@ -46,14 +46,10 @@ class Gate:
         sensors: Iterable[int] = (),
         known: Iterable[int] = (),
     ) -> None:
-        """Open a session.
+        """Open a session for the driver of ``vehicle_id``.
 
-        Args:
-            track: what the agent sees of others.
-            vehicle_id: the actor that it drives.
-            streaming_port: where it is to subscribe to streams.
-            sensors: the ids of its sensors.
-            known: actors that it sees in each frame in the track ``objects``: lights and signs.
+        It subscribes to streams at ``streaming_port``. Its sensors may come later. ``known`` are actors that it sees in
+        each frame of the track ``objects``: lights and signs.
         """
         self.track = track
         self._vehicle_id = vehicle_id
