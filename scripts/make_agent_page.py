@@ -103,6 +103,7 @@ CONFIG_MEANINGS = {
     "routes": "a route file; `--routes` replaces it",
     "sensors": "a sensor file; none: the agent drives without sensors",
     "sumo": "SUMO's traffic: a folder with a `.sumocfg` file, where SUMO is installed; `--sumo` replaces it",
+    "track": "what the agent learns of others: `world`, `objects` or `sensors`; `--track` replaces it",
     "vehicle": "the blueprint; `--vehicle` replaces it",
     "weather": "one of CARLA's presets; the weather of the route and `--weather` replace it",
 }

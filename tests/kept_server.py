@@ -61,6 +61,7 @@ class Lent:
     def __init__(self, server: OwnServer) -> None:
         """Lend ``server``."""
         self.port, self.gone, self.ended = server.port, server.gone, server.ended
+        self.send_order, self.answer = server.send_order, server.answer
 
     def await_ready(self) -> None:
         """It is ready."""

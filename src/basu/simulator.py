@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import queue
 import re
 import shutil
 import signal
@@ -22,6 +23,7 @@ from typing import TYPE_CHECKING
 
 import carla
 
+from basu.agents.process.gate import Gate, Relay
 from basu.errors import SimulatorError, UserError
 from basu.home import replaced_home
 
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
     from basu.options.run import RunOptions
 
+GATE = '{"gate"'  # begins an answer of the gate
 READY = re.compile(r"ready, rpc port (\d+)")
 START_LIMIT_S = 600.0  # a first start compiles kernels, on a machine that may be busy with other things
 END_LIMIT_S = 10.0
@@ -52,6 +55,7 @@ class Simulator:
     why_gone: Callable[[], str | None]  # why it does not answer any more, in words; None while it does
     ended: Callable[[], bool]  # whether its process is seen to have ended; asks it nothing
     timeout_s: float = 20.0  # of wall time, for an answer of the simulator
+    gate: Gate | None = None  # for agents in processes of their own; None: they connect to the simulator itself
     uploaded: str | None = None  # the town of the map that BASU sent; the simulator calls it by UPLOADED_NAME
 
     def long_call(self) -> contextlib.AbstractContextManager[None]:
@@ -86,15 +90,20 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
         client = connect(options.host, options.port, options.timeout_s)
         address = (options.host, options.port)
         town = None if options.upload_map is None else upload(client, options.upload_map, options.timeout_s)
-        yield Simulator(
-            client,
-            address,
-            own=False,
-            why_gone=lambda: _silence(client, options),
-            ended=lambda: False,
-            timeout_s=options.timeout_s,
-            uploaded=town,
-        )
+        relay = Relay([*linden_command(), "gate", "--host", options.host, "--port", str(options.port)])
+        try:
+            yield Simulator(
+                client,
+                address,
+                own=False,
+                why_gone=lambda: _silence(client, options),
+                ended=lambda: False,
+                timeout_s=options.timeout_s,
+                gate=Gate(relay),
+                uploaded=town,
+            )
+        finally:
+            relay.end()
         return
     server = _early.pop() if _early else own_server(options)
     try:
@@ -107,6 +116,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
             why_gone=server.gone,
             ended=server.ended,
             timeout_s=options.timeout_s,
+            gate=None if options.open else Gate(server),
         )
     finally:
         server.end()
@@ -129,7 +139,7 @@ def started_early(options: RunOptions) -> Iterator[None]:
 
 def own_server(options: RunOptions) -> OwnServer:
     """Start a server of our own, which need not be ready yet."""
-    return OwnServer(options.output if options.record else None, options.maps, wait=False)
+    return OwnServer(options.output if options.record else None, options.maps, gates=not options.open, wait=False)
 
 
 def _silence(client: carla.Client, options: RunOptions) -> str | None:
@@ -144,8 +154,12 @@ def _silence(client: carla.Client, options: RunOptions) -> str | None:
 class OwnServer:
     """A ``linden serve`` of our own, on ports that the system chose, still until the first tick."""
 
-    def __init__(self, recordings: Path | None = None, maps: Sequence[Path] = (), *, wait: bool = True) -> None:
+    def __init__(
+        self, recordings: Path | None = None, maps: Sequence[Path] = (), *, gates: bool = False, wait: bool = True
+    ) -> None:
         """Start it, and wait for its ready line unless ``wait`` is false.
+
+        With ``gates`` it accepts connections of this process and, behind a gate, of an agent's, and no others.
 
         It may write logs below the folder ``recordings``, and offers each .xodr file of the folders ``maps``.
 
@@ -155,10 +169,11 @@ class OwnServer:
         command = [*linden_command(), "serve", "--port", "0", "--sync"]
         if recordings is not None:
             command += ["--recordings", str(recordings.resolve())]
+        command += ["--gates"] if gates else []
         command += [word for folder in maps for word in ("--maps", str(folder.resolve()))]
         self._process = subprocess.Popen(  # noqa: S603 - our own command, arguments of our own
             command,
-            stdin=subprocess.DEVNULL,
+            stdin=subprocess.PIPE if gates else subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
@@ -167,6 +182,7 @@ class OwnServer:
         )
         self._port: int | None = None
         self._spoke = threading.Event()
+        self._answers: queue.SimpleQueue[str] = queue.SimpleQueue()  # of the gate
         self._log: deque[str] = deque(maxlen=LAST_LINES)
         self._readers = [
             threading.Thread(target=self._read, args=(stream,), name="basu-server-log", daemon=True)
@@ -188,6 +204,25 @@ class OwnServer:
         except BaseException:
             self.end()
             raise
+
+    @property
+    def pid(self) -> int:
+        """The number of its process."""
+        return self._process.pid
+
+    def send_order(self, line: str) -> None:
+        """Send an order for the gate.
+
+        Raises:
+            OSError: the server has ended.
+        """
+        assert self._process.stdin is not None, "it was started with gates"
+        self._process.stdin.write(line)
+        self._process.stdin.flush()
+
+    def answer(self) -> str:
+        """Return the next answer of the gate; empty where the server has ended."""
+        return self._answers.get()
 
     def ended(self) -> bool:
         """Whether it runs no more; costs a microsecond."""
@@ -236,6 +271,9 @@ class OwnServer:
         with stream:
             for line in stream:
                 text = line.rstrip()
+                if text.startswith(GATE):
+                    self._answers.put(text)
+                    continue
                 if (found := READY.search(text)) is not None:
                     self._port = int(found.group(1))
                 else:
@@ -244,6 +282,7 @@ class OwnServer:
                         print(text, file=sys.stderr, flush=True)  # a first start says what it is doing
                 self._spoke.set()
         self._spoke.set()
+        self._answers.put("")  # it speaks no more
 
 
 def upload(client: carla.Client, file: Path, timeout_s: float) -> str:

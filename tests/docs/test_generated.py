@@ -11,6 +11,7 @@ SCRIPTS = [
     "make_options_tables.py",
     "make_command_line_page.py",
     "make_agent_page.py",
+    "make_gate_page.py",
     "make_example_blocks.py",
 ]
 

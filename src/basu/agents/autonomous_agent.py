@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.sight import Sight
 from basu.errors import UserError
+from basu.options.agent import TRACKS, WORLD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -153,6 +154,7 @@ class AgentConfig:
     routes: str = "routes/linden_leap.xml"
     sensors: str | None = None
     sumo: str | None = None
+    track: str = WORLD
     vehicle: str = "vehicle.easymile.ez10"
     weather: str = "ClearNoon"
 
@@ -175,4 +177,6 @@ def parse_config(given: Any, agent: str) -> AgentConfig:  # noqa: ANN401 - whate
             raise UserError(f"config() of {agent} has the key {key!r}, which means nothing here; {hint}")
         if value is not None and (not isinstance(value, str) or not value):
             raise UserError(f"config() of {agent}: '{key}' is {value!r}; it must be a text")
+    if given.get("track") not in (None, *TRACKS):
+        raise UserError(f"config() of {agent}: 'track' is {given['track']!r}; it must be one of {', '.join(TRACKS)}")
     return AgentConfig(**{key: value for key, value in given.items() if value is not None})

@@ -187,6 +187,7 @@ class Episode:
             folder=self._folder if folder is None else folder,
             server_address=self._simulator.address,
             own_simulator=self._simulator.own,
+            gate=self._simulator.gate,
             weather=spec.weather_along,
             neighbours=Neighbours(world, vehicle.id),
             changes=WorldChanges(control=carla.VehicleControl(brake=1.0), weather=spec.weather),

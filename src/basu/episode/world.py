@@ -11,7 +11,6 @@ import carla
 from basu.errors import AgentCrashedError, SimulatorError, UserError
 from basu.managers.base_manager import Frame, ego_in
 from basu.managers.conduct import ticked
-from basu.managers.interference import taken_away
 from basu.routing import lane_graph
 from basu.simulator import reason
 
@@ -217,9 +216,6 @@ def next_frame(run: Run, before: Frame | None) -> Frame:
         raise AgentCrashedError(f"the agent took the vehicle under test out of the world before frame {snapshot.frame}")
     if ego is None:
         raise SimulatorError(f"the vehicle under test is gone from the world in frame {snapshot.frame}")
-    gone = taken_away(run.changes, snapshot)
-    if gone is not None and run.own_simulator:
-        raise AgentCrashedError(f"the agent took {gone} out of the world before frame {snapshot.frame}")
     if before is not None and snapshot.frame != before.server_frame + 1 and run.own_simulator:
         raise AgentCrashedError(ticked("the agent", before.server_frame, snapshot.frame))
     if before is not None and snapshot.frame != before.server_frame + 1:

@@ -12,6 +12,7 @@ from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import RemoteAgent
 from basu.managers.base_manager import BaseManager
 from basu.managers.conduct import Conduct
+from basu.managers.passage import Passage
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sensor_streams import SpawnedSensor
     from basu.managers.base_manager import Frame, Run
+    from basu.options.agent import Track
     from basu.routing.route_file import RoutePoint
 
 
@@ -39,11 +41,14 @@ class AgentsManager(BaseManager):
         routes: str | None,
         person: Person | None = None,
         seed: int = 0,
+        track: Track | None = None,
+        is_open: bool = False,
     ) -> None:
         """Make the agent and ask for its wishes.
 
         ``routes`` is the command line's, which goes before the agent's; ``person`` may take over from the agent;
-        ``seed`` is what everything random in the agent's own process begins with.
+        ``seed`` is what everything random in the agent's own process begins with; ``track`` goes before the agent's;
+        ``is_open`` connects its process to the simulator itself.
         """
         self.person = person
         self._by_hand = False
@@ -54,10 +59,18 @@ class AgentsManager(BaseManager):
         else:
             self._agent = RemoteAgent(loaded, step_limit_s, seed)
         self._conduct = Conduct(self._agent.name)
+        self._passage = Passage(self._agent, loaded, is_open=is_open)
         self._is_watched = isinstance(self._agent, RemoteAgent)
         config = self._agent.config()
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
+        if track is not None:
+            self.config = replace(self.config, track=track)
         self.control = self.requested = carla.VehicleControl(brake=1.0)
+
+    @property
+    def access(self) -> dict[str, Any]:
+        """The agent's track, whether a gate stood between it and the simulator, and what that refused."""
+        return self._passage.document(self.config.track)
 
     @property
     def manual(self) -> bool:
@@ -86,6 +99,7 @@ class AgentsManager(BaseManager):
 
     def hear(self, sensors: Sequence[SpawnedSensor]) -> bool:
         """Take the sensors that were spawned for the agent; whether its process listens to them itself."""
+        self._passage.add_sensors(sensors)
         return self._agent.hear(sensors)
 
     def stop_hearing(self) -> None:
@@ -99,16 +113,14 @@ class AgentsManager(BaseManager):
             "world": run.world,
             "map": run.carla_map,
             "vehicle": run.vehicle,
-            "route": run.route,
-            "config_values": asdict(self.config),
+            **self._passage.told(run.route, asdict(self.config)),
             "time_step_s": run.step_s,
-            "server_address": run.server_address,
+            "server_address": self._passage.open(run, self.config.track),
         }
         self._step_s = run.step_s
         if self._is_watched:
             self._conduct.begin(run)
         self._agent.setup(binding, run.timeout_s)
-        self._conduct.set_up()
 
     def perceive(self, sensor_data: dict[str, tuple[int, Any]]) -> None:
         """Lay what the sensors measured before the agent for its next step."""
@@ -117,17 +129,16 @@ class AgentsManager(BaseManager):
     def tick(self, frame: Frame) -> None:
         """Ask for a control, and the person whether it counts."""
         self._conduct.before(frame)
+        self._passage.see(frame)
         self.control = self.requested = self._agent.step(frame.server_frame, self._sensor_data)
-        self._conduct.after(frame)
         if self.person is not None:
             by_hand = self.person.step(frame.tick, self._step_s, self.control)
             self._by_hand = by_hand is not None
             self.control = by_hand or self.control
 
-    def finish(self) -> None:
-        """Check after the last step that the agent has changed nothing."""
-        self._conduct.finish()
-
     def close(self) -> None:
-        """Let the agent put its things away, where it was bound."""
-        self._agent.destroy()
+        """Let the agent put its things away, where it was bound, and close its gate."""
+        try:
+            self._agent.destroy()
+        finally:
+            self._passage.close()

@@ -1,4 +1,4 @@
-"""`BaseManager`; data of a run: `Run`, `Ego`, `Frame`, `Driver`; `WorldChanges`: legal changes, for cheating checks."""
+"""`BaseManager`; data of a run: `Run`, `Ego`, `Frame`, `Driver`; `WorldChanges`: what was set last."""
 
 from __future__ import annotations
 
@@ -13,30 +13,22 @@ from basu.records.history.numbering import Numbering
 from basu.records.motion import VehicleMotion, motion_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
     from pathlib import Path
 
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.manual.inputs import Person
+    from basu.agents.process.gate import Gate
     from basu.managers.observations import Neighbours
-    from basu.records.history import Collision
     from basu.routing import Route
     from basu.routing.weather import WeatherMark
 
 
 @dataclass(slots=True)
 class WorldChanges:
-    """What the benchmark itself has done to the world of one run. Managers write it, checks read it."""
+    """What the benchmark has set last in the world of one run. Managers write it and read it."""
 
-    checked: bool = False  # whether an agent with a client of its own takes part
     control: carla.VehicleControl | None = None  # that the vehicle was given for the coming step
-    weather: carla.WeatherParameters | None = None  # that was set last
-    lights: int = 0  # how often scenarios have changed lights
-    removed: set[int] = field(default_factory=set)  # actors that the benchmark took out of the world
-    placed: set[int] = field(default_factory=set)  # actors that it put elsewhere since the last check
-    needed: dict[int, str] = field(default_factory=dict)  # its own actors that must stay, with their names
-    frictions: set[float] = field(default_factory=set)  # of its slippery places, which a wheel there reports as its own
-    contacts: Callable[[int], Sequence[Collision]] = lambda _tick: ()  # the recorded contacts from a tick on
+    weather: carla.WeatherParameters | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,10 +46,11 @@ class Run:
     timeout_s: float  # of wall time to wait for the simulator
     folder: Path  # of the run; has another name until the run is over
     server_address: tuple[str, int] = ("127.0.0.1", 2000)
+    gate: Gate | None = None  # between the simulator and an agent with a process of its own
     weather: tuple[WeatherMark, ...] = ()  # along the route, where the route file gives it
     own_simulator: bool = False  # nothing but this run and its agent is connected to it
     neighbours: Neighbours | None = None  # other actors near the vehicle, shared by record and checks
-    changes: WorldChanges = field(default_factory=WorldChanges)  # what the benchmark itself has changed
+    changes: WorldChanges = field(default_factory=WorldChanges)  # what the benchmark has set last
     numbering: Numbering = field(default_factory=Numbering)  # of other actors in the record
 
 

@@ -56,7 +56,6 @@ class MetricsManager(BaseManager):
         """Attach the benchmark's own sensors."""
         self._run = run
         self._neighbours = run.neighbours or Neighbours(run.world, run.vehicle.id)
-        run.changes.contacts = self.contacts_since
         box = run.vehicle.bounding_box
         self._vehicle = Vehicle(
             type_id=run.vehicle.type_id,
@@ -73,7 +72,6 @@ class MetricsManager(BaseManager):
             try:
                 sensor = run.world.spawn_actor(library.find(name), carla.Transform(), attach_to=run.vehicle)
                 self._sensors.append(sensor)
-                run.changes.needed[sensor.id] = f"the benchmark's own {name}"
                 sensor.listen(hear)
             except RuntimeError as error:  # noqa: PERF203 - two sensors, once a run
                 raise SimulatorError(f"the benchmark's own {name} cannot be attached: {error}") from error

@@ -15,7 +15,6 @@ from py_trees.common import Status as NodeStatus
 
 from basu.errors import ScenarioError, UserError
 from basu.managers.base_manager import BaseManager
-from basu.managers.interference import agents_change
 from basu.managers.placed_scenario import call_scenario, is_behind, place_scenario
 from basu.managers.stage.environment import SharedWorld
 from basu.managers.stage.live_stage import LiveStage
@@ -121,7 +120,7 @@ class ScenarioManager(BaseManager):
         Raises:
             ScenarioError: one cannot be placed.
         """
-        self._step_s, self._is_checked = run.step_s, run.changes.checked and run.own_simulator
+        self._step_s = run.step_s
         self._shared = SharedWorld(run.world, run.changes)
         self.lay(run.route, run.carla_map)
         for placed in self._placed:
@@ -155,8 +154,6 @@ class ScenarioManager(BaseManager):
     def tick(self, frame: Frame) -> None:
         """Play a frame of every scenario that has begun."""
         self._shared.keep_up()
-        if self._is_checked:
-            self._check_cast(frame)
         for playing in self.playing:
             if playing.over:
                 continue
@@ -168,17 +165,6 @@ class ScenarioManager(BaseManager):
                 self._end(playing, frame.tick)
                 if self._own:
                     raise
-
-    def _check_cast(self, frame: Frame) -> None:
-        """Check that the actors of the scenarios have the controls that they were given.
-
-        Raises:
-            AgentCrashedError: one has another control.
-        """
-        for playing in self.playing:
-            fault = None if playing.over else playing.stage.fault(frame)
-            if fault is not None:
-                raise agents_change("the agent", fault, frame.server_frame)
 
     def _begins(self, playing: Playing, tick: int) -> bool:
         """Bring the cast of a scenario that the ego comes near; whether it is at the trigger point."""

@@ -124,7 +124,6 @@ class SensorsManager(BaseManager):
         with self._serving(spec):
             actor = run.world.spawn_actor(blueprint, pose, attach_to=run.vehicle)
         self._actors.append(actor)
-        run.changes.needed[actor.id] = f"the sensor '{spec.id}'"
         tick_s = float(dict(spec.attributes).get("sensor_tick", "0"))
         period_ticks = 0 if spec.type_id in ON_EVENT else max(1, round(tick_s / run.step_s))
         return SpawnedSensor(spec.id, actor.id, period_ticks, spec.as_numpy)

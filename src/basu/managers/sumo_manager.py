@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
-    from basu.managers.base_manager import Frame, Run, WorldChanges
+    from basu.managers.base_manager import Frame, Run
     from basu.managers.routes_manager import RoutesManager
     from basu.options.sumo import Sumo
 
@@ -63,7 +63,6 @@ class SumoManager(BaseManager):
         if self._sumo.is_random:
             bridge.before_step = RandomTrips(link, self._sumo.vehicles, run.seed, bridge.viewers_m).fill
         self._load, self._passengers = Load(link, run.step_s), Passengers(link, [stop.id for stop in self._stops])
-        self._changes: WorldChanges = run.changes
         bridge.step(run.world.get_snapshot())
 
     def _start(self, run: Run) -> Link:
@@ -136,13 +135,8 @@ class SumoManager(BaseManager):
             return
         t_s = frame.tick * self._step_s
         self._passengers.tick(t_s, self._served(frame))
-        before = set(bridge.display.actors.values())
         bridge.step(frame.snapshot)
         self._load.tick(t_s + self._step_s, bridge.people.present)
-        now = set(bridge.display.actors.values())
-        self._changes.placed |= now | before  # what SUMO moves and takes away is not the agent's doing
-        self._changes.removed |= before - now
-        self._changes.lights += self._sumo.lights == "sumo"
 
     def _served(self, frame: Frame) -> str | None:
         """The stop that the vehicle under test serves in this frame."""

@@ -80,8 +80,19 @@ class Result:
 
     @property
     def is_comparable(self) -> bool:
-        """Whether the score can be compared with others': the run was not ended by a failure."""
-        return self.outcome.status in COMPARABLE
+        """Whether the score can be compared with others': no failure ended the run, and the agent passed the gate."""
+        return self.outcome.status in COMPARABLE and not self.is_open
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the agent could do everything in the world: no gate stood between it and the simulator."""
+        return bool(self.meta.get("access", {}).get("open"))
+
+    @property
+    def track(self) -> str | None:
+        """What the agent learned of others; None for a run that was not driven by an agent of BASU's commands."""
+        track: str | None = self.meta.get("access", {}).get("track")
+        return track
 
     @property
     def collisions(self) -> tuple[Evidence, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 from basu.errors import UserError
 from basu.options.groups import AGENT
@@ -44,6 +44,27 @@ AgentWrites = Annotated[
         metavar="DIR",
     ),
 ]
+Track = Literal["world", "objects", "sensors"]
+"""What an agent learns of other actors; scores of different tracks are never compared."""
+WORLD, OBJECTS = "world", "objects"
+TRACKS: tuple[str, ...] = get_args(Track)
+TrackWish = Annotated[
+    Track | None,
+    Option(
+        help="what the agent learns of others: all (world), those in line of sight (objects), nothing but its sensors",
+        group=AGENT,
+        metavar="TRACK",
+        default_text="as config() asks, else world",
+    ),
+]
+Open = Annotated[
+    bool,
+    Option(
+        help="connect the agent to the simulator itself, without the gate, for development; the score is marked as not "
+        "comparable",
+        group=AGENT,
+    ),
+]
 Debug = Annotated[bool, Option(help="show the traceback of an agent that fails", group=AGENT, repeats=False)]
 
 
@@ -75,6 +96,8 @@ class AgentOptions(Settings):
     in_process: InProcess = False
     agent_memory_gb: AgentMemory = None
     agent_writes: AgentWrites = ()
+    track: TrackWish = None
+    open: Open = False
     debug: Debug = False
 
     def check(self) -> None:

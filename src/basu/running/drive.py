@@ -34,7 +34,6 @@ def drive(episode: Episode, agents: AgentsManager) -> Driven:
             agents.perceive(seen.sensor_data)
             agents.tick(seen.frame)
             seen, outcome, _ = episode.step(agents.control, requested=agents.requested, manual=agents.manual)
-        agents.finish()
     except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the episode classifies it
         outcome = episode.fail(error)
     wall_s = time.perf_counter() - began_s

@@ -131,6 +131,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         seed=job.seed,
         traffic=episode.traffic,
         log=recording[0].path if recording else None,
+        access=agents.access,
     )
     met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)

@@ -112,7 +112,15 @@ def new_agents(loaded: FoundAgent, options: RunOptions, seed: int) -> AgentsMana
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
     person = person_for(options, by_hand=loaded.is_human)
-    agents = AgentsManager(loaded, step_limit_s=options.step_limit_s, routes=options.routes, person=person, seed=seed)
+    agents = AgentsManager(
+        loaded,
+        step_limit_s=options.step_limit_s,
+        routes=options.routes,
+        person=person,
+        seed=seed,
+        track=options.track,
+        is_open=options.open,
+    )
     agents.config = replace(
         agents.config,
         weather=options.weather or agents.config.weather,

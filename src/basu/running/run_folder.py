@@ -52,6 +52,7 @@ def run_config(
     seed: int,
     traffic: Mapping[str, int],
     log: str | None,
+    access: Mapping[str, Any],
 ) -> dict[str, Any]:
     """Return ``config.json``: the options that repeat this one run, and what they came to."""
     again = options_again(options, description, seed)
@@ -72,6 +73,7 @@ def run_config(
         "traffic": {**traffic, "density_per_km": options.traffic.density_per_km},
         "recording": _recording(options, log, own_simulator=own_simulator),
         "step_s": STEP_S,
+        "access": dict(access),
         "own_simulator": own_simulator,
         "notes": _notes(options, loaded),
     }
@@ -179,6 +181,7 @@ def write_run_folder(
         "route": config["route"],
         "town": config["town"],
         "versions": config["versions"],
+        "access": config["access"],
     }
     result = judge(driven.outcome, history, scoring, meta, scenarios=scenarios, own=own)
     document = result.document()

@@ -1,4 +1,4 @@
-"""The command ``linden``: ``serve`` runs the server, ``map`` works on maps, ``compile`` compiles all kernels."""
+"""The command ``linden``: ``serve`` a server, ``gate`` a gate before one, ``map`` maps, ``compile`` all kernels."""
 
 import argparse
 import os
@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 
 from linden import CARLA_VERSION, __version__
-from linden.cli import compiling, serve
+from linden.cli import compiling, gate, serve
 from linden.cli import map as maps
 from linden.errors import UserError
 
@@ -21,6 +21,7 @@ def parser() -> argparse.ArgumentParser:
     whole.add_argument("--version", action="version", version=f"linden {__version__}, speaking CARLA {CARLA_VERSION}")
     commands = whole.add_subparsers(title="commands", required=True, metavar="COMMAND")
     serve.add_parser(commands)
+    gate.add_parser(commands)
     maps.add_parser(commands)
     compiling.add_parser(commands)
     return whole

@@ -4,6 +4,7 @@ import argparse
 import gc
 import logging
 import os
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -46,6 +47,11 @@ def add_parser(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") 
         metavar="NAME",
         help="where rays of cameras, lidars, radars are cast: cpu, or cuda with the extra gpu (default: %(default)s)",
     )
+    serve.add_argument(
+        "--gates",
+        action="store_true",
+        help="open and close gates for agents by lines on stdin, and accept other connections from the parent only",
+    )
     serve.add_argument("--log-level", choices=LOG_LEVELS, default="warning", help="(default: %(default)s)")
     serve.set_defaults(command=run)
 
@@ -68,6 +74,9 @@ def run(arguments: argparse.Namespace) -> int:
 
                 started = make_server(arguments, first_start)
                 _say(f"linden: ready, rpc port {started.rpc_port}, streaming port {started.streaming_port}")
+            if arguments.gates:
+                started.server.accept_only(os.getppid())
+                started.server.obey(sys.stdin.fileno(), _say)
             ending.ask_first(started.server.stop)
             started.server.run()
         finally:

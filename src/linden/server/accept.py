@@ -11,6 +11,8 @@ import socket
 from collections.abc import Callable
 from itertools import chain, islice
 
+from linden.gate.session import Gate
+from linden.server.owner import belongs_to
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports
 
@@ -67,6 +69,9 @@ class Acceptor:
         self._silent: dict[type[Peer], dict[Peer, float]] = {RpcPeer: {}, StreamPeer: {}}  # when each came, in order
         self._closed_until_s: float | None = None
         self._clock = clock
+        self._gated: Ports | None = None
+        self.owner: int | None = None
+        """The one process with connections that pass no gate; None: all processes."""
         self._open()
 
     def look(self, now_s: float) -> None:
@@ -97,13 +102,31 @@ class Acceptor:
         self._count -= 1
         self._silent[type(peer)].pop(peer, None)
 
+    def listen(self, ports: Ports, gate: Gate) -> None:
+        """Accept connections of an agent as well, on ports of its own."""
+        self._gated = ports
+        for listener, kind in ((ports.rpc, RpcPeer), (ports.streaming, StreamPeer)):
+            self._selector.register(
+                listener,
+                selectors.EVENT_READ,
+                lambda _, socket_=listener, kind=kind: self._accept(socket_, kind, gate),
+            )
+
+    def stop_listening(self) -> None:
+        """Accept no more connections of an agent."""
+        if self._gated is not None:
+            self._selector.unregister(self._gated.rpc)
+            self._selector.unregister(self._gated.streaming)
+            self._gated.close()
+            self._gated = None
+
     def _open(self) -> None:
         for listener, kind in ((self._ports.rpc, RpcPeer), (self._ports.streaming, StreamPeer)):
             self._selector.register(
                 listener, selectors.EVENT_READ, lambda _, socket_=listener, kind=kind: self._accept(socket_, kind)
             )
 
-    def _accept(self, listener: socket.socket, kind: type[Peer]) -> None:
+    def _accept(self, listener: socket.socket, kind: type[Peer], gate: Gate | None = None) -> None:
         if self._count >= self._most and self._closed_until_s is None:
             self._close_silent(f"{self._count} connections are open")
         for _ in range(ACCEPTED_AT_ONCE):
@@ -119,15 +142,20 @@ class Acceptor:
                 if error.errno in _NO_ROOM:
                     self._close_silent(str(error))
                 continue  # else it was gone before it was accepted
-            self._add(sock, kind)
+            if gate is None and self.owner is not None and not belongs_to(sock, self.owner):
+                log.info("a connection that is not of process %d is closed: agents use their gate", self.owner)
+                sock.close()
+                continue
+            self._add(sock, kind, gate)
 
-    def _add(self, sock: socket.socket, kind: type[Peer]) -> None:
+    def _add(self, sock: socket.socket, kind: type[Peer], gate: Gate | None) -> None:
         self._numbered += 1
         try:
             peer = kind(sock, self._numbered)
         except OSError:  # already gone
             sock.close()
             return
+        peer.gate = gate
         log.debug("%s has connected", peer)
         self._count += 1
         self._silent[kind][peer] = self._clock()

@@ -129,13 +129,17 @@ class Calls:
         """
         if (kept := self.order.kept(peer)) is not None:
             return self._done(peer, kept)
-        self._context.caller = peer.number
         frame, call = self._context.world.frame, peer.calls[0]
+        if peer.gate is not None and (refused := peer.gate.refuse(call)) is not None:
+            return self._done(peer, refused)
+        self._context.caller = peer.number
         if (work := self.order.resumed(peer)) is not None:
             answer = registry.go_on(self._context, work)
         else:
             self._prepare(peer, call)
             answer = registry.dispatch(self._context, call)
+        if peer.gate is not None and isinstance(answer, bytes) and peer.gate.rewrites(call.method):
+            answer = peer.gate.rewritten(call, answer)
         if self._context.world.frame != frame:
             self.last_ticker = peer
         self.publish()

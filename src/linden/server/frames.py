@@ -11,6 +11,7 @@ from linden.protocol.values.actors import Actor, ActorDescription
 from linden.protocol.values.space import BoundingBox, Transform
 from linden.protocol.wire.measurements import (
     RADAR_DETECTION,
+    Parts,
     SensorType,
     SimulationState,
     episode_header,
@@ -20,7 +21,6 @@ from linden.protocol.wire.measurements import (
     radar_payload,
     sensor_header,
 )
-from linden.protocol.wire.stream import Parts
 from linden.sensors.camera.cameras import Image
 from linden.sensors.camera.events import Events
 from linden.sensors.devices.collision import SCENERY, Collision

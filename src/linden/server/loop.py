@@ -6,19 +6,23 @@ There is no lock, because nothing happens at the same time: between two events t
 import contextlib
 import gc
 import logging
+import os
 import select
 import selectors
 import socket
 import sys
 import time
+from collections.abc import Callable
 from functools import partial
 
 from linden.errors import ProtocolError
+from linden.gate.control import Control
 from linden.maps.library import MapLibrary
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.server.accept import Acceptor
 from linden.server.calls import Calls
 from linden.server.frame_clock import FrameClock
+from linden.server.gates import Gates
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports, port_of
 from linden.server.rpc import session
@@ -48,6 +52,7 @@ LOOKS_EACH_S = 0.02
 COARSE_S = 0.002
 """Waits shorter than this end on time. The selector counts whole milliseconds; a tick's answer waits one at most."""
 
+ORDER_BYTES = 1 << 16
 _MOST_SELECTED = 1024  # numbers of files that select(2) can take
 _READ, _WRITE = selectors.EVENT_READ, selectors.EVENT_WRITE
 _BUG = "internal error in %s; the server goes on"
@@ -72,6 +77,7 @@ class Server:
         self._subscribers = Subscribers(self.context.streams, self._watch, self._close)
         self._acceptor = Acceptor(ports, self._selector, self._clock, self._accepted, self._close)
         self._stall_log = StallLog()
+        self.gates = Gates(self._acceptor, self._subscribers, self._clock, self._close)
         self._clients: dict[RpcPeer, None] = {}  # an ordered set
         self._calls = Calls(self.context, self._subscribers, self._clock, self._watch, self._close, self._wake)
         self._wake_reader, self._wake_writer = socket.socketpair()
@@ -100,6 +106,26 @@ class Server:
                 peer.socket.close()
             self._selector.close()
             self._wake_writer.close()
+
+    def obey(self, file: int, say: Callable[[str], None]) -> None:
+        """Open and close gates by the lines of a file; answers go to ``say``."""
+        control = Control(self.gates, say)
+
+        def order(_events: int) -> None:
+            data = os.read(file, ORDER_BYTES)
+            try:
+                control.receive(data)
+            except ProtocolError as error:
+                log.warning("%s; no more orders are taken", error)
+                data = b""
+            if not data:
+                self._selector.unregister(file)
+
+        self._selector.register(file, _READ, order)
+
+    def accept_only(self, process: int) -> None:
+        """Accept connections that pass no gate from one process only."""
+        self._acceptor.owner = process
 
     def stop(self) -> None:
         """Ask the server to end; the one method that another thread or a signal handler may call."""
@@ -177,6 +203,7 @@ class Server:
     # -- connections ---------------------------------------------------------------------------------------------
 
     def _accepted(self, peer: Peer) -> None:
+        self.gates.came(peer)
         if isinstance(peer, RpcPeer):
             self._clients[peer] = None
         self._watch(peer)
@@ -231,6 +258,7 @@ class Server:
             peer.interest = 0
         peer.socket.close()
         self._acceptor.has_left(peer)
+        self.gates.left(peer)
         if isinstance(peer, StreamPeer):
             self._subscribers.remove(peer)
         elif isinstance(peer, RpcPeer):
@@ -244,6 +272,8 @@ class Server:
             self._close(peer)
         elif peer.subscription.receive(data) and peer.subscription.stream_id is not None:
             self._acceptor.has_spoken(peer)
+            if peer.gate is not None and not peer.gate.may_hear(peer.subscription.stream_id):
+                raise ProtocolError(f"stream {peer.subscription.stream_id} is none of the agent's")
             self._subscribers.add(peer, peer.subscription.stream_id)
             self._calls.joined_s = self._clock()
             self._calls.order.expected.came(peer.subscription.stream_id)

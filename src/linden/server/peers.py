@@ -1,4 +1,4 @@
-"""Connections: the send queue, connections that call, connections that subscribe.
+"""Connections: connections that call, connections that subscribe.
 
 A client calls on one kind of connection and receives streams on the other. Each owns its socket. A queue before the
 non-blocking socket holds the bytes for a peer that reads slowly or never.
@@ -8,54 +8,10 @@ import socket
 from collections import deque
 from collections.abc import Container
 
+from linden.gate.session import Gate
 from linden.protocol.wire.rpc import Call, RpcConnection
 from linden.protocol.wire.stream import Subscription, size_prefix
-
-JOINED_BYTES = 64 * 1024
-"""Up to this size a message is copied behind its prefix, which is quicker than a second call of the system."""
-
-
-class Outgoing:
-    """What waits to be sent over one socket, in order, none of it copied."""
-
-    def __init__(self, sock: socket.socket) -> None:
-        self._socket = sock
-        self._queue: deque[memoryview] = deque()
-        self.waiting_bytes = 0
-
-    def send(self, *parts: bytes) -> None:
-        """Send now what the system takes, and queue the rest.
-
-        Raises:
-            OSError: the peer is gone.
-        """
-        if sum(map(len, parts)) <= JOINED_BYTES:
-            parts = (b"".join(parts),)
-        was_idle = not self._queue
-        for part in parts:
-            self._queue.append(memoryview(part))
-            self.waiting_bytes += len(part)
-        if was_idle:  # else the system takes nothing yet, and the selector will say when it does
-            self.flush()
-
-    def flush(self) -> None:
-        """Send what the system takes of what waits.
-
-        Raises:
-            OSError: the peer is gone.
-        """
-        while self._queue:
-            first = self._queue[0]
-            try:
-                sent = self._socket.send(first)
-            except (BlockingIOError, InterruptedError):
-                return
-            self.waiting_bytes -= sent
-            if sent < len(first):
-                self._queue[0] = first[sent:]
-                return
-            self._queue.popleft()
-
+from linden.server.outgoing import Outgoing
 
 RECEIVED_AT_ONCE = 256 * 1024
 """Bytes read from a connection before the others have their turn."""
@@ -74,6 +30,8 @@ class Peer:
         self.interest = 0
         """Which events the selector watches for; 0 where it does not know the socket."""
         self.is_open = True
+        self.gate: Gate | None = None
+        """What an agent's connection may do; None for connections that may do everything."""
         host, port, *_ = sock.getpeername()
         self.address = f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
 
@@ -151,6 +109,8 @@ class StreamPeer(Peer):
         """Messages it did not get, because a newer one took their place before it had read those before."""
         self.congested_since_s: float | None = None
         """When it fell behind by more than is queued for it, in synchronous mode."""
+        self.held: bytes | None = None
+        """A snapshot that waits until its gate knows what the agent sees in it."""
         self._newest: bytes | None = None  # kept until all before it is sent; asynchronous mode
 
     def __str__(self) -> str:

@@ -16,7 +16,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import NamedTuple
 
-from linden.protocol.wire.stream import StreamTable
+from linden.protocol.wire.stream import WORLD_OBSERVER_ID, StreamTable
 from linden.server.peers import StreamPeer
 
 log = logging.getLogger("linden")
@@ -66,7 +66,13 @@ class Subscribers:
             self.send(peer, payload, now_s, may_drop=may_drop)
 
     def send(self, peer: StreamPeer, payload: bytes, now_s: float, *, may_drop: bool) -> None:
-        """Send one message to one peer; closes it where its connection is broken."""
+        """Send one message to one peer, as its gate shows it; closes it where its connection is broken."""
+        if peer.gate is not None and peer.gate.filters and peer.subscription.stream_id == WORLD_OBSERVER_ID:
+            shown = peer.gate.shown(payload)
+            peer.held = payload if shown is None else None
+            if shown is None:
+                return
+            payload = shown
         missed = peer.dropped
         try:
             (peer.offer if may_drop else peer.publish)(payload)

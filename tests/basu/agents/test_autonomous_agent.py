@@ -26,7 +26,7 @@ def test_the_thesis_sample_says_all_there_is() -> None:
     [
         ([], r"config\(\) of A returned list; it must return a dict"),
         ({"route": "x"}, "the key 'route', which means nothing here; did you mean 'routes'"),
-        ({"zzz": "x"}, "it may have routes, sensors, sumo, vehicle, weather"),
+        ({"zzz": "x"}, "it may have routes, sensors, sumo, track, vehicle, weather"),
         ({"weather": 3}, "'weather' is 3; it must be a text"),
         ({"vehicle": ""}, "'vehicle' is ''; it must be a text"),
     ],

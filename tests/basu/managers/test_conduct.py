@@ -1,110 +1,180 @@
-"""Claims about agents that cheat with a client of their own: each is caught, and a hard drive is no cheating."""
+"""Claims about agents that cheat with a client of their own: the gate refuses it, and the drive goes on unchanged.
+
+The drivers are real and the simulator is live.
+"""
 
 import json
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import carla
 import pytest
 
+from basu import simulator as simulator_module
+from basu.agents.process.gate import Gate, Relay
 from basu.cli import main
 from basu.errors import AgentCrashedError
-from basu.managers.base_manager import Ego, WorldChanges
-from basu.managers.conduct import LOOK_TICKS, Conduct
+from basu.managers.base_manager import WorldChanges
+from basu.managers.conduct import Conduct, is_same_control
+from basu.records.history.files import read_history
+from basu.running import runner
+from basu.running.scenario_runs import player
+from basu.simulator import Simulator, connect, linden_command
 from cheating_agent import cheating_agent
 from servers import RunningServer
 
-TELEPORT = "self.vehicle.set_transform(self.route.waypoints[-1].transform)"
-CREEP = (
-    "pose = self.vehicle.get_transform(); ahead = pose.get_forward_vector(); "
-    "pose.location += carla.Location(0.4 * ahead.x, 0.4 * ahead.y, 0.0); self.vehicle.set_transform(pose)"
-)
-BOOST = "self.vehicle.set_target_velocity(30.0 * self.vehicle.get_transform().get_forward_vector())"
-NIGHT = "self.world.set_weather(carla.WeatherParameters.HardRainNight); self.world.get_weather()"
-LIGHTER = (
-    "physics = self.vehicle.get_physics_control(); physics.mass = 10.0; self.vehicle.apply_physics_control(physics)"
-)
-TICKS = "[self.world.tick() for _ in range(160)]"
+LIGHT = "self.world.get_actors().filter('traffic.traffic_light')[0]"
+DEEDS = {
+    "set_actor_transform": "self.vehicle.set_transform(self.route.waypoints[-1].transform)",
+    "set_actor_location": "self.vehicle.set_location(carla.Location())",
+    "set_actor_target_velocity": "self.vehicle.set_target_velocity(carla.Vector3D(30.0, 0.0, 0.0))",
+    "enable_actor_constant_velocity": "self.vehicle.enable_constant_velocity(carla.Vector3D(30.0, 0.0, 0.0))",
+    "add_actor_impulse": "self.vehicle.add_impulse(carla.Vector3D(90000.0, 0.0, 0.0))",
+    "add_actor_force": "self.vehicle.add_force(carla.Vector3D(90000.0, 0.0, 0.0))",
+    "set_weather_parameters": "self.world.set_weather(carla.WeatherParameters.HardRainNight)",
+    "apply_physics_control": "self.vehicle.apply_physics_control(carla.VehiclePhysicsControl(mass=10.0))",
+    "set_actor_collisions": "self.vehicle.set_collisions(False)",
+    "set_actor_simulate_physics": "self.vehicle.set_simulate_physics(False)",
+    "is_traffic_manager_running": "self.vehicle.set_autopilot(True)",
+    "destroy_actor": "[s.destroy() for s in self.world.get_actors().filter('sensor.other.collision')]",
+    "set_traffic_light_state": f"{LIGHT}.set_state(carla.TrafficLightState.Green)",
+    "set_traffic_light_green_time": f"{LIGHT}.set_green_time(99.0)",
+    "freeze_all_traffic_lights": f"{LIGHT}.freeze(True)",
+    "reset_all_traffic_lights": "self.world.reset_all_traffic_lights()",
+    "tick_cue": "self.world.tick()",
+    "load_new_episode": "self.client.reload_world()",
+    "set_episode_settings": "self.world.apply_settings(self.world.get_settings())",
+    "start_recorder": "self.client.start_recorder('mine.log')",
+    "apply_batch": "self.client.apply_batch_sync([carla.command.DestroyActor(self.vehicle.id)], True)",
+    "spawn_actor": "self.world.spawn_actor(self.world.get_blueprint_library()[0], carla.Transform())",
+}
+AMONG_OTHERS = {
+    "destroy_actor": "self.others()[0].destroy()",
+    "set_actor_transform": "self.others()[0].set_transform(self.route.waypoints[-1].transform)",
+    "apply_control_to_vehicle": "self.others()[0].apply_control(carla.VehicleControl(throttle=1.0, steer=1.0))",
+}
+CHEAT = """def cheat(self):
+        deeds = {deeds!r}
+        if self.steps <= len(deeds):
+            try:
+                exec(deeds[self.steps - 1])
+            except RuntimeError as error:
+                assert "refused by the gate" in str(error), error
+"""
 
 
-def ego(x_m: float, speed_mps: float) -> Ego:
-    return Ego(x_m, 0.0, 0.0, 0.0, 0.0, 0.0, speed_mps, *[0.0] * 8)
+def cheat(folder: Path, deeds: dict[str, str]) -> Path:
+    """An agent that tries one deed a step."""
+    more = CHEAT.format(deeds=list(deeds.values()))
+    return cheating_agent(folder, "cheat", when="> 0", deed="self.cheat()", more=more)
 
 
-def watched(places_and_speeds: list[tuple[float, float]], contact_tick: int | None = None) -> Conduct:
-    """A watch that has seen a drive along x, at 20 Hz in an empty world."""
-    conduct = Conduct("Cheat")
-    world = SimpleNamespace(get_actors=lambda _: [])
-    box = SimpleNamespace(extent=SimpleNamespace(x=2.0, y=1.0))
-    vehicle = SimpleNamespace(id=1, bounding_box=box)
-    contacts: list[Any] = [] if contact_tick is None else [SimpleNamespace(tick=contact_tick, other_id=0)]
-    changes = WorldChanges(contacts=lambda tick: [contact for contact in contacts if contact.tick >= tick])
-    run: Any = SimpleNamespace(step_s=0.05, world=world, vehicle=vehicle, neighbours=None, changes=changes)
-    conduct._run = run
-    for number, (x_m, speed_mps) in enumerate(places_and_speeds):
-        frame: Any = SimpleNamespace(tick=number, server_frame=number, ego=ego(x_m, speed_mps), snapshot=[])
-        conduct.before(frame)
-    return conduct
+Ours = Callable[[object], AbstractContextManager[Simulator]]
 
 
-def test_a_drive_that_its_speed_explains_is_one() -> None:
-    watched([(0.05 * 10.0 * n, 10.0) for n in range(100)])
+@pytest.fixture(scope="module")
+def ours(simulator: RunningServer) -> Ours:
+    """Return a ``simulator_for`` with the session's server in place of one of the command's own, behind a relay."""
+    address = ("127.0.0.1", simulator.port)
+    client = connect(*address, 20.0)
+
+    @contextmanager
+    def simulator_for(_: object) -> Iterator[Simulator]:
+        relay = Relay([*linden_command(), "gate", "--port", str(simulator.port)])
+        try:
+            yield Simulator(client, address, own=True, why_gone=lambda: None, ended=lambda: False, gate=Gate(relay))
+        finally:
+            relay.end()
+
+    return simulator_for
 
 
-def test_a_crash_is_no_cheating() -> None:
-    watched([(0.5 * n, 10.0) for n in range(40)] + [(19.5, 0.0)] * 40, contact_tick=40)
+def result_of(folder: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((folder / "latest" / "result.json").read_text(encoding="utf-8"))
+    return found
 
 
-def test_a_stop_that_no_tyre_gives_needs_a_contact() -> None:
-    with pytest.raises(AgentCrashedError, match=r"lost 10\.0 m/s in one step and touched nothing"):
-        watched([(0.5 * n, 10.0) for n in range(40)] + [(19.5, 0.0)] * 40)
-
-
-@pytest.mark.parametrize("step_m", [0.15, 0.4, 50.0])
-def test_jumps_are_seen_large_and_small(step_m: float) -> None:
-    with pytest.raises(AgentCrashedError, match=r"m farther than its speed explains .* Cheat may drive it"):
-        watched([(step_m * n, 0.0) for n in range(40)])
-
-
-def test_speed_from_nowhere_is_seen() -> None:
-    with pytest.raises(AgentCrashedError, match=r"gained 20\.0 m/s in one step with nothing near"):
-        watched([(0.0, 0.0), (0.5, 20.0)])
-
-
-def test_a_look_at_a_vehicle_that_is_gone_leaves_the_verdict_to_the_next_step() -> None:
-    def gone() -> None:
-        raise RuntimeError("Actor could not be found in the registry")
-
-    conduct = watched([(0.0, 5.0)])
-    run: Any = conduct._run
-    run.own_simulator, run.world.get_weather, run.vehicle.get_physics_control = False, gone, gone
-    frame: Any = SimpleNamespace(tick=1, server_frame=1)
-    for _ in range(4 * LOOK_TICKS):
-        conduct.after(frame)
-
-
-@pytest.mark.parametrize(
-    ("at_setup", "deed", "own", "sentence"),
-    [
-        pytest.param("pass", TELEPORT, False, "farther than its speed explains", id="jumps to the goal"),
-        pytest.param("pass", CREEP, False, "farther than its speed explains", id="jumps a little each step"),
-        pytest.param("pass", BOOST, False, "gained", id="speed from nowhere"),
-        pytest.param(NIGHT, "pass", False, "changed the weather's", id="weather"),
-        pytest.param(LIGHTER, "pass", False, "changed the vehicle's mass", id="physics"),
-        pytest.param("pass", "self.world.tick()", True, "never ticks the world", id="ticks"),
-        pytest.param(TICKS, "pass", True, "during setup() the simulator went from frame", id="ticks in setup"),
-        pytest.param(TELEPORT, "pass", True, "farther than its speed explains", id="jumps in setup"),
-        pytest.param("pass", "self.vehicle.destroy()", True, "out of the world", id="takes the vehicle away"),
-    ],
-)
-@pytest.mark.usefixtures("one_server")
-def test_an_agent_that_cheats_has_failed(
-    simulator: RunningServer, route_file: Path, tmp_path: Path, *, at_setup: str, deed: str, own: bool, sentence: str
+def test_nothing_that_an_agent_tries_changes_its_drive(
+    ours: Ours, route_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    agent = cheating_agent(tmp_path, "cheat", at_setup=at_setup, deed=deed)
-    address = [] if own else ["--host", "127.0.0.1", "--port", str(simulator.port)]
-    words = [str(agent), *address, "--routes", str(route_file), "--output", str(tmp_path / "runs")]
-    assert main(["run", *words]) == 1
-    result = json.loads((tmp_path / "runs" / "latest" / "result.json").read_text())
-    assert (result["status"], result["fault"]) == ("AgentCrashed", "agent")
-    assert sentence in result["message"]
+    monkeypatch.setattr(runner, "simulator_for", ours)
+    options = ["--routes", str(route_file), "--output", str(tmp_path / "runs"), "--stop-after", "3"]
+    main(["run", str(cheating_agent(tmp_path, "honest", when="> 999", deed="pass")), *options])
+    honest, alone = result_of(tmp_path / "runs"), read_history(tmp_path / "runs" / "latest")
+    main(["run", str(cheat(tmp_path, DEEDS)), *options])
+    result, history = result_of(tmp_path / "runs"), read_history(tmp_path / "runs" / "latest")
+    assert (result["status"], result["message"]) == (honest["status"], honest["message"])
+    assert result["scores"] == honest["scores"]
+    assert history.frames.tolist() == alone.frames.tolist()
+    assert set(result["meta"]["access"]["refused"]) >= set(DEEDS)
+    assert honest["meta"]["access"] == {"track": "world", "open": False, "refused": {}}
+
+
+def test_nothing_that_an_agent_tries_changes_others(
+    ours: Ours, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(player, "simulator_for", ours)
+    agents = [cheating_agent(tmp_path, "honest", when="> 999", deed="pass"), cheat(tmp_path, AMONG_OTHERS)]
+    options = [word for agent in agents for word in ("--agent", str(agent))]
+    main(
+        ["scenario", "run", "follow_leading_vehicle_1", *options, "--output", str(tmp_path / "runs"), "--workers", "1"]
+    )
+    found = {
+        path.parent.parent.name: (json.loads(path.read_text(encoding="utf-8")), read_history(path.parent))
+        for path in (tmp_path / "runs" / "latest").glob("*/*/result.json")
+    }
+    (honest, alone), (result, history) = found["honest"], found["cheat"]
+    assert result["verdict"] == honest["verdict"]
+    assert history.frames.tolist() == alone.frames.tolist()
+    assert set(result["access"]["refused"]) == set(AMONG_OTHERS)
+
+
+@pytest.mark.usefixtures("one_server")
+def test_a_server_of_our_own_has_the_gate_in_itself_and_no_door_beside_it(route_file: Path, tmp_path: Path) -> None:
+    connected = simulator_module.connect
+
+    def noted(host: str, port: int, timeout_s: float) -> carla.Client:
+        (tmp_path / "port").write_text(str(port))
+        return connected(host, port, timeout_s)
+
+    more = f"""def walk_round(self):
+        with open({str(tmp_path / "port")!r}) as file:
+            port = int(file.read())
+        assert port != self.server_address[1]
+        for each in (self.server_address[1], port):
+            client = carla.Client('127.0.0.1', each)
+            client.set_timeout(0.5)
+            try:
+                client.get_world().tick()
+            except RuntimeError as error:
+                print('not let in at', each, error)
+                continue
+            raise SystemExit('walked round the gate')
+"""
+    agent = cheating_agent(tmp_path, "cheat", when="== 2", deed="self.walk_round()", more=more)
+    options = ["--routes", str(route_file), "--output", str(tmp_path / "runs"), "--stop-after", "1"]
+    with pytest.MonkeyPatch.context() as patch:  # undone before the server that is kept is given back
+        patch.setattr(simulator_module, "connect", noted)
+        main(["run", str(agent), *options])
+    result = result_of(tmp_path / "runs")
+    assert result["status"] == "Stopped", result["message"]
+    assert result["meta"]["access"]["refused"]["tick_cue"] == 1
+
+
+def test_a_step_with_another_control_has_a_sentence() -> None:
+    given, had = carla.VehicleControl(brake=1.0), carla.VehicleControl(throttle=1.0)
+    run: Any = SimpleNamespace(changes=WorldChanges(control=given), vehicle=SimpleNamespace(get_control=lambda: had))
+    frame: Any = SimpleNamespace(server_frame=7)
+    conduct = Conduct("Cheat")
+    conduct.begin(run)
+    with pytest.raises(AgentCrashedError, match=r"had throttle 1\.00, .* instead of throttle 0\.00, .* brake 1\.00 in"):
+        conduct.before(frame)
+
+
+def test_controls_are_compared_but_for_rounding_and_gears() -> None:
+    given = carla.VehicleControl(throttle=0.1, steer=-0.7, brake=0.3)
+    assert is_same_control(given, carla.VehicleControl(throttle=0.10000001, steer=-0.7, brake=0.3, gear=3))
+    assert not is_same_control(given, carla.VehicleControl(throttle=0.1, steer=-0.7, brake=0.3, reverse=True))

@@ -78,7 +78,6 @@ class SharedWorld:
         light = self._world.get_traffic_light_from_opendrive_id(landmark_id)
         if light is None:
             raise ScenarioError(f"the map has no traffic light with the OpenDRIVE signal '{landmark_id}'")
-        self.changes.lights += 1
         if not self._lights:
             light.freeze(True)
         wishes = self._lights.setdefault(scenario, {})
@@ -88,7 +87,6 @@ class SharedWorld:
     def give_back(self, scenario: str) -> None:
         """Undo the changes of one of them; where the simulator is gone, so is all this."""
         weather, lights = self._weather.pop(scenario, None), self._lights.pop(scenario, {})
-        self.changes.lights += bool(lights)
         with contextlib.suppress(RuntimeError):
             if weather is not None:
                 self._show_weather()
@@ -139,7 +137,6 @@ class Surroundings:
             carla.Location(pose.x_m, pose.y_m, pose.z_m), carla.Rotation(yaw=math.degrees(pose.yaw_rad))
         )
         self._patches.append(self._world.spawn_actor(blueprint, place))
-        self._shared.changes.frictions.add(friction)
 
     def set_light(self, landmark_id: str, state: str) -> None:
         """Let a traffic light show a state and stay so.

@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 # A contact comes on a thread of the client's, in its frame or soon after: each is known exactly so many frames later.
 HEARD_TICKS = 3
 LOOK_BACK_TICKS = 12
-STRUCK_M = 6.0  # between the middles of a vehicle and of a walker that it has just struck
 
 
 class LiveStage:
@@ -92,22 +91,6 @@ class LiveStage:
         """Let the scenario's clock begin."""
         self._began_tick = tick
 
-    def fault(self, frame: Frame) -> str | None:
-        """Half a sentence about an actor of the cast with a control that the scenario did not give; else None."""
-        for actor in self._commands.with_other_controls(frame.snapshot):
-            if not (actor.type_id.startswith("walker.") and self._may_be_struck(actor, frame)):
-                return f"gave the actor {actor.id} ({actor.type_id}) a control"
-        return None
-
-    def _may_be_struck(self, walker: carla.Walker, frame: Frame) -> bool:
-        """Whether a walker lies because a vehicle struck it: the simulator takes its control away then."""
-        if walker.get_control().speed > 0.0:
-            return False
-        at = walker.get_location()
-        rows = [] if self._run.neighbours is None else self._run.neighbours.near(frame)
-        places_m = [(row[2], row[3]) for row in rows if int(row[1]) != walker.id]
-        return any(math.dist(place, (at.x, at.y)) < STRUCK_M for place in [(frame.ego.x_m, frame.ego.y_m), *places_m])
-
     def look(self, frame: Frame) -> None:
         """Take in a frame."""
         self._frame = frame
@@ -129,7 +112,6 @@ class LiveStage:
         self._changes.clear()
         self._surroundings.give_back()
         actors = [member.actor for name, member in self._cast.items() if name != EGO]
-        self._run.changes.removed.update(actor.id for actor in actors)
         destroy_actors(self._run.client, actors)
         self._cast = {EGO: self._cast[EGO]}
         self._commands.forget()
@@ -199,7 +181,6 @@ class LiveStage:
         """Put an actor elsewhere, at rest."""
         member = self._member(name)
         rotation = carla.Rotation(yaw=math.degrees(pose.yaw_rad))
-        self._run.changes.placed.add(member.actor.id)
         member.actor.set_transform(carla.Transform(carla.Location(pose.x_m, pose.y_m, pose.z_m), rotation))
         self._moves.append(Move(name, self._next_s, pose))
 
@@ -211,7 +192,6 @@ class LiveStage:
         """Take an actor out of the world."""
         member = self._member(name)
         self._commands.let_go(member)
-        self._run.changes.removed.add(member.actor.id)
         destroy_actors(self._run.client, [self._cast.pop(name).actor])
         self._moves.append(Move(name, self._next_s, None))
         self._bodies.pop(name, None)

@@ -9,12 +9,11 @@ from __future__ import annotations
 import contextlib
 import difflib
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import carla
 
 from basu.errors import ScenarioError
-from basu.managers.interference import CONTROL_TOLERANCE, is_same_control
 from basu.scenarios.stage import EGO
 
 if TYPE_CHECKING:
@@ -172,7 +171,6 @@ class ActorCommands:
         self._new: list[object] = []  # commands that are sent once
         self._held: set[int] = set()
         self._walkers: dict[int, tuple[float, float]] = {}  # the last command of each, in m/s
-        self._controls: dict[int, tuple[carla.Actor, Any]] = {}  # the last control of each
 
     def move(self, member: Member, velocity_x_mps: float, velocity_y_mps: float, yaw_rate_radps: float) -> None:
         """Lead a vehicle."""
@@ -199,7 +197,6 @@ class ActorCommands:
         if speed_mps > 0.0:
             control.direction = carla.Vector3D(velocity_x_mps / speed_mps, velocity_y_mps / speed_mps, 0.0)
         self._new.append(carla.command.ApplyWalkerControl(member.actor.id, control))
-        self._controls[member.actor.id] = (member.actor, control)
 
     def let_go(self, member: Member) -> None:
         """Lead it no more."""
@@ -212,29 +209,11 @@ class ActorCommands:
         self._vehicles.clear()
         self._held.clear()
         self._walkers.clear()
-        self._controls.clear()
         self._new.clear()
-
-    def with_other_controls(self, snapshot: carla.WorldSnapshot) -> list[carla.Actor]:
-        """Return the actors that have another control than they were given; each is returned once.
-
-        Call it at the beginning of a frame: then all commands so far were sent before the step to it.
-        """
-        found = []
-        for key, (actor, given) in list(self._controls.items()):
-            if not snapshot.has_actor(key):
-                continue
-            had = actor.get_control()
-            same = is_same_control(given, had) if isinstance(given, carla.VehicleControl) else _is_same_gait(given, had)
-            if not same:
-                found.append(actor)
-                del self._controls[key]
-        return found
 
     def _control(self, actor: carla.Actor, control: carla.VehicleControl) -> None:
         """Give a vehicle a control, once."""
         self._new.append(carla.command.ApplyVehicleControl(actor.id, control))
-        self._controls[actor.id] = (actor, control)
 
     def carry_out(self) -> None:
         """Send the commands of all of them."""
@@ -249,11 +228,3 @@ class ActorCommands:
             commands.append(carla.command.ApplyTargetAngularVelocity(actor_id, turning))
         if commands:
             self._client.apply_batch(commands)
-
-
-def _is_same_gait(one: carla.WalkerControl, other: carla.WalkerControl) -> bool:
-    """Whether two walkers' controls are equal but for the rounding of the wire; a resting one has no direction."""
-    if abs(one.speed - other.speed) > CONTROL_TOLERANCE:
-        return False
-    apart = math.hypot(one.direction.x - other.direction.x, one.direction.y - other.direction.y)
-    return one.speed <= 0.0 or apart < CONTROL_TOLERANCE

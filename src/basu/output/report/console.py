@@ -29,9 +29,29 @@ def table(result: Result) -> str:
 def score_lines(result: Result) -> list[str]:
     """The thesis's scores; those of a run that a failure ended are marked."""
     assert result.scores is not None, "the caller asks"
-    mark = "" if result.is_comparable else f"  {NOT_COMPARABLE}: the run ended as {result.outcome.status.value}"
+    mark = "" if result.is_comparable else f"  {NOT_COMPARABLE}: {_reason(result)}"
     scores = result.scores._asdict()
-    return [f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()]
+    rows = [f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()]
+    return [*rows, *_access(result)]
+
+
+def _reason(result: Result) -> str:
+    """Why a score cannot be compared with others."""
+    if result.is_open:
+        return "no gate stood between the agent and the simulator"
+    return f"the run ended as {result.outcome.status.value}"
+
+
+def _access(result: Result) -> list[str]:
+    """The track, and how many calls the gate refused; nothing for a record that was scored again."""
+    if result.track is None:
+        return []
+    refused: Mapping[str, int] = result.meta["access"]["refused"]
+    lines = [f"{'track':<{NAME_WIDTH}}{result.track:>8}"]
+    if refused:
+        names = ", ".join(f"{name} {count}" for name, count in refused.items())
+        lines.append(f"{'refused calls':<{NAME_WIDTH}}{sum(refused.values()):8d}  {names}")
+    return lines
 
 
 def judgement(result: Result) -> list[str]:

@@ -47,8 +47,9 @@ def document_of(
     *,
     history: History | None,
     wall_s: float,
+    access: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """The document; ``playing`` and ``history`` are None where nothing was driven."""
+    """The document; ``playing``, ``history`` and ``access`` are None where nothing was driven."""
     case, scenario = playable.case, playable.scenario
     return {
         "schema_version": SCHEMA_VERSION,
@@ -77,6 +78,7 @@ def document_of(
         "simulated_s": 0.0 if history is None else round(len(history.frames) * STEP_S, 3),
         "wall_s": round(wall_s, 3),
         "timeout_s": scenario.timeout_s,
+        **({} if access is None else {"access": dict(access)}),
     }
 
 

@@ -91,6 +91,7 @@ class _Attempt(NamedTuple):
     playing: Playing | None
     outcome: Outcome
     streets_m: list[NDArray[np.float64]]
+    access: dict[str, Any] | None = None  # of the agent to the simulator
 
 
 def play_case(session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path) -> PlayedCase:
@@ -103,7 +104,14 @@ def play_case(session: CaseSession, loaded: FoundAgent, playable: Playable, outp
         history = None if attempt.driven is None else attempt.driven.history
         judged = _judged(attempt, history)
         document = document_of(
-            playable, loaded, attempt.playing, judged, options, history=history, wall_s=time.perf_counter() - began_s
+            playable,
+            loaded,
+            attempt.playing,
+            judged,
+            options,
+            history=history,
+            wall_s=time.perf_counter() - began_s,
+            access=attempt.access,
         )
         write_json(draft / RESULT_FILE, document)
         write_json(draft / CONFIG_FILE, case_config(playable, options, loaded))
@@ -160,7 +168,7 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
     for failure in (driven.bug, driven.agent_error if options.debug else None):
         if failure is not None:
             traceback.print_exception(failure)
-    return _Attempt(driven, next(iter(episode.playing), None), driven.outcome, _streets(episode))
+    return _Attempt(driven, next(iter(episode.playing), None), driven.outcome, _streets(episode), agents.access)
 
 
 def _streets(episode: Episode | None) -> list[NDArray[np.float64]]:

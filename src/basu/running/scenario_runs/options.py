@@ -8,7 +8,16 @@ from pathlib import Path
 from typing import Annotated
 
 from basu.errors import UserError
-from basu.options.agent import AgentMemory, AgentWrites, Debug, InProcess, StepLimit, check_agent_process
+from basu.options.agent import (
+    AgentMemory,
+    AgentWrites,
+    Debug,
+    InProcess,
+    Open,
+    StepLimit,
+    TrackWish,
+    check_agent_process,
+)
 from basu.options.folders import Output
 from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
 from basu.options.run import RunOptions
@@ -93,6 +102,8 @@ class ScenarioOptions(Settings):
     in_process: InProcess = False
     agent_memory_gb: AgentMemory = None
     agent_writes: AgentWrites = ()
+    track: TrackWish = None
+    open: Open = False
     debug: Debug = False
     seed: Annotated[
         int,

@@ -8,7 +8,7 @@ Source: LibCarla 0.9.16, ``carla/client/detail/Client.cpp``.
 from collections.abc import Mapping
 from types import MappingProxyType
 
-from linden.protocol.wire.rpc import Reply
+from linden.protocol.wire.answers import Reply
 
 _VALUE = """
 version get_available_maps get_map_info get_map_data get_navigation_mesh get_required_files request_file

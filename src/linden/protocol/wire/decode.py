@@ -13,8 +13,6 @@ from collections.abc import Callable, Sequence
 from enum import IntEnum
 from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin, get_type_hints
 
-import numpy as np
-
 from linden.errors import Refusal
 
 Decoder = Callable[[Any], Any]
@@ -36,7 +34,7 @@ I32 = Annotated[int, IntRange(-(2**31), 2**31 - 1)]
 ANY_32_BITS = IntRange(-(2**31), 2**32 - 1)
 """What a plain ``int`` may hold: the protocol has no wider integers outside object ids, which say :data:`U64`."""
 
-LARGEST_NUMBER = float(np.finfo(np.float32).max)
+LARGEST_NUMBER = (2.0 - 2.0**-23) * 2.0**127  # of single precision, IEEE 754
 """Beyond it a number would be infinite in the snapshot."""
 
 _SHOWN = 40  # characters of a wrong value that an error quotes

@@ -8,15 +8,17 @@ The packed header stands before every stream payload; the number of the sensor t
 
 import struct
 from enum import IntEnum, IntFlag
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linden.errors import ProtocolError
 from linden.protocol.values.space import Transform
-from linden.protocol.wire.stream import Parts
 from linden.structured import StructuredArray
+
+Parts: TypeAlias = tuple[bytes | NDArray[Any], ...]
+"""What a message is made of, in its order: pictures are large, so they are joined once, when all of it is there."""
 
 
 class SensorType(IntEnum):

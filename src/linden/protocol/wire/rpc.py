@@ -10,14 +10,39 @@ that values of that type need no encoding; only optional values are wrapped.
 
 import types
 from collections.abc import Callable
-from enum import Enum
-from typing import Annotated, Any, NamedTuple, Union, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Union, get_args, get_origin, get_type_hints
 
 import msgpack
 
 from linden.errors import ProtocolError
 from linden.protocol.wire import packed
-from linden.protocol.wire.decode import got
+from linden.protocol.wire.answers import (
+    Call,
+    Packed,
+    Reply,
+    bare,
+    call_of,
+    packed_result,
+    refusal,
+    unknown,
+    value,
+    void,
+)
+
+__all__ = [
+    "Call",
+    "Packed",
+    "Reply",
+    "RpcConnection",
+    "bare",
+    "call_of",
+    "encoder",
+    "packed_result",
+    "refusal",
+    "unknown",
+    "value",
+    "void",
+]
 
 MAX_MESSAGE_BYTES = 64 * 1024 * 1024
 """Largest request; an OpenDRIVE text of a big town is 10 MB, a 4k texture as floats 40 MB."""
@@ -28,7 +53,6 @@ the first byte of an array are counted, so a text has none and numbers have a fe
 has 60,000."""
 MAX_ARRAY_ITEMS = 4 * 1024 * 1024
 """Most items of one array: its list is laid out before the items come, so that 5 bytes must not ask for gigabytes."""
-REQUEST, RESPONSE = 0, 1
 
 OF_PIXELS = ("apply_color_texture_to_objects", "apply_float_color_texture_to_objects")
 """What has an array for each pixel, 2 Mi in 1920 x 1080; nothing reads them, so no objects are made of them."""
@@ -37,39 +61,9 @@ _OF_PIXELS = b"_color_texture_to_objects"
 """What stands in both names."""
 _ARRAYS = bytes((*range(0x80, 0xA0), 0xDC, 0xDD, 0xDE, 0xDF))
 """The first bytes of arrays and maps in msgpack."""
-_HEAD, _NO_ERROR = b"\x94\x01", b"\xc0"  # an array of four, RESPONSE; nil
-_ONE_VALUE = b"\x91\x92\x01"  # ((1, value),) up to the value
 _HEAD_BYTES = 64 * 1024  # method and names of objects
 _FIRST_BUFFER_BYTES = 4096  # what a buffer starts with; it grows
 _UNPACKING_FAILED = (ValueError, msgpack.UnpackException, MemoryError, OverflowError, TypeError)
-_pack = msgpack.Packer(unicode_errors="surrogateescape", buf_size=_FIRST_BUFFER_BYTES).pack
-
-
-class Call(NamedTuple):
-    """One remote call. Where ``is_async``, the client does not read the answer, yet keeps an entry until one comes."""
-
-    id: int
-    method: str
-    args: list[Any]
-    """As msgpack has them; the commands of a batch of plain controls are ``Controls`` (see ``packed``)."""
-    is_async: bool
-
-
-class Packed(bytes):
-    """A result as msgpack's bytes, for results that come again and again."""
-
-
-def packed_result(result: object) -> Packed:
-    """Return a result as :func:`value` and :func:`bare` take it without packing it again."""
-    return Packed(_pack(result))
-
-
-class Reply(Enum):
-    """How a function wraps its result."""
-
-    VALUE = "value"
-    VOID = "void"
-    BARE = "bare"  # apply_batch: no wrapping, each member carries its own
 
 
 class RpcConnection:
@@ -156,7 +150,7 @@ class RpcConnection:
             msgpack.OutOfData: there is none.
         """
         if self._passed_over is None:
-            return _call(self._unpacker.unpack())
+            return call_of(self._unpacker.unpack())
         self._unpacker.skip()
         call, self._passed_over = self._passed_over, None
         return call
@@ -173,61 +167,10 @@ def _of_pixels(data: bytes) -> Call | None:
         message[:3] = [head.unpack() for _ in range(3)]
         count = head.read_array_header()
         message[3:] = [[head.unpack(), head.unpack(), *(None for _ in range(count - 2))]]
-        call = _call(message)
+        call = call_of(message)
     except (*_UNPACKING_FAILED, ProtocolError):
         return None  # the decoder of whole messages says what is wrong
     return call if call.method in OF_PIXELS else None
-
-
-def _call(message: object) -> Call:
-    if not isinstance(message, list) or len(message) != 4 or type(message[0]) is not int or message[0] != REQUEST:
-        raise ProtocolError(f"expected a request [0, id, method, parameters], got {got(message)}")
-    _, call_id, method, params = message
-    if type(call_id) is not int or type(method) is not str or type(params) is not list:
-        raise ProtocolError(f"expected a request [0, id, method, parameters], got id {got(call_id)}, {got(method)}")
-    if not params or type(params[0]) is not list or len(params[0]) != 1 or type(params[0][0]) is not bool:
-        raise ProtocolError(f"{got(method)}: expected [is_async] before the arguments, got {got(params[0:1])}")
-    return Call(call_id, method, params[1:], params[0][0])
-
-
-def value(call: Call, result: object) -> bytes:
-    """Encode the result of a function that has one."""
-    if type(result) is Packed:
-        return b"".join((_HEAD, _pack(call.id), _NO_ERROR, _ONE_VALUE, result))
-    answer: bytes = _pack((RESPONSE, call.id, None, ((1, result),)))
-    return answer
-
-
-def void(call: Call) -> bytes:
-    """Encode that a function without a result has done its work."""
-    answer: bytes = _pack((RESPONSE, call.id, None, ((False,),)))
-    return answer
-
-
-def bare(call: Call, result: object) -> bytes:
-    """Encode a result that carries its own wrapping: the answers to a batch."""
-    if type(result) is Packed:
-        return b"".join((_HEAD, _pack(call.id), _NO_ERROR, result))
-    answer: bytes = _pack((RESPONSE, call.id, None, result))
-    return answer
-
-
-def refusal(call: Call, message: str, reply: Reply) -> bytes:
-    """Encode an error; the client raises RuntimeError with ``message`` word for word.
-
-    A batch has no place for an error of its own, so the rpc library's is used, which names the function only.
-    """
-    if reply is Reply.BARE:
-        return unknown(call, message)
-    failed: bool | int = True if reply is Reply.VOID else 0
-    answer: bytes = _pack((RESPONSE, call.id, None, ((failed, (message,)),)))
-    return answer
-
-
-def unknown(call: Call, message: str) -> bytes:
-    """Encode that there is no such function; the client raises ``rpc::rpc_error during call in function <name>``."""
-    answer: bytes = _pack((RESPONSE, call.id, message, None))
-    return answer
 
 
 Encoder = Callable[[Any], Any]

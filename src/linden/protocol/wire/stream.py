@@ -4,17 +4,13 @@ Source: LibCarla 0.9.16, ``carla/streaming/detail/Token.h`` and ``tcp/ServerSess
 """
 
 import struct
-from typing import Any, NamedTuple, TypeAlias
-
-from numpy.typing import NDArray
+from ipaddress import ip_address
+from typing import NamedTuple
 
 from linden.errors import ProtocolError
 
 WORLD_OBSERVER_ID = 1
 """Stream id of the world snapshot; CARLA uses the same."""
-
-Parts: TypeAlias = tuple[bytes | NDArray[Any], ...]
-"""What a message is made of, in its order: pictures are large, so they are joined once, when all of it is there."""
 
 _TOKEN = struct.Struct("<IHBB16x")  # stream id, port, protocol, address type, address
 _TCP = 1
@@ -34,6 +30,34 @@ class Token(NamedTuple):
 def token_bytes(stream_id: int, port: int) -> bytes:
     """Return the 24 bytes that tell a client where to subscribe."""
     return _TOKEN.pack(stream_id, port, _TCP, _SAME_HOST)
+
+
+class Endpoint(NamedTuple):
+    """Where a token says that a stream is to be had."""
+
+    stream_id: int
+    port: int
+    host: str | None
+    """None: the host of the RPC connection."""
+
+
+_ADDRESS_BYTES = {1: 4, 2: 16}  # IPv4, IPv6
+
+
+def read_token(data: bytes) -> Endpoint:
+    """Return what a token names.
+
+    Raises:
+        ProtocolError: these are no 24 bytes of a TCP token.
+    """
+    if len(data) != _TOKEN.size:
+        raise ProtocolError(f"expected a stream token of {_TOKEN.size} bytes, got {len(data)}")
+    stream_id, port, protocol, kind = _TOKEN.unpack(data)
+    if protocol != _TCP or kind not in (_SAME_HOST, *_ADDRESS_BYTES):
+        raise ProtocolError(f"expected a TCP token, got protocol {protocol} with address type {kind}")
+    if kind == _SAME_HOST:
+        return Endpoint(stream_id, port, None)
+    return Endpoint(stream_id, port, str(ip_address(data[8 : 8 + _ADDRESS_BYTES[kind]])))
 
 
 def size_prefix(payload_bytes: int) -> bytes:

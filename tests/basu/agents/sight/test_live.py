@@ -99,7 +99,7 @@ def test_a_users_agent_does_not_see_through_a_house(simulator: RunningServer, tm
     agent = tmp_path / "watcher.py"
     agent.write_text(f"FILE = {str(answer)!r}\n{WATCHER}")
     address = ["--host", "127.0.0.1", "--port", str(simulator.port), "--agent-writes", str(tmp_path)]
-    main(["run", str(agent), *address, "--routes", str(route_file), "--output", str(tmp_path / "runs")])
+    main(["run", str(agent), "--open", *address, "--routes", str(route_file), "--output", str(tmp_path / "runs")])
     told = json.loads(answer.read_text())
     assert all(told["open"] in known for known in told["known"][1:])
     assert not any(told["hidden"] in known for known in told["known"])

@@ -154,10 +154,14 @@ def test_the_same_case_again_is_the_same_byte_by_byte(simulator: RunningServer, 
 
 
 def drives(output: Path) -> dict[str, tuple[bytes, dict[str, Any], dict[str, Any]]]:
-    """The bytes of each drive of the newest run, its result and its config, without wall times."""
+    """The bytes of each drive of the newest run, its result and its config, without wall times.
+
+    The access is left out, as the session is: --in-process, without a gate, is not repeated.
+    """
     found = {}
     for path in (output / "latest").glob("*/*/result.json"):
-        result = json.loads(path.read_text(encoding="utf-8")) | {"wall_s": 0.0, "confinement": None}
+        result = json.loads(path.read_text(encoding="utf-8"))
+        result |= {"wall_s": 0.0, "access": None, "confinement": None}
         config = json.loads(path.with_name("config.json").read_text(encoding="utf-8")) | {"session": None}
         found[result["id"]] = (path.with_name("history.parquet").read_bytes(), result, config)
     return found

@@ -1,0 +1,60 @@
+"""Write docs/reference/gate.md from the gate's table of calls: `make_gate_page.py [--check]`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from linden.gate.calls import CALLS, Rule
+
+PAGE = Path(__file__).parent.parent / "docs" / "reference" / "gate.md"
+HEAD = """# The gate: what an agent may call
+
+<!-- written by scripts/make_gate_page.py -->
+
+An agent's client connects to a gate, behind which it can drive its own vehicle and change nothing else. A refused call
+raises `RuntimeError` with a sentence where the client waits for an answer. Refusals are counted in the run's result and
+do not end the run. A function that is not named here is refused.
+
+| track | what the agent learns of other actors |
+|---|---|
+| `world` | all of them |
+| `objects` | those in line of sight of its vehicle, lights and signs |
+| `sensors` | none: its snapshots hold its own vehicle only |
+
+`linden gate --port 2000 --vehicle 24` puts a gate before a running server, CARLA's own included. Without `--vehicle` it
+takes orders, one JSON object a line on stdin, as `linden serve --gates` does:
+
+    {"open": {"vehicle": 24, "track": "objects", "known": [3, 4]}}   {"gate": {"rpc": 40001, "streaming": 40002}}
+    {"sensors": [25, 26]}                                            {"gate": {}}
+    {"see": {"frame": 1200, "ids": [31, 32]}}                        (no answer)
+    {"close": {}}                                                    {"gate": {"refused": {"tick_cue": 1}}}
+
+## Calls
+"""
+
+
+def page() -> str:
+    """Return the page."""
+    lines = [HEAD, "| function | allowed | else |", "|---|---|---|"]
+    order = list(Rule)
+    for name, entry in sorted(CALLS.items(), key=lambda item: (order.index(item[1].rule), item[0])):
+        lines.append(f"| `{name}` | {entry.rule.value} | {entry.why} |")
+    return "\n".join(lines) + "\n"
+
+
+def main() -> int:
+    """Write the page, or check that it is up to date."""
+    arguments = argparse.ArgumentParser(description=__doc__)
+    arguments.add_argument("--check", action="store_true", help="write nothing; fail if the page is not up to date")
+    if not arguments.parse_args().check:
+        PAGE.write_text(page(), "utf-8")
+    elif not PAGE.is_file() or PAGE.read_text("utf-8") != page():
+        print(f"{PAGE.name} is out of date; run `python scripts/{Path(__file__).name}`", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

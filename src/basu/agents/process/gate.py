@@ -1,0 +1,145 @@
+"""The benchmark's side of the gate: opens it for a drive, says what the agent sees, and learns what was refused.
+
+A server of our own has gates in itself. Before any other simulator stands a relay, the process ``linden gate``. Both
+take the same orders, lines of JSON (docs/reference/gate.md).
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import subprocess
+from typing import TYPE_CHECKING, Any, Protocol
+
+from basu.errors import SimulatorError
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+HOST = "127.0.0.1"  # the agent's process is on this machine
+END_LIMIT_S = 5.0
+
+
+class Keeper(Protocol):
+    """The process that has the gates."""
+
+    def send_order(self, line: str) -> None:
+        """Send one line.
+
+        Raises:
+            OSError: it has ended.
+        """
+
+    def answer(self) -> str:
+        """Return the next line of its answers; empty where it has ended."""
+
+
+class Gate:
+    """Gates before one simulator, one at a time."""
+
+    def __init__(self, keeper: Keeper) -> None:
+        """``keeper`` has the gates."""
+        self._keeper = keeper
+
+    def open(self, track: str, vehicle_id: int, known: Iterable[int]) -> tuple[str, int]:
+        """Open a gate for the driver of a vehicle, and return its address; the one before is closed.
+
+        ``known`` are actors that it sees in each frame in the track ``objects``.
+
+        Raises:
+            SimulatorError: the gate has ended.
+        """
+        ports = self._asked(open={"track": track, "vehicle": vehicle_id, "known": list(known)})
+        return HOST, int(ports["rpc"])
+
+    def add_sensors(self, ids: Iterable[int]) -> None:
+        """Let the agent hear sensors that were spawned for it.
+
+        Raises:
+            SimulatorError: the gate has ended.
+        """
+        self._asked(sensors=list(ids))
+
+    def see(self, frame: int, ids: Iterable[int]) -> None:
+        """Say which actors the agent sees in a frame, in the track ``objects``; the gate holds the frame until then.
+
+        Raises:
+            SimulatorError: the gate has ended.
+        """
+        self._order(see={"frame": frame, "ids": list(ids)})
+
+    def close(self) -> dict[str, int]:
+        """Close the gate with all connections of the agent; how often each function was refused."""
+        try:
+            return dict(self._asked(close={})["refused"])
+        except SimulatorError:  # it has ended, and with it all connections
+            return {}
+
+    def _asked(self, **order: Any) -> dict[str, Any]:  # noqa: ANN401 - as JSON has it
+        """Send an order and return its answer."""
+        self._order(**order)
+        line = self._keeper.answer()
+        if not line:
+            raise SimulatorError("the gate between agent and simulator has ended")
+        answer: dict[str, Any] = json.loads(line)["gate"]
+        return answer
+
+    def _order(self, **order: Any) -> None:  # noqa: ANN401 - as JSON has it
+        try:
+            self._keeper.send_order(json.dumps(order) + "\n")
+        except OSError as error:
+            raise SimulatorError(f"the gate between agent and simulator has ended: {error}") from error
+
+
+class Relay:
+    """The process of the relay; it starts with the first order."""
+
+    def __init__(self, command: Sequence[str]) -> None:
+        """Name the command that serves gates."""
+        self._command = tuple(command)
+        self._process: subprocess.Popen[str] | None = None
+
+    @property
+    def pid(self) -> int | None:
+        """The number of the process; None before the first order."""
+        return None if self._process is None else self._process.pid
+
+    def send_order(self, line: str) -> None:
+        """Send one line.
+
+        Raises:
+            OSError: the process has ended.
+        """
+        if self._process is None:
+            self._process = subprocess.Popen(  # noqa: S603 - our own command
+                self._command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+                start_new_session=True,  # Ctrl-C is for us; it ends with its stdin
+            )
+        assert self._process.stdin is not None, "it is a pipe"
+        self._process.stdin.write(line)
+        self._process.stdin.flush()
+
+    def answer(self) -> str:
+        """Return the next line of its answers; empty where it has ended."""
+        assert self._process is not None, "an order has started it"
+        assert self._process.stdout is not None, "it is a pipe"
+        return self._process.stdout.readline()
+
+    def end(self) -> None:
+        """End the process."""
+        if self._process is None:
+            return
+        assert self._process.stdin is not None, "it is a pipe"
+        assert self._process.stdout is not None, "likewise"
+        with contextlib.suppress(OSError):
+            self._process.stdin.close()
+        try:
+            self._process.wait(END_LIMIT_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()
+        self._process.stdout.close()
+        self._process = None
