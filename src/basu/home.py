@@ -1,4 +1,4 @@
-"""A temporary home folder for a user whose own cannot be written: CARLA's client keeps files of maps there.
+"""A temporary home folder if the user's own cannot be written: the official client keeps files of maps there.
 
 Without it, the client raises boost::filesystem errors in the middle of a load (FileTransfer.cpp).
 """
