@@ -1,7 +1,7 @@
 """Walls along the edges of roads, which keep vehicles on a road that was made of an OpenDRIVE text.
 
-Where CARLA puts them: along both sides of every road outside of junctions, so far beyond a driving lane as lanes are
-made wider (MeshFactory.cpp, GenerateWalls; Lane.cpp, GetCornerPositions). Frame: CARLA's.
+They stand along both sides of every road outside of junctions, as far beyond a driving lane as lanes are made wider.
+Source: CARLA's MeshFactory.cpp (GenerateWalls) and Lane.cpp (GetCornerPositions). Frame: CARLA's.
 """
 
 import math

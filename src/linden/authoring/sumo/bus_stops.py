@@ -60,8 +60,8 @@ class ParkingArea(NamedTuple):
 def parking_areas(net: Net, taken_m: Sequence[tuple[float, float, float]] = ()) -> tuple[ParkingArea, ...]:
     """Return the spaces of each parking lane beside a lane for cars; none near the ends of the street.
 
-    ``taken_m`` are x and y in SUMO's frame, and the radius about them, in which nothing may park. Each space is an area of
-    its own, so that a demand can choose one: within an area, SUMO gives the next free space to each arrival.
+    ``taken_m`` are x and y in SUMO's frame, and the radius about them, in which nothing may park. Each space is an
+    area of its own, so that a demand can choose one. Within an area, SUMO gives the next free space to each arrival.
     """
     taken = np.asarray(taken_m, np.float64).reshape(-1, 3)
     areas = []
