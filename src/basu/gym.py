@@ -118,7 +118,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
         self._resources.callback(self.episode.close)
         weakref.finalize(self, self._resources.close)  # also where close() is forgotten
-        self._s_m = 0.0
+        self._driven_m = 0.0
         self._infractions = 0
 
     def reset(
@@ -136,7 +136,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         drawn = seed if seed is not None else int(self.np_random.integers(2**31))
         seen = self.episode.reset(drawn)
         self._preview = Preview(self.episode)
-        self._s_m, self._infractions = seen.progress.s_m, 0
+        self._driven_m, self._infractions = seen.driven_m, 0
         return self._preview.of(seen), {"route_s_m": seen.progress.s_m, "infractions": ()}
 
     def step(
@@ -161,9 +161,9 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         if outcome is not None or seen.frame.tick % JUDGED_TICKS == 0:
             found = self.episode.metrics.infractions_so_far()
             new, self._infractions = found[self._infractions :], len(found)
-        parts = self._parts(seen.progress.s_m - self._s_m, len(new), outcome)
-        self._s_m = seen.progress.s_m
-        info: dict[str, Any] = {"route_s_m": self._s_m, "infractions": new, "reward_parts": parts}
+        parts = self._parts(seen.driven_m - self._driven_m, len(new), outcome)
+        self._driven_m = seen.driven_m
+        info: dict[str, Any] = {"route_s_m": seen.progress.s_m, "infractions": new, "reward_parts": parts}
         if outcome is not None:
             info |= {"outcome": outcome.status.value, "message": outcome.message}
         truncated = outcome is not None and outcome.status in TRUNCATED

@@ -56,6 +56,7 @@ class Observation(NamedTuple):
     frame: Frame
     sensor_data: dict[str, tuple[int, Any]]  # the latest measurement of each sensor, with its frame
     progress: Progress  # along the route
+    driven_m: float  # of the route, validly
 
 
 class Step(NamedTuple):
@@ -269,7 +270,9 @@ class Episode:
         frame = next_frame(run, before)
         managers.sensors.tick(frame)
         managers.routes.tick(frame)
-        self._unrecorded = Observation(frame, managers.sensors.data, managers.routes.progress)
+        self._unrecorded = Observation(
+            frame, managers.sensors.data, managers.routes.progress, managers.routes.valid.driven_m
+        )
         return self._unrecorded
 
     def _record(self) -> None:

@@ -9,7 +9,7 @@ import carla
 
 from basu.errors import SimulatorError
 from basu.managers.base_manager import BaseManager
-from basu.managers.observations import LaneFinder, Neighbours, RouteLights
+from basu.managers.observations import Neighbours, RouteLights
 from basu.metrics.incremental import SoFar
 from basu.records.history import Collision, Facts, LaneInvasion, Recorder, Vehicle
 from basu.records.history.model import NO_LIGHT
@@ -64,7 +64,6 @@ class MetricsManager(BaseManager):
             rear_m=box.extent.x - box.location.x,
             width_m=2.0 * box.extent.y,
         )
-        self._lanes = LaneFinder(run.carla_map)
         self._lights = RouteLights(run.world, run.route, self._vehicle.rear_m)
         library = run.world.get_blueprint_library()
         heard: dict[str, Callable[[Any], None]] = {"sensor.other.collision": self._hear_collision}
@@ -98,7 +97,7 @@ class MetricsManager(BaseManager):
                 progress.lateral_m,
                 self._lights.next_state(progress.s_m),
                 self._agents.manual,
-                *self._lanes.under(frame.ego),
+                *self._routes.lane,
             )
         )
         self._recorder.others(self._neighbours.near(frame))

@@ -146,6 +146,8 @@ class SumoManager(BaseManager):
 
     def _served(self, frame: Frame) -> str | None:
         """The stop that the vehicle under test serves in this frame."""
+        if not self._routes.valid.check.valid:
+            return None
         s_m, speed_mps = self._routes.progress.s_m, frame.ego.speed_mps
         return next((stop.id for stop in self._stops if serves(stop.s_m - s_m, speed_mps)), None)
 

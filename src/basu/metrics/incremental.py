@@ -18,14 +18,15 @@ from basu.metrics.path_following import compared
 from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
 from basu.metrics.score import Scores, driving_score, in_order, infraction_score
 from basu.metrics.scoring import Scoring
-from basu.metrics.speeding import LEAST_S, episode, limits_mps
+from basu.metrics.speeding import Episode, Excess, limits_mps
 from basu.metrics.stop_signs import ZONE_BEFORE_M, stop_signs
 from basu.metrics.stretches import SPACING_M, chords, path_m, total_m
+from basu.metrics.validity import Follower, moments
 from basu.records.history.model import NO_LIGHT
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -57,55 +58,30 @@ class CollisionsSoFar:
         self._first = settled
 
 
-@dataclass(slots=True)
-class _Open:
-    """An episode that goes on."""
-
-    first: int
-    top_mps: float
-    posted_mps: float
-
-    def see(self, speed_mps: float, limit_mps: float) -> None:
-        """Keep the largest excess, the earliest of equal ones."""
-        if speed_mps - limit_mps > self.top_mps - self.posted_mps:
-            self.top_mps, self.posted_mps = speed_mps, limit_mps
-
-
 class SpeedingSoFar:
-    """The episodes until now; ``pending`` holds the one that goes on."""
+    """The infractions until now; ``pending`` holds those of the episode that goes on."""
 
     def __init__(self, tolerance_mps: float) -> None:
         self.settled: list[Evidence] = []
         self.pending: list[Evidence] = []
         self._tolerance_mps = tolerance_mps
         self._seen = 0  # frames looked at
-        self._open: _Open | None = None
+        self._episode: Episode | None = None
 
     def look(self, window: Callable[[int], History]) -> None:
         """Take in the frames that are new."""
         history = window(self._seen)
+        episode = self._episode = self._episode or Episode(self._tolerance_mps, history.facts.step_s)
         speeds, limits = history.speed_mps().tolist(), limits_mps(history).tolist()
         for tick, (speed_mps, limit_mps) in enumerate(zip(speeds, limits, strict=True), self._seen):
-            if speed_mps <= limit_mps:
-                self.settled += self._told(window, tick)
-                self._open = None
-            elif self._open is not None:
-                self._open.see(speed_mps, limit_mps)
-            elif speed_mps > limit_mps + self._tolerance_mps:
-                self._open = _Open(tick, speed_mps, limit_mps)
+            self.settled += _evidence(window, episode.step(tick, speed_mps, limit_mps))
         self._seen += len(speeds)
-        self.pending = self._told(window, self._seen)
+        self.pending = _evidence(window, episode.counted())
 
-    def _told(self, window: Callable[[int], History], end: int) -> list[Evidence]:
-        """The open episode as it is at ``end``, nothing where there is none or it is too short to count."""
-        if self._open is None:
-            return []
-        begun = window(self._open.first)
-        seconds = (end - self._open.first) * begun.facts.step_s
-        if seconds < LEAST_S:
-            return []
-        found = episode(begun, 0, top_mps=self._open.top_mps, posted_mps=self._open.posted_mps, seconds=seconds)
-        return [replace(found, tick=self._open.first)]
+
+def _evidence(window: Callable[[int], History], pieces: Sequence[Excess]) -> list[Evidence]:
+    """The evidence for pieces of an episode."""
+    return [replace(piece.evidence(window(piece.first), 0), tick=piece.first) for piece in pieces]
 
 
 @dataclass(slots=True)
@@ -146,14 +122,15 @@ class SoFar:
             SpeedingSoFar(scoring.speeding_tolerance_mps),
         )
         self._path_first, self._path_m = 0, 0.0
-        self._farthest_m = 0.0
+        self._follower: Follower | None = None
+        self._followed = 0  # frames that the follower has seen
         self._path_score = 0.0
 
     def advance(self, window: Callable[[int], History]) -> None:
         """Take in what is new; ``window`` gives the record from a tick on, its ticks counted from there."""
         for watched in self._watched:
             watched.look(window)
-        self._follow(window(self._path_first))
+        self._follow(window(self._path_first), window(self._followed))
 
     @property
     def infractions(self) -> tuple[Evidence, ...]:
@@ -166,13 +143,16 @@ class SoFar:
         infraction = infraction_score(counts(self.infractions), self._scoring)
         return Scores(driving_score(infraction, self._path_score, self._scoring), infraction, self._path_score)
 
-    def _follow(self, history: History) -> None:
-        """Add the new piece of the driven path."""
+    def _follow(self, history: History, fresh: History) -> None:
+        """Add the new piece of the driven path, and the ``fresh`` frames to the valid progress."""
+        self._follower = self._follower or Follower(history.facts.route)
+        for moment in moments(fresh.frames):
+            self._follower.step(moment)
+        self._followed += len(fresh.frames)
         pieces = chords(path_m(history.frames))
         whole = pieces.length_m >= SPACING_M
         driven_m = self._path_m + total_m(pieces.length_m)
-        self._farthest_m = max(self._farthest_m, float(history.frames["route_s_m"].max(initial=0.0)))
-        self._path_score = compared(driven_m, self._farthest_m, history.facts.route.length_m).score
+        self._path_score = compared(driven_m, self._follower.driven_m, history.facts.route.length_m).score
         if whole.any():
             self._path_m += total_m(pieces.length_m[whole])
             self._path_first += int(pieces.end[whole][-1])

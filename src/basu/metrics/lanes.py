@@ -21,6 +21,7 @@ from basu.metrics.infraction import Incident
 from basu.metrics.json_schema import mapping, number
 from basu.metrics.registry import Drive, Metric, register
 from basu.metrics.stretches import Share, chords, path_m, share_line, share_of, share_record, share_row, total_m
+from basu.metrics.validity import AGAINST_RAD, BEYOND_M, MOVING_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,9 +30,6 @@ if TYPE_CHECKING:
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
-BEYOND_M = 0.5  # ALLOWED_OUT_DISTANCE of leaderboard 2.0 and 2.1; 1.0 has 1.3
-AGAINST_RAD = np.radians(120.0)  # between two directions; MAX_VEHICLE_ANGLE of the leaderboard
-MOVING_MPS = 0.1
 FORGIVEN_M = 2.0  # a stretch against the lane no longer than this; nuPlan's direction compliance forgives as much
 # values of carla.LaneType
 DRIVING, SIDEWALK = 2, 32

@@ -6,8 +6,8 @@ of half its length behind its middle to 1 m behind its bumper. So a vehicle that
 yellow and has its tail on the line when it turns red has run it; one that stops beyond the line with its tail still
 before it has not. The record also states what the light showed when the front crossed.
 
-Off the planned lane the route's lights are not the vehicle's. There, leaving the zone of a light forwards while it is
-red has run it: the simulator says under which light a vehicle stands.
+The line of a light on the route is crossed in whichever lane the vehicle is. Off the planned lane, a vehicle also runs
+another light: it leaves its zone forwards on red. The simulator says under which light a vehicle stands.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evi
 from basu.metrics.json_schema import flag, listing, number, record, text
 from basu.metrics.registry import Column, Drive, Metric, register
 from basu.metrics.stretches import stretches
+from basu.metrics.validity import in_planned_lane
 from basu.records.history.model import NO_LIGHT
 from basu.routing import ControlKind
 
@@ -29,12 +30,12 @@ if TYPE_CHECKING:
 
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
-    from basu.routing import Control, Route
+    from basu.routing import Control
 
 STATES = ("red", "yellow", "green", "off", "unknown")  # the values of carla.TrafficLightState
 RED = 0
 TAIL_FROM, TAIL_BEHIND_M = 0.8, 1.0  # of half the length; beyond the bumper
-BESIDE = 0.6  # of the lane's width off its middle: farther out the line is not crossed (leaderboard 2.x; 1.0 has 0.4)
+ZONE_END_M = 5.0  # a zone of a light that ends so near to a line of the route is that line's
 MOVING_MPS = 0.1
 
 
@@ -55,14 +56,13 @@ def lights_passed(history: History) -> tuple[LightPassed, ...]:
     vehicle, frames = history.facts.vehicle, history.frames
     s_m, shown = frames["route_s_m"], frames["route_light"]
     half_m = (vehicle.front_m + vehicle.rear_m) / 2.0
-    beside = np.abs(frames["lateral_m"]) > BESIDE * _lane_width_m(history.facts.route, s_m)
     speed_mps = history.speed_mps()
     found = []
     for light in history.facts.route.controls:
         if light.kind is not ControlKind.TRAFFIC_LIGHT:
             continue
         under_tail = (s_m - TAIL_FROM * half_m >= light.s_m) & (s_m - half_m - TAIL_BEHIND_M <= light.s_m)
-        tail = np.flatnonzero(under_tail & ~beside & (shown != NO_LIGHT))
+        tail = np.flatnonzero(under_tail & (shown != NO_LIGHT))
         if len(tail) == 0:
             continue
         red = tail[shown[tail] == RED]
@@ -106,7 +106,7 @@ def _off_route(history: History) -> tuple[Evidence, ...]:
     frames = history.frames
     state, yaw_rad = frames["traffic_light_state"], frames["yaw_rad"]
     forward_mps = frames["velocity_x_mps"] * np.cos(yaw_rad) + frames["velocity_y_mps"] * np.sin(yaw_rad)
-    beside = np.abs(frames["lateral_m"]) > BESIDE * _lane_width_m(history.facts.route, frames["route_s_m"])
+    beside = ~in_planned_lane(history) & ~_at_line_of_route(history)
     found = []
     for _, end in stretches(state != NO_LIGHT):
         if end == len(frames) or state[end - 1] != RED or not beside[end] or forward_mps[end] <= MOVING_MPS:
@@ -125,10 +125,14 @@ def _off_route(history: History) -> tuple[Evidence, ...]:
     return tuple(found)
 
 
-def _lane_width_m(route: Route, s_m: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(T,) the width of the planned lane at each place along the route."""
-    index = np.clip(np.searchsorted(route.s_m, s_m, side="right") - 1, 0, None)
-    return route.lane_width_m[index]
+def _at_line_of_route(history: History) -> NDArray[np.bool_]:
+    """(T,) whether the line of one of the route's lights is at the vehicle."""
+    vehicle, s_m = history.facts.vehicle, history.frames["route_s_m"]
+    at = np.zeros(len(s_m), dtype=np.bool_)
+    for light in history.facts.route.controls:
+        if light.kind is ControlKind.TRAFFIC_LIGHT:
+            at |= (light.s_m >= s_m - vehicle.rear_m - ZONE_END_M) & (light.s_m <= s_m + vehicle.front_m + ZONE_END_M)
+    return at
 
 
 def _state(value: int) -> str:

@@ -56,7 +56,7 @@ class Reported(Metric):
         return {
             "driven_m": path.driven_m,
             "planned_m": path.planned_m,
-            "route_completion": min(1.0, float(frames["route_s_m"].max()) / path.planned_m),
+            "route_completion": min(1.0, path.valid_m / path.planned_m),
             "lane_invasions": {"total": invasions.total, "by_marking": dict(invasions.by_marking)},
             "largest_lateral_m": float(np.abs(frames["lateral_m"]).max()),
             "top_speed_mps": float(drive.history.speed_mps().max()),

@@ -1,7 +1,8 @@
-"""Speeding: stretches of driving above the posted limit, each one infraction."""
+"""Speeding: episodes of driving above the posted limit; an infraction for each started share of way gained by it."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -10,7 +11,7 @@ from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evi
 from basu.metrics.json_schema import number, record
 from basu.metrics.registry import Column, Drive, Metric, register
 from basu.metrics.scoring import TOLERANCE_MPS
-from basu.metrics.stretches import stretches
+from basu.metrics.validity import in_planned_lane
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -18,43 +19,82 @@ if TYPE_CHECKING:
     from basu.metrics.registry import JudgedRun
     from basu.records.history import History
 
-ON_ROUTE_M = 2.0  # from the planned line; nearer than this the vehicle is on the plan's lane, and its limit holds
 LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of driving
+SHARE_M = 2.23 * 15.0
+"""Way gained on the limit that one infraction stands for, the excess summed over time.
+
+nuPlan's speed limit compliance is 0 for an excess of 2.23 m/s (5 mph) in the mean of a scenario of 15 s."""
+
+
+@dataclass(slots=True)
+class Excess:
+    """A piece of an episode above the limit: one infraction."""
+
+    first: int
+    end: int  # the frame after its last one
+    top_mps: float  # the speed of its largest excess, the earliest of equal ones
+    posted_mps: float  # the limit there
+    gained_m: float  # on a vehicle at the limit
+
+    def evidence(self, history: History, tick: int) -> Evidence:
+        """The evidence for it; ``tick`` is its first frame in ``history``, and its speed that of the largest excess."""
+        seconds = (self.end - self.first) * history.facts.step_s
+        return evidence(
+            history,
+            Infraction.SPEEDING,
+            tick,
+            speed_mps=self.top_mps,
+            other=None,
+            detail=f"up to {self.top_mps:.2f} m/s where {self.posted_mps:.2f} m/s are posted, for {seconds:.1f} s",
+        )
+
+
+class Episode:
+    """Finds episodes frame by frame: one begins above the tolerance, and ends back at the limit.
+
+    It is cut into pieces: one ends where `SHARE_M` was gained on the limit. ``pieces`` are those of the open episode.
+    """
+
+    def __init__(self, tolerance_mps: float, step_s: float) -> None:
+        self.pieces: list[Excess] = []
+        self._tolerance_mps, self._step_s = tolerance_mps, step_s
+
+    def step(self, tick: int, speed_mps: float, limit_mps: float) -> list[Excess]:
+        """Take in a frame and return the pieces of the episode that it ended; none for one that goes on."""
+        if speed_mps <= limit_mps:
+            ended, self.pieces = self.counted(), []
+            return ended
+        if not self.pieces and speed_mps <= limit_mps + self._tolerance_mps:
+            return []
+        if not self.pieces or self.pieces[-1].gained_m >= SHARE_M:
+            self.pieces.append(Excess(tick, tick, speed_mps, limit_mps, 0.0))
+        piece = self.pieces[-1]
+        piece.end, piece.gained_m = tick + 1, piece.gained_m + (speed_mps - limit_mps) * self._step_s
+        if speed_mps - limit_mps > piece.top_mps - piece.posted_mps:
+            piece.top_mps, piece.posted_mps = speed_mps, limit_mps
+        return []
+
+    def counted(self) -> list[Excess]:
+        """The pieces of the open episode; none where it is too short to count."""
+        if not self.pieces or (self.pieces[-1].end - self.pieces[0].first) * self._step_s < LEAST_S:
+            return []
+        return self.pieces
 
 
 def speeding(history: History, tolerance_mps: float = TOLERANCE_MPS) -> tuple[Evidence, ...]:
-    """One infraction for each episode: it begins ``tolerance_mps`` over and ends back at the limit.
-
-    :func:`limits_mps` says which limit holds.
-    """
-    speed_mps, limit_mps = history.speed_mps(), limits_mps(history)
-    found = []
-    for first, end in episodes(speed_mps, limit_mps, tolerance_mps):
-        if (end - first) * history.facts.step_s < LEAST_S:
-            continue
-        fastest = first + int(np.argmax(speed_mps[first:end] - limit_mps[first:end]))
-        found.append(
-            episode(
-                history,
-                first,
-                top_mps=float(speed_mps[fastest]),
-                posted_mps=float(limit_mps[fastest]),
-                seconds=(end - first) * history.facts.step_s,
-            )
-        )
-    return tuple(found)
+    """One infraction for each started `SHARE_M` of an episode; `limits_mps` returns the limit that holds."""
+    found = episodes(history.speed_mps(), limits_mps(history), tolerance_mps, history.facts.step_s)
+    return tuple(piece.evidence(history, piece.first) for pieces in found for piece in pieces)
 
 
-def episode(history: History, first: int, *, top_mps: float, posted_mps: float, seconds: float) -> Evidence:
-    """The evidence for an episode that begins in frame ``first``; its speed is that of the largest excess."""
-    return evidence(
-        history,
-        Infraction.SPEEDING,
-        first,
-        speed_mps=top_mps,
-        other=None,
-        detail=f"up to {top_mps:.2f} m/s where {posted_mps:.2f} m/s are posted, for {seconds:.1f} s",
-    )
+def episodes(
+    speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64], tolerance_mps: float, step_s: float
+) -> list[list[Excess]]:
+    """The pieces of each episode that is long enough to count."""
+    episode, found = Episode(tolerance_mps, step_s), []
+    for tick, (speed, limit) in enumerate(zip(speed_mps.tolist(), limit_mps.tolist(), strict=True)):
+        found.append(episode.step(tick, speed, limit))
+    return [pieces for pieces in (*found, episode.counted()) if pieces]
 
 
 def limits_mps(history: History) -> NDArray[np.float64]:
@@ -67,21 +107,8 @@ def limits_mps(history: History) -> NDArray[np.float64]:
     posted = history.frames["speed_limit_mps"].astype(np.float64)
     index = np.clip(np.searchsorted(route.s_m, history.frames["route_s_m"], side="right") - 1, 0, None)
     planned = route.speed_limit_mps[index]
-    off_route = np.abs(history.frames["lateral_m"]) > ON_ROUTE_M
     elsewhere = np.where(posted > 0.0, posted, np.inf)
-    return np.where(off_route | np.isnan(planned), elsewhere, planned)
-
-
-def episodes(
-    speed_mps: NDArray[np.float64], limit_mps: NDArray[np.float64], tolerance_mps: float
-) -> list[tuple[int, int]]:
-    """(first, end) of each stretch that exceeds the tolerance somewhere and the limit throughout."""
-    beyond = speed_mps > limit_mps + tolerance_mps
-    found = []
-    for first, end in stretches(speed_mps > limit_mps):
-        if beyond[first:end].any():
-            found.append((first + int(np.argmax(beyond[first:end])), end))
-    return found
+    return np.where(~in_planned_lane(history) | np.isnan(planned), elsewhere, planned)
 
 
 @register
@@ -109,7 +136,7 @@ class Speeding(Metric):
         }
 
     def find(self, drive: Drive) -> tuple[Evidence, ...]:
-        """Each episode."""
+        """Each infraction, in the order of time."""
         return speeding(drive.history, drive.scoring.speeding_tolerance_mps)
 
     def lines(self, result: JudgedRun) -> list[str]:
@@ -122,6 +149,6 @@ class Speeding(Metric):
         ]
 
     def columns(self, result: JudgedRun) -> list[Column]:
-        """The number of episodes."""
-        episodes_found = sum(found.kind is Infraction.SPEEDING for found in result.infractions)
-        return [Column("speeding", str(episodes_found))]
+        """The number of infractions."""
+        number_found = sum(found.kind is Infraction.SPEEDING for found in result.infractions)
+        return [Column("speeding", str(number_found))]

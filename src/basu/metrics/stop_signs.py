@@ -2,9 +2,9 @@
 
 A driver has stopped when its speed fell below 0.1 m/s (the CARLA leaderboard's threshold) while the front bumper was in
 the approach zone: from 3 m before the line, as near as a service stop is served, to 1 m beyond it, an overhang that the
-leaderboard's trigger volumes forgive as well. A wider zone would not notice a line that is 4 m from its place. The sign
-is passed, and judged, when the vehicle's middle crosses the line. Signs that the run did not get to are not judged; nor
-are those passed more than 4 m beside the route, where the sign is not the vehicle's.
+leaderboard's trigger volumes forgive as well. A wider zone would not notice a line that is 4 m from its place. A stop
+counts only on the route (`basu.metrics.validity`). The sign is passed, and judged, when the vehicle's middle crosses
+the line, in whichever lane and however far beside the route. Signs that the run did not get to are not judged.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
 from basu.metrics.json_schema import flag, listing, number, record, text
 from basu.metrics.registry import Column, Drive, Metric, register
+from basu.metrics.validity import counts_at
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
 AT_REST_MPS = 0.1
 ZONE_BEFORE_M, ZONE_BEYOND_M = 3.0, 1.0
-BESIDE_M = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,10 +54,11 @@ def signs_passed(history: History) -> tuple[SignPassed, ...]:
         if sign.kind is not ControlKind.STOP_SIGN:
             continue
         crossing = _crossing(centre_s_m, sign.s_m)
-        if crossing is None or abs(float(frames["lateral_m"][crossing])) > BESIDE_M:
+        if crossing is None:
             continue
         ahead_m = sign.s_m - front_s_m[: crossing + 1]
         zone = np.flatnonzero((ahead_m <= ZONE_BEFORE_M) & (ahead_m >= -ZONE_BEYOND_M))
+        zone = zone[counts_at(history, zone)]
         slowest = int(zone[np.argmin(speed_mps[zone])]) if len(zone) else crossing
         found.append(
             SignPassed(

@@ -15,7 +15,10 @@ A near miss is one of these, with any actor in the record:
 
 Which of these sources could be read, and which are quoted from memory: `docs/decisions/0054-verdicts.md`.
 
-Frames count in which the ego moved faster than 0.5 m/s. An actor that comes near a standing ego has done so alone.
+Frames count in which the ego moved faster than 0.5 m/s. The clearance also counts at a creep, from 0.1 m/s on. Then the
+other must be a walker, a cyclist, or itself faster than 0.5 m/s. To creep up to a standing vehicle is no danger, to
+creep past a child is. The times do not count at a creep: they are then of the other's making. An actor that comes near
+an ego at rest has done so alone.
 """
 
 from __future__ import annotations
@@ -27,6 +30,7 @@ import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
+from basu.metrics.path_following import AT_REST_MPS
 from basu.outcome import Fault
 from basu.scenarios.continuations import MOVING_MPS
 from basu.scenarios.criteria.contact import NoCollision
@@ -41,12 +45,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.outcome import Outcome
+    from basu.records.history import History
     from basu.scenarios.criteria.criterion import Judgement, Played
     from basu.scenarios.criteria.margin import Present
 
 NEAR_TTC_S = 1.0
 NEAR_PET_S = 1.0
 NEAR_M = 0.45
+UNPROTECTED = ("walker.", "vehicle.bh.crossbike", "vehicle.diamondback.century", "vehicle.gazelle.omafiets")
+"""Blueprints of people that no body shell protects: walkers and CARLA's bicycles."""
 
 
 class Assessment(NamedTuple):
@@ -147,6 +154,15 @@ def _moving_rows(present: Present) -> NDArray[np.int64]:
     return np.flatnonzero(history.speed_mps()[history.others["tick"]] > MOVING_MPS)
 
 
+def passing_rows(history: History) -> NDArray[np.int64]:
+    """Rows of the others in frames in which the ego moves, or creeps near an actor that a creep endangers."""
+    others = history.others
+    exposed = [key for key, kind in history.facts.actor_types.items() if kind.startswith(UNPROTECTED)]
+    theirs_mps = np.hypot(others["velocity_x_mps"], others["velocity_y_mps"])
+    endangered = np.isin(others["id"], exposed) | (theirs_mps > MOVING_MPS)
+    return np.flatnonzero(history.speed_mps()[others["tick"]] > np.where(endangered, AT_REST_MPS, MOVING_MPS))
+
+
 def _ttc(present: Present) -> NearMiss | None:
     """The least time to collision, where it is below its limit."""
     history, rows = present.history, _moving_rows(present)
@@ -168,7 +184,7 @@ def _pet(present: Present) -> NearMiss | None:
 
 def _clearance(present: Present) -> NearMiss | None:
     """The least distance between boxes, where it is below its limit."""
-    history, rows = present.history, _moving_rows(present)
+    history, rows = present.history, passing_rows(present.history)
     others = history.others[rows]
     own = own_boxes(history.facts, history.frames)[others["tick"]]
     ticks = others["tick"].astype(np.int64)

@@ -9,6 +9,7 @@ import pytest
 
 from basu.managers.base_manager import Ego, Frame, WorldChanges
 from basu.managers.metrics_manager import MetricsManager
+from basu.managers.observations import NO_LANE, LaneFinder
 from basu.metrics.score import infractions, score
 from basu.metrics.scoring import Scoring
 from basu.records.history.model import NO_LIGHT
@@ -49,7 +50,8 @@ class Stage:
         self.sensors: dict[str, Sensor] = {}
         asked = carla.VehicleControl(throttle=0.25)
         self.agents = SimpleNamespace(requested=asked, control=asked, manual=False)
-        self.routes = SimpleNamespace(progress=Progress.at_start())
+        self.routes = SimpleNamespace(progress=Progress.at_start(), lane=NO_LANE)
+        self.lanes = LaneFinder(carla.Map("Crossing", crossing()))
         self.route = straight_route(60.0, limit_mps=10.0)
         self.route.points_m[:, 1] = LANE_M / 2.0
         self.metrics = MetricsManager(self.agents, self.routes, Scoring())
@@ -84,6 +86,7 @@ class Stage:
             x_m = self.tick * speed_mps * STEP_S
             self.routes.progress = advance(self.route, self.routes.progress, x_m, LANE_M / 2.0)
             ego = Ego(x_m, LANE_M / 2.0, 0.0, 0.0, 0.0, 0.0, speed_mps, *[0.0] * 8)
+            self.routes.lane = self.lanes.under(ego)
             self.metrics.tick(Frame(self.tick, FIRST_FRAME + self.tick, Snapshot(), ego))
             self.tick += 1
 

@@ -16,7 +16,12 @@ STEP_S = 0.05
 def begun(length_m: float = 100.0) -> RoutesManager:
     manager = RoutesManager()
     run: Any = SimpleNamespace(
-        route=straight_route(length_m), step_s=STEP_S, world=None, weather=(), changes=WorldChanges()
+        route=straight_route(length_m),
+        step_s=STEP_S,
+        world=None,
+        carla_map=SimpleNamespace(get_waypoint=lambda *_, **__: None),
+        weather=(),
+        changes=WorldChanges(),
     )
     manager.setup(run)
     return manager

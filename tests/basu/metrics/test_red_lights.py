@@ -65,8 +65,15 @@ def test_an_actor_that_stops_with_the_front_beyond_the_line_has_not_run_it() -> 
     assert lights_passed(history) == ()
 
 
-def test_a_light_passed_in_another_lane_is_not_the_vehicles() -> None:
-    assert red_lights(past_the_light(0.0, lateral_m=3.0)) == ()
+@pytest.mark.parametrize("lateral_m", [-3.5, 3.0])
+def test_a_light_is_run_in_whichever_lane_of_the_approach(lateral_m: float) -> None:
+    assert len(red_lights(past_the_light(0.0, lateral_m=lateral_m))) == 1
+
+
+def test_a_zone_that_ends_at_a_line_of_the_route_is_no_second_light() -> None:
+    history = past_the_light(0.0, lateral_m=-3.5)
+    history.frames["traffic_light_state"] = np.where(history.frames["x_m"] <= LINE_M, RED, NO_LIGHT)
+    assert len(red_lights(history)) == 1
 
 
 def test_a_light_is_run_once_however_slowly() -> None:

@@ -4,8 +4,9 @@ import math
 
 import pytest
 
-from basu.metrics.scoring import TOLERANCE_MPS
-from basu.metrics.speeding import LEAST_S, limits_mps, speeding
+from basu.metrics.score import score
+from basu.metrics.scoring import TOLERANCE_MPS, Scoring
+from basu.metrics.speeding import LEAST_S, SHARE_M, limits_mps, speeding
 from fakes.drives import at, driven, straight_route
 
 
@@ -13,11 +14,27 @@ def test_driving_at_the_limit_and_within_the_tolerance_is_no_speeding() -> None:
     assert speeding(driven(at(11.0 + TOLERANCE_MPS, 10.0), limit_mps=11.0)) == ()
 
 
-def test_one_episode_however_long_is_one_infraction() -> None:
+def test_an_episode_that_gains_little_is_one_infraction() -> None:
     (found,) = speeding(driven([*at(10.0, 1.0), *at(13.0, 8.0)], limit_mps=11.0))
     assert found.tick == 20
     assert found.speed_mps == pytest.approx(13.0)
     assert found.detail == "up to 13.00 m/s where 11.00 m/s are posted, for 8.0 s"
+
+
+@pytest.mark.parametrize(
+    ("speed_mps", "seconds", "number"),
+    [(13.0, 16.0, 1), (13.0, 17.0, 2), (13.0, 33.0, 2), (13.0, 34.0, 3), (33.0, 1.4, 1), (33.0, 15.0, 10)],
+)
+def test_every_started_share_of_the_way_gained_is_an_infraction(speed_mps: float, seconds: float, number: int) -> None:
+    """A share is 33.45 m: 2 m/s above the limit gain it in 16.7 s, 22 m/s in 1.5 s."""
+    found = speeding(driven([*at(10.0, 1.0), *at(speed_mps, seconds)], limit_mps=11.0))
+    assert len(found) == number == math.ceil((speed_mps - 11.0) * seconds / SHARE_M)
+    assert [event.tick for event in found] == sorted({event.tick for event in found})
+
+
+def test_three_times_the_limit_throughout_leaves_no_score() -> None:
+    history = driven(at(33.0, 60.0), route=straight_route(2000.0))
+    assert score(history, Scoring()).infraction < 1e-3
 
 
 def test_swinging_about_the_tolerance_is_one_episode_until_the_limit_is_kept_again() -> None:

@@ -63,8 +63,14 @@ def test_a_sign_that_was_not_reached_is_not_judged() -> None:
     assert signs_passed(driven(at(5.0, 5.0), route=route)) == ()
 
 
-def test_a_sign_passed_far_beside_the_route_is_not_the_vehicles() -> None:
-    assert signs_passed(approach(49.0, lowest_mps=3.0, lateral_m=6.0)) == ()
+@pytest.mark.parametrize("lateral_m", [-3.5, 6.0])
+def test_a_line_is_passed_wherever_the_vehicle_goes_round_it_and_a_stop_beside_the_route_is_none(
+    lateral_m: float,
+) -> None:
+    history = approach(49.0, lateral_m=lateral_m)
+    history.frames["lane_id"] = 1
+    (passed,) = signs_passed(history)
+    assert not passed.stopped
 
 
 def test_the_sign_is_judged_in_the_frame_in_which_the_middle_crosses_the_line() -> None:

@@ -150,3 +150,27 @@ def test_standing_is_never_a_success_and_without_a_contact_never_a_failure(
     assert found.verdict is Verdict.NOT_EXERCISED
     assert found.assessment is not None
     assert found.assessment.completed.holds is False
+
+
+CREEPING_MPS, AT_2_CM = 0.4, 1.27  # the ego's speed; beside its middle: half widths of 1 m and 0.25 m, and 2 cm
+
+
+@pytest.mark.parametrize(
+    ("kind", "their_mps", "speed_mps", "near"),
+    [
+        pytest.param("walker.pedestrian.0010", 0.0, CREEPING_MPS, True, id="a child that stands"),
+        pytest.param("walker.pedestrian.0010", 0.8, CREEPING_MPS, True, id="a child that walks"),
+        pytest.param("vehicle.diamondback.century", 0.0, CREEPING_MPS, True, id="a cyclist that stands"),
+        pytest.param("vehicle.audi.tt", 0.8, CREEPING_MPS, True, id="a car that drives"),
+        pytest.param("vehicle.audi.tt", 0.0, CREEPING_MPS, False, id="a car that stands"),
+        pytest.param("vehicle.audi.tt", 0.0, 0.6, True, id="a car that stands, passed faster"),
+        pytest.param("walker.pedestrian.0010", 0.8, 0.0, False, id="a child that walks by an ego at rest"),
+    ],
+)
+def test_near_misses_count_by_the_speed_and_kind_of_the_other(
+    kind: str, their_mps: float, speed_mps: float, *, near: bool
+) -> None:
+    other = moving(1.0 if their_mps == 0.0 else 5.0, AT_2_CM, -their_mps, 0.0)
+    history = ride(6.0, eastward(lambda _: speed_mps, 7.0), others=[(9, other)], sizes={9: (0.25, 0.25)})
+    history = replace(history, facts=replace(history.facts, actor_types={9: kind}))
+    assert NoNearMiss().judge(played(history)).passed is not near

@@ -15,6 +15,7 @@ import numpy as np
 from basu.metrics.delays import BLOCKED_MPS, BLOCKED_S
 from basu.metrics.leaderboard.rules import Kind, Version
 from basu.metrics.stretches import stretches
+from basu.metrics.validity import LOST_M
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 ARRIVED_PERCENT, ARRIVED_M = 99.0, 10.0  # farther along than this, and this near to the end
-OFF_ROUTE_M, FAR_M, FAR_PERCENT = 30.0, 15.0, 30.0  # off the route at once; or far from it for too much of the route
+FAR_M, FAR_PERCENT = 15.0, 30.0  # far from the route for too much of it; `LOST_M` off it ends the drive at once
 GIVEN_S, GIVEN_SPM = 5.0, 0.8  # 1.0: time for a route of no length, and for each metre
 LEAST_S, SLOWEST_SHARE = 300.0, 0.1  # 2.x: time for a route of no length, and of the limit for each metre made
 
@@ -88,7 +89,7 @@ def _off_route(history: History) -> NDArray[np.bool_]:
     """(T,) too far from the route, or far from it for too much of its length."""
     away_m = np.abs(history.frames["lateral_m"])
     far_m = np.cumsum(np.where(away_m >= FAR_M, made_m(history), 0.0))
-    off: NDArray[np.bool_] = (away_m >= OFF_ROUTE_M) | (100.0 * far_m / history.facts.route.length_m > FAR_PERCENT)
+    off: NDArray[np.bool_] = (away_m >= LOST_M) | (100.0 * far_m / history.facts.route.length_m > FAR_PERCENT)
     return off
 
 

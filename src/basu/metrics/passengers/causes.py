@@ -17,6 +17,7 @@ import numpy as np
 from basu.metrics.boxes import distance_m, other_boxes
 from basu.metrics.passengers.felt import STEP_MPS2
 from basu.metrics.speeding import limits_mps
+from basu.metrics.validity import in_planned_lane
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -32,7 +33,6 @@ MARGIN_M = 0.3  # beside the vehicle
 SPACING_M = 0.5
 HORIZON_S, LOOK_S = 3.0, 0.25  # how far ahead others are moved on, and how finely
 SLACK_S = 2.0  # an actor at a place within this of the vehicle's own arrival is in its way
-OFF_ROUTE_M = 2.0  # beyond this the vehicle is taken to go straight on
 
 
 class InTheWay(NamedTuple):
@@ -46,7 +46,7 @@ class InTheWay(NamedTuple):
 def in_the_way(history: History, tick: int, reach_m: float) -> Iterator[InTheWay]:
     """All actors in the corridor within ``reach_m``, or about to be there, in the frame ``tick``."""
     facts, frame = history.facts, history.frames[tick]
-    path_m = _corridor(history, frame, reach_m)
+    path_m = _corridor(history, tick, reach_m)
     near = history.others[history.others["tick"] == frame["tick"]]
     speed_mps = max(0.5, math.hypot(frame["velocity_x_mps"], frame["velocity_y_mps"]))
     arrival_s = np.arange(len(path_m)) * SPACING_M / speed_mps
@@ -66,11 +66,14 @@ def in_the_way(history: History, tick: int, reach_m: float) -> Iterator[InTheWay
                 break
 
 
-def _corridor(history: History, frame: np.void, reach_m: float) -> NDArray[np.float64]:
-    """(K, 2) the middle of the way ahead of the front bumper: the route, as far beside it as the vehicle is."""
-    route, front_m = history.facts.route, history.facts.vehicle.front_m
+def _corridor(history: History, tick: int, reach_m: float) -> NDArray[np.float64]:
+    """(K, 2) the middle of the way ahead of the front bumper: the route, as far beside it as the vehicle is.
+
+    Off the planned lane the vehicle is taken to go straight on.
+    """
+    route, front_m, frame = history.facts.route, history.facts.vehicle.front_m, history.frames[tick]
     ahead_m = np.arange(0.0, reach_m + SPACING_M, SPACING_M)
-    if abs(float(frame["lateral_m"])) > OFF_ROUTE_M:
+    if not in_planned_lane(history)[tick]:
         yaw_rad, along_m = float(frame["yaw_rad"]), front_m + ahead_m
         heading = np.array([math.cos(yaw_rad), math.sin(yaw_rad)])
         straight: NDArray[np.float64] = np.array([frame["x_m"], frame["y_m"]]) + along_m[:, None] * heading

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics import path_following
+from basu.metrics.validity import validity
 from basu.outcome import Status
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.triggers.along_route import SLACK_M, SLACK_MPS
@@ -22,7 +23,7 @@ def arrival_tick(history: History) -> int | None:
 
 
 class Arrives(Criterion):
-    """The ego comes to the end of its route: within 2 m of it, or to rest within 5 m."""
+    """The ego drives its route to the end: within 2 m of it, or to rest within 5 m (`basu.metrics.validity`)."""
 
     aspect = Aspect.COMPLETED
     name = "arrives"
@@ -37,13 +38,25 @@ class Arrives(Criterion):
             sentence = f"it arrived after {took_s:.2f} s"
             return self.says(played, True, sentence, tick=tick, measured=length_m, unit="m", limit=limit)
         farthest = int(np.argmax(history.frames["route_s_m"]))
-        got_m = float(history.frames["route_s_m"][farthest])
-        sentence = f"it got to {got_m:.1f} m of {length_m:.1f} m: {played.outcome.message}"
+        got_m = validity(history).reached_m
+        sentence = f"it got to {got_m:.1f} m of {length_m:.1f} m{_off_route(history)}: {played.outcome.message}"
         return self.says(played, False, sentence, tick=farthest, measured=got_m, unit="m", limit=limit)
 
 
+def _off_route(history: History) -> str:
+    """How the ego left its route for good, in words; empty where it did not."""
+    found = validity(history)
+    if found.gaps:
+        gap = found.gaps[0]
+        at_s = float(history.frames["t_s"][gap.tick])
+        return f", left its route there and was back at {gap.to_s_m:.1f} m, at {at_s:.2f} s"
+    if len(found.valid) and not found.valid[-1]:
+        return f", and was {found.checks[-1].sentence} at the end"
+    return ""
+
+
 class Reaches(Criterion):
-    """The ego's origin passes a place along its route, ``s_m`` from the route's beginning."""
+    """The ego's origin drives along its route to a place, ``s_m`` from the route's beginning."""
 
     aspect = Aspect.COMPLETED
 
@@ -54,15 +67,17 @@ class Reaches(Criterion):
 
     def judge(self, played: Played) -> Judgement:
         """The figure is how far it got along its route."""
-        frames = played.history.frames
-        beyond = frames["route_s_m"] >= self.s_m
+        frames, found = played.history.frames, validity(played.history)
+        beyond = (frames["route_s_m"] >= self.s_m) & found.valid & found.unbroken
         tick = int(np.argmax(beyond)) if beyond.any() else int(np.argmax(frames["route_s_m"]))
-        got_m, t_s = float(frames["route_s_m"][tick]), float(frames["t_s"][tick])
+        got_m = float(frames["route_s_m"][tick]) if beyond.any() else found.reached_m
+        t_s = float(frames["t_s"][tick])
         reached = bool(beyond.any())
         sentence = (
             f"it was at {self.what} at {t_s:.2f} s"
             if reached
-            else f"it got to {got_m:.1f} m of its route, {self.s_m - got_m:.1f} m short of {self.what}"
+            else f"it got to {got_m:.1f} m of its route{_off_route(played.history)}, "
+            f"{self.s_m - got_m:.1f} m short of {self.what}"
         )
         return self.says(
             played, reached, sentence, tick=tick, measured=got_m, unit="m", limit=f"at least {self.s_m:.1f} m"

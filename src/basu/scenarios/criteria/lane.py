@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.stretches import stretches
+from basu.metrics.validity import BEYOND_M, beyond_edge_m
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ class KeepsLane(Criterion):
 
     def __init__(
         self,
-        tolerance_m: float = 0.5,
+        tolerance_m: float = BEYOND_M,
         *,
         passing: bool = False,
         since: str | None = None,
@@ -144,10 +145,6 @@ def _off_direction_rad(history: History) -> NDArray[np.float64]:
 
 def _beyond_m(history: History) -> NDArray[np.float64]:
     """(T,) how far the ego's middle was beyond the edge of the planned lane or of the road, whichever is more."""
-    route, frames = history.facts.route, history.frames
-    index = np.clip(np.searchsorted(route.s_m, frames["route_s_m"], side="right") - 1, 0, None)
-    beside_m = np.abs(frames["lateral_m"]) - route.lane_width_m[index] / 2.0
-    beyond_m: NDArray[np.float64] = np.maximum(
-        beside_m, np.where(frames["off_lane_m"] > 0.0, frames["off_lane_m"], -np.inf)
-    )
+    off_lane_m = history.frames["off_lane_m"]
+    beyond_m: NDArray[np.float64] = np.maximum(beyond_edge_m(history), np.where(off_lane_m > 0.0, off_lane_m, -np.inf))
     return beyond_m

@@ -8,7 +8,7 @@ import numpy as np
 
 from basu.metrics.red_lights import lights_passed, red_lights
 from basu.metrics.scoring import TOLERANCE_MPS
-from basu.metrics.speeding import LEAST_S, episodes, limits_mps
+from basu.metrics.speeding import episodes, limits_mps
 from basu.metrics.stop_signs import signs_passed, stop_signs
 from basu.scenarios.criteria.criterion import Aspect, Criterion, Judgement, Played
 
@@ -117,9 +117,8 @@ class KeepsSpeed(Criterion):
             return self.says(played, None, "no limit was posted anywhere on its way", unit="m/s")
         excess_mps = speed_mps - limits
         found = [
-            (first + begin, first + end)
-            for begin, end in episodes(speed_mps[first:], limits[first:], self.tolerance_mps)
-            if (end - begin) * history.facts.step_s >= LEAST_S
+            (first + pieces[0].first, first + pieces[-1].end)
+            for pieces in episodes(speed_mps[first:], limits[first:], self.tolerance_mps, history.facts.step_s)
         ]
         begin, end = max(found, key=lambda span: excess_mps[span[0] : span[1]].max(), default=(first, len(speed_mps)))
         fastest = begin + int(np.argmax(excess_mps[begin:end]))

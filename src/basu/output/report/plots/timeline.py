@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.metrics.path_following import near_stop
+from basu.metrics.path_following import serving
 from basu.output.report import events
 from basu.output.report.plots.chart import share, times
 from basu.output.report.plots.signals import STANDING_MPS, stretches
@@ -87,7 +87,7 @@ def _services(history: History, felt: Signals) -> list[Span]:
     found = []
     standing = felt.speed_mps < STANDING_MPS
     for stop in history.facts.route.stops:
-        here = standing & near_stop(history, stop.s_m)
+        here = standing & serving(history, stop.s_m)
         found += [
             Span(*s, "service", stop.id, _lasted(f"{stop.id}, {stop.name}", *s)) for s in stretches(here, felt.t_s)
         ]
