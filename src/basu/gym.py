@@ -15,10 +15,10 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
   less ours, velocity x, y. Rows of zeros where there are fewer.
 
 The values are clipped to the boxes' bounds. Reward: see ``Reward``. ``terminated`` on arrival, on leaving the route, on
-standing still for too long, and at a scenario's end; ``truncated`` when the simulated time is used up. ``info`` has
-``route_s_m``, ``infractions`` (new ones, reported and rewarded at every tenth and the last step), ``reward_parts`` (the
-reward of the step by the names of ``Reward``'s fields), and at the end ``outcome``, ``message``,
-and ``passed`` with its ``reasons`` (`basu.metrics.success`).
+standing still for too long, and at a scenario's end. It is ``truncated`` when the simulated time is used up. The
+``info`` has ``route_s_m`` and ``infractions``: new ones, reported and rewarded at every tenth and the last step. Its
+``reward_parts`` are the reward of the step by the names of ``Reward``'s fields. At the end it has ``outcome``,
+``message``, and ``passed`` with its ``reasons`` (`basu.metrics.success`).
 """
 
 from __future__ import annotations

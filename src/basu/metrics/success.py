@@ -1,13 +1,19 @@
 """The one rule of success: from a run's outcome and its record to passed or not, with the reasons in words.
 
-As nuPlan multiplies its scores, one of these alone decides against a drive: a collision at fault, a red light run, a
-stop sign missed, speeding, the wrong way, leaving the road, a failed scenario of its route, and a route not driven to
-its end. What went wrong on the road stays a failure, whatever ends the run afterwards. A run that something other than
-the agent ended without that says nothing of the agent, and is neither passed nor failed.
+Each of these alone decides against a drive, as nuPlan multiplies its scores:
 
-Routes, campaigns, gymnasium, console, report and comparison ask `success`; all but the record are the judgement's own
-findings. A case's verdict already holds safe, completed and exercised (`basu.scenarios.verdict`); `success_of_verdict`
-reads it in the same three words. A scenario that was not exercised counts for neither side.
+- a collision at fault
+- a red light run, a stop sign missed, or speeding
+- the wrong way, or a stretch off the road
+- a failed scenario of its route
+- a route not driven to its end
+
+What went wrong on the road stays a failure, whatever ends the run afterwards. A run that something other than the
+agent ended without that is neither passed nor failed.
+
+Routes, campaigns, gymnasium, console, report and comparison ask `success`. The verdict of a case already holds safe,
+completed and exercised (`basu.scenarios.verdict`); `success_of_verdict` reads it in the same words. A scenario that
+was not exercised counts for neither side.
 """
 
 from __future__ import annotations
