@@ -11,7 +11,8 @@ common``), with ``is_agent_behind`` of ``planning/simulation/observation/idm/uti
     the ego's front bumper meets the other                    at fault
     otherwise the ego's side meets the other                  at fault where the ego is not within one lane
 
-Two clauses are by the rules of the road and not nuPlan's: those on reversing and on head-on vehicles. The ego is in its own lane where its whole box lies within one and points along it.
+Two clauses are by the rules of the road and not nuPlan's: those on reversing and on head-on vehicles.
+The ego is in its own lane where its whole box lies within one and points along it.
 
 nuPlan's bodies pass through one another, and it looks at the first frame of overlap. Here a contact changes both
 speeds, so speeds and headings are those of the frame before the contact. nuPlan calls an ego stopped at 0.05 m/s and
