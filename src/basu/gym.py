@@ -15,9 +15,10 @@ Observation, a ``Dict`` of float32 boxes in the vehicle's frame (x forward, y to
   less ours, velocity x, y. Rows of zeros where there are fewer.
 
 The values are clipped to the boxes' bounds. Reward: see ``Reward``. ``terminated`` on arrival, on leaving the route, on
-standing still for too long, and at a scenario's end; ``truncated`` when the simulated time is used up. ``info`` has
-``route_s_m``, ``infractions`` (new ones, reported and rewarded at every tenth and the last step), ``reward_parts`` (the
-reward of the step by the names of ``Reward``'s fields), and at the end ``outcome`` and ``message``.
+standing still for too long, and at a scenario's end. It is ``truncated`` when the simulated time is used up. The
+``info`` has ``route_s_m`` and ``infractions``: new ones, reported and rewarded at every tenth and the last step. Its
+``reward_parts`` are the reward of the step by the names of ``Reward``'s fields. At the end it has ``outcome``,
+``message``, and ``passed`` with its ``reasons`` (`basu.metrics.success`).
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ from basu.episode import Episode, EpisodeSpec, Towns, case_spec
 from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
+from basu.managers.scenario_results import results_of
+from basu.metrics.success import success, success_of_verdict
 from basu.options.conditions import STEP_S, Traffic
 from basu.options.run import RunOptions
 from basu.outcome import Status
@@ -48,6 +51,8 @@ except ImportError as error:
     raise UserError("basu.gym needs gymnasium; install it with `pip install linden[gym]`") from error
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import numpy as np
     from numpy.typing import NDArray
 
@@ -165,10 +170,20 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         self._driven_m = seen.driven_m
         info: dict[str, Any] = {"route_s_m": seen.progress.s_m, "infractions": new, "reward_parts": parts}
         if outcome is not None:
-            info |= {"outcome": outcome.status.value, "message": outcome.message}
+            info |= {"outcome": outcome.status.value, "message": outcome.message, **self._success(outcome, found)}
         truncated = outcome is not None and outcome.status in TRUNCATED
         terminated = outcome is not None and not truncated
         return self._preview.of(seen), sum(parts.values()), terminated, truncated, info
+
+    def _success(self, outcome: Outcome, found: Sequence[Evidence]) -> dict[str, Any]:
+        """Return whether the episode passed, by the rule of all runs, with the reasons."""
+        history, playing = self.episode.metrics.history(), self.episode.playing
+        if self._spec.is_case:
+            judged = playing[0].judged(history, outcome)
+            said = success_of_verdict(judged.verdict.value, judged.message)
+        else:
+            said = success(outcome, history, found, results_of(playing, history, outcome))
+        return said._asdict()
 
     def _parts(self, driven_m: float, infractions: int, outcome: Outcome | None) -> dict[str, float]:
         """Return the parts of a step's reward, by the names of `Reward`'s fields."""

@@ -44,6 +44,7 @@ VERDICT = {
     "fault": pa.string(),
     "judged": pa.bool_(),  # whether the drive says something of the agent
     "success": pa.bool_(),  # null where it is not judged
+    "not_exercised": pa.int64(),  # scenarios without their conflict; they count for neither side
     "message": pa.string(),
     "severity": pa.float64(),  # 0 (good) to 1 (bad), for a ranking
 }

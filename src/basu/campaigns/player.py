@@ -25,15 +25,15 @@ from basu.errors import AgentError, SimulatorError, UserError
 from basu.jobs.job import After, Played, PlayerSpec, versions
 from basu.metrics.registry import user_metrics
 from basu.metrics.result import judge
+from basu.metrics.success import not_exercised, success, success_of_verdict
 from basu.options.conditions import STEP_S
 from basu.options.run import RunOptions
-from basu.outcome import Fault, Outcome, Status
+from basu.outcome import Outcome, Status
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import new_agents, prepare
 from basu.running.scenario_runs.one_case import CaseSession, play_case
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.scenarios.cases import open_library
-from basu.scenarios.verdict import Verdict
 from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
@@ -47,7 +47,6 @@ if TYPE_CHECKING:
     from basu.scenarios.cases import Library
     from basu.simulator import Simulator
 
-JUDGED = frozenset(Fault) - {Fault.SETUP, Fault.SIMULATOR, Fault.BENCHMARK, Fault.USER}  # the rest says nothing of it
 AGAIN = frozenset({Status.SIMULATOR_FAILED})  # tried again elsewhere
 
 
@@ -189,15 +188,11 @@ class _Player:
         except (UserError, AgentError, SimulatorError) as error:
             return self._not_begun(error)
         result = done.result
-        contacts = result.metrics.get("collisions") or {"at_fault": 0}
-        success = None
-        if contacts["at_fault"] > 0:  # no fault that follows takes it back
-            success = False
-        elif done.outcome.status.fault in JUDGED:
-            success = done.outcome.status is Status.COMPLETED
         row = {
-            **_verdict(success, 1.0 if result.scores is None else 1.0 - result.scores.driving),
+            **_verdict(result.success.passed, 1.0 if result.scores is None else 1.0 - result.scores.driving),
             **metric_values(result, self._own),
+            "message": "; ".join(result.success.reasons) or done.outcome.message,
+            "not_exercised": not_exercised(result.scenarios),
             "simulated_s": float(result.meta["simulated_s"]),
         }
         return _Driven(done.outcome, row, done.draft)
@@ -227,15 +222,15 @@ class _Player:
         (playable,) = self._library.of_id(job["identity"])
         done = play_case(session, self._agents[job["agent"]], playable, self._scratch)
         document = done.document
-        verdict = Verdict(document["verdict"])
-        success = verdict is Verdict.SUCCESS if verdict.counts else None
+        found = success_of_verdict(document["verdict"], document["message"])
         result = judge(done.outcome, done.history, settings.scoring, own=self._own)
         ticks = 0 if done.history is None else len(done.history.frames)
         row = {
-            **_verdict(success, _narrowness(document["margins"])),
+            **_verdict(found.passed, _narrowness(document["margins"])),
             **metric_values(result, self._own),
             "fault": document["fault"],
             "message": document["message"],
+            "not_exercised": not_exercised([document]),
             **{f"margin_{name}": value for name, value in document["margins"].items()},
             "simulated_s": round(ticks * STEP_S, 3),
         }
@@ -250,8 +245,8 @@ class _Player:
             outcome = Outcome(Status.SIMULATOR_FAILED, gone or str(error))
         else:
             outcome = Outcome(STATUS_OF[type(error)], str(error))
-        success = False if outcome.status.fault is Fault.AGENT else None
-        return _Driven(outcome, {**_verdict(success, 1.0), "simulated_s": 0.0}, None)
+        found = success(outcome, None, ())
+        return _Driven(outcome, {**_verdict(found.passed, 1.0), "simulated_s": 0.0}, None)
 
 
 def _verdict(success: bool | None, severity: float) -> dict[str, Any]:  # noqa: FBT001 - a value, not a switch

@@ -28,6 +28,7 @@ def status(folder: Path) -> str:
         counts[row["agent"], "judged"] += bool(row["judged"])
         counts[row["agent"], "success"] += bool(row["success"])
         counts[row["agent"], row["fault"]] += 1
+        counts[row["agent"], "not exercised"] += row.get("not_exercised") or 0
     planned = document["planned"]
     width = max(8, *(len(agent) for agent in document["agents"]))
     lines = [f"campaign  {document['name']}", f"state     {_state(folder, len(rows), planned)}"]
@@ -38,19 +39,20 @@ def status(folder: Path) -> str:
         rate = f"{100.0 * known.value:.1f} % success ({100.0 * known.low:.1f} to {100.0 * known.high:.1f})"
         said = rate if counts[agent, "judged"] else "nothing judged yet"
         faults = f", {broken} with a fault that is not the agent's" if broken else ""
-        lines.append(f"{agent:<{width}}  {counts[agent, 'all']} drives, {said}{faults}")
+        absent = f", {counts[agent, 'not exercised']} not exercised"
+        lines.append(f"{agent:<{width}}  {counts[agent, 'all']} drives, {said}{absent}{faults}")
     return "\n".join(lines)
 
 
 def _rows(folder: Path) -> dict[int, dict[str, Any]]:
     """The rows by number, as far as they are written."""
-    columns = ["number", "agent", "judged", "success", "fault"]
+    columns = ["number", "agent", "judged", "success", "fault", "not_exercised"]
     rows: dict[int, dict[str, Any]] = {}
     if any((folder / DRIVES).glob("*/block-*.parquet")):
         for batch in open_drives(folder).to_batches(columns=columns):
             rows |= {row["number"]: row for row in batch.to_pylist()}
     for row in journal_rows(folder):
-        rows[row["number"]] = {name: row[name] for name in columns}
+        rows[row["number"]] = {name: row.get(name) for name in columns}
     return rows
 
 

@@ -5,9 +5,14 @@ common``), with ``is_agent_behind`` of ``planning/simulation/observation/idm/uti
 
     the ego stands                                            not at fault
     the other stands, or is a thing                           at fault
+    the ego reverses, and the other is behind it              at fault
     the other's middle lies behind the ego's rear axle        not at fault
+    the other comes head-on into the ego's own lane           not at fault
     the ego's front bumper meets the other                    at fault
     otherwise the ego's side meets the other                  at fault where the ego is not within one lane
+
+Two clauses are by the rules of the road and not nuPlan's: those on reversing and on head-on vehicles.
+The ego is in its own lane where its whole box lies within one and points along it.
 
 nuPlan's bodies pass through one another, and it looks at the first frame of overlap. Here a contact changes both
 speeds, so speeds and headings are those of the frame before the contact. nuPlan calls an ego stopped at 0.05 m/s and
@@ -92,6 +97,8 @@ def _contact(history: History, event: Collision) -> Evidence:
 
 STOPPED_MPS = 0.05
 BEHIND_RAD = math.radians(150.0)  # between the ego's heading and the direction to the other's middle
+HEAD_ON_RAD = math.radians(150.0)  # between the two courses; a vehicle that crosses or turns comes at less
+AGAINST_RAD = math.radians(90.0)  # between the ego's heading and its lane's
 BUMPER_M = 0.25  # a box this near to the front bumper meets it: in a step of 0.05 s, 5 m/s go as far
 
 
@@ -118,9 +125,26 @@ def responsibility(history: History, event: Collision) -> Responsibility:
     if other is None or other_mps <= STOPPED_MPS:
         return _at_fault(CollisionKind.STOPPED_OTHER, f"the ego drove at {speed_mps:.2f} m/s into what stood still")
     if _is_behind(history, before, other):
+        if _along_mps(history, before) < -STOPPED_MPS:
+            return _at_fault(CollisionKind.REAR, f"the ego reversed at {speed_mps:.2f} m/s into the other behind it")
         return _not_at_fault(CollisionKind.REAR, f"the ego was struck from behind at {other_mps:.2f} m/s")
     if _meets_front(history, event):
-        return _at_fault(CollisionKind.FRONT, f"the ego's front met the other at {speed_mps:.2f} m/s")
+        return _of_front(history, before, other)
+    return _of_side(history, before)
+
+
+def _of_front(history: History, before: int, other: np.void) -> Responsibility:
+    """The responsibility where the ego's front met what moved."""
+    if _is_oncoming(history, before, other):
+        other_mps = math.hypot(other["velocity_x_mps"], other["velocity_y_mps"])
+        words = f"the other came head-on at {other_mps:.2f} m/s while the ego was within its lane"
+        return _not_at_fault(CollisionKind.FRONT, words)
+    speed_mps = float(history.speed_mps()[before])
+    return _at_fault(CollisionKind.FRONT, f"the ego's front met the other at {speed_mps:.2f} m/s")
+
+
+def _of_side(history: History, before: int) -> Responsibility:
+    """The responsibility where the ego's side met what moved."""
     if not within_one_lane(history, before):
         return _at_fault(CollisionKind.LATERAL, "the ego's side met the other while the ego was not within one lane")
     return _not_at_fault(CollisionKind.LATERAL, "the ego's side was struck while the ego was within its lane")
@@ -170,6 +194,26 @@ def _is_behind(history: History, tick: int, other: np.void) -> bool:
     dy_m = float(other["y_m"]) - float(frame["y_m"]) - axle_m * math.sin(yaw_rad)
     turned_rad = math.atan2(dy_m, dx_m) - yaw_rad
     return abs(math.atan2(math.sin(turned_rad), math.cos(turned_rad))) > BEHIND_RAD
+
+
+def _along_mps(history: History, tick: int) -> float:
+    """The ego's speed along its heading, below 0 in reverse."""
+    frame = history.frames[tick]
+    yaw_rad = float(frame["yaw_rad"])
+    return float(frame["velocity_x_mps"] * math.cos(yaw_rad) + frame["velocity_y_mps"] * math.sin(yaw_rad))
+
+
+def _is_oncoming(history: History, tick: int, other: np.void) -> bool:
+    """Whether a vehicle moves against the ego's heading while the ego keeps forward within its own lane."""
+    frame = history.frames[tick]
+    if not history.facts.actor_types.get(int(other["id"]), "").startswith("vehicle."):
+        return False
+    if not within_one_lane(history, tick) or _along_mps(history, tick) <= 0.0:
+        return False
+    if not frame["in_junction"] and math.cos(float(frame["lane_heading_rad"])) < math.cos(AGAINST_RAD):
+        return False  # it is the ego that drives in the lane of the oncoming
+    course_rad = math.atan2(float(other["velocity_y_mps"]), float(other["velocity_x_mps"]))
+    return math.cos(course_rad - float(frame["yaw_rad"])) < math.cos(HEAD_ON_RAD)
 
 
 def _meets_front(history: History, event: Collision) -> bool:

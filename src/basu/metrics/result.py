@@ -32,6 +32,7 @@ from basu.metrics.path_following import path_following
 from basu.metrics.registry import Drive, Metric, built_in
 from basu.metrics.score import Scores, driving_score, in_order, infraction_score
 from basu.metrics.scoring import Scoring, scoring_to_json
+from basu.metrics.success import NOT_JUDGED, Success, success
 from basu.outcome import Outcome, Status
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
 
 
 SCHEMA_VERSION = 3
+LATER = frozenset({"scenarios", "passed", "reasons"})  # absent where there is nothing, or from an earlier version
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -65,6 +67,7 @@ class Result:
         scoring: the rules as plain values, as ``result.json`` has them.
         meta: what was run.
         scenarios: those on the way of the route.
+        success: passed or not, by the one rule; a document that an earlier version wrote is not judged.
         history: the record; None where nothing was driven, and in a result read from its document.
     """
 
@@ -76,12 +79,18 @@ class Result:
     scoring: Mapping[str, Any]
     meta: Mapping[str, Any]
     scenarios: tuple[Mapping[str, Any], ...] = ()
+    success: Success = NOT_JUDGED
     history: History | None = field(default=None, compare=False, repr=False)
 
     @property
     def is_comparable(self) -> bool:
         """Whether the score can be compared with others': no failure ended the run, and the agent passed the gate."""
-        return self.outcome.status in COMPARABLE and not self.is_open
+        return not self.is_broken_off and not self.is_open
+
+    @property
+    def is_broken_off(self) -> bool:
+        """Whether a failure ended the run, so that its score stands for a part of the drive."""
+        return self.outcome.status not in COMPARABLE
 
     @property
     def is_open(self) -> bool:
@@ -112,6 +121,8 @@ class Result:
             "status": self.outcome.status.value,
             "fault": self.outcome.status.fault.name.lower(),
             "message": self.outcome.message,
+            "passed": self.success.passed,
+            "reasons": list(self.success.reasons),
             "scores": None if self.scores is None else self.scores._asdict(),
             "infractions": [row_of(found) for found in self.infractions],
             **{metric.name: self.metrics.get(metric.name, metric.nothing) for metric in built_in()},
@@ -137,6 +148,7 @@ class Result:
             scoring=document["scoring"],
             meta=document["meta"],
             scenarios=tuple(document.get("scenarios", ())),
+            success=Success(document.get("passed"), tuple(document.get("reasons", ()))),
         )
 
 
@@ -174,6 +186,7 @@ def judge(
         meta=meta or {},
         scenarios=tuple(scenarios),
         own={metric.name: _own(metric, metric.nothing, ()) for metric in own},
+        success=success(outcome, None, (), scenarios),
     )
     if history is None or len(history.frames) == 0:
         return empty
@@ -192,6 +205,7 @@ def judge(
         infractions=tuple(replace(each, responsibility=blame.get(each)) for each in in_order(scored)),
         metrics={metric.name: metric.compute(drive) for metric in built_in()},
         own={metric.name: _own(metric, metric.compute(drive), found[metric.name]) for metric in own},
+        success=success(outcome, history, scored, scenarios),
         history=history,
     )
 
@@ -257,14 +271,17 @@ def result_schema() -> dict[str, Any]:
     properties = {
         "schema_version": {"const": SCHEMA_VERSION},
         "status": choice([status.value for status in Status]),
-        **{name: around[name] for name in ("fault", "message", "scores", "infractions")},
+        **{name: around[name] for name in ("fault", "message")},
+        "passed": {"type": ["boolean", "null"], "description": "by the one rule of success; null says nothing of it"},
+        "reasons": listing(text(), "why it did not pass, in sentences"),
+        **{name: around[name] for name in ("scores", "infractions")},
         **{metric.name: {**metric.schema, "title": metric.title} for metric in built_in()},
         "metrics": mapping(own, about="users' metrics by name"),
         **{name: around[name] for name in ("scoring", "scenarios", "meta")},
     }
     return {
         **{key: value for key, value in frame.items() if key != "additionalProperties"},
-        "required": [name for name in properties if name != "scenarios"],
+        "required": [name for name in properties if name not in LATER],
         "additionalProperties": False,
         "properties": properties,
         "$defs": definitions,

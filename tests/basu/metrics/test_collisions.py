@@ -112,6 +112,26 @@ def test_the_own_front_is_at_fault() -> None:
     assert kind_and_fault(struck(5.0, (4.1, 0.0, 2.0, 0.0))) == (CollisionKind.FRONT, True)
 
 
+def test_an_oncoming_car_is_at_fault_for_the_ego_in_its_lane() -> None:
+    """NuPlan's front clause gives this to the ego."""
+    oncoming = (4.1, 0.0, -8.0, 0.0)
+    assert kind_and_fault(struck(5.0, oncoming)) == (CollisionKind.FRONT, False)
+    assert kind_and_fault(struck(5.0, oncoming, lane_offset_m=-1.5)) == (CollisionKind.FRONT, True)
+    assert kind_and_fault(struck(5.0, oncoming, heading_rad=math.pi)) == (CollisionKind.FRONT, True)
+    assert kind_and_fault(struck(5.0, (4.0, 0.0, -1.0, -1.5))) == (CollisionKind.FRONT, True)
+
+
+def test_a_walker_towards_the_ego_is_no_oncoming_car() -> None:
+    history = struck(5.0, (4.1, 0.0, -1.0, 0.0))
+    walker = replace(history, facts=replace(history.facts, actor_types={9: "walker.pedestrian.0001"}))
+    assert kind_and_fault(walker) == (CollisionKind.FRONT, True)
+
+
+def test_to_reverse_into_what_walks_away_is_at_fault() -> None:
+    """NuPlan takes it for a rear-end by the other."""
+    assert kind_and_fault(struck(-2.0, (-4.1, 0.3, -1.0, 0.0))) == (CollisionKind.REAR, True)
+
+
 def test_the_side_is_at_fault_only_outside_of_one_lane() -> None:
     beside = (-0.5, 2.0, 5.0, -0.5)
     assert kind_and_fault(struck(5.0, beside)) == (CollisionKind.LATERAL, False)

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from basu.files import write_bytes
 from basu.metrics.registry import Column, built_in
-from basu.output.report.console import NOT_COMPARABLE, written
+from basu.output.report.console import score_cell, written
 from basu.output.report.streets import bounds_of, union
 from basu.output.report.templates import DASH, figure
 from basu.output.report.templates import figure as figure_text
@@ -69,14 +69,14 @@ def rows(runs: Sequence[RunRecord]) -> list[Row]:
 def row(agent: str, result: Result) -> Row:
     """The row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
     scores = result.scores._asdict() if result.scores is not None else {}
-    driving = f"{figure(scores.get('driving'))}{'' if result.is_comparable else f' {NOT_COMPARABLE}'}"
     columns = [
         Column("agent", agent),
-        Column("driving score", driving),
+        Column("driving score", score_cell(result)),
         Column("infraction score", figure(scores.get("infraction"))),
         Column("path following", figure(scores.get("path_following"))),
         *(column for metric in built_in() for column in metric.columns(result)),
         *(Column(own.title, written(own.value, own.unit, own.digits)) for own in result.own.values()),
+        Column("result", result.success.word),
         Column("ended", result.outcome.status.value),
     ]
     return Row(agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns))
@@ -98,6 +98,13 @@ def text(found: Sequence[Row]) -> str:
     return "\n".join([*rows_written[:2], "-" * (sum(widths) + 2 * (len(widths) - 1)), *rows_written[2:]])
 
 
+def reasons(runs: Sequence[RunRecord]) -> list[str]:
+    """Why each run that did not pass did not, a sentence for each run."""
+    names = [each.agent for each in rows(runs)]
+    asked = [run.result.success for run in runs]
+    return [f"{name} {said.sentence}" for name, said in zip(names, asked, strict=True) if not said.passed]
+
+
 def remarks(runs: Sequence[RunRecord]) -> list[str]:
     """What has to be said before these runs are compared: other routes, other rules."""
     found = []
@@ -108,7 +115,7 @@ def remarks(runs: Sequence[RunRecord]) -> list[str]:
             f"These runs are on different routes{named}: each map shows its own, and their scores do not answer which "
             "agent drives better."
         )
-    ended = [f"{run.agent} ({run.result.outcome.status.value})" for run in runs if not run.result.is_comparable]
+    ended = [f"{run.agent} ({run.result.outcome.status.value})" for run in runs if run.result.is_broken_off]
     if ended:
         found.append(f"These runs were ended by a failure, and their scores are not comparable: {', '.join(ended)}.")
     found += _conditions(runs)

@@ -11,7 +11,7 @@ import numpy as np
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report import events
-from basu.output.report.comparison import draw, heads, histories, remarks, rows, shared_bounds, text
+from basu.output.report.comparison import draw, heads, histories, reasons, remarks, rows, shared_bounds, text
 from basu.output.report.documents import read_run
 from basu.output.report.html.page import REPORT_FILE, legend, page
 from basu.output.report.plots.chart import Line, chart
@@ -39,7 +39,7 @@ def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path,
     body = render(
         "templates/comparison.j2",
         agents=[row.agent for row in compared],
-        remarks=remarks(runs),
+        remarks=[*reasons(runs), *remarks(runs)],
         heads=named,
         rows=[
             (_address(path, beside) if path.exists() else None, [row.cell(head) for head in named])
@@ -128,4 +128,4 @@ def compared(folders: Sequence[Path]) -> str:
 
 
 def _table(runs: Sequence[RunRecord]) -> str:
-    return "\n".join([text(rows(runs)), *remarks(runs)])
+    return "\n".join([text(rows(runs)), *reasons(runs), *remarks(runs)])

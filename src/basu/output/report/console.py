@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.registry import NAME_WIDTH, built_in, shown
+from basu.metrics.success import not_exercised
 from basu.output.report.scenarios.tally import LOOKS
 
 if TYPE_CHECKING:
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
 
 SCORES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
 NOT_COMPARABLE = "NOT COMPARABLE"
+NOT_COMPLETED = "not completed"
+BY_HAND = "driven by hand"
 
 
 def table(result: Result) -> str:
@@ -23,23 +26,62 @@ def table(result: Result) -> str:
     lines = [f"{result.outcome.status.value}: {result.outcome.message}"]
     if result.scores is None:
         return "\n".join([*lines, "nothing was driven, so there is no score"])
-    return "\n".join([*lines, *score_lines(result), *judgement(result), *met([dict(row) for row in result.scenarios])])
+    return "\n".join(
+        [
+            *lines,
+            *success_lines(result),
+            *score_lines(result),
+            *judgement(result),
+            *met([dict(row) for row in result.scenarios]),
+        ]
+    )
+
+
+def success_lines(result: Result) -> list[str]:
+    """Passed or failed, and a line for each further reason."""
+    word, reasons = result.success.word, result.success.reasons
+    first = f"{word}: {reasons[0]}" if reasons else word
+    return [f"{'result':<{NAME_WIDTH}}{first}", *(f"{'':<{NAME_WIDTH}}{reason}" for reason in reasons[1:])]
+
+
+def score_cell(result: Result) -> str:
+    """The driving score as a table shows it: a run that a failure ended has none, and the thesis's figure behind it."""
+    if result.scores is None:
+        return f"{NOT_COMPLETED} (nothing was driven)"
+    figure = f"{result.scores.driving:.3f}"
+    by_hand = f", {BY_HAND}" if is_by_hand(result) else ""
+    if result.is_comparable:
+        return f"{figure}{by_hand}"
+    if not result.is_broken_off:
+        return f"{figure}{by_hand} {NOT_COMPARABLE}"
+    return f"{NOT_COMPLETED} (the thesis's figure: {figure}{by_hand}; {NOT_COMPARABLE})"
+
+
+def is_by_hand(result: Result) -> bool:
+    """Whether a person drove a part of the way."""
+    return bool((result.metrics.get("disengagements") or {}).get("manual_m"))
 
 
 def score_lines(result: Result) -> list[str]:
-    """The thesis's scores; those of a run that a failure ended are marked."""
+    """The thesis's scores; a run that a failure ended says so in the place of its score, the figure behind it."""
     assert result.scores is not None, "the caller asks"
-    mark = "" if result.is_comparable else f"  {NOT_COMPARABLE}: {_reason(result)}"
-    scores = result.scores._asdict()
-    rows = [f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()]
-    return [*rows, *_access(result)]
+    scores, mark = result.scores._asdict(), f"  {BY_HAND}" if is_by_hand(result) else ""
+    lines = [
+        f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()
+    ]
+    if not result.is_comparable:
+        ended = f"{NOT_COMPARABLE}: {_reason(result)}"
+        figure = f"{NOT_COMPLETED}; the thesis's figure {scores['driving']:.3f}" if result.is_broken_off else lines[0]
+        name = f"{SCORES['driving']:<{NAME_WIDTH}}" if result.is_broken_off else ""
+        lines[0] = f"{name}{figure}{mark if result.is_broken_off else ''}  {ended}"
+    return [*lines, *_access(result)]
 
 
 def _reason(result: Result) -> str:
-    """Why a score cannot be compared with others."""
-    if result.is_open:
-        return "no gate stood between the agent and the simulator"
-    return f"the run ended as {result.outcome.status.value}"
+    """Return the reason why a score cannot be compared with others."""
+    if result.is_broken_off:
+        return f"the run ended as {result.outcome.status.value}"
+    return "no gate stood between the agent and the simulator"
 
 
 def _access(result: Result) -> list[str]:
@@ -99,7 +141,9 @@ def met(scenarios: Sequence[dict[str, Any]]) -> list[str]:
     reached = [row for row in scenarios if row["reached"]]
     passed = sum(row["verdict"] == "SUCCESS" for row in scenarios)
     judged = sum(row["verdict"] is not None and LOOKS[row["verdict"]].is_judged for row in scenarios)
-    lines = [f"scenarios         {passed} of {judged} passed; {len(reached)} of {len(scenarios)} reached"]
+    absent = not_exercised(scenarios)
+    counted = f"{passed} of {judged} passed, {absent} not exercised; {len(reached)} of {len(scenarios)} reached"
+    lines = [f"scenarios         {counted}"]
     return [*lines, *(_line(row) for row in scenarios)]
 
 

@@ -8,7 +8,7 @@ from PIL import Image
 from playwright.sync_api import Browser
 
 from basu.cli import main
-from basu.output.report.comparison import remarks, rows, text
+from basu.output.report.comparison import reasons, remarks, rows, text
 from fakes.drives import at, driven, straight_route
 from fakes.run_records import crashing, record, written
 
@@ -28,7 +28,7 @@ def test_one_agent_twice_are_distinguished() -> None:
 
 def test_a_run_without_a_score_has_dashes() -> None:
     line = text(rows([record(None), record(crashing())])).splitlines()[3]
-    assert line.split().count("\u2013") == 5
+    assert line.split().count("\u2013") == 4  # "not completed" stands in the place of the driving score
     assert line.endswith("SetupFailed")
 
 
@@ -126,3 +126,9 @@ def test_the_command_writes_page_and_picture(tmp_path: Path, capsys: pytest.Capt
 def test_one_run_alone_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["compare", str(tmp_path)]) == 2
     assert "name two folders or more" in capsys.readouterr().err
+
+
+def test_a_run_that_failed_has_its_reasons_below_the_table() -> None:
+    said = reasons([record(crashing()), record(driven(at(8.0, 25.0)))])
+    assert [each.split(":")[0] for each in said] == ["tester (1) failed"]
+    assert "ran stop sign 7 at " in said[0]

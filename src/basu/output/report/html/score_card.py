@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.output.report import events
-from basu.output.report.console import written
+from basu.output.report.console import is_by_hand, written
 from basu.output.report.templates import DASH, e, render, words
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ FIGURES = ("comfort_parts", "harm", "largest", "balance", "vibration")  # of the
 def score_card(result: Result) -> Markup:
     """The card of a result: equation 5.5 on the left, equation 5.1 on the right, other judgements below."""
     if result.scores is None:
-        return render("templates/score_card.j2", scores=None)
+        return render("templates/score_card.j2", scores=None, success=result.success)
     counts = Counter(found.kind.value for found in result.infractions)
     passengers, leaderboard = result.metrics["passengers"], result.metrics["leaderboard"]
     shown = {key: passengers[key] for key in FIGURES if key in passengers} if passengers else {}
@@ -92,7 +92,10 @@ def score_card(result: Result) -> Markup:
     return render(
         "templates/score_card.j2",
         scores=scores,
+        success=result.success,
+        by_hand=is_by_hand(result),
         is_comparable=result.is_comparable,
+        is_broken_off=result.is_broken_off,
         ended=result.outcome.status.value,
         score_parts=[
             ("infractions", scores.infraction, round(scoring["infraction_weight"], 6)),

@@ -1,0 +1,130 @@
+"""The one rule of success: from a run's outcome and its record to passed or not, with the reasons in words.
+
+Each of these alone decides against a drive, as nuPlan multiplies its scores:
+
+- a collision at fault
+- a red light run, a stop sign missed, or speeding
+- the wrong way, or a stretch off the road
+- a failed scenario of its route
+- a route not driven to its end
+
+What went wrong on the road stays a failure, whatever ends the run afterwards. A run that something other than the
+agent ended without that is neither passed nor failed.
+
+Routes, campaigns, gymnasium, console, report and comparison ask `success`. The verdict of a case already holds safe,
+completed and exercised (`basu.scenarios.verdict`); `success_of_verdict` reads it in the same words. A scenario that
+was not exercised counts for neither side.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from basu.metrics.collisions import responsibilities
+from basu.metrics.infraction import Infraction
+from basu.metrics.lanes import FORGIVEN_M, off_road
+from basu.metrics.stretches import path_m, stretches
+from basu.metrics.validity import validity
+from basu.outcome import Fault, Status
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from basu.metrics.infraction import Evidence
+    from basu.outcome import Outcome
+    from basu.records.history import History
+
+JUDGED_FAULTS = frozenset({Fault.NONE, Fault.AGENT})  # of the rest, none says anything of the agent
+SUCCEEDED, FAILED = "SUCCESS", frozenset({"FAILURE", "AGENT_FAULT"})  # verdicts of scenarios
+NOT_EXERCISED = "NOT_EXERCISED"
+_WORDS = {True: "passed", False: "failed", None: "not judged"}
+_RULES = (Infraction.RED_LIGHT, Infraction.STOP_SIGN, Infraction.SPEEDING)
+
+
+class Success(NamedTuple):
+    """Whether a drive passed; None where it says nothing of the agent. The reasons are sentences, in order of time."""
+
+    passed: bool | None
+    reasons: tuple[str, ...] = ()
+
+    @property
+    def word(self) -> str:
+        """The answer in a word or two."""
+        return _WORDS[self.passed]
+
+    @property
+    def sentence(self) -> str:
+        """The answer with all of its reasons."""
+        return f"{self.word}: {'; '.join(self.reasons)}" if self.reasons else self.word
+
+
+NOT_JUDGED = Success(None)
+
+
+def success(
+    outcome: Outcome,
+    history: History | None,
+    infractions: Sequence[Evidence],
+    scenarios: Sequence[Mapping[str, Any]] = (),
+) -> Success:
+    """Decide whether a drive along a route passed.
+
+    ``infractions`` are those of the record, ``scenarios`` the rows of the route's own ones as ``result.json`` has them.
+    """
+    driven = history is not None and len(history.frames) > 0
+    wrong = _wrong(history, infractions) if driven and history is not None else []
+    wrong += [
+        f"scenario {row['id']} ({row['scenario']}): {row['message']}" for row in scenarios if row["verdict"] in FAILED
+    ]
+    ended = [] if outcome.status is Status.COMPLETED else [f"not completed ({outcome.status.value}): {outcome.message}"]
+    if wrong or not ended:
+        return Success(not wrong, (*wrong, *ended))
+    judged = outcome.status.fault in JUDGED_FAULTS and outcome.status is not Status.STOPPED
+    return Success(False if judged else None, tuple(ended))
+
+
+def success_of_verdict(verdict: str, message: str) -> Success:
+    """Read a verdict of a case in the words of the one rule."""
+    if verdict == SUCCEEDED:
+        return Success(passed=True)
+    return Success(False if verdict in FAILED else None, (message,))
+
+
+def not_exercised(scenarios: Sequence[Mapping[str, Any]]) -> int:
+    """How many of these results are of a conflict that never came about."""
+    return sum(row["verdict"] == NOT_EXERCISED for row in scenarios)
+
+
+def _wrong(history: History, infractions: Sequence[Evidence]) -> list[str]:
+    """What went wrong on the road, in order of time."""
+    found = [
+        (each.t_s, f"{blame.sentence}: {each.detail} at {each.t_s:.1f} s")
+        for each, blame in responsibilities(history)
+        if blame.at_fault
+    ]
+    found += [(each.t_s, _rule(each)) for each in infractions if each.kind in _RULES]
+    found += [(each.t_s, f"left the road at {each.t_s:.1f} s: {each.detail}") for each in off_road(history)]
+    return [sentence for _, sentence in sorted([*found, *_against(history)])]
+
+
+def _rule(found: Evidence) -> str:
+    """A broken rule of the road in words."""
+    began = {
+        Infraction.RED_LIGHT: f"ran a red light, {found.other}",
+        Infraction.STOP_SIGN: f"ran {found.other}",
+        Infraction.SPEEDING: "was too fast",
+    }
+    return f"{began[Infraction(found.kind)]} at {found.t_s:.1f} s: {found.detail}"
+
+
+def _against(history: History) -> Iterator[tuple[float, str]]:
+    """Each stretch of more than 2 m that points or moves against the route, as nuPlan's direction compliance has it."""
+    checks = validity(history).checks
+    against = np.array([check.against for check in checks], dtype=np.bool_)
+    steps_m = np.linalg.norm(np.diff(path_m(history.frames), axis=0, prepend=path_m(history.frames)[:1]), axis=1)
+    for first, end in stretches(against):
+        way_m, t_s = float(steps_m[first:end].sum()), float(history.frames["t_s"][first])
+        if way_m > FORGIVEN_M:
+            yield t_s, f"drove the wrong way for {way_m:.1f} m at {t_s:.1f} s"

@@ -1,0 +1,121 @@
+"""The one rule of success: what decides against a drive, alone, and what says nothing of the agent."""
+
+from __future__ import annotations
+
+import pytest
+
+from basu.metrics.result import Result, judge
+from basu.metrics.success import Success, success_of_verdict
+from basu.outcome import Outcome, Status
+from basu.output.report.comparison import row
+from basu.output.report.console import table
+from basu.records.history import History
+from fakes.drives import at, driven, hit, stop_sign
+from fakes.paths import along, route_along
+
+DONE = Outcome(Status.COMPLETED, "arrived after 25.0 s")
+CORNERS = ((0.0, 0.0), (200.0, 0.0))
+SIGN = stop_sign(100.0, "69")
+SCENARIO = {"id": "1", "scenario": "CutIn", "reached": True, "began_s": 1.0, "verdict": "FAILURE", "message": "it hit"}
+
+
+def good() -> History:
+    return along(route_along(CORNERS), CORNERS)
+
+
+def asked(history: History, outcome: Outcome = DONE, **more: object) -> Result:
+    return judge(outcome, history, **more)  # type: ignore[arg-type]
+
+
+def test_a_drive_along_its_route_passes() -> None:
+    assert asked(good()).success == Success(passed=True)
+
+
+def test_a_missed_stop_sign_fails_a_drive_that_arrived() -> None:
+    found = asked(along(route_along(CORNERS, (SIGN,)), CORNERS))
+    assert found.success.passed is False
+    assert found.success.reasons[0].startswith("ran stop sign 69 at ")
+    assert found.success.sentence in table(found).replace("result            ", "")
+    assert row("agent", found).cell("result") == "failed"
+
+
+def test_speeding_fails_it() -> None:
+    found = asked(along(route_along(CORNERS), CORNERS, speed_mps=20.0))
+    assert found.success.reasons[0].split(" at ")[0] == "was too fast"
+
+
+def test_a_way_off_the_road_fails_it() -> None:
+    corners = ((0.0, 0.0), (80.0, 0.0), (85.0, 4.0), (90.0, 4.0), (95.0, 0.0), (200.0, 0.0))
+    (reason, *_) = asked(along(route_along(CORNERS), corners)).success.reasons
+    assert reason.startswith("left the road at ")
+
+
+def test_the_wrong_way_fails_it_and_a_metre_back_does_not() -> None:
+    there_and_back = ((0.0, 0.0), (100.0, 0.0), (90.0, 0.0), (200.0, 0.0))
+    assert any("wrong way" in reason for reason in asked(along(route_along(CORNERS), there_and_back)).success.reasons)
+    a_metre = ((0.0, 0.0), (100.0, 0.0), (99.0, 0.0), (200.0, 0.0))
+    assert asked(along(route_along(CORNERS), a_metre)).success.passed
+
+
+@pytest.mark.parametrize(
+    ("verdict", "passed"), [("FAILURE", False), ("AGENT_FAULT", False), ("SUCCESS", True), ("NOT_EXERCISED", True)]
+)
+def test_a_failed_scenario_of_the_route_fails_it(verdict: str, passed: bool) -> None:  # noqa: FBT001 - parametrized
+    found = asked(good(), scenarios=({**SCENARIO, "verdict": verdict},))
+    assert found.success.passed is passed
+    assert found.success.reasons == (() if passed else ("scenario 1 (CutIn): it hit",))
+    assert ("1 not exercised" in table(found)) is (verdict == "NOT_EXERCISED")
+
+
+@pytest.mark.parametrize(
+    ("status", "passed"),
+    [
+        (Status.AGENT_CRASHED, False),
+        (Status.ROUTE_TIMEOUT, False),
+        (Status.ROUTE_DEVIATION, False),
+        (Status.SIMULATOR_FAILED, None),
+        (Status.SETUP_FAILED, None),
+        (Status.INTERRUPTED, None),
+        (Status.STOPPED, None),
+    ],
+)
+def test_a_route_not_driven_to_its_end_fails_where_the_agent_ended_it(status: Status, passed: bool | None) -> None:  # noqa: FBT001
+    assert asked(good(), Outcome(status, "it ended")).success == Success(
+        passed, (f"not completed ({status.value}): it ended",)
+    )
+
+
+def test_no_fault_that_follows_takes_a_broken_rule_back() -> None:
+    history = along(route_along(CORNERS, (SIGN,)), CORNERS)
+    assert asked(history, Outcome(Status.SIMULATOR_FAILED, "gone")).success.passed is False
+
+
+def test_a_collision_counts_where_the_ego_is_at_fault() -> None:
+    moving = driven(at(4.0, 2.0), collisions=[hit(5)])
+    assert any(reason.startswith("at fault") for reason in asked(moving).success.reasons)
+    standing = driven(at(0.0, 2.0), collisions=[hit(5)])
+    assert not any("fault" in reason for reason in asked(standing).success.reasons)
+
+
+def test_a_run_that_died_at_once_shows_no_score_that_could_be_mistaken() -> None:
+    found = asked(good(), Outcome(Status.AGENT_CRASHED, "it raised"))
+    line = next(line for line in table(found).splitlines() if line.startswith("driving score"))
+    assert line.split("driving score")[1].strip().startswith("not completed; the thesis's figure ")
+    assert row("agent", found).cell("driving score").startswith("not completed")
+
+
+def test_the_document_keeps_the_answer() -> None:
+    found = asked(good(), Outcome(Status.AGENT_CRASHED, "it raised"))
+    document = found.document()
+    assert document["passed"] is False
+    assert document["reasons"] == ["not completed (AgentCrashed): it raised"]
+    assert Result.from_document(document).success == found.success
+    del document["passed"], document["reasons"]
+    assert Result.from_document(document).success == Success(None)
+
+
+@pytest.mark.parametrize(
+    ("verdict", "passed"), [("SUCCESS", True), ("FAILURE", False), ("AGENT_FAULT", False), ("NOT_EXERCISED", None)]
+)
+def test_a_verdict_of_a_case_in_the_same_words(verdict: str, passed: bool | None) -> None:  # noqa: FBT001
+    assert success_of_verdict(verdict, "why").passed is passed
