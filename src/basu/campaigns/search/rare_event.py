@@ -106,8 +106,8 @@ def estimate(
     Carlo theory, methods and examples", section 9.1. The interval is that of a weighted sum of Poisson counts, with
     the heaviest failure as the one that may be missing (Fay and Feuer 1997, "Confidence intervals for directly
     standardized rates: a method based on the gamma distribution", equation 3). It holds for the regions in which drives
-    lie. For any other region, and so without a failure, the upper end is the rate at which so many drives would not
-    meet it with the probability ``1 - confidence``: each meets it with ``plain * rate`` at least.
+    lie. Without a failure, and for any other region, the upper end is the rate that so many drives miss with the
+    probability ``1 - confidence``. Each drive meets such a region with the probability ``plain * rate`` at least.
     """
     drives, failures = len(failed), int(failed.sum())
     unseen = 1.0 if drives == 0 else min(1.0, -math.expm1(math.log1p(-confidence) / drives) / plain)
