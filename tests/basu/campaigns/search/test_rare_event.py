@@ -62,7 +62,7 @@ def test_the_interval_covers_two_regions_as_often_as_it_says(name: str) -> None:
     region = REGIONS[name]
     found = [region.estimated(SETTINGS, seed) for seed in range(40)]
     covers = sum(each.low <= region.exact <= each.high for each in found)
-    assert covers >= 34  # of 40 at 95 %: fewer than 34 have the probability 0.003; one normal distribution: 0 to 26
+    assert covers >= 34  # of 40 at 95 %: fewer than 34 have the probability 0.003
     assert np.mean([each.value for each in found]) == pytest.approx(region.exact, rel=0.1)
 
 
