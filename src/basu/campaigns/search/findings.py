@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from basu.campaigns.search.part import SEARCH
-from basu.campaigns.search.rare_event import RareEvent, estimate, weights_of
+from basu.campaigns.search.proposal import guards_in, weights_of
+from basu.campaigns.search.rare_event import RareEvent, estimate
 from basu.campaigns.search.rounds import space_filling
 from basu.campaigns.search.space import Dimension
 from basu.campaigns.search.strands import rounds_in, verdict_of
@@ -40,6 +41,7 @@ class Drives(NamedTuple):
     broken: NDArray[np.bool_]  # (N,) ended by a fault that is not the agent's
     ids: list[str]  # identities for `basu scenario run`
     weights: NDArray[np.float64]  # (N,) of an estimate; 1 in a search
+    guards: NDArray[np.float64]  # (N,) probability that no failure was expected there; 0 in a search
     learns: NDArray[np.bool_]  # (N,) whether a drive only moves the proposal
 
     @property
@@ -146,7 +148,7 @@ def rare_in(drives: Drives, confidence: float) -> Rare:
     """
     kept = ~drives.learns & ~drives.broken
     plain = drives.about["settings"]["plain"]
-    found = estimate(drives.failed[kept] > 0.5, drives.weights[kept], plain, confidence)
+    found = estimate(drives.failed[kept] > 0.5, drives.weights[kept], drives.guards[kept], plain, confidence)
     return Rare(drives, int(drives.learns.sum()), int((~drives.learns & drives.broken).sum()), found)
 
 
@@ -163,13 +165,14 @@ def _drives(document: dict[str, Any], rows: dict[int, dict[str, Any]]) -> Drives
     is_estimate = about["kind"] == "estimate"
     points: list[NDArray[np.float64]] = [np.empty((0, len(space)))]
     weights: list[NDArray[np.float64]] = [np.empty(0)]
+    guards: list[NDArray[np.float64]] = [np.empty(0)]
     found, learns = list[dict[str, Any]](), list[bool]()
     for made, written in zip(rounds_in(document), document["rounds"], strict=True):
         driven = [place for place, number in enumerate(written["numbers"]) if number in rows]
         found += [rows[written["numbers"][place]] for place in driven]
         points.append(made.points[driven])
-        of_round = weights_of(made, about["settings"]["plain"]) if is_estimate else np.ones(len(made.points))
-        weights.append(of_round[driven])
+        weights.append((weights_of(made) if is_estimate else np.ones(len(made.points)))[driven])
+        guards.append((guards_in(made) if is_estimate else np.zeros(len(made.points)))[driven])
         learns += [bool(written.get("learns", False))] * len(driven)
     verdicts = [verdict_of(row) for row in found]
     return Drives(
@@ -180,6 +183,7 @@ def _drives(document: dict[str, Any], rows: dict[int, dict[str, Any]]) -> Drives
         np.array([each.broken for each in verdicts], dtype=np.bool_),
         [row["identity"] for row in found],
         np.concatenate(weights),
+        np.concatenate(guards),
         np.array(learns, dtype=np.bool_),
     )
 

@@ -141,6 +141,8 @@ def test_an_estimate_weighs_its_drives(run: Callable[..., Path], campaign: Write
     assert basic.found.low < basic.found.value < basic.found.high
     page = write_campaign_report(folder).read_text(encoding="utf-8")
     assert "How probable a failure is" in page
+    assert basic.found.cautions  # 60 drives are few
+    assert "do not trust this figure yet" in page
     assert "normal, mean 1.4, deviation 0.3, from" in page
 
 
