@@ -18,8 +18,8 @@ from linden.physics.step import advance
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.control import VehicleControl
 from linden.protocol.values.episode import EpisodeSettings
-from linden.protocol.wire.commands import COMMANDS, ApplyVehicleControl
 from linden.protocol.wire.answers import REQUEST
+from linden.protocol.wire.commands import COMMANDS, ApplyVehicleControl
 from linden.protocol.wire.rpc import RpcConnection
 from linden.protocol.wire.stream import StreamTable
 from linden.server import frames
