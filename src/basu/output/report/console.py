@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from basu.metrics.registry import NAME_WIDTH, built_in, shown
+from basu.metrics.result import COMPARABLE
 from basu.output.report.scenarios.tally import LOOKS
+from basu.output.report.tracks import NO_GATE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,17 +31,16 @@ def table(result: Result) -> str:
 def score_lines(result: Result) -> list[str]:
     """The thesis's scores; those of a run that a failure ended are marked."""
     assert result.scores is not None, "the caller asks"
-    mark = "" if result.is_comparable else f"  {NOT_COMPARABLE}: {_reason(result)}"
+    mark = "" if result.is_comparable else f"  {NOT_COMPARABLE}: {why_not_comparable(result)}"
     scores = result.scores._asdict()
     rows = [f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()]
     return [*rows, *_access(result)]
 
 
-def _reason(result: Result) -> str:
-    """Why a score cannot be compared with others."""
-    if result.is_open:
-        return "no gate stood between the agent and the simulator"
-    return f"the run ended as {result.outcome.status.value}"
+def why_not_comparable(result: Result) -> str:
+    """Return why a score cannot be compared with others; empty where it can."""
+    ended = "" if result.outcome.status in COMPARABLE else f"the run ended as {result.outcome.status.value}"
+    return " and ".join(reason for reason in (NO_GATE if result.is_open else "", ended) if reason)
 
 
 def _access(result: Result) -> list[str]:
