@@ -9,7 +9,11 @@ from basu.output.report.comparison import remarks, rows, text
 from basu.output.report.console import table
 from basu.output.report.documents import RunRecord
 from basu.output.report.html.page import report
+from basu.output.report.scenarios.matrix_text import matrix_text
+from basu.output.report.scenarios.page.matrix_page import matrix_page
+from basu.output.report.series_document import row, series_table, totals
 from fakes.run_records import crashing, record, written
+from fakes.scenario_documents import matrix
 
 
 def access(track: str, *, is_open: bool = False, **refused: int) -> dict[str, Any]:
@@ -40,7 +44,7 @@ def test_a_run_without_a_gate_has_that_as_its_reason() -> None:
 def test_runs_of_one_track_are_one_table_that_names_it() -> None:
     runs = [on_track("sensors", agent="one"), on_track("sensors", agent="two")]
     assert [row.cell("track") for row in rows(runs)] == ["sensors", "sensors"]
-    assert text(rows(runs)).count("path following".split()[1]) == 1
+    assert "\n\n" not in text(rows(runs))
     assert remarks(runs) == []
 
 
@@ -69,3 +73,42 @@ def test_the_page_of_a_comparison_has_a_table_for_each_track(tmp_path: Path) -> 
     assert scores.count("<table") == 2
     assert "<h3>track sensors</h3>" in scores
     assert "<b>two</b>, track world, NOT COMPARABLE: open: driving score" in page
+
+
+def series(*runs: RunRecord) -> str:
+    found = [row(run.result.document(), number=n, repetition=n, folder=str(n)) for n, run in enumerate(runs)]
+    return series_table("s", {"runs": found, "totals": totals(found, len(found))})
+
+
+def test_a_series_names_its_track_and_averages_no_two_tracks() -> None:
+    assert "track             world, NOT COMPARABLE: open" in series(on_track("world", is_open=True))
+    assert "track             sensors\n" in series(on_track("sensors"), on_track("sensors"))
+    mixed = series(on_track("sensors"), on_track("world"))
+    assert "scores of different tracks are not averaged" in mixed
+    assert "driving score" not in mixed
+
+
+def matrix_with(tracks: dict[str, str]) -> dict[str, Any]:
+    document = matrix(list(tracks))
+    for case in document["cases"]:
+        for agent, track in tracks.items():
+            case["results"][agent]["access"] = access(track)
+    return document
+
+
+def test_a_matrix_has_a_table_for_each_track_with_a_sentence() -> None:
+    document = matrix_with({"one": "sensors", "two": "world", "three": "sensors"})
+    for found in (matrix_text(document), matrix_page(document, lambda _: "nothing").decode()):
+        assert "each track has a table of its own" in " ".join(found.split())
+    heads = [line.split() for line in matrix_text(document).splitlines() if line.startswith(" " * 30)]
+    assert heads[:2] == [["one", "three"], ["two"]]
+    page = matrix_page(document, lambda _: "nothing").decode().split("<h2>Matrix</h2>")[1].split("</section>")[0]
+    assert page.count('<table class="matrix">') == 2
+    assert "<h3>track sensors</h3>" in page
+
+
+def test_a_matrix_of_one_track_names_it() -> None:
+    document = matrix_with({"one": "objects", "two": "objects"})
+    assert "\ntrack objects\n" in matrix_text(document)
+    assert "own" not in matrix_text(document).split("track objects")[0]
+    assert matrix_page(document, lambda _: "nothing").decode().count("<h3>track objects</h3>") >= 1
