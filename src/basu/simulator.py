@@ -99,7 +99,7 @@ def simulator_for(options: RunOptions) -> Iterator[Simulator]:
                 why_gone=lambda: _silence(client, options),
                 ended=lambda: False,
                 timeout_s=options.timeout_s,
-                gate=Gate(relay),
+                gate=None if options.open else Gate(relay),
                 uploaded=town,
             )
         finally:

@@ -136,6 +136,7 @@ class CampaignRun:
             "number": answer.number,
             **{name: job[name] for name in ("id", "kind", "subject", "identity", "town", "weather", "seed")},
             "agent": job["agent_name"],
+            "track": job["track"],
             **{name: job[name] for name in ("vehicles", "walkers", "density_per_km")},
             **{f"parameter_{name}": value for name, value in job["parameters"].items()},
             "attempts": answer.attempts,

@@ -29,6 +29,7 @@ IDS = {
     "number": pa.int64(),  # of the job, from 0
     "id": pa.string(),  # the same in every campaign that has this job
     "agent": pa.string(),
+    "track": pa.string(),  # what it learned of others
     "kind": pa.string(),  # route or case
     "subject": pa.string(),  # the route's id, or the case's
     "identity": pa.string(),  # the case's id with its variation, for `basu scenario run`

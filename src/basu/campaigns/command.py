@@ -59,7 +59,10 @@ def describe(file: Path) -> str:
         UserError: it cannot be driven.
     """
     plan = plan_of(read_campaign(file), file)
-    lines = [f"campaign  {plan.campaign.name}", f"agents    {', '.join(agent.name for agent in plan.agents)}"]
+    lines = [
+        f"campaign  {plan.campaign.name}",
+        f"agents    {', '.join(f'{agent.name} (track {agent.track})' for agent in plan.agents)}",
+    ]
     for part in plan.parts:
         names = list(dict.fromkeys(subject.name for subject in part.subjects))
         shown = ", ".join(names[:5]) + (f" and {len(names) - 5} more" if len(names) > 5 else "")

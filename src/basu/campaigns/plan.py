@@ -14,6 +14,7 @@ from basu.campaigns.settings import Campaign, OtherTraffic, Seeds
 from basu.campaigns.shuffle import Shuffle
 from basu.jobs.job import versions
 from basu.metrics.scoring import Scoring, scoring_to_json
+from basu.options.agent import WORLD
 from basu.scenarios.parameters import Number
 
 if TYPE_CHECKING:
@@ -43,6 +44,8 @@ class PlannedAgent(NamedTuple):
     typed: str  # as the worker finds it: a name, or a file with its whole path
     name: str  # for folders and tables
     digest: str  # of its file; "" for BASU's own
+    track: str = WORLD  # what it learns of others
+    is_track_given: bool = False  # by the campaign's file, and not by config()
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,11 +139,18 @@ class CampaignPlan:
         condition, chosen = self.parts[index].condition(place, values or {}), self.agents[agent]
         fixed = {
             **{key: value for key, value in condition.items() if key not in {"file", "parameters"}},
-            "agent": [chosen.name, chosen.digest],
+            "agent": [chosen.name, chosen.digest, *([chosen.track] if chosen.is_track_given else [])],
             "shared": self.shared,
         }
         condition.pop("digest")
-        return {"id": digest_of(fixed)[:ID_DIGITS], "agent": chosen.typed, "agent_name": chosen.name, **condition}
+        identity = digest_of(fixed)[:ID_DIGITS]
+        return {
+            "id": identity,
+            "agent": chosen.typed,
+            "agent_name": chosen.name,
+            "track": chosen.track,
+            **condition,
+        }
 
     def search_place(self, number: int) -> SearchPlace | None:
         """The place of a job in its search; None where it is in none."""
@@ -181,6 +191,7 @@ class CampaignPlan:
         """All that the results depend on, by name, for a comparison before a campaign goes on."""
         return {
             "the agents": [f"{agent.name} {agent.digest}".rstrip() for agent in self.agents],
+            "the tracks": {agent.name: agent.track for agent in self.agents},
             "the drives": digest_of([part.digest() for part in self.parts])[:ID_DIGITS],
             "the number of drives": self.size,
             "the order": [self.campaign.order, self.campaign.shuffle_seed],

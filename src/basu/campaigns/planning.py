@@ -24,6 +24,7 @@ from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find, places
 from basu.jobs.job import versions
+from basu.managers.agents_manager import AgentsManager
 from basu.metrics.scoring import Scoring, scoring_layer, scoring_to_json
 from basu.output.report.documents import plain
 from basu.routing.route_file import read_routes
@@ -78,6 +79,7 @@ def _with_paths(drives: Drives, source: Path) -> Drives:
 
 def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:
     """An agent, loaded once, so that a wrong one is refused before anything is driven."""
+    given = campaign.tracks.get(typed)
     file, colon, class_name = typed.partition(".py:")
     path = f"{file}.py" if colon else typed
     if path.endswith(".py"):
@@ -94,7 +96,12 @@ def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:
         raise UserError(f"{source}: {error}") from None
     if found.is_human:
         raise UserError(f"{source}: a person drives the agent '{typed}', which a campaign cannot wait for; remove it")
-    return PlannedAgent(typed, plain(found.name), digest)
+    manager = AgentsManager(found, step_limit_s=campaign.step_limit_s, routes=None, track=given)
+    try:
+        track = manager.config.track
+    finally:
+        manager.close()
+    return PlannedAgent(typed, plain(found.name), digest, track, given is not None)
 
 
 def _part(drives: Drives, campaign: Campaign, source: Path, scenario_files: Sequence[Path]) -> Part:

@@ -164,6 +164,7 @@ class _Player:
         settings, others = self._settings, job["density_per_km"]
         options = RunOptions(
             agent=job["agent"],
+            track=job["track"],
             routes=job["file"],
             route_id=job["identity"],
             seed=job["seed"],
@@ -210,6 +211,7 @@ class _Player:
         options = ScenarioOptions(
             what=(job["identity"],),
             agents=(job["agent"],),
+            track=job["track"],
             files=settings.scenario_files,
             seed=job["seed"],
             vehicle=settings.vehicle,

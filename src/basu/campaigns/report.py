@@ -30,6 +30,8 @@ from basu.output.report.scenarios.sweep.success_map import drawing
 from basu.output.report.scenarios.tally import counted
 from basu.output.report.streets import bounds_of
 from basu.output.report.templates import render
+from basu.output.report.tracks import apart as kept_apart
+from basu.output.report.tracks import grouped, titled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -65,7 +67,9 @@ def campaign_page(folder: Path, document: dict[str, Any], table: pa.Table) -> by
     """The page of a campaign with this document and these rows."""
     agents, confidence = document["agents"], document["settings"]["confidence"]
     apart = distinct(table)
-    parts, search = breakdown(apart, agents, confidence), _search(folder, table, confidence)
+    search, tracks = _search(folder, table, confidence), document.get("tracks", {})
+    groups = grouped(agents, tracks)
+    alike = [pair for pair in pairs(table, agents) if tracks.get(pair.first) == tracks.get(pair.second)]
     body = render(
         "templates/campaign.j2",
         name=document["name"],
@@ -74,19 +78,30 @@ def campaign_page(folder: Path, document: dict[str, Any], table: pa.Table) -> by
         confidence=confidence,
         agents=agents,
         search=search,
-        rates=rates(apart, agents, confidence),
-        pairs=pairs(table, agents) if search is None else [],
-        breakdown=parts[:MOST_ROWS],
-        left_out=max(0, len(parts) - MOST_ROWS),
+        groups=[_group(apart, track, names, confidence) for track, names in groups.items()],
+        pairs=alike if search is None else [],
         studies=_shown(studies_of(table, agents)) if search is None else [],
         worst=_worst(folder, agents),
-        means=means(apart, agents, confidence),
-        services=services(apart, agents, confidence),
         costs=costs(table, agents),
         made_with=_made_with(document),
     )
     style = f"{card_style()}\n{STYLE_FILE.read_text(encoding='utf-8')}"
     return page(f"Campaign {document['name']}", body, style=style)
+
+
+def _group(table: pa.Table, track: str, agents: list[str], confidence: float) -> dict[str, Any]:
+    """The tables of the agents of one track."""
+    own = table.filter(pc.is_in(table["agent"], value_set=pa.array(agents)))
+    parts = breakdown(own, agents, confidence)
+    return {
+        "title": f": {titled(track)}" if track else "",
+        "agents": agents,
+        "rates": rates(own, agents, confidence),
+        "breakdown": parts[:MOST_ROWS],
+        "left_out": max(0, len(parts) - MOST_ROWS),
+        "means": means(own, agents, confidence),
+        "services": services(own, agents, confidence),
+    }
 
 
 def _search(folder: Path, table: pa.Table, confidence: float) -> Markup | None:
@@ -113,6 +128,9 @@ def _summary(document: dict[str, Any], table: pa.Table) -> str:
 
 def _remarks(folder: Path, document: dict[str, Any], table: pa.Table) -> Iterator[str]:
     """What a reader must know before the figures."""
+    different = kept_apart(document["agents"], document.get("tracks", {}))
+    if different:
+        yield different
     until = document["settings"]["until"]
     if (folder / STOP_FILE).exists() and until is not None:
         yield (

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from basu.errors import UserError
+from basu.options.agent import Track
 from basu.settings.option import suggestion
 
 if sys.version_info >= (3, 11):
@@ -162,6 +163,7 @@ class Campaign(Table):
     order: Literal["given", "shuffled"] = "given"
     shuffle_seed: Annotated[int, Field(ge=0)] = 0
     vehicle: str | None = None
+    tracks: dict[str, Track] = {}  # by agent as it stands in ``agents``; without an entry: as its config() asks
     step_limit_s: Annotated[float, Field(gt=0.0)] = 10.0
     agent_memory_gb: Annotated[float | None, Field(gt=0.0)] = None
     agent_writes: tuple[str, ...] = ()
@@ -172,6 +174,13 @@ class Campaign(Table):
     until: Until | None = None
     keep: Keep = Keep()
     work: Work = Work()
+
+    @model_validator(mode="after")
+    def _tracks_of_agents(self) -> Campaign:
+        for name in self.tracks:
+            if name not in self.agents:
+                raise ValueError(f"tracks names '{name}', which is none of the agents; it can name {self.agents}")
+        return self
 
     @model_validator(mode="after")
     def _adaptive_alone(self) -> Campaign:

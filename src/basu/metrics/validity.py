@@ -167,7 +167,7 @@ class _Lanes:
 
     def __init__(self, route: Route) -> None:
         self._s_m: list[float] = route.s_m.tolist()
-        self._width_m: list[float] = route.lane_width_m.tolist()
+        self._width_m: list[float] = _widths_m(route).tolist()
         self._yaw_rad: list[float] = route.yaw_rad.tolist()
         self._side = [
             (road, lane > 0) for road, lane in zip(route.road_id.tolist(), route.lane_id.tolist(), strict=True)
@@ -199,6 +199,11 @@ class _Lanes:
         speed_mps = math.hypot(moment.velocity_x_mps, moment.velocity_y_mps)
         along_mps = moment.velocity_x_mps * math.cos(planned_rad) + moment.velocity_y_mps * math.sin(planned_rad)
         return speed_mps > MOVING_MPS and along_mps < _AGAINST * speed_mps
+
+
+def _widths_m(route: Route) -> NDArray[np.float64]:
+    """Return (N,) the widths of the lanes under the route; 0 in a record without a map, whose plan is its own track."""
+    return np.nan_to_num(route.lane_width_m, nan=0.0)
 
 
 def _jump_m(moment: Moment, before: Moment) -> float:
@@ -269,7 +274,7 @@ def beyond_edge_m(history: History) -> NDArray[np.float64]:
     """(T,) how far the vehicle's origin is beyond the edge of the planned lane; negative within it."""
     route, frames = history.facts.route, history.frames
     index = np.clip(np.searchsorted(route.s_m, frames["route_s_m"], side="right") - 1, 0, None)
-    beyond_m: NDArray[np.float64] = np.abs(frames["lateral_m"]) - route.lane_width_m[index] / 2.0
+    beyond_m: NDArray[np.float64] = np.abs(frames["lateral_m"]) - _widths_m(route)[index] / 2.0
     return beyond_m
 
 

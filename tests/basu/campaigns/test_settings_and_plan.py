@@ -134,3 +134,18 @@ def test_a_value_of_the_wrong_kind_is_named_in_words_of_the_file(key: str, value
 def test_a_dry_run_warns_of_seeds_that_change_nothing(campaign: Write) -> None:
     assert "its 3 seeds change nothing in the world" in describe(campaign())
     assert "warning" not in describe(campaign(("number = 3", "number = 1")))
+
+
+def test_the_plan_names_the_track_of_each_agent(campaign: Write) -> None:
+    file = campaign()
+    usual = plan_of(read_campaign(file), file)
+    assert [agent.track for agent in usual.agents] == ["world", "world"]
+    file = campaign(('name = "crossings"', 'name = "crossings"\ntracks = {blind = "sensors"}'))
+    plan = plan_of(read_campaign(file), file)
+    assert [plan.job(number)["track"] for number in (0, 1)] == ["world", "sensors"]
+    assert plan.job(0)["id"] == usual.job(0)["id"]
+    assert plan.job(1)["id"] != usual.job(1)["id"]
+    assert "blind (track sensors)" in describe(file)
+    file = campaign(('name = "crossings"', 'name = "crossings"\ntracks = {nobody = "sensors"}'))
+    with pytest.raises(UserError, match="none of the agents"):
+        read_campaign(file)

@@ -14,10 +14,11 @@ from matplotlib.figure import Figure
 
 from basu.files import write_bytes
 from basu.metrics.registry import Column, built_in
-from basu.output.report.console import score_cell, written
+from basu.output.report.console import score_cell, why_not_comparable, written
 from basu.output.report.streets import bounds_of, union
 from basu.output.report.templates import DASH, figure
 from basu.output.report.templates import figure as figure_text
+from basu.output.report.tracks import apart, titled, track_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -42,6 +43,7 @@ class Row(NamedTuple):
     ended: str
     is_comparable: bool
     columns: tuple[Column, ...]
+    track: str  # with a mark where no gate stood before the agent; empty where it is not known
 
     def cell(self, head: str) -> str:
         """The text under a head; a dash where this run does not have it."""
@@ -69,8 +71,10 @@ def rows(runs: Sequence[RunRecord]) -> list[Row]:
 def row(agent: str, result: Result) -> Row:
     """The row of a result: the scores of the thesis, then what each metric compares, users' metrics last."""
     scores = result.scores._asdict() if result.scores is not None else {}
+    track = track_of(result.meta.get("access"))
     columns = [
         Column("agent", agent),
+        *([Column("track", track)] if track else []),
         Column("driving score", score_cell(result)),
         Column("infraction score", figure(scores.get("infraction"))),
         Column("path following", figure(scores.get("path_following"))),
@@ -79,11 +83,27 @@ def row(agent: str, result: Result) -> Row:
         Column("result", result.success.word),
         Column("ended", result.outcome.status.value),
     ]
-    return Row(agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns))
+    return Row(agent, scores.get("driving"), result.outcome.status.value, result.is_comparable, tuple(columns), track)
+
+
+def tables(found: Sequence[Row]) -> dict[str, list[Row]]:
+    """Return the rows of each track by its name: no table has scores of different tracks."""
+    groups: dict[str, list[Row]] = {}
+    for each in found:
+        groups.setdefault(each.track, []).append(each)
+    return groups
 
 
 def text(found: Sequence[Row]) -> str:
-    """The table for a console: heads in two lines, numbers to the right."""
+    """The tables for a console, one for each track, which stands above it where there are several."""
+    groups = tables(found)
+    if len(groups) == 1:
+        return _table(found)
+    return "\n\n".join(f"{titled(track)}\n{_table(group)}" for track, group in groups.items())
+
+
+def _table(found: Sequence[Row]) -> str:
+    """One table: heads in two lines, numbers to the right."""
     named = heads(found)
     lines = [[head.rpartition(" ")[0] for head in named], [head.rpartition(" ")[2] for head in named]]
     lines += [[each.cell(head) for head in named] for each in found]
@@ -115,9 +135,13 @@ def remarks(runs: Sequence[RunRecord]) -> list[str]:
             f"These runs are on different routes{named}: each map shows its own, and their scores do not answer which "
             "agent drives better."
         )
-    ended = [f"{run.agent} ({run.result.outcome.status.value})" for run in runs if run.result.is_broken_off]
-    if ended:
-        found.append(f"These runs were ended by a failure, and their scores are not comparable: {', '.join(ended)}.")
+    compared = rows(runs)
+    different = apart([each.agent for each in compared], {each.agent: each.track for each in compared})
+    found += [different] if different else []
+    incomparable = [(run.agent, why_not_comparable(run.result)) for run in runs if not run.result.is_comparable]
+    if incomparable:
+        named = "; ".join(f"{agent} ({reason})" for agent, reason in incomparable)
+        found.append(f"The scores of these runs are not comparable: {named}.")
     found += _conditions(runs)
     if len({_rules(run.result.scoring) for run in runs}) > 1:
         found.append("These runs were scored with different penalties or weights; `basu score` scores them alike.")
@@ -200,7 +224,8 @@ def draw(path: Path, runs: Sequence[RunRecord]) -> None:
     for axes in all_axes[len(runs) :]:
         axes.set_axis_off()
     for axes, run, row in zip(all_axes, runs, rows(runs), strict=False):
-        axes.set_title(f"{row.agent}: driving score {figure_text(row.driving)}", fontsize=11, parse_math=False)
+        track = f", {titled(row.track)}" if row.track else ""
+        axes.set_title(f"{row.agent}{track}: driving score {figure_text(row.driving)}", fontsize=11, parse_math=False)
         if run.history is None:
             axes.text(0.5, 0.5, "nothing was driven", ha="center", transform=axes.transAxes)
             axes.set_axis_off()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
 import numpy as np
@@ -11,7 +11,17 @@ import numpy as np
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.output.report import events
-from basu.output.report.comparison import draw, heads, histories, reasons, remarks, rows, shared_bounds, text
+from basu.output.report.comparison import (
+    draw,
+    heads,
+    histories,
+    reasons,
+    remarks,
+    rows,
+    shared_bounds,
+    tables,
+    text,
+)
 from basu.output.report.documents import read_run
 from basu.output.report.html.page import REPORT_FILE, legend, page
 from basu.output.report.plots.chart import Line, chart
@@ -19,12 +29,14 @@ from basu.output.report.plots.signals import signals
 from basu.output.report.plots.town_map import plain_map
 from basu.output.report.streets import bounds_of
 from basu.output.report.templates import render
+from basu.output.report.tracks import titled
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
     from xml.etree.ElementTree import Element
 
+    from basu.output.report.comparison import Row
     from basu.output.report.documents import RunRecord
     from basu.output.report.streets import Bounds
 
@@ -35,25 +47,46 @@ MOST_BESIDE = 4  # runs that stand as columns, so that the table fits a phone
 def comparison(runs: Sequence[RunRecord], folders: Sequence[Path], beside: Path, more: Sequence[Element] = ()) -> bytes:
     """The page, to lie in the folder ``beside``; ``more`` stands below the table."""
     compared, shared, axes = rows(runs), shared_bounds(runs), _axes(runs)
-    named, reports = heads(compared), [folder / REPORT_FILE for folder in folders]
+    reports = {row.agent: folder / REPORT_FILE for row, folder in zip(compared, folders, strict=True)}
+    groups = tables(compared)
     body = render(
         "templates/comparison.j2",
         agents=[row.agent for row in compared],
         remarks=[*reasons(runs), *remarks(runs)],
-        heads=named,
-        rows=[
-            (_address(path, beside) if path.exists() else None, [row.cell(head) for head in named])
-            for row, path in zip(compared, reports, strict=True)
+        tables=[
+            _scores(group, reports, beside, titled(track) if len(groups) > 1 else "") for track, group in groups.items()
         ],
-        is_upright=len(runs) <= MOST_BESIDE,
         more=more,
         legend=legend(),
         figures=[
-            (row.agent, row.cell("driving score"), row.ended, _pictures(run, shared, axes))
+            (
+                row.agent,
+                titled(row.track) if row.track else "",
+                row.cell("driving score"),
+                row.ended,
+                _pictures(run, shared, axes),
+            )
             for run, row in zip(runs, compared, strict=True)
         ],
     )
     return page("Comparison of runs", body)
+
+
+def _scores(found: Sequence[Row], reports: Mapping[str, Path], beside: Path, title: str) -> dict[str, Any]:
+    """The table of one track; ``reports`` are the pages of the runs by agent."""
+    named = heads(found)
+    return {
+        "title": title,
+        "heads": named,
+        "rows": [
+            (
+                _address(reports[row.agent], beside) if reports[row.agent].exists() else None,
+                [row.cell(head) for head in named],
+            )
+            for row in found
+        ],
+        "is_upright": len(found) <= MOST_BESIDE,
+    }
 
 
 def _address(report: Path, beside: Path) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from basu.metrics.registry import NAME_WIDTH, built_in, shown
 from basu.metrics.success import not_exercised
 from basu.output.report.scenarios.tally import LOOKS
+from basu.output.report.tracks import NO_GATE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -70,18 +71,17 @@ def score_lines(result: Result) -> list[str]:
         f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()
     ]
     if not result.is_comparable:
-        ended = f"{NOT_COMPARABLE}: {_reason(result)}"
+        ended = f"{NOT_COMPARABLE}: {why_not_comparable(result)}"
         figure = f"{NOT_COMPLETED}; the thesis's figure {scores['driving']:.3f}" if result.is_broken_off else lines[0]
         name = f"{SCORES['driving']:<{NAME_WIDTH}}" if result.is_broken_off else ""
         lines[0] = f"{name}{figure}{mark if result.is_broken_off else ''}  {ended}"
     return [*lines, *_access(result)]
 
 
-def _reason(result: Result) -> str:
-    """Return the reason why a score cannot be compared with others."""
-    if result.is_broken_off:
-        return f"the run ended as {result.outcome.status.value}"
-    return "no gate stood between the agent and the simulator"
+def why_not_comparable(result: Result) -> str:
+    """Return why a score cannot be compared with others; empty if it can."""
+    ended = f"the run ended as {result.outcome.status.value}" if result.is_broken_off else ""
+    return " and ".join(reason for reason in (NO_GATE if result.is_open else "", ended) if reason)
 
 
 def _access(result: Result) -> list[str]:

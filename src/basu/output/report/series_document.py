@@ -6,6 +6,8 @@ import statistics
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+from basu.output.report.tracks import track_of
+
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
@@ -37,6 +39,7 @@ def row(document: Mapping[str, Any], *, number: int, repetition: int, folder: st
         "planned_m": reported.get("planned_m"),
         "simulated_s": meta["simulated_s"],
         "wall_s": meta["wall_s"],
+        "track": track_of(meta.get("access")),
     }
 
 
@@ -79,6 +82,11 @@ def series_table(name: str, document: Mapping[str, Any]) -> str:
     lines = [f"series {name}: {total['done']} of {total['planned']} runs done"]
     if not total["done"]:
         return lines[0]
+    tracks = Counter(each["track"] for each in document["runs"] if each.get("track"))
+    if len(tracks) > 1:
+        counts = "; ".join(f"{count} in the track {track}" for track, count in tracks.items())
+        return "\n".join([*lines, f"no means: scores of different tracks are not averaged ({counts})"])
+    lines += [f"{'track':<18}{track}" for track in tracks]
     lines.append(f"{'':<26}  mean   +/-    lowest highest")
     lines += [_line(NAMES[key], total["scores"][key]) for key in SCORES]
     lines += [

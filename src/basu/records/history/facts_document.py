@@ -5,16 +5,30 @@ A run's folder may come from another person or machine, so each value is checked
 
 from __future__ import annotations
 
+import math
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from basu.routing.planned_route import LEAST_POINTS
+
+
+def _width(value: float) -> float:
+    """Return a width, which is NaN in a record without a map.
+
+    Raises:
+        ValueError: it is negative or too large.
+    """
+    if math.isnan(value) or 0.0 <= value <= FARTHEST_M:
+        return value
+    raise ValueError("it must be 0 or more")
+
 
 FARTHEST_M = 1e7  # of any place or size: beyond it single metres are lost in single precision
 Number = Annotated[float, Field(allow_inf_nan=False, ge=-FARTHEST_M, le=FARTHEST_M)]
 Length = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=FARTHEST_M)]
+Width = Annotated[float, AfterValidator(_width)]
 Name = Annotated[str, Field(max_length=1000)]
 Whole = Annotated[int, Field(ge=-(2**31), lt=2**32)]
 Key = Annotated[str, Field(pattern=r"^\d{1,10}$")]
@@ -60,7 +74,7 @@ class _Route(_Part):
     ]
     s_m: list[Number]
     yaw_rad: list[Number]
-    lane_width_m: list[Length]
+    lane_width_m: list[Width]
     speed_limit_mps: list[Length | None]
     is_junction: list[bool]
     road_id: list[Whole]

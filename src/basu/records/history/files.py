@@ -148,7 +148,7 @@ def facts_from_json(text: str) -> Facts:
     )
 
 
-MAY_BE_NAN = frozenset({"lane_offset_m", "lane_heading_rad", "lane_width_m"})  # where there is no lane
+MAY_BE_NAN = frozenset({"lane_offset_m", "lane_heading_rad", "lane_width_m", "off_lane_m"})  # where there is no lane
 
 
 def _check_frames(frames: NDArray[np.void]) -> None:

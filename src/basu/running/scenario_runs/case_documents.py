@@ -149,6 +149,7 @@ SUMMARY = (  # entries of a result
     "margins",
     "simulated_s",
     "wall_s",
+    "access",  # none where nothing was driven
 )
 
 
@@ -172,7 +173,7 @@ def matrix_of(
             else:
                 document, folder = done
                 by_agent[agent] += results_from([document])
-                results[agent] = {**{key: document[key] for key in SUMMARY}, "folder": folder}
+                results[agent] = {**{key: document[key] for key in SUMMARY if key in document}, "folder": folder}
         rows.append({**about(playable), "results": results})
     return {
         "schema_version": MATRIX_SCHEMA_VERSION,

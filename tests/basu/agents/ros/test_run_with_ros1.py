@@ -102,11 +102,15 @@ def test_a_run_is_published_beside_any_agent(
     """Debian's own `rostopic echo` prints the odometry while the forward agent drives."""
     command = [SYSTEM_PYTHON, "-c", ROSTOPIC, "echo", "-n", "3", "--noarr", "/carla/hero/odometry/child_frame_id"]
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
-    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, text=True) as echo:
-        address = ["--host", "127.0.0.1", "--port", str(simulator.port), "--in-process", "--output", str(tmp_path)]
-        code = main(["run", "forward", *address, "--routes", str(route_file), "--ros1"])
-        assert echo.stdout is not None
-        told = echo.stdout.read()
+    with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as echo:
+        try:
+            assert echo.stderr is not None
+            assert "does not appear to be published yet" in echo.stderr.readline()  # it listens from now on
+            address = ["--host", "127.0.0.1", "--port", str(simulator.port), "--in-process", "--output", str(tmp_path)]
+            code = main(["run", "forward", *address, "--routes", str(route_file), "--ros1"])
+            told, _ = echo.communicate(timeout=30.0)
+        finally:
+            echo.kill()
     result = json.loads((tmp_path / "latest" / "result.json").read_text())
     assert (code, result["status"]) == (0, "Completed"), result["message"]
     assert told.count('"hero"') == 3

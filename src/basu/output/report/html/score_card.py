@@ -6,7 +6,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.output.report import events
-from basu.output.report.console import is_by_hand, written
+from basu.output.report.console import is_by_hand, why_not_comparable, written
 from basu.output.report.templates import DASH, e, render, words
 
 if TYPE_CHECKING:
@@ -94,9 +94,10 @@ def score_card(result: Result) -> Markup:
         scores=scores,
         success=result.success,
         by_hand=is_by_hand(result),
-        is_comparable=result.is_comparable,
         is_broken_off=result.is_broken_off,
-        ended=result.outcome.status.value,
+        why_not_comparable=why_not_comparable(result),
+        track=result.track,
+        refused=result.meta["access"]["refused"] if result.track else {},
         score_parts=[
             ("infractions", scores.infraction, round(scoring["infraction_weight"], 6)),
             ("path following", scores.path_following, round(scoring["path_following_weight"], 6)),

@@ -12,7 +12,7 @@ import re
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from basu.output.report.scenarios.tally import LOOKS
+from basu.output.report.scenarios.tally import LOOKS, tracks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,7 +50,12 @@ def _suite(matrix: dict[str, Any], agent: str, number: int) -> Element:
         time=f"{sum(result['wall_s'] for _, result in found):.3f}",
     )
     properties = SubElement(suite, "properties")
-    known = {"what": matrix["what"], **{f"version {name}": text for name, text in matrix["versions"].items()}}
+    track = tracks(matrix)[agent]
+    known = {
+        "what": matrix["what"],
+        **({"track": track} if track else {}),
+        **{f"version {name}": text for name, text in matrix["versions"].items()},
+    }
     for name, text in known.items():
         SubElement(properties, "property", name=_token(name), value=_plain(str(text)))
     for case, result in found:

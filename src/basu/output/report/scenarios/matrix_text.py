@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.output.report.scenarios.shares import shares_text
 from basu.output.report.scenarios.sweep.boundary import boundary
-from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally, tracks
+from basu.output.report.tracks import apart, grouped, titled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -37,7 +38,13 @@ class Cell(NamedTuple):
 def matrix_text(matrix: dict[str, Any], *, colour: bool = False) -> str:
     """The matrix as lines of text; ``colour`` for a terminal that shows it, and nothing is said by colour alone."""
     parts = [f"{_headline(matrix)}\n{textwrap.fill(judged_share(matrix), WIDTH)}"]
-    parts += [_table(matrix, agents, colour=colour) for agents in _side_by_side(matrix)]
+    known = tracks(matrix)
+    groups = grouped(matrix["agents"], known)
+    parts.append(textwrap.fill(apart(matrix["agents"], known), WIDTH))
+    for track, agents in groups.items():
+        heading = f"{titled(track)}\n" if track or len(groups) > 1 else ""
+        first, *rest = [_table(matrix, beside, colour=colour) for beside in _side_by_side(matrix, agents)]
+        parts += [f"{heading}{first}", *rest]
     parts += [_key(matrix), _endings(matrix, colour=colour)]
     parts.append("\n".join(textwrap.fill(sentence, WIDTH, subsequent_indent="  ") for sentence in boundary(matrix)))
     parts.append(shares_text(matrix))
@@ -54,9 +61,8 @@ def _headline(matrix: dict[str, Any]) -> str:
     return textwrap.fill(text, WIDTH)
 
 
-def _side_by_side(matrix: dict[str, Any]) -> list[list[str]]:
-    """The agents, as many together as one table has room for."""
-    agents: list[str] = list(matrix["agents"])
+def _side_by_side(matrix: dict[str, Any], agents: Sequence[str]) -> list[list[str]]:
+    """Agents of one track, as many together as one table has room for."""
     widths = {agent: sum(_widths(column)) + 3 for agent, column in _columns(matrix, agents).items()}
     tables: list[list[str]] = []
     left = 0

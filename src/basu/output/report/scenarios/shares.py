@@ -6,7 +6,9 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from basu.intervals import FEW
+from basu.output.report.scenarios.tally import tracks
 from basu.output.report.templates import render
+from basu.output.report.tracks import grouped, titled
 from basu.scenarios.shares import CONTROL_DRIVERS
 
 if TYPE_CHECKING:
@@ -33,7 +35,12 @@ def shares_text(matrix: dict[str, Any]) -> str:
     agents = controls_last(matrix["agents"])
     room = (WIDTH - NAME_WIDTH) // AGENT_WIDTH
     shares = matrix["shares"]
-    tables = [_table({agent: shares[agent] for agent in agents[at : at + room]}) for at in range(0, len(agents), room)]
+    groups = grouped(agents, tracks(matrix))
+    tables = [
+        _table({agent: shares[agent] for agent in group[at : at + room]}, titled(track) if len(groups) > 1 else "")
+        for track, group in groups.items()
+        for at in range(0, len(group), room)
+    ]
     notes = [textwrap.fill(text, WIDTH) for text in control_notes(agents)]
     assumed = [
         textwrap.fill(text, WIDTH, initial_indent="  - ", subsequent_indent="    ") for text in assumptions(matrix)
@@ -75,9 +82,10 @@ def interval(estimate: dict[str, float] | None) -> str:
     return f"{percent_of(estimate['share'])} ({100.0 * estimate['low']:.0f}-{100.0 * estimate['high']:.0f})"
 
 
-def _table(shares: dict[str, dict[str, Any]]) -> str:
-    """Some agents beside each other."""
-    lines = [_line("of the exercised, passed (95 %)", [agent[: AGENT_WIDTH - 1] for agent in shares])]
+def _table(shares: dict[str, dict[str, Any]], title: str) -> str:
+    """Some agents of one track beside each other, below the title if there is one."""
+    lines = [title] if title else []
+    lines.append(_line("of the exercised, passed (95 %)", [agent[: AGENT_WIDTH - 1] for agent in shares]))
     lines += [_line(f"  {name}", [interval(share[key]) for share in shares.values()]) for key, name in SHARES.items()]
     measured = [percent_of(share["measured_of_cost"]) for share in shares.values()]
     lines.append(_line("  groups' part of all cost", measured))
@@ -107,11 +115,18 @@ def shares_view(matrix: dict[str, Any]) -> Markup | None:
     if not is_weighed(matrix):
         return None
     shares = {agent: matrix["shares"][agent] for agent in controls_last(matrix["agents"])}
+    groups = grouped(list(shares), tracks(matrix))
     return render(
         "templates/shares.j2",
-        scores=[_score(agent, share) for agent, share in shares.items()],
         control_notes=" ".join(control_notes(list(shares))),
-        rows=_group_rows(shares),
+        groups=[
+            {
+                "title": titled(track) if track or len(groups) > 1 else "",
+                "scores": [_score(agent, shares[agent]) for agent in agents],
+                "rows": _group_rows({agent: shares[agent] for agent in agents}),
+            }
+            for track, agents in groups.items()
+        ],
         assumptions=assumptions(matrix),
     )
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.output.report.tracks import tracks_of
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -100,6 +102,15 @@ def tally(cases: Iterable[dict[str, Any]], agent: str) -> Tally:
         ttc_s=_least(passed, "ttc_s"),
         pet_s=_least(passed, "pet_s"),
     )
+
+
+def tracks(matrix: dict[str, Any]) -> dict[str, str]:
+    """Return the track of each agent; empty where nothing was driven."""
+    cases = matrix["cases"]
+    return {
+        agent: tracks_of(case["results"][agent].get("access") for case in cases if agent in case["results"])
+        for agent in matrix["agents"]
+    }
 
 
 def judged_share(matrix: dict[str, Any]) -> str:

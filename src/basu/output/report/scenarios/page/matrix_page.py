@@ -17,11 +17,12 @@ from basu.output.report.scenarios.shares import shares_view
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import drawing
-from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally, tracks
 from basu.output.report.templates import DASH, render
+from basu.output.report.tracks import apart, grouped, titled
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Iterator, Sequence
+    from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 
     from markupsafe import Markup
 
@@ -69,6 +70,8 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
     cells = chosen(matrix)
     carded = {anchor_of(cell.case["id"], cell.agent) for cell in cells}
     cards = _cards(cells, record)
+    known = tracks(matrix)
+    groups = grouped(matrix["agents"], known)
     script = (HERE / "matrix.js").read_text(encoding="utf-8")
     body = render(
         "templates/matrix.j2",
@@ -77,9 +80,9 @@ def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | st
         shares=shares_view(matrix),
         sweeps=list(_sweeps(matrix)),
         verdict_key=[(style, look.sign, OF_STYLE.get(style, look.word)) for style, look in _looks().items()],
-        agents=matrix["agents"],
-        blocks=[_block(block, matrix["agents"], carded, cards) for block in blocks(matrix)],
-        totals=[_total(matrix["cases"], agent) for agent in matrix["agents"]],
+        apart=apart(matrix["agents"], known),
+        tables=[_table(matrix, agents, carded, _heading(track, groups)) for track, agents in groups.items()],
+        blocks=[_cases(block, cards) for block in blocks(matrix)],
         filters=_filters(matrix),
         kinds=KINDS,
         signs=SIGNS,
@@ -159,10 +162,36 @@ def _sweeps(matrix: dict[str, Any]) -> Iterator[tuple[str, list[dict[str, Any]]]
         )
 
 
-def _block(
-    block: Block, agents: Sequence[str], carded: Collection[str], cards: dict[str, list[Markup]]
-) -> dict[str, Any]:
-    """A group with its scenarios: the cells of the table, and the cases that have cards."""
+def _heading(track: str, groups: Mapping[str, Sequence[str]]) -> str:
+    """The heading of a track's table; empty where the only track is not known."""
+    return titled(track) if track or len(groups) > 1 else ""
+
+
+def _table(matrix: dict[str, Any], agents: Sequence[str], carded: Collection[str], title: str) -> dict[str, Any]:
+    """The table of the agents of one track."""
+    return {
+        "title": title,
+        "agents": agents,
+        "blocks": [
+            {
+                "group": block.group,
+                "rows": [
+                    {
+                        "scenario": row.scenario,
+                        "title": row.title,
+                        "cells": [_cell(row.cases, agent, carded) for agent in agents],
+                    }
+                    for row in block.rows
+                ],
+            }
+            for block in blocks(matrix)
+        ],
+        "totals": [_total(matrix["cases"], agent) for agent in agents],
+    }
+
+
+def _cases(block: Block, cards: dict[str, list[Markup]]) -> dict[str, Any]:
+    """A group with its scenarios: the cases that have cards."""
     rows = []
     for row in block.rows:
         shown = [case for case in row.cases if case["id"] in cards]
@@ -171,7 +200,6 @@ def _block(
             {
                 "scenario": row.scenario,
                 "title": row.title,
-                "cells": [_cell(row.cases, agent, carded) for agent in agents],
                 "cases": [_case(case, headers[case["id"]], cards[case["id"]]) for case in shown],
                 "left": len(row.cases) - len(shown),
             }
