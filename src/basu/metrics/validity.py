@@ -202,7 +202,7 @@ class _Lanes:
 
 
 def _widths_m(route: Route) -> NDArray[np.float64]:
-    """Return (N,) the widths of the lanes under the route; 0 in a record without a map, whose plan is its own track."""
+    """Return (N,) the widths of the lanes under the route, 0 if unknown: then the plan is the track of the drive."""
     return np.nan_to_num(route.lane_width_m, nan=0.0)
 
 
