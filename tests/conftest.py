@@ -35,7 +35,6 @@ LONGEST = (
     "basu/test_api.py",
     "linden/cli/test_serve.py",
     "linden/authoring/aisan/test_convert.py",
-    "basu/managers/test_interference.py",
     "linden/test_fuzzed_files.py",
     "basu/output/hud/test_live.py",
     "basu/test_notebook.py",
