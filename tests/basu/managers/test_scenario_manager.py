@@ -249,7 +249,7 @@ def test_what_was_not_reached_is_reported_as_such() -> None:
     schema = read_schema(RESULT_SCHEMA)
     assert list(mistakes(row, {**schema["$defs"]["scenario"], "$defs": schema["$defs"]})) == []
     text = "\n".join(met([row]))
-    assert "0 of 0 passed; 0 of 1 reached" in text
+    assert "0 of 0 passed, 0 not exercised; 0 of 1 reached" in text
     assert "not reached" in text
 
 
@@ -387,4 +387,4 @@ def test_a_run_meets_its_scenarios_and_leaves_the_world_as_it_was(
     assert rain["began_s"] < stumbles["began_s"] < rain["ended_s"]  # they overlap
     assert "it never triggered" in dozes["message"]
     said = capsys.readouterr().out
-    assert "1 of 1 passed; 3 of 3 reached" in said
+    assert "1 of 1 passed, 2 not exercised; 3 of 3 reached" in said
