@@ -48,7 +48,7 @@ def made_rclpy() -> Path:
 
 
 def _state() -> str:
-    """A hash of all that the environment is made of."""
+    """Return a hash of the files from which the environment is made."""
     files = [REQUIREMENTS, SIDE / "messages.py", Path(__file__), *sorted(DEFINITIONS.rglob("*.msg"))]
     return hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
 

@@ -29,8 +29,8 @@ LOOK_ON = 0.1  # and of the drives of the estimate
 LEAST_ELITE = 5  # drives from which a mixture is computed
 FAILED = 1.0  # severity of a failure, above that of every success
 FEW = 30.0  # effective failures below which an estimate says that it rests on few
-HEAVY = 0.08  # of an estimate: more than this from one drive is said
-STRAY = 0.1  # of an estimate: more than this from failures where none was expected is said
+HEAVY = 0.08  # of an estimate: a larger part from one drive gets a caution
+STRAY = 0.1  # of an estimate: a larger part from failures outside of the proposal's regions gets a caution
 
 
 class CrossEntropy:

@@ -70,11 +70,11 @@ def score_lines(result: Result) -> list[str]:
     lines = [
         f"{name:<{NAME_WIDTH}}{scores[key]:8.3f}{mark if key == 'driving' else ''}" for key, name in SCORES.items()
     ]
+    if result.is_broken_off:
+        figure = f"the thesis's figure {scores['driving']:.3f}{mark}"
+        lines[0] = f"{SCORES['driving']:<{NAME_WIDTH}}{NOT_COMPLETED}; {figure}"
     if not result.is_comparable:
-        ended = f"{NOT_COMPARABLE}: {why_not_comparable(result)}"
-        figure = f"{NOT_COMPLETED}; the thesis's figure {scores['driving']:.3f}" if result.is_broken_off else lines[0]
-        name = f"{SCORES['driving']:<{NAME_WIDTH}}" if result.is_broken_off else ""
-        lines[0] = f"{name}{figure}{mark if result.is_broken_off else ''}  {ended}"
+        lines[0] += f"  {NOT_COMPARABLE}: {why_not_comparable(result)}"
     return [*lines, *_access(result)]
 
 
