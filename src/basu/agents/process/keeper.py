@@ -172,13 +172,19 @@ class _Outputs:
     def __init__(self, descriptors: list[int]) -> None:
         self.open = dict(zip(descriptors, (1, 2), strict=True))
         self._left = dict.fromkeys(descriptors, OUTPUT_BYTES)
+        self._has_begun = False
         for descriptor in descriptors:
             os.set_blocking(descriptor, False)
 
     def begin(self) -> None:
-        """Begin a run: its output is counted anew. What the run before has written is passed on first."""
-        self.drain()
-        self._left = dict.fromkeys(self._left, OUTPUT_BYTES)
+        """Begin a run: its output is counted anew. What the run before has written is passed on first.
+
+        What the process wrote before the keeper learned of the first run belongs to the first run.
+        """
+        if self._has_begun:
+            self.drain()
+            self._left = dict.fromkeys(self._left, OUTPUT_BYTES)
+        self._has_begun = True
 
     def drain(self) -> None:
         """Pass on what lies in the pipes, and no more than they hold."""
