@@ -56,7 +56,7 @@ class CampaignRun:
         names = [agent.name for agent in plan.agents]
         self._records = Records(folder, plan.campaign.keep)
         self._strands = _strands(plan, folder)
-        self._looks = Looks(plan.campaign.until, names, plan.campaign.confidence, plan.campaign.block)
+        self._looks = Looks(plan.campaign.until, names, plan.campaign.confidence, table.rows)
         self._failures = dict.fromkeys(names, 0)
         self._began_s, self._written_s = time.monotonic(), 0.0
         self._driven = 0  # by this command
@@ -110,7 +110,6 @@ class CampaignRun:
             self._looks.complete(block)
 
     def _count(self, row: dict[str, Any]) -> None:
-        self._looks.count(row)
         if self._strands is not None:
             self._strands.count(row)
         if row["success"] is False:

@@ -10,7 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from basu.campaigns.columns import VOLATILE
+from basu.campaigns.evidence import OWN
 from basu.intervals import Interval, Paired, bootstrap, clopper_pearson, mcnemar, sign_test, wilson
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 HOUR_S = 3_600.0
-OWN = frozenset({"number", "id", "seed", "records_bytes", *VOLATILE})  # columns in which equal drives may differ
 
 
 class Rate(NamedTuple):

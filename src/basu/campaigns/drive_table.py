@@ -169,6 +169,13 @@ class DriveTable:
         """Whether all rows of a block are written."""
         return block in self._complete
 
+    def rows(self, block: int) -> Iterator[dict[str, Any]]:
+        """Return the rows of a complete block, as their files have them."""
+        for path in sorted((self.folder / DRIVES).glob(f"*/block-{block:06d}.parquet")):
+            agent = path.parent.name.partition("=")[2]
+            for row in pq.read_table(path, partitioning=None).to_pylist():
+                yield {**row, "agent": agent}
+
     def cut(self, blocks: int) -> None:
         """Remove all rows behind the first so many blocks."""
         for block in [each for each in self._open if each >= blocks]:

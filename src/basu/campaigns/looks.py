@@ -1,19 +1,20 @@
 """`Looks`: stops a campaign once each agent's confidence interval is narrow enough; checked after each complete block.
 
-A look counts the rows of the first blocks and no others. So a campaign stops at the same drive with any number of
-workers. Looking several times makes an interval cover slightly less than it says. Source: Frey 2010, "Fixed-width
-sequential confidence intervals for a proportion", The American Statistician 64(3). ``least`` keeps early looks out.
+A look counts the distinct drives of the first blocks and no others (`basu.campaigns.evidence`). So a campaign stops at
+the same drive with any number of workers. Looking several times makes an interval cover slightly less than it says.
+Source: Frey 2010, "Fixed-width sequential confidence intervals for a proportion", The American Statistician 64(3).
+``least`` keeps early looks out.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from typing import TYPE_CHECKING, Any
 
+from basu.campaigns.evidence import Evidence
 from basu.intervals import wilson
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from basu.campaigns.settings import Until
 
@@ -21,25 +22,23 @@ if TYPE_CHECKING:
 class Looks:
     """The counts of complete blocks, summed as far as there is no gap."""
 
-    def __init__(self, until: Until | None, agents: Iterable[str], confidence: float, block: int) -> None:
-        """Take the rule; without one no look ever stops a campaign."""
-        self._until, self._agents, self._confidence, self._block = until, tuple(agents), confidence, block
-        self._waiting: dict[int, Counter[tuple[str, str]]] = {}
+    def __init__(
+        self,
+        until: Until | None,
+        agents: Iterable[str],
+        confidence: float,
+        rows_of: Callable[[int], Iterable[Mapping[str, Any]]],
+    ) -> None:
+        """Take the rule; without one no look ever stops a campaign. ``rows_of`` gives the rows of a complete block."""
+        self._until, self._agents, self._confidence, self._rows_of = until, tuple(agents), confidence, rows_of
         self._complete: set[int] = set()
-        self._sum: Counter[tuple[str, str]] = Counter()
-        self._summed = 0  # blocks in the sum
+        self._evidence = Evidence()
+        self._summed = 0  # blocks in the evidence
         self.stopped_after: int | None = None  # blocks; None while the question is open
 
     def is_answered(self) -> bool:
         """Whether a look has stopped the campaign."""
         return self.stopped_after is not None
-
-    def count(self, row: Mapping[str, Any]) -> None:
-        """Count a row of an open block."""
-        if self._until is not None and row["judged"]:
-            counts = self._waiting.setdefault(row["number"] // self._block, Counter())
-            counts[row["agent"], "judged"] += 1
-            counts[row["agent"], "success"] += bool(row["success"])
 
     def complete(self, block: int) -> None:
         """Mark a block as complete, and look wherever all blocks before are complete as well."""
@@ -48,7 +47,8 @@ class Looks:
         self._complete.add(block)
         while self._summed in self._complete and self.stopped_after is None:
             self._complete.remove(self._summed)
-            self._sum += self._waiting.pop(self._summed, Counter())
+            for row in self._rows_of(self._summed):
+                self._evidence.add(row)
             self._summed += 1
             if self._is_known():
                 self.stopped_after = self._summed
@@ -58,9 +58,7 @@ class Looks:
         until = self._until
         assert until is not None, "there is no look without a rule"
         for agent in self._agents:
-            judged = self._sum[agent, "judged"]
-            if judged < until.least:
-                return False
-            if wilson(self._sum[agent, "success"], judged, self._confidence).width > until.width:
+            judged, successes = self._evidence.of(agent)
+            if judged < until.least or wilson(successes, judged, self._confidence).width > until.width:
                 return False
         return True

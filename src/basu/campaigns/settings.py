@@ -131,7 +131,7 @@ class Until(Table):
     """When the question is answered: every agent's interval is narrow enough."""
 
     width: Annotated[float, Field(gt=0.0, lt=1.0)]  # of the interval of the success rate
-    least: Annotated[int, Field(ge=1)] = 100  # judged drives of each agent before the first look
+    least: Annotated[int, Field(ge=1)] = 100  # distinct judged drives of each agent before the first look
     every: Annotated[int, Field(ge=1)] = 100  # drives from one look to the next
 
 

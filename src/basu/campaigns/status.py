@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.campaigns.campaign_folder import PROGRESS_FILE, STOP_FILE, is_locked, read_campaign_document
 from basu.campaigns.drive_table import DRIVES, journal_rows, open_drives
+from basu.campaigns.evidence import Evidence
 from basu.files import read_json
 from basu.intervals import wilson
 
@@ -23,10 +24,11 @@ def status(folder: Path) -> str:
     document = read_campaign_document(folder)
     rows = _rows(folder)
     counts: Counter[tuple[str, str]] = Counter()
+    evidence = Evidence()
     for row in rows.values():
+        evidence.add(row)
         counts[row["agent"], "all"] += 1
         counts[row["agent"], "judged"] += bool(row["judged"])
-        counts[row["agent"], "success"] += bool(row["success"])
         counts[row["agent"], row["fault"]] += 1
         counts[row["agent"], "not exercised"] += row.get("not_exercised") or 0
     planned = document["planned"]
@@ -34,10 +36,13 @@ def status(folder: Path) -> str:
     lines = [f"campaign  {document['name']}", f"state     {_state(folder, len(rows), planned)}"]
     lines.append(f"drives    {len(rows)} of {planned}")
     for agent in document["agents"]:
-        known = wilson(counts[agent, "success"], counts[agent, "judged"], document["settings"]["confidence"])
+        distinct, successes = evidence.of(agent)
+        known = wilson(successes, distinct, document["settings"]["confidence"])
         broken = sum(counts[agent, fault] for fault in ("simulator", "setup", "benchmark"))
         rate = f"{100.0 * known.value:.1f} % success ({100.0 * known.low:.1f} to {100.0 * known.high:.1f})"
-        said = rate if counts[agent, "judged"] else "nothing judged yet"
+        repeated = counts[agent, "judged"] - distinct
+        rate += f", {repeated} repeat another drive under a new seed and do not count" if repeated else ""
+        said = rate if distinct else "nothing judged yet"
         faults = f", {broken} with a fault that is not the agent's" if broken else ""
         absent = f", {counts[agent, 'not exercised']} not exercised"
         lines.append(f"{agent:<{width}}  {counts[agent, 'all']} drives, {said}{absent}{faults}")
@@ -46,13 +51,12 @@ def status(folder: Path) -> str:
 
 def _rows(folder: Path) -> dict[int, dict[str, Any]]:
     """The rows by number, as far as they are written."""
-    columns = ["number", "agent", "judged", "success", "fault", "not_exercised"]
     rows: dict[int, dict[str, Any]] = {}
     if any((folder / DRIVES).glob("*/block-*.parquet")):
-        for batch in open_drives(folder).to_batches(columns=columns):
+        for batch in open_drives(folder).to_batches():
             rows |= {row["number"]: row for row in batch.to_pylist()}
     for row in journal_rows(folder):
-        rows[row["number"]] = {name: row.get(name) for name in columns}
+        rows[row["number"]] = row
     return rows
 
 

@@ -1,8 +1,12 @@
 """Claims about drives that do not react to their seed: they count once."""
 
 import pyarrow as pa
+import pytest
 
 from basu.campaigns.conclusions import distinct, first_of_equal, pairs, rates
+from basu.campaigns.evidence import Evidence
+from basu.campaigns.looks import Looks
+from basu.campaigns.settings import Until
 
 
 def table(seeds: int) -> pa.Table:
@@ -45,3 +49,24 @@ def test_a_drive_that_its_seed_changed_stays_and_pairs_with_the_other_agents_equ
     assert distinct(three).num_rows == 21
     assert first_of_equal(three)[21] == 21
     assert pairs(three, ["a", "b"])[0].success.pairs == 11
+
+
+@pytest.mark.parametrize("seeds", [1, 3])
+def test_rows_counted_one_by_one_and_a_filtered_table_are_the_same_evidence(seeds: int) -> None:
+    evidence = Evidence()
+    for row in table(seeds).to_pylist():
+        evidence.add(row)
+    assert [evidence.of(agent) for agent in ("a", "b")] == [
+        (rate.judged, rate.successes) for rate in rates(distinct(table(seeds)), ["a", "b"], 0.95)
+    ]
+
+
+def test_repeated_drives_do_not_stop_a_campaign() -> None:
+    rows = table(3).to_pylist()
+    blocks = [rows[first : first + 20] for first in (0, 20, 40)]
+    for least, stopped_after in ((10, 1), (11, None)):
+        until = Until(width=0.4, least=least, every=10)
+        looks = Looks(until, ["a", "b"], 0.95, blocks.__getitem__)
+        for block in range(3):
+            looks.complete(block)
+        assert looks.stopped_after == stopped_after
