@@ -215,7 +215,7 @@ def test_output_is_bounded_in_each_run(tmp_path: Path) -> None:
         "for _ in range(2): remote = RemoteAgent(found, 10.0, 0); remote.own_route()\n"
         "remote._process.kill()"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True)
+    done = subprocess.run([sys.executable, "-c", program], check=False, capture_output=True)
     assert done.returncode == 0, done.stderr.decode()
     assert 0 < len(done.stdout) <= 2 << 20
     assert done.stderr.count(b"the agent wrote more than 1 MB in this run") == 2
