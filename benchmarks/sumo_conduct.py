@@ -278,7 +278,7 @@ def drive(folder: Path, the_map: Map, track: np.ndarray, options: argparse.Names
     bridge = Bridge(link, None, world, None, lights="none")
     bridge.display = shown = _Shown(actors={}, users={}, waiting={}, shown=0)
     if options.random is not None:
-        bridge.before_step = RandomTrips(link, options.random, options.seed, bridge.viewers_m).fill
+        bridge.before_step = RandomTrips(link, options.random, options.seed, bridge.viewers_m, bridge.held).fill
     sizes = {f"vehicle.{name}": (2 * fact["half_m"][0], 2 * fact["half_m"][1])
              for name, fact in world.library.facts.items()}  # fmt: skip
     watch = Watch(the_map, sizes)

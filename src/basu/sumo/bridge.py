@@ -16,7 +16,7 @@ from basu.sumo.trip_ends import TripEnds
 from basu.sumo.trip_starts import TripStarts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Collection, Iterable
 
     import carla
 
@@ -157,6 +157,10 @@ class Bridge:
     def viewers_m(self) -> tuple[tuple[float, float], ...]:
         """Return the places of the simulator's vehicles: no vehicle of SUMO begins or ends a trip in their sight."""
         return self.mirrors.places_m
+
+    def held(self) -> Collection[str]:
+        """Return the vehicles that wait to begin their trips out of sight."""
+        return self.trip_starts.held
 
     def _centre(self, snapshot: carla.WorldSnapshot) -> carla.Location | None:
         """Where the circle of what is shown has its middle."""

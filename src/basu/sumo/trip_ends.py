@@ -24,7 +24,7 @@ ATTEMPTS = 50  # destinations drawn for a vehicle until a route leads there
 
 
 class Streets:
-    """The streets for cars: ``edges`` with ``lengths_m``; ``exits`` lead to where the network ends, ``entrances`` away."""
+    """Streets for cars: ``edges`` with ``lengths_m``; the network ends behind ``exits`` and before ``entrances``."""
 
     def __init__(self, link: Link) -> None:
         """Read the network's streets.

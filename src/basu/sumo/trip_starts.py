@@ -8,7 +8,7 @@ from basu.sumo.road_users import MIRROR
 from basu.sumo.trip_ends import LOOK_STEPS, is_in_sight
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Collection, Iterable, Sequence
 
     from basu.sumo.link import Link
     from basu.sumo.trip_ends import Streets
@@ -41,6 +41,11 @@ class TripStarts:
         self._held: dict[str, _Held] = {}
         self._steps = 0
         self.delayed = 0  # trips that were held back
+
+    @property
+    def held(self) -> Collection[str]:
+        """The vehicles that wait."""
+        return self._held.keys()
 
     def look(self, viewers_m: Iterable[tuple[float, float]]) -> frozenset[str]:
         """Hold back what has departed in sight of ``viewers_m``, and let others depart; return the new held vehicles.

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from basu.sumo.link import Link, in_process
+from basu.sumo.random_trips import RandomTrips
 from basu.sumo.trip_ends import Streets
 from basu.sumo.trip_starts import TripStarts
 
@@ -82,6 +83,19 @@ def test_other_trips_begin_as_planned(
     vehicle.add("one", "way", typeID="vehicle.audi.a2", line=line)
     assert driven(link, starts, viewers_m, 3) == set()
     assert vehicle.getIDList() == ("one",)
+    link.close()
+
+
+def test_a_random_trip_that_is_held_back_is_not_replaced(link: Link, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("basu.sumo.random_trips.LEAST_EDGES", 2)
+    starts = TripStarts(link, lambda: Streets(link))
+    trips = RandomTrips(link, 1, 0, held=lambda: starts.held)
+    driven(link, starts, FAR, 2)
+    monkeypatch.setattr(trips, "_route", lambda: ["bc"])  # it was out of sight when it was drawn
+    for _ in range(5):
+        trips.fill()
+        driven(link, starts, NEAR, 1)
+    assert list(starts.held) == ["random0"]
     link.close()
 
 
