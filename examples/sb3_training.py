@@ -1,6 +1,6 @@
 """Train a driver by PPO of Stable-Baselines3, and compare it with others on routes that it has never driven.
 
-usage: python examples/sb3_training.py train [--steps 250000] [--seed 0] [--output sb3]
+usage: python examples/sb3_training.py train [--steps 300000] [--seed 0] [--output sb3]
        python examples/sb3_training.py compare [--policy sb3/policy.npz]
 
 ``pip install linden[sb3]`` brings Stable-Baselines3 and PyTorch. ``compare`` needs neither. The routes are parts of the
@@ -210,7 +210,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     commands = parser.add_subparsers(dest="command", required=True)
     training = commands.add_parser("train")
-    training.add_argument("--steps", type=int, default=250_000, help="actions of all environments together")
+    training.add_argument("--steps", type=int, default=300_000, help="actions of all environments together")
     training.add_argument("--seed", type=int, default=0)
     training.add_argument("--output", type=Path, default=Path("sb3"))
     comparing = commands.add_parser("compare")
