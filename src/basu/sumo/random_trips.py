@@ -33,8 +33,8 @@ class RandomTrips:
     ) -> None:
         """Read the network's streets.
 
-        ``viewers`` returns the places in m of which no vehicle begins in sight. ``held`` returns the vehicles that
-        begin later, which SUMO counts as arrived (`trip_starts.TripStarts`).
+        ``viewers`` returns places in m: no vehicle begins in their sight. ``held`` returns vehicles that begin later
+        (`trip_starts.TripStarts`). SUMO counts them as arrived.
 
         Raises:
             UserError: it has none that cars may begin at.
