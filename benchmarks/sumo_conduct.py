@@ -47,6 +47,7 @@ JUMP_M = 0.3  # sideways in a tick: 6 m/s
 TOUCH_M2 = 0.05
 SAMPLE_TICKS = 10
 HARD_MPS2 = 0.3  # beyond the deceleration of its type, an emergency
+ROUNDING_MPS = 1.0  # SUMO's last steps before it stands brake 0.4 m/s2 harder than the type does
 
 
 class Map:
@@ -171,9 +172,10 @@ class Watch:
     def _brake(self, name: str, user: RoadUser, shuttle_m: tuple[float, float], link: Any) -> None:  # noqa: ANN401
         api = link.api.vehicle
         beyond_mps2 = -api.getAcceleration(name) - api.getDecel(name)
-        if beyond_mps2 > HARD_MPS2:
+        if beyond_mps2 > HARD_MPS2 and api.getSpeed(name) > ROUNDING_MPS:
             if name not in self._braking:
-                self.brakings.append((self.tick * STEP_S, name, beyond_mps2, math.dist(user.pose[:2], shuttle_m)))
+                at = f"{name} on {api.getLaneID(name)} behind {(api.getLeader(name) or ('nothing',))[0] or 'nothing'}"
+                self.brakings.append((self.tick * STEP_S, at, beyond_mps2, math.dist(user.pose[:2], shuttle_m)))
             self._braking[name] = beyond_mps2
         else:
             self._braking.pop(name, None)
@@ -276,7 +278,7 @@ def drive(folder: Path, the_map: Map, track: np.ndarray, options: argparse.Names
     bridge = Bridge(link, None, world, None, lights="none")
     bridge.display = shown = _Shown(actors={}, users={}, waiting={}, shown=0)
     if options.random is not None:
-        bridge.before_step = RandomTrips(link, options.random, options.seed, bridge.viewers_m).fill
+        bridge.before_step = RandomTrips(link, options.random, options.seed, bridge.viewers_m, bridge.held).fill
     sizes = {f"vehicle.{name}": (2 * fact["half_m"][0], 2 * fact["half_m"][1])
              for name, fact in world.library.facts.items()}  # fmt: skip
     watch = Watch(the_map, sizes)

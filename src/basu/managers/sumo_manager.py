@@ -61,7 +61,7 @@ class SumoManager(BaseManager):
         self._check(bridge, run)
         self._step_s, self._stops = run.step_s, run.route.stops
         if self._sumo.is_random:
-            bridge.before_step = RandomTrips(link, self._sumo.vehicles, run.seed, bridge.viewers_m).fill
+            bridge.before_step = RandomTrips(link, self._sumo.vehicles, run.seed, bridge.viewers_m, bridge.held).fill
         self._load, self._passengers = Load(link, run.step_s), Passengers(link, [stop.id for stop in self._stops])
         bridge.step(run.world.get_snapshot())
 
@@ -136,7 +136,7 @@ class SumoManager(BaseManager):
         t_s = frame.tick * self._step_s
         self._passengers.tick(t_s, self._served(frame))
         bridge.step(frame.snapshot)
-        self._load.tick(t_s + self._step_s, bridge.people.present)
+        self._load.tick(t_s + self._step_s, bridge.people.present, bridge.held())
 
     def _served(self, frame: Frame) -> str | None:
         """The stop that the vehicle under test serves in this frame."""

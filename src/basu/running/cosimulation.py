@@ -47,7 +47,7 @@ def cosimulate(options: RunOptions, *, step_s: float, makes_ticks: bool, limit_s
         bridge = Bridge(link, client, world, carla_map, radius_m=sumo.radius_m, lights=sumo.lights)
         _check(bridge, carla_map)
         if sumo.is_random:
-            bridge.before_step = RandomTrips(link, sumo.vehicles, options.seed, bridge.viewers_m).fill
+            bridge.before_step = RandomTrips(link, sumo.vehicles, options.seed, bridge.viewers_m, bridge.held).fill
         snapshots = _ticked(world, step_s, options.timeout_s) if makes_ticks else _followed(world, options.timeout_s)
         _go_on(bridge, snapshots, step_s, limit_s)
     except RuntimeError as error:

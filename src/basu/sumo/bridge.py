@@ -13,9 +13,10 @@ from basu.sumo.mirrors import ROLE, Mirrors
 from basu.sumo.models import Models
 from basu.sumo.road_users import People, RoadUser, Vehicles
 from basu.sumo.trip_ends import TripEnds
+from basu.sumo.trip_starts import TripStarts
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable, Collection, Iterable
 
     import carla
 
@@ -65,6 +66,7 @@ class Bridge:
         self.mirrors = Mirrors(link, world, models)
         self.vehicles, self.people = Vehicles(link, models), People(link, models)
         self.trip_ends = TripEnds(link)
+        self.trip_starts = TripStarts(link, lambda: self.trip_ends.streets)
         self.display = Display(client, world, carla_map, radius_m)
         self.before_step: Callable[[], object] = lambda: None  # is called before each step of SUMO
         self._lights = None
@@ -143,9 +145,11 @@ class Bridge:
         if self._lights is not None and self._who_has_lights == "carla":
             self._lights.to_sumo()
         self.link.step()
+        with self.link.answering("letting trips begin"):
+            held = self.trip_starts.look(self.mirrors.places_m)
         with self.link.answering("naming its road users"):
             people = {f"{PERSON}{name}": user for name, user in self.people.read().items()}
-            vehicles = self.vehicles.read()
+            vehicles = self.vehicles.read(held)
         with self.link.answering("prolonging trips"):
             self.trip_ends.look(vehicles, self.mirrors.places_m)
         return {**vehicles, **people}
@@ -153,6 +157,10 @@ class Bridge:
     def viewers_m(self) -> tuple[tuple[float, float], ...]:
         """Return the places of the simulator's vehicles: no vehicle of SUMO begins or ends a trip in their sight."""
         return self.mirrors.places_m
+
+    def held(self) -> Collection[str]:
+        """Return the vehicles that wait to begin their trips out of sight."""
+        return self.trip_starts.held
 
     def _centre(self, snapshot: carla.WorldSnapshot) -> carla.Location | None:
         """Where the circle of what is shown has its middle."""

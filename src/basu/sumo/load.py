@@ -8,6 +8,8 @@ from basu.records.history.sumo import Second
 from basu.sumo.road_users import MIRROR
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from basu.sumo.link import Link
 
 HALTED_MPS = 0.1  # SUMO's own limit of a halt: microsim/MSGlobals, SUMO_const_haltingSpeed
@@ -25,18 +27,19 @@ class Load:
         self.seconds: list[Second] = []
         self.arrived = self.contacts = self.delayed = 0
 
-    def tick(self, t_s: float, people: int) -> None:
-        """Look at SUMO after a step.
+    def tick(self, t_s: float, people: int, held: Collection[str] = ()) -> None:
+        """Look at SUMO after a step. ``held`` are vehicles that begin later, which SUMO counts as arrived.
 
         Raises:
             SimulatorError: SUMO failed.
         """
         api = self._link.api
         with self._link.answering("naming its traffic"):
-            self.arrived += sum(not name.startswith(MIRROR) for name in api.simulation.getArrivedIDList())
+            arrived = [name for name in api.simulation.getArrivedIDList() if name not in held]
+            self.arrived += sum(not name.startswith(MIRROR) for name in arrived)
             self._note_contacts()
             if self._steps % self._every == 0:
-                self._note_second(t_s, people)
+                self._note_second(t_s, people, len(held))
         self._steps += 1
 
     def _note_contacts(self) -> None:
@@ -49,7 +52,7 @@ class Load:
         self.contacts += len(pairs - self._contacts)
         self._contacts = pairs
 
-    def _note_second(self, t_s: float, people: int) -> None:
+    def _note_second(self, t_s: float, people: int, held: int) -> None:
         """Add a row: speeds now stand for the time since the last row."""
         vehicle = self._link.api.vehicle
         names = [name for name in vehicle.getIDList() if not name.startswith(MIRROR)]
@@ -60,4 +63,4 @@ class Load:
         halted = sum(speed < HALTED_MPS for speed in speeds)
         row = Second(t_s, len(names), people, halted, since_s * sum(speeds), since_s * slower)
         self.seconds.append(row)
-        self.delayed = len(self._link.api.simulation.getPendingVehicles())
+        self.delayed = held + len(self._link.api.simulation.getPendingVehicles())

@@ -9,7 +9,7 @@ from basu.errors import UserError
 from basu.sumo.trip_ends import Streets, is_in_sight
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Collection
 
     from basu.sumo.link import Link
 
@@ -23,13 +23,23 @@ Places = tuple[tuple[float, float], ...]
 class RandomTrips:
     """Keeps ``count`` vehicles on the road. A vehicle in sight does not end its trip: see `trip_ends.TripEnds`."""
 
-    def __init__(self, link: Link, count: int, seed: int, viewers: Callable[[], Places] = tuple) -> None:
-        """Read the network's streets. ``viewers`` returns the places in m of which no vehicle begins in sight.
+    def __init__(
+        self,
+        link: Link,
+        count: int,
+        seed: int,
+        viewers: Callable[[], Places] = tuple,
+        held: Callable[[], Collection[str]] = tuple,
+    ) -> None:
+        """Read the network's streets.
+
+        ``viewers`` returns places in m: no vehicle begins in their sight. ``held`` returns vehicles that begin later
+        (`trip_starts.TripStarts`). SUMO counts them as arrived.
 
         Raises:
             UserError: it has none that cars may begin at.
         """
-        self._link, self._count, self._viewers = link, count, viewers
+        self._link, self._count, self._viewers, self._held = link, count, viewers, held
         self._dice = random.Random(seed)  # noqa: S311 - to be had again by its seed, not to be a secret
         self._number = 0
         self._alive: set[str] = set()
@@ -40,7 +50,7 @@ class RandomTrips:
     def fill(self) -> None:
         """Add a vehicle for each one that is missing."""
         with self._link.answering("adding a random trip"):
-            self._alive -= set(self._link.api.simulation.getArrivedIDList())
+            self._alive -= set(self._link.api.simulation.getArrivedIDList()) - set(self._held())
             first = self._number == 0
             while len(self._alive) < self._count:
                 route = self._route()

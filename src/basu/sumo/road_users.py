@@ -11,6 +11,8 @@ from basu.sumo.frames import Pose, from_sumo
 from basu.sumo.sideways import Sideways
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from basu.sumo.link import Link
     from basu.sumo.models import Models
 
@@ -61,11 +63,11 @@ class Vehicles:
         self._sideways = Sideways(float(link.api.simulation.getDeltaT()))
         self.departed = self.most = self.present = 0
 
-    def read(self) -> dict[str, RoadUser]:
-        """All vehicles that SUMO drives, by their names, in the order of the names."""
+    def read(self, held: Collection[str] = ()) -> dict[str, RoadUser]:
+        """All vehicles that SUMO drives, by their names, in the order of the names; ``held`` have not departed yet."""
         api = self._link.api
         for name in sorted(api.simulation.getDepartedIDList()):
-            if not name.startswith(MIRROR):
+            if not name.startswith(MIRROR) and name not in held:
                 self.depart(name)
         states = api.vehicle.getAllSubscriptionResults()
         found = {name: self._user(name, states[name]) for name in sorted(states) if not name.startswith(MIRROR)}

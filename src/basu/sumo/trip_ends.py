@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import random
 from collections import defaultdict
@@ -23,7 +24,7 @@ ATTEMPTS = 50  # destinations drawn for a vehicle until a route leads there
 
 
 class Streets:
-    """The streets for cars: ``edges`` with ``lengths_m``, ``exits`` lead to where the network ends."""
+    """Streets for cars: ``edges`` with ``lengths_m``; the network ends behind ``exits`` and before ``entrances``."""
 
     def __init__(self, link: Link) -> None:
         """Read the network's streets.
@@ -46,6 +47,7 @@ class Streets:
             ways[end].append(start)
         outer = {node for node, others in ways.items() if len(set(others)) == 1 and len(others) <= THERE_AND_BACK}
         self.exits = {edge for edge in self.edges if ends[edge][1] in outer}
+        self.entrances = {edge for edge in self.edges if ends[edge][0] in outer}
 
     def beginning_m(self, edge: str) -> tuple[float, float]:
         """Return where a street begins, in CARLA's frame."""
@@ -67,10 +69,14 @@ class TripEnds:
     def __init__(self, link: Link) -> None:
         """Look at no vehicle yet."""
         self._link = link
-        self._streets: Streets | None = None
         self._dice = random.Random("trip ends")  # noqa: S311 - to be had again, not to be a secret
         self._steps = 0
         self.prolonged = 0  # trips that were given a new destination
+
+    @functools.cached_property
+    def streets(self) -> Streets:
+        """The network's streets, read when they are first needed."""
+        return Streets(self._link)
 
     def look(self, users: Mapping[str, RoadUser], viewers_m: Iterable[tuple[float, float]]) -> None:
         """Look at the vehicles near ``viewers_m``, which are places of the simulator's vehicles."""
@@ -78,11 +84,9 @@ class TripEnds:
         places_m = list(viewers_m)
         if self._steps % LOOK_STEPS != 0 or not places_m:
             return
-        if self._streets is None:
-            self._streets = Streets(self._link)
         for name, user in users.items():
             if not user.look.is_person and is_in_sight(user.pose[:2], places_m):
-                self._prolong(name, self._streets)
+                self._prolong(name, self.streets)
 
     def _prolong(self, name: str, streets: Streets) -> None:
         """Give one vehicle another destination if its trip ends soon, in the midst of the streets."""
@@ -99,9 +103,9 @@ class TripEnds:
                 return
 
 
-def is_in_sight(at_m: tuple[float, ...], places_m: Iterable[tuple[float, float]]) -> bool:
-    """Return whether a place lies within ``SIGHT_M`` of one of ``places_m``."""
-    return any(math.dist(at_m, place_m) < SIGHT_M for place_m in places_m)
+def is_in_sight(at_m: tuple[float, ...], places_m: Iterable[tuple[float, float]], slack_m: float = 0.0) -> bool:
+    """Return whether a place lies within ``SIGHT_M`` and ``slack_m`` of one of ``places_m``."""
+    return any(math.dist(at_m, place_m) < SIGHT_M + slack_m for place_m in places_m)
 
 
 def _for_cars(api: object, edge: str) -> bool:

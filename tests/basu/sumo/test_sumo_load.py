@@ -25,6 +25,16 @@ def loaded(link: Link, seconds: float, people: int = 0) -> Load:
     return load
 
 
+def test_a_vehicle_that_begins_later_is_delayed_and_has_not_arrived(folder: Path) -> None:
+    link = in_process(folder / "small.sumocfg", step_s=STEP_S, seed=0)
+    load = Load(link, STEP_S)
+    link.step()
+    link.api.vehicle.remove("one")
+    load.tick(STEP_S, 0, {"one"})
+    assert (load.arrived, load.delayed) == (0, 1)
+    link.close()
+
+
 def test_a_free_vehicle_loses_little_and_a_stopped_one_loses_all_its_time(folder: Path) -> None:
     link = in_process(folder / "small.sumocfg", step_s=STEP_S, seed=0)
     free = loaded(link, 12.0, people=3)

@@ -36,6 +36,7 @@ def driven(link: Link, viewers_m: tuple[tuple[float, float], ...], steps: int = 
 def test_the_network_ends_where_a_single_street_leads(folder: Path) -> None:
     link = in_process(folder / "small.empty.sumocfg", step_s=STEP_S, seed=0)
     assert Streets(link).exits == {"ba", "bc", "bd"}
+    assert Streets(link).entrances == {"ab", "cb", "db"}
 
 
 def test_a_trip_that_ends_in_the_midst_of_the_streets_goes_on_while_it_is_seen(folder: Path) -> None:
