@@ -1,4 +1,4 @@
-"""What the gate costs a whole drive: processor time of all processes of ``basu run``, with the gate and with ``--open``.
+"""What the gate costs a whole drive: processor time of all processes of ``basu run``, through the gate and ``--open``.
 
     python benchmarks/drive_cost.py [--turns 5] [--agent basic] [--routes routes/linden_short.xml] [--stop-after S]
 
