@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from basu.scenarios.cases import Library
     from basu.simulator import Simulator
 
-AGAIN = frozenset({Status.SIMULATOR_FAILED})  # tried again elsewhere
+AGAIN = frozenset({Status.SIMULATOR_FAILED})  # tried again elsewhere, unless the record was unsafe before
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,8 +144,7 @@ class _Player:
             "host": platform.node(),
             "worker": os.getpid(),
         }
-        ends = After.AGAIN if status in AGAIN else After.FRESH if status is Status.BENCHMARK_FAILED else After.GO_ON
-        return Played(DriveDone(row, records), ends)
+        return Played(DriveDone(row, records), _after(status, row["success"]))
 
     def _records(self, job: dict[str, Any], row: dict[str, Any], folder: Path | None) -> bytes | None:
         """The folder as a tar file where it is a failure's, one of the sample, or worse than the driver has seen."""
@@ -253,6 +252,13 @@ class _Player:
             outcome = Outcome(STATUS_OF[type(error)], str(error))
         found = success(outcome, None, ())
         return _Driven(outcome, {**_verdict(found.passed, 1.0), "simulated_s": 0.0}, None)
+
+
+def _after(status: Status, success: bool | None) -> After:  # noqa: FBT001 - a value, not a switch
+    """Return what follows a drive; an unsafe record is a failure, so no fault of the simulator gives it another try."""
+    if status in AGAIN:
+        return After.FRESH if success is False else After.AGAIN
+    return After.FRESH if status is Status.BENCHMARK_FAILED else After.GO_ON
 
 
 def _verdict(success: bool | None, severity: float) -> dict[str, Any]:  # noqa: FBT001 - a value, not a switch

@@ -12,13 +12,15 @@ import pytest
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import AgentInProcess, find_agent
-from basu.campaigns.player import PlayerSettings, _Player
+from basu.campaigns.player import PlayerSettings, _after, _Player
 from basu.cli import main
 from basu.episode import Towns
 from basu.errors import AgentCrashedError
+from basu.jobs.job import After
 from basu.managers.agents_manager import AgentsManager, ignored_wishes
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
+from basu.outcome import Status
 from basu.running.one_run import Session, next_agents
 from basu.running.preparation import agents_fault, new_agents, prepare
 from basu.scenarios.cases import open_library
@@ -173,3 +175,9 @@ def test_later_runs_keep_the_conditions_of_the_first(at_server: Simulator, tmp_p
     session = Session(options, Scoring(), plan, at_server, Towns(at_server))
     assert isinstance(plan.loaded, AgentInProcess)
     assert next_agents(session, plan.jobs[1]).config == plan.agents.config
+
+
+def test_a_campaign_gives_an_unsafe_drive_no_second_try() -> None:
+    assert _after(Status.SIMULATOR_FAILED, success=False) is After.FRESH
+    assert _after(Status.SIMULATOR_FAILED, success=None) is After.AGAIN
+    assert _after(Status.COMPLETED, success=True) is After.GO_ON
