@@ -110,8 +110,8 @@ def off_road(history: History) -> tuple[Evidence, ...]:
 def in_oncoming_lane(history: History) -> tuple[Evidence, ...]:
     """Return one event for each stretch of more than 2 m in a lane of oncoming traffic that passes no obstacle.
 
-    An obstacle is slower than 0.5 m/s, or a walker or a cyclist, and its middle is at most 1.5 m beyond the edge of the
-    planned lane, at most 20 m before or behind the stretch, at some time from 5 s before the stretch to its end.
+    An obstacle is slower than 0.5 m/s, or a walker or a cyclist. Its middle is at most 1.5 m beyond the planned lane's
+    edge and at most 20 m before or behind the stretch. It counts from 5 s before the stretch to its end.
     """
     share = share_of(
         history,

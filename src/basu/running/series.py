@@ -2,8 +2,8 @@
 
 ``<output>/<name>/`` holds ``series.json`` and a folder for each run, called by the number of the run. A run's folder
 gets its name in one step when all is in it, then ``series.json`` is written anew. A command killed in between leaves a
-folder that is not in the list: it is taken in when the series goes on. Drafts are thrown away, and what was
-interrupted, or failed for no fault of the agent's, is set aside and driven again, unless its record was unsafe before.
+folder that is not in the list: it is taken in when the series goes on. Drafts are thrown away. A run that
+was interrupted, or failed for no fault of the agent's, is set aside and driven again, unless its record was unsafe.
 """
 
 from __future__ import annotations

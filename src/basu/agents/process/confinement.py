@@ -80,8 +80,8 @@ def confine(
     """Confine this thread, and all threads and processes that it starts; the parts that hold.
 
     Call it before the process has other threads. ``writable`` are the folders below which it may write;
-    ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust. ``closed_ports`` are
-    those of TCP to which it may not connect, at any address.
+    ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust. It may not connect to
+    ``closed_ports`` of TCP, at any address.
     """
     abi = landlock_abi()
     if abi == 0:

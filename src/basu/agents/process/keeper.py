@@ -105,9 +105,9 @@ def _become_agent(channel: int, outputs: list[int], limits: Limits, held: list[s
 
 
 class _Memory:
-    """The most memory that an agent held: that of one process, or the sum over those that were alive at its end.
+    """The most memory that an agent held: the peak of one process, or the sum of all that SIGKILL ended.
 
-    These end by SIGKILL, and so does a process that the kernel ends for want of memory.
+    Processes that live at the end are ended so, and a process that the kernel ends for want of memory.
     """
 
     def __init__(self) -> None:
