@@ -105,7 +105,7 @@ def _become_agent(channel: int, outputs: list[int], limits: Limits, held: list[s
 
 
 class _Memory:
-    """The most memory that an agent held: the peak of one process, or the sum of all that SIGKILL ended.
+    """The most memory that an agent held: the peak of one process, or the sum of the processes that SIGKILL ended.
 
     Processes that live at the end are ended so, and a process that the kernel ends for want of memory.
     """
