@@ -9,6 +9,7 @@ from __future__ import annotations
 import atexit
 import contextlib
 import inspect
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -155,6 +156,9 @@ def run(
         raise UserError("run() keeps no series; give repetitions=N, or use `basu run --series`")
     if wanted.workers > 1:
         raise UserError("run() drives one run after the other; use `basu run --workers`, or a campaign")
+    if simulator is not None and not simulator.simulator.own:
+        host, port = simulator.simulator.address
+        wanted = replace(wanted, host=host, port=port)
     prepared = prepare(wanted, given)
     if isinstance(agent, AutonomousAgent) and len(prepared.jobs) > 1:
         raise UserError(f"an instance drives one run, and these are {len(prepared.jobs)}; give the class itself")

@@ -89,6 +89,7 @@ def lane_under(route: Route, x_m: float, y_m: float) -> dict[str, float]:
     right = to_y_m * math.cos(yaw_rad) - to_x_m * math.sin(yaw_rad)
     offset_m = math.copysign(float(away_m[nearest]), right)
     if -1.5 * LANE_M <= offset_m <= 0.5 * LANE_M:
-        lane_id = -1 if offset_m >= -0.5 * LANE_M else 1
-        return {"road_id": 1, "lane_id": lane_id, "lane_type": DRIVING, "lane_width_m": LANE_M}
+        is_own = offset_m >= -0.5 * LANE_M
+        lane = {"lane_id": -1, "lane_heading_rad": 0.0} if is_own else {"lane_id": 1, "lane_heading_rad": math.pi}
+        return {"road_id": 1, "lane_type": DRIVING, "lane_width_m": LANE_M, **lane}
     return {"off_lane_m": max(offset_m - 0.5 * LANE_M, -1.5 * LANE_M - offset_m)}

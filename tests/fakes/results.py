@@ -26,11 +26,11 @@ META = {
 }
 
 
-def a_result(status: Status = Status.COMPLETED) -> dict[str, Any]:
-    """As it is after a round trip through a file: a collision, and a while above the limit."""
+def a_result(status: Status = Status.COMPLETED, *, safe: bool = False) -> dict[str, Any]:
+    """As it is after a round trip through a file: a collision, and a while above the limit, or neither if ``safe``."""
     history = driven(
-        at(10.0, 10.0) + at(13.0, 5.0),
-        collisions=[hit(50)],
+        at(10.0, 10.0) + at(10.0 if safe else 13.0, 5.0),
+        collisions=[] if safe else [hit(50)],
         lane_invasions=[LaneInvasion(tick=3, markings=("Solid/White",))],
     )
     document = judge(Outcome(status, "so it ended"), history, meta=META).document()

@@ -106,12 +106,14 @@ class AutonomousAgent(ABC):
 
     @abstractmethod
     def config(self) -> Mapping[str, Any]:
-        """Return the vehicle, weather and route that the agent wants; called once, before there is a world.
+        """Return the sensors and the track that the agent wants; called once, before there is a world.
 
-        All keys are optional: ``routes`` (route XML), ``sensors`` (sensor JSON), ``vehicle`` (blueprint id),
-        ``weather`` (the name of one of CARLA's presets), ``sumo`` (folder of a SUMO scenario). BASU looks
-        for a file in the working folder, then beside the agent's file, then among its own files. Options of the
-        command line replace these values.
+        All keys are optional: ``sensors`` (sensor JSON), ``track`` (what it learns of others), and for ``basu run``
+        alone ``routes`` (route XML), ``vehicle`` (blueprint id), ``weather`` (the name of one of CARLA's presets) and
+        ``sumo`` (folder of a SUMO scenario). Options of the command line override these values. Campaigns and
+        scenarios ignore the last four with a sentence, because the conditions are the benchmark's. BASU looks for a
+        file in the working folder, then beside the agent's file, then among its own files. A route file that is not
+        among BASU's own is the agent's own route: its result is marked as not comparable.
         """
 
     def sensors(self) -> Sequence[Mapping[str, Any]] | None:
@@ -126,7 +128,9 @@ class AutonomousAgent(ABC):
     def get_initial_route_locations(self) -> Sequence[carla.Location] | None:
         """Return the points of a route, which BASU joins along the lanes; None, as here, takes the route file.
 
-        Points are locations, transforms, way points, ``(x, y, z)`` in m, or pairs of these with a ``RoadOption``.
+        Points are locations, transforms, way points, ``(x, y, z)`` in m, or pairs of these with a ``RoadOption``. The
+        result of such a drive says that the route was the agent's own, and is marked as not comparable. Campaigns and
+        scenarios do not call this method.
         """
         return None
 
@@ -157,6 +161,19 @@ class AgentConfig:
     track: str = WORLD
     vehicle: str = "vehicle.easymile.ez10"
     weather: str = "ClearNoon"
+
+    def without_conditions(self) -> AgentConfig:
+        """Return the wishes that an agent may have in a benchmark: its sensors and its track."""
+        return AgentConfig(sensors=self.sensors, track=self.track)
+
+    def conditions_asked(self) -> dict[str, str]:
+        """Return the route file, vehicle, weather and SUMO folder that differ from the defaults, by key."""
+        usual = self.without_conditions()
+        return {
+            field.name: getattr(self, field.name)
+            for field in fields(self)
+            if getattr(self, field.name) != getattr(usual, field.name)
+        }
 
 
 def parse_config(given: Any, agent: str) -> AgentConfig:  # noqa: ANN401 - whatever a stranger's method returned

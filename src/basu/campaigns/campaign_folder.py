@@ -109,7 +109,7 @@ def begin(folder: Path, plan: CampaignPlan, source: Path, *, resume: bool) -> No
             "file": source.name,
             "settings": plan.campaign.model_dump(mode="json", by_alias=True),
             "agents": [agent.name for agent in plan.agents],
-            "tracks": {agent.name: agent.track for agent in plan.agents},
+            "tracks": {agent.name: agent.group for agent in plan.agents},
             "planned": plan.size,
             "identity": identity,
         }

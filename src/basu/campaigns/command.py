@@ -61,7 +61,7 @@ def describe(file: Path) -> str:
     plan = plan_of(read_campaign(file), file)
     lines = [
         f"campaign  {plan.campaign.name}",
-        f"agents    {', '.join(f'{agent.name} (track {agent.track})' for agent in plan.agents)}",
+        f"agents    {', '.join(f'{agent.name} (track {agent.group})' for agent in plan.agents)}",
     ]
     for part in plan.parts:
         names = list(dict.fromkeys(subject.name for subject in part.subjects))
@@ -97,6 +97,7 @@ def player_settings(plan: CampaignPlan, folder: Path, settings: RunSettings) -> 
         agents=tuple(agent.typed for agent in plan.agents),
         scoring=plan.scoring,
         vehicle=campaign.vehicle,
+        open=campaign.open,
         step_limit_s=campaign.step_limit_s,
         agent_memory_gb=campaign.agent_memory_gb,
         agent_writes=campaign.agent_writes,

@@ -15,6 +15,7 @@ from basu.campaigns.shuffle import Shuffle
 from basu.jobs.job import versions
 from basu.metrics.scoring import Scoring, scoring_to_json
 from basu.options.agent import WORLD
+from basu.output.report.tracks import track_of
 from basu.scenarios.parameters import Number
 
 if TYPE_CHECKING:
@@ -46,6 +47,12 @@ class PlannedAgent(NamedTuple):
     digest: str  # of its file; "" for BASU's own
     track: str = WORLD  # what it learns of others
     is_track_given: bool = False  # by the campaign's file, and not by config()
+    is_open: bool = False  # driven without the gate
+
+    @property
+    def group(self) -> str:
+        """The name of the tables of its drives: the track, with a mark if no gate stood before the agent."""
+        return track_of({"track": self.track, "open": self.is_open})
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +198,7 @@ class CampaignPlan:
         """All that the results depend on, by name, for a comparison before a campaign goes on."""
         return {
             "the agents": [f"{agent.name} {agent.digest}".rstrip() for agent in self.agents],
-            "the tracks": {agent.name: agent.track for agent in self.agents},
+            "the tracks": {agent.name: agent.group for agent in self.agents},
             "the drives": digest_of([part.digest() for part in self.parts])[:ID_DIGITS],
             "the number of drives": self.size,
             "the order": [self.campaign.order, self.campaign.shuffle_seed],

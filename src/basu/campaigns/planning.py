@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -59,7 +60,8 @@ def plan_of(campaign: Campaign, source: Path) -> CampaignPlan:
     scenario_files = tuple(dict.fromkeys([*named, *among]))  # workers open them too
     metric_files = tuple(find(name, "metric file", source).resolve() for name in campaign.metric_files)
     parts = tuple(_part(drives, campaign, source, scenario_files) for drives in every_drives)
-    shared = digest_of([campaign.vehicle, scoring_to_json(scoring), versions()])
+    mode = ["open"] if campaign.open else []
+    shared = digest_of([campaign.vehicle, scoring_to_json(scoring), versions(), *mode])
     return CampaignPlan(campaign, agents, parts, scoring, scenario_files, metric_files, shared)
 
 
@@ -96,12 +98,14 @@ def _agent(typed: str, campaign: Campaign, source: Path) -> PlannedAgent:
         raise UserError(f"{source}: {error}") from None
     if found.is_human:
         raise UserError(f"{source}: a person drives the agent '{typed}', which a campaign cannot wait for; remove it")
-    manager = AgentsManager(found, step_limit_s=campaign.step_limit_s, routes=None, track=given)
+    manager = AgentsManager(found, step_limit_s=campaign.step_limit_s, routes=None, track=given, has_conditions=False)
     try:
         track = manager.config.track
+        if manager.ignored:
+            print(f"basu: warning: {manager.ignored}", file=sys.stderr)
     finally:
         manager.close()
-    return PlannedAgent(typed, plain(found.name), digest, track, given is not None)
+    return PlannedAgent(typed, plain(found.name), digest, track, given is not None, campaign.open)
 
 
 def _part(drives: Drives, campaign: Campaign, source: Path, scenario_files: Sequence[Path]) -> Part:

@@ -30,7 +30,7 @@ from basu.options.conditions import STEP_S
 from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
 from basu.running.one_run import Session, run_one
-from basu.running.preparation import new_agents, prepare
+from basu.running.preparation import agents_fault, new_agents, prepare
 from basu.running.scenario_runs.one_case import CaseSession, play_case
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.scenarios.cases import open_library
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from basu.scenarios.cases import Library
     from basu.simulator import Simulator
 
-AGAIN = frozenset({Status.SIMULATOR_FAILED})  # tried again elsewhere
+AGAIN = frozenset({Status.SIMULATOR_FAILED})  # tried again elsewhere, unless the record was unsafe before
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,6 +57,7 @@ class PlayerSettings:
     agents: tuple[str, ...]  # as the plan has them
     scoring: Scoring
     vehicle: str | None
+    open: bool  # without the gate
     step_limit_s: float
     agent_memory_gb: float | None
     agent_writes: tuple[str, ...]
@@ -100,7 +101,7 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
     }
     library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
     with (
-        simulator_for(RunOptions()) as simulator,
+        simulator_for(RunOptions(open=settings.open)) as simulator,
         tempfile.TemporaryDirectory(dir=settings.scratch, prefix="drives-", ignore_cleanup_errors=True) as scratch,
     ):
         driver = _Player(settings, agents, library, own, simulator, Path(scratch))
@@ -143,8 +144,7 @@ class _Player:
             "host": platform.node(),
             "worker": os.getpid(),
         }
-        ends = After.AGAIN if status in AGAIN else After.FRESH if status is Status.BENCHMARK_FAILED else After.GO_ON
-        return Played(DriveDone(row, records), ends)
+        return Played(DriveDone(row, records), _after(status, row["success"]))
 
     def _records(self, job: dict[str, Any], row: dict[str, Any], folder: Path | None) -> bytes | None:
         """The folder as a tar file where it is a failure's, one of the sample, or worse than the driver has seen."""
@@ -173,6 +173,7 @@ class _Player:
             walkers=job["walkers"],
             traffic_density=others,
             vehicle=settings.vehicle,
+            open=settings.open,
             with_scenarios=job["scenarios"],
             scenario_files=settings.scenario_files,
             metric_files=settings.metric_files,
@@ -182,7 +183,8 @@ class _Player:
         )
         try:
             plan = self._plan(options, job)
-            agents = new_agents(plan.loaded, options, job["seed"])
+            with agents_fault(plan.loaded):
+                agents = new_agents(plan.loaded, options, job["seed"], has_conditions=False)
             session = Session(options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False)
             run = plan.jobs[0]._replace(seed=job["seed"])
             done = run_one(session, agents, run, output=self._scratch, name=job["id"])
@@ -202,7 +204,7 @@ class _Player:
         """The plan of an agent on a route; made once."""
         key = (job["agent"], job["file"], job["identity"], job["scenarios"])
         if key not in self._plans:
-            self._plans[key] = prepare(options, self._agents[job["agent"]])
+            self._plans[key] = prepare(options, self._agents[job["agent"]], has_conditions=False)
         return self._plans[key]
 
     def _case(self, job: dict[str, Any]) -> _Driven:
@@ -215,6 +217,7 @@ class _Player:
             files=settings.scenario_files,
             seed=job["seed"],
             vehicle=settings.vehicle,
+            open=settings.open,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
             agent_writes=settings.agent_writes,
@@ -249,6 +252,13 @@ class _Player:
             outcome = Outcome(STATUS_OF[type(error)], str(error))
         found = success(outcome, None, ())
         return _Driven(outcome, {**_verdict(found.passed, 1.0), "simulated_s": 0.0}, None)
+
+
+def _after(status: Status, success: bool | None) -> After:  # noqa: FBT001 - a value, not a switch
+    """Return what follows a drive; an unsafe record is a failure, so no fault of the simulator gives it another try."""
+    if status in AGAIN:
+        return After.FRESH if success is False else After.AGAIN
+    return After.FRESH if status is Status.BENCHMARK_FAILED else After.GO_ON
 
 
 def _verdict(success: bool | None, severity: float) -> dict[str, Any]:  # noqa: FBT001 - a value, not a switch

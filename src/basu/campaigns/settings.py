@@ -19,7 +19,7 @@ else:
 if TYPE_CHECKING:
     from pathlib import Path
 
-AS_GIVEN = "as given"  # the weather of the route, the agent or the case
+AS_GIVEN = "as given"  # the weather of the route or the case; ClearNoon without one
 NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"  # a folder is called so
 
 
@@ -164,6 +164,7 @@ class Campaign(Table):
     shuffle_seed: Annotated[int, Field(ge=0)] = 0
     vehicle: str | None = None
     tracks: dict[str, Track] = {}  # by agent as it stands in ``agents``; without an entry: as its config() asks
+    open: bool = False  # without the gate, for development; the scores are marked as not comparable
     step_limit_s: Annotated[float, Field(gt=0.0)] = 10.0
     agent_memory_gb: Annotated[float | None, Field(gt=0.0)] = None
     agent_writes: tuple[str, ...] = ()

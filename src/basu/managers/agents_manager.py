@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import carla
 
-from basu.agents.calls import AgentCalls
+from basu.agents.calls import SETUP_LIMIT_S, AgentCalls
 from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import RemoteAgent
+from basu.errors import AgentError, UserError
 from basu.managers.base_manager import BaseManager
 from basu.managers.conduct import Conduct
 from basu.managers.passage import Passage
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.manual.inputs import Person
@@ -43,12 +44,14 @@ class AgentsManager(BaseManager):
         seed: int = 0,
         track: Track | None = None,
         is_open: bool = False,
+        has_conditions: bool = True,
     ) -> None:
         """Make the agent and ask for its wishes.
 
         ``routes`` is the command line's, which goes before the agent's; ``person`` may take over from the agent;
         ``seed`` is what everything random in the agent's own process begins with; ``track`` goes before the agent's;
-        ``is_open`` connects its process to the simulator itself.
+        ``is_open`` connects its process to the simulator itself. Without ``has_conditions`` the route, the vehicle, the
+        weather and the traffic are the benchmark's: the agent's wishes for them become the sentence ``ignored``.
         """
         self.person = person
         self._by_hand = False
@@ -62,6 +65,10 @@ class AgentsManager(BaseManager):
         self._passage = Passage(self._agent, loaded, is_open=is_open)
         self._is_watched = isinstance(self._agent, RemoteAgent)
         config = self._agent.config()
+        self._has_conditions, self.ignored = has_conditions, ""
+        if not has_conditions:
+            self.ignored = _ignored(self._agent.name, config.conditions_asked())
+            config = config.without_conditions()
         self.config: AgentConfig = config if routes is None else replace(config, routes=routes)
         if track is not None:
             self.config = replace(self.config, track=track)
@@ -78,8 +85,8 @@ class AgentsManager(BaseManager):
         return self._by_hand or self._agent.manual
 
     def own_route(self) -> tuple[RoutePoint, ...] | None:
-        """The points of the agent's own plan (``get_initial_route_locations``), None where it has none."""
-        return self._agent.own_route()
+        """Return the points of the agent's own plan (``get_initial_route_locations``); None without one."""
+        return self._agent.own_route() if self._has_conditions else None
 
     def own_sensors(self) -> tuple[SensorSpec, ...] | None:
         """The agent's own sensor set (``sensors``), None where it has none; empty where it gives it late.
@@ -142,3 +149,26 @@ class AgentsManager(BaseManager):
             self._agent.destroy()
         finally:
             self._passage.close()
+
+
+def ignored_wishes(loaded: FoundAgent) -> str:
+    """Return the sentence about the conditions that an agent asks for where the benchmark gives them; mostly empty.
+
+    An agent that cannot be made says nothing here: its drives will.
+    """
+    if loaded.file is None or isinstance(loaded, LoadedAgent):
+        return ""
+    try:
+        agents = AgentsManager(loaded, step_limit_s=SETUP_LIMIT_S, routes=None, has_conditions=False)
+    except (UserError, AgentError):
+        return ""
+    agents.close()
+    return agents.ignored
+
+
+def _ignored(name: str, asked: Mapping[str, str]) -> str:
+    """Return the sentence about the conditions that an agent asked for in a benchmark; empty without any."""
+    if not asked:
+        return ""
+    wishes = ", ".join(f"{key} '{value}'" for key, value in asked.items())
+    return f"config() of {name} asks for {wishes}; these are the benchmark's here, so the wishes are ignored"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import RemoteAgent
 from basu.agents.sight import Sight
-from basu.options.agent import OBJECTS, WORLD
+from basu.options.agent import OBJECTS, SENSORS, WORLD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -93,8 +93,13 @@ class Passage:
             self._gate = self._sight = None
 
     def document(self, track: str) -> dict[str, Any]:
-        """The agent's track, whether it was open, and what was refused, as documents have it."""
-        return {"track": track, "open": self._is_open, "refused": dict(sorted(self.refused.items()))}
+        """Return the agent's track, whether it was open, and what was refused, as documents have it.
+
+        An agent of BASU's own in this process reads the world through its own filter: so it is never of the track
+        ``sensors``.
+        """
+        is_open = self._is_open or (track == SENSORS and not self._is_remote)
+        return {"track": track, "open": is_open, "refused": dict(sorted(self.refused.items()))}
 
     def _see(self, snapshot: carla.WorldSnapshot) -> None:
         if self._gate is not None and self._sight is not None:

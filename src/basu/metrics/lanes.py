@@ -31,6 +31,13 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 FORGIVEN_M = 2.0  # a stretch against the lane no longer than this; nuPlan's direction compliance forgives as much
+STANDING_MPS = 0.5  # slower is an obstacle: the same speed at which near misses and collisions take others for resting
+BEFORE_S = 5.0  # that an obstacle may have stood before the ego is beside it
+AROUND_M = 20.0  # before and behind: the shifting taper of `basu.metrics.validity.PASSING_M`
+BESIDE_LANE_M = 1.5  # from the lane's edge to the middle of an obstacle that stands half on it
+UNPROTECTED = ("walker.", "vehicle.bh.crossbike", "vehicle.diamondback.century", "vehicle.gazelle.omafiets")
+"""What the blueprints of walkers and bicycles begin with: they may be passed while they move."""
+NO_OBSTACLE = "with nothing to pass"
 # values of carla.LaneType
 DRIVING, SIDEWALK = 2, 32
 
@@ -98,6 +105,40 @@ def off_road(history: History) -> tuple[Evidence, ...]:
         lambda first, end: WORDS[list(Where)[int(np.bincount(where[first:end]).argmax())]],
     )
     return share.events
+
+
+def in_oncoming_lane(history: History) -> tuple[Evidence, ...]:
+    """Return one event for each stretch of more than 2 m in a lane of oncoming traffic that passes no obstacle.
+
+    An obstacle is slower than 0.5 m/s, or a walker or a cyclist. Its middle is at most 1.5 m beyond the planned lane's
+    edge and at most 20 m before or behind the stretch. It counts from 5 s before the stretch to its end.
+    """
+    share = share_of(
+        history,
+        wheres(history) == list(Where).index(Where.WRONG_LANE),
+        Incident.OUTSIDE_LANES,
+        lambda first, end: "with something to pass" if _passes(history, first, end) else NO_OBSTACLE,
+        forgiven_m=FORGIVEN_M,
+    )
+    return tuple(event for event in share.events if event.detail.startswith(NO_OBSTACLE))
+
+
+def _passes(history: History, first: int, end: int) -> bool:
+    """Whether an obstacle stands on the planned lane beside the frames from ``first`` to ``end``."""
+    frames, others, route = history.frames, history.others, history.facts.route
+    ticks = frames["tick"][[max(0, first - round(BEFORE_S / history.facts.step_s)), end - 1]]
+    near = others[(others["tick"] >= ticks[0]) & (others["tick"] <= ticks[1])]
+    speed_mps = np.hypot(near["velocity_x_mps"], near["velocity_y_mps"])
+    slow = [key for key, kind in history.facts.actor_types.items() if kind.startswith(UNPROTECTED)]
+    near = near[(speed_mps < STANDING_MPS) | np.isin(near["id"], slow)]
+    if not len(near):
+        return False
+    way_s_m = frames["route_s_m"][first:end]
+    beside = (route.s_m >= way_s_m.min() - AROUND_M) & (route.s_m <= way_s_m.max() + AROUND_M)
+    points_m, reach_m = route.points_m[beside, :2], np.nan_to_num(route.lane_width_m[beside]) / 2.0 + BESIDE_LANE_M
+    places_m = np.column_stack([near["x_m"], near["y_m"]])
+    away_m = np.linalg.norm(places_m[:, None, :] - points_m[None, :, :], axis=2)
+    return bool((away_m <= reach_m).any())
 
 
 def wheres(history: History) -> NDArray[np.int64]:

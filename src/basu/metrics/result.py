@@ -84,8 +84,8 @@ class Result:
 
     @property
     def is_comparable(self) -> bool:
-        """Whether the score can be compared with others': no failure ended the run, and the agent passed the gate."""
-        return not self.is_broken_off and not self.is_open
+        """Whether the score can be compared: no failure ended it, and gate and route were the benchmark's."""
+        return not (self.is_broken_off or self.is_open or self.has_own_route)
 
     @property
     def is_broken_off(self) -> bool:
@@ -96,6 +96,11 @@ class Result:
     def is_open(self) -> bool:
         """Whether the agent could do everything in the world: no gate stood between it and the simulator."""
         return bool(self.meta.get("access", {}).get("open"))
+
+    @property
+    def has_own_route(self) -> bool:
+        """Whether the agent drove a route that it had planned or brought itself."""
+        return bool(self.meta.get("own_route"))
 
     @property
     def track(self) -> str | None:

@@ -4,7 +4,7 @@ Each of these alone decides against a drive, as nuPlan multiplies its scores:
 
 - a collision at fault
 - a red light run, a stop sign missed, or speeding
-- the wrong way, or a stretch off the road
+- the wrong way, a lane of oncoming traffic without an obstacle to pass, or a stretch off the road
 - a failed scenario of its route
 - a route not driven to its end
 
@@ -24,7 +24,7 @@ import numpy as np
 
 from basu.metrics.collisions import responsibilities
 from basu.metrics.infraction import Infraction
-from basu.metrics.lanes import FORGIVEN_M, off_road
+from basu.metrics.lanes import FORGIVEN_M, in_oncoming_lane, off_road
 from basu.metrics.stretches import path_m, stretches
 from basu.metrics.validity import validity
 from basu.outcome import Fault, Status
@@ -106,6 +106,10 @@ def _wrong(history: History, infractions: Sequence[Evidence]) -> list[str]:
     ]
     found += [(each.t_s, _rule(each)) for each in infractions if each.kind in _RULES]
     found += [(each.t_s, f"left the road at {each.t_s:.1f} s: {each.detail}") for each in off_road(history)]
+    found += [
+        (each.t_s, f"drove in the lane of oncoming traffic at {each.t_s:.1f} s: {each.detail}")
+        for each in in_oncoming_lane(history)
+    ]
     return [sentence for _, sentence in sorted([*found, *_against(history)])]
 
 

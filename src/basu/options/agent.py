@@ -46,7 +46,7 @@ AgentWrites = Annotated[
 ]
 Track = Literal["world", "objects", "sensors"]
 """What an agent learns of other actors; scores of different tracks are never compared."""
-WORLD, OBJECTS = "world", "objects"
+WORLD, OBJECTS, SENSORS = "world", "objects", "sensors"
 TRACKS: tuple[str, ...] = get_args(Track)
 TrackWish = Annotated[
     Track | None,

@@ -38,7 +38,7 @@ class RunResult:
     def __repr__(self) -> str:
         scores = self.scores
         driving = "nothing was driven" if scores is None else f"driving score {scores.driving:.3f}"
-        return f"<{self.agent} on {self.route}: {self.outcome.status.value}, {driving}>"
+        return f"<{self.agent} on {self.route}: {self.result.success.word}, {self.outcome.status.value}, {driving}>"
 
     @property
     def result(self) -> Result:
@@ -74,6 +74,16 @@ class RunResult:
     def completed(self) -> bool:
         """Whether the vehicle arrived."""
         return self.outcome.status is Status.COMPLETED
+
+    @property
+    def passed(self) -> bool | None:
+        """Whether the drive passed by the one rule of success; None where it says nothing of the agent."""
+        return self.result.success.passed
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why it did not pass, in sentences; empty where it did."""
+        return self.result.success.reasons
 
     @property
     def scores(self) -> Scores | None:
@@ -114,7 +124,8 @@ class RunResult:
     def _repr_html_(self) -> str:
         """A card for notebooks: status, scores, events, picture."""
         scores = {} if self.scores is None else self.scores._asdict()
-        rows = [(name.replace("_", " "), f"{value:.3f}") for name, value in scores.items()]
+        rows = [("result", self.result.success.sentence)]
+        rows += [(name.replace("_", " "), f"{value:.3f}") for name, value in scores.items()]
         rows += [(f"{found.t_s:.1f} s", f"{found.kind.value}: {found.detail}") for found in self.infractions]
         title = html.escape(f"{self.agent} on {self.route}: {self.outcome.status.value}")
         meta = self.result.meta

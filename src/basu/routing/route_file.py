@@ -8,7 +8,7 @@ Coordinates are CARLA's: metres, y south, yaw in degrees clockwise.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,9 @@ from basu.routing.weather import WeatherMark, read_weather
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+
+OWN_ROUTE = "-own"  # behind the id of a route that is the agent's own
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,16 @@ class RouteDescription:
     source: str  # file name, for sentences
     timetable: Timetable | None = None  # from the file that the attribute 'timetable' names, seen from this one
     weather: tuple[WeatherMark, ...] = ()  # as the file gives it along the way; empty where it gives none
+    is_own: bool = False  # the agent has planned it or brought its file, so its name is no official route's
+
+    @property
+    def official_id(self) -> str:
+        """The id that the route file has."""
+        return self.id.removesuffix(OWN_ROUTE) if self.is_own else self.id
+
+    def as_own(self) -> RouteDescription:
+        """Return the route as the agent's own, under a name that says so."""
+        return replace(self, id=f"{self.official_id}{OWN_ROUTE}", is_own=True)
 
 
 def read_routes(path: Path) -> tuple[RouteDescription, ...]:

@@ -10,8 +10,9 @@ from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.episode import Episode, EpisodeSpec
+from basu.episode.failures import outcome_of
 from basu.episode.world import weather_called
-from basu.errors import UserError
+from basu.errors import AgentCrashedError, AgentError, UserError
 from basu.managers.recording_manager import RecordingManager
 from basu.managers.scenario_results import results_of
 from basu.managers.sensors_manager import SensorsManager
@@ -20,15 +21,16 @@ from basu.output.hud.person_input import onlookers_for
 from basu.output.progress import ProgressBar
 from basu.output.report.documents import make_draft
 from basu.records.carla_log.sources import LOG_FILE
-from basu.running.drive import drive
-from basu.running.preparation import sumo_folder
-from basu.running.run_folder import OWN_ROUTE, import_pictures, run_config, write_run_folder
+from basu.running.drive import Driven, drive
+from basu.running.preparation import agents_fault, new_agents, sumo_folder
+from basu.running.run_folder import import_pictures, run_config, write_run_folder
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
     from basu.episode import Towns
+    from basu.episode.episode import Ground
     from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
@@ -36,6 +38,7 @@ if TYPE_CHECKING:
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
     from basu.outcome import Outcome
+    from basu.routing.route_file import RoutePoint
     from basu.running.preparation import Job, Plan
     from basu.simulator import Simulator
 
@@ -75,7 +78,8 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         SimulatorError: the simulator failed before it began.
     """
     started = datetime.now(timezone.utc)
-    spec = _spec(session, agents, job)
+    points = agents.own_route()
+    spec = _spec(session, agents, job, points)
     recording: list[RecordingManager] = []
     options = session.options
     shown = options.hud is not None or options.viewer or options.ros2 or options.ros1 or options.rosbag is not None
@@ -106,7 +110,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         participants=[agents],
         observers=observers,
     )
-    ground = episode.lay()
+    ground = _laid(episode, is_planned_by_agent=points is not None)
     if session.pictures:
         import_pictures()
     draft = make_draft(output, name)
@@ -132,6 +136,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         traffic=episode.traffic,
         log=recording[0].path if recording else None,
         access=agents.access,
+        ignored=agents.ignored,
     )
     met = results_of(episode.playing, driven.history, driven.outcome)
     own = user_metrics(session.options.metric_files)
@@ -152,6 +157,65 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     return Finished(driven.outcome, draft, result, driven.bug)
 
 
+def _laid(episode: Episode, *, is_planned_by_agent: bool) -> Ground:
+    """Lay the route on its town.
+
+    Raises:
+        UserError: the route has no place there.
+        AgentCrashedError: neither has the route that the agent planned, which is its own failure.
+    """
+    try:
+        return episode.lay()
+    except UserError as error:
+        if is_planned_by_agent:
+            raise AgentCrashedError(f"get_initial_route_locations() gives no route: {error}") from error
+        raise
+
+
+def next_agents(session: Session, job: Job) -> AgentsManager:
+    """Return the agent of a further run, under the conditions of the first: its ``config()`` cannot change them.
+
+    Raises:
+        UserError, AgentError: the agent cannot be made.
+    """
+    agents = new_agents(session.plan.loaded, session.options, job.seed)
+    agents.config = session.plan.agents.config
+    return agents
+
+
+def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, output: Path, name: str) -> Finished:
+    """Make one run of a series as `run_one` does; an agent that fails before its drive has had its run.
+
+    Raises:
+        UserError: the run cannot be begun like this.
+        SimulatorError: the simulator failed before it began.
+    """
+    try:
+        with agents_fault(session.plan.loaded):
+            agents = agents or next_agents(session, job)
+        return run_one(session, agents, job, output=output, name=name)
+    except AgentError as error:
+        outcome = outcome_of(error, session.simulator.why_gone)
+        driven = Driven(outcome, None, 0.0, None, None, error)
+    options, plan = session.options, session.plan
+    config = run_config(
+        options,
+        session.scoring,
+        plan.loaded,
+        plan.agents.config,
+        job.description,
+        own_simulator=session.simulator.own,
+        started=datetime.now(timezone.utc),
+        seed=job.seed,
+        traffic={"vehicles": 0, "walkers": 0},
+        log=None,
+        access=plan.agents.access,
+    )
+    draft = make_draft(output, name)
+    result = write_run_folder(draft, driven, session.scoring, None, config, quiet=session.quiet, pictures=False)
+    return Finished(outcome, draft, result, None)
+
+
 def _rest_of(draft: Path) -> str:
     """Return what became of the draft of a run that could not be written; an empty one is removed."""
     try:
@@ -161,12 +225,11 @@ def _rest_of(draft: Path) -> str:
     return "nothing of the run was written"
 
 
-def _spec(session: Session, agents: AgentsManager, job: Job) -> EpisodeSpec:
-    """The episode of a job. An agent may bring a route of its own, which leaves the scenarios of the file's aside."""
+def _spec(session: Session, agents: AgentsManager, job: Job, points: tuple[RoutePoint, ...] | None) -> EpisodeSpec:
+    """Return the episode of a job; ``points`` are a route of the agent's own, without the scenarios of the file's."""
     description, waiting = job.description, job.scenarios
-    points = agents.own_route()
     if points is not None:
-        description = replace(description, id=f"{description.id}{OWN_ROUTE}", points=points, stops=())
+        description = replace(description.as_own(), points=points, stops=())
         if waiting:
             sys.stderr.write(
                 f"basu: warning: the agent goes a way of its own, so the {len(waiting)} scenarios on the way of route "

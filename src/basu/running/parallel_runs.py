@@ -20,8 +20,8 @@ from basu.outcome import Fault, Status
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, plain, point_latest, publish, run_name
 from basu.running.exit_code import exit_code
-from basu.running.one_run import Session, run_one
-from basu.running.preparation import new_agents, prepare
+from basu.running.one_run import Session, next_agents, run_counted, run_one
+from basu.running.preparation import prepare
 from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
@@ -67,7 +67,10 @@ def open_runs(options: RunOptions, scoring: Scoring) -> Iterator[Play]:
             number, output, name = data
             job = prepared.jobs[number]
             try:
-                done = run_one(session, new_agents(prepared.loaded, options, job.seed), job, output=output, name=name)
+                if options.series is not None:
+                    done = run_counted(session, None, job, output=output, name=name)
+                else:
+                    done = run_one(session, next_agents(session, job), job, output=output, name=name)
             except UserError as error:
                 return Played(NotBegun(str(error), Fault.SETUP))
             except AgentError as error:

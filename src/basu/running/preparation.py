@@ -2,28 +2,32 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import random
 import sys
 from dataclasses import dataclass, replace
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
 from basu.agents.sensor_file import read_sensors
 from basu.episode.world import weather_called
-from basu.errors import UserError
-from basu.files import find
+from basu.errors import AgentCrashedError, UserError
+from basu.files import PACKAGE_FOLDER, find, places
 from basu.managers.agents_manager import AgentsManager
 from basu.options.sumo import SUMO_OFF
 from basu.output.hud.person_input import person_for
-from basu.routing.route_file import RouteDescription, read_routes, subset
+from basu.routing.route_file import OWN_ROUTE, RouteDescription, read_routes, subset
 from basu.scenarios.route_scenarios import scenarios_on
 from basu.sumo.link import INSTALL
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
@@ -59,8 +63,26 @@ class Plan:
     jobs: tuple[Job, ...]
 
 
-def prepare(options: RunOptions, given: FoundAgent | None = None) -> Plan:
-    """Read everything that can be wrong before anything is started; ``given`` is an agent that is loaded.
+@contextlib.contextmanager
+def agents_fault(loaded: FoundAgent) -> Iterator[None]:
+    """Turn wrong answers of an agent in a file into its failure: it was loaded, and could choose its drives by them.
+
+    Raises:
+        AgentCrashedError: its ``config()`` or its sensors are none.
+    """
+    try:
+        yield
+    except UserError as error:
+        if loaded.file is None:
+            raise
+        raise AgentCrashedError(str(error)) from error
+
+
+def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditions: bool = True) -> Plan:
+    """Read everything that can be wrong before anything is started.
+
+    ``given`` is an agent that is loaded. Without ``has_conditions`` the agent asks for sensors and a track only, and
+    what is wrong with them is its failure.
 
     Raises:
         UserError, AgentError: nothing can be started like this.
@@ -71,11 +93,13 @@ def prepare(options: RunOptions, given: FoundAgent | None = None) -> Plan:
         in_process=options.in_process,
         memory_gb=options.agent_memory_gb,
         writes=options.agent_writes,
+        closed_ports=closed_ports(options.host, options.port, is_open=options.open),
     )
-    agents = new_agents(loaded, options, options.seed)
+    with contextlib.nullcontext() if has_conditions else agents_fault(loaded):
+        agents = new_agents(loaded, options, options.seed, has_conditions=has_conditions)
+        sensors = sensor_set(agents, loaded)
     config = agents.config
     weather_called(config.weather)
-    sensors = sensor_set(agents, loaded)
     if options.host is None and (hint := camera_hint(sensors.specs)) is not None:
         print(f"basu: hint: {hint}", file=sys.stderr)
     wants_sumo = options.sumo not in (None, SUMO_OFF) or options.sumo_port is not None
@@ -84,13 +108,14 @@ def prepare(options: RunOptions, given: FoundAgent | None = None) -> Plan:
     if config.sumo is not None and options.sumo is None and not _has_sumo():
         print(f"basu: warning: {loaded.name} asks for SUMO's traffic, and {INSTALL}; the run goes on without it",
               file=sys.stderr)  # fmt: skip
-    routes = _chosen(read_routes(find(config.routes, "route file", loaded.file)), config, options)
+    path, is_own = _route_file(config, options, loaded)
+    routes = _chosen(read_routes(path), config, options)
     waiting = {route.id: _scenarios(route, options) for route in routes}
     jobs = [
         Job(
             number,
-            description,
-            _label(description, len(routes)),
+            description.as_own() if is_own else description,
+            _label(description, len(routes)) + (OWN_ROUTE if is_own else ""),
             repetition,
             options.seed + repetition,
             waiting[description.id],
@@ -102,13 +127,32 @@ def prepare(options: RunOptions, given: FoundAgent | None = None) -> Plan:
     return Plan(loaded, agents, sensors, tuple(jobs))
 
 
+def _route_file(config: AgentConfig, options: RunOptions, loaded: FoundAgent) -> tuple[Path, bool]:
+    """Return the route file, and whether it is the agent's own: named by ``config()`` and not one of BASU's.
+
+    A name of the command line means the user's file or BASU's. A file beside the agent is looked for only where there
+    is none, so that it cannot take the place of an official route.
+
+    Raises:
+        UserError: there is none.
+    """
+    if options.routes is not None:
+        known = [place / config.routes for place in places(None) if (place / config.routes).exists()]
+        return (known[0] if known else find(config.routes, "route file", loaded.file)), False
+    path = find(config.routes, "route file", loaded.file)
+    return path, loaded.file is not None and not path.resolve().is_relative_to(PACKAGE_FOLDER.resolve())
+
+
 def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Playable, ...]:
     """The scenarios of a route, unless the options skip them."""
     return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
 
 
-def new_agents(loaded: FoundAgent, options: RunOptions, seed: int) -> AgentsManager:
-    """A fresh agent, with everything random in Python begun anew."""
+def new_agents(loaded: FoundAgent, options: RunOptions, seed: int, *, has_conditions: bool = True) -> AgentsManager:
+    """Return a fresh agent, with everything random in Python begun anew.
+
+    Without ``has_conditions`` its wishes for route, vehicle, weather and traffic are ignored.
+    """
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
     person = person_for(options, by_hand=loaded.is_human)
@@ -120,6 +164,7 @@ def new_agents(loaded: FoundAgent, options: RunOptions, seed: int) -> AgentsMana
         seed=seed,
         track=options.track,
         is_open=options.open,
+        has_conditions=has_conditions,
     )
     agents.config = replace(
         agents.config,

@@ -34,7 +34,6 @@ if TYPE_CHECKING:
     from basu.routing.route_file import RouteDescription
     from basu.running.drive import Driven
 
-OWN_ROUTE = "-own"  # behind the id of a route that the agent has planned itself
 ROUTE_WEATHER = "of the route file"
 PICTURES = ("basu.output.report.path_picture", "basu.output.report.html.page")
 """Modules that take a third of all the imports, and that a run needs only at its end."""
@@ -53,8 +52,12 @@ def run_config(
     traffic: Mapping[str, int],
     log: str | None,
     access: Mapping[str, Any],
+    ignored: str = "",
 ) -> dict[str, Any]:
-    """Return ``config.json``: the options that repeat this one run, and what they came to."""
+    """Return ``config.json``: the options that repeat this one run, and what they came to.
+
+    ``ignored`` is a sentence about wishes of the agent that the benchmark ignored.
+    """
     again = options_again(options, description, seed)
     return {
         **config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description)),
@@ -67,6 +70,7 @@ def run_config(
         },
         "agent_config": asdict(wishes),
         "route": description.id,
+        "own_route": description.is_own,
         "town": description.town,
         "seed": seed,
         "weather": weather_name(options, wishes, description),
@@ -75,7 +79,7 @@ def run_config(
         "step_s": STEP_S,
         "access": dict(access),
         "own_simulator": own_simulator,
-        "notes": _notes(options, loaded),
+        "notes": [*_notes(options, loaded), *([ignored] if ignored else [])],
     }
 
 
@@ -87,7 +91,7 @@ def options_again(options: RunOptions, description: RouteDescription, seed: int)
     keys = options.keys if options.record_keys is None else str(options.record_keys)
     return replace(
         options,
-        route_id=description.id.removesuffix(OWN_ROUTE),
+        route_id=description.official_id,
         routes_subset=None,
         repetitions=1,
         seed=seed,
@@ -151,7 +155,7 @@ def write_run_folder(
     folder: Path,
     driven: Driven,
     scoring: Scoring,
-    lanes: LaneGraph,
+    lanes: LaneGraph | None,
     config: dict[str, Any],
     scenarios: Sequence[dict[str, Any]] = (),
     own: Sequence[Metric] = (),
@@ -162,7 +166,7 @@ def write_run_folder(
     """Write the folder of a run, print its table unless ``quiet``, and return its result.
 
     ``scenarios`` are those on the route, ``own`` are users' metrics. Without ``pictures`` the folder gets neither
-    picture nor report; `basu report` makes them from the folder later.
+    picture nor report; `basu report` makes them from the folder later. ``lanes`` may be None where nothing was driven.
     """
     history = driven.history
     ticks = 0 if history is None else len(history.frames)
@@ -179,6 +183,7 @@ def write_run_folder(
         "weather": config["weather"],
         "traffic": config["traffic"],
         "route": config["route"],
+        "own_route": config["own_route"],
         "town": config["town"],
         "versions": config["versions"],
         "access": config["access"],
@@ -191,7 +196,7 @@ def write_run_folder(
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
-    streets = [] if history is None else around(lanes.streets(), history)
+    streets = [] if history is None or lanes is None else around(lanes.streets(), history)
     if history is not None:
         write_history(folder, history)
         title = f"{_heading(config)}: {document['status']}"
@@ -217,4 +222,5 @@ def import_pictures() -> None:
 
 def _heading(config: dict[str, Any]) -> str:
     """Return agent, route and town in a line."""
-    return f"{config['agent']['name']} on route {config['route']} of {config['town']}"
+    own = " (the agent's own)" if config["own_route"] else ""
+    return f"{config['agent']['name']} on route {config['route']}{own} of {config['town']}"

@@ -11,10 +11,11 @@ from basu.episode.world import check_towns
 from basu.errors import UserError
 from basu.outcome import Status
 from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
+from basu.routing.route_file import OWN_ROUTE
 from basu.running.exit_code import exit_code
-from basu.running.one_run import Session, run_one
+from basu.running.one_run import Session, next_agents, run_counted, run_one
 from basu.running.parallel_runs import check_parallel, run_in_parallel
-from basu.running.preparation import new_agents, prepare
+from basu.running.preparation import prepare
 from basu.running.series import conditions, open_series
 from basu.simulator import simulator_for
 
@@ -97,17 +98,21 @@ def runs(session: Session, jobs: Sequence[Job], series: Series | None = None) ->
     wanted = {job.description.town for job in jobs}
     check_towns(session.towns.names(wanted), wanted)
     for nth, job in enumerate(jobs):
-        is_prepared = nth == 0 and job.seed == options.seed
-        agents = prepared.agents if is_prepared else new_agents(prepared.loaded, options, job.seed)
+        agents = prepared.agents if nth == 0 and job.seed == options.seed else None
         if series is not None:
             print(f"run {job.number + 1} of {len(prepared.jobs)}")
-            done = run_one(session, agents, job, output=series.folder, name=series.name(job))
+            done = run_counted(session, agents, job, output=series.folder, name=series.name(job))
             folder = series.publish(done.draft, job, done.document)
         else:
             name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
-            done = run_one(session, agents, job, output=options.output, name=name)
-            folder = publish(done.draft, name)
+            done = run_one(session, agents or next_agents(session, job), job, output=options.output, name=name)
+            folder = publish(done.draft, _final(name, done))
         point_latest(folder, options.output)
         yield done, folder
         if done.outcome.status in BREAKING_OFF:
             return
+
+
+def _final(name: str, done: Finished) -> str:
+    """Return the name of a run's folder: that of a route that the agent has planned says that it is its own."""
+    return f"{name}{OWN_ROUTE}" if done.result.has_own_route and not name.endswith(OWN_ROUTE) else name

@@ -2,8 +2,8 @@
 
 ``<output>/<name>/`` holds ``series.json`` and a folder for each run, called by the number of the run. A run's folder
 gets its name in one step when all is in it, then ``series.json`` is written anew. A command killed in between leaves a
-folder that is not in the list: it is taken in when the series goes on. Drafts are thrown away, and what was
-interrupted, or failed for no fault of the agent's, is set aside and driven again.
+folder that is not in the list: it is taken in when the series goes on. Drafts are thrown away. A run that
+was interrupted, or failed for no fault of the agent's, is set aside and driven again, unless its record was unsafe.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ from basu.running.exit_code import exit_code
 from basu.running.preparation import Job, Plan
 
 SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
-COUNTED = frozenset({Fault.NONE.name.lower(), Fault.AGENT.name.lower()})  # what ended otherwise says nothing of it
+COUNTED = frozenset({Fault.NONE.name.lower(), Fault.AGENT.name.lower()})
+"""What ended otherwise says nothing of the agent, unless its record was unsafe before: that is a failure."""
 
 
 class Series:
@@ -68,7 +69,7 @@ class Series:
         Raises:
             UserError: the disk does not let us.
         """
-        if document["fault"] not in COUNTED:
+        if document["fault"] not in COUNTED and document.get("passed") is not False:
             folder = publish(draft, f"{self.name(job)}-{document['status']}")
             self._document["set_aside"].append({"folder": folder.name, "status": document["status"]})
         else:

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes
+from basu.metrics.lanes import UNPROTECTED
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
 from basu.metrics.path_following import AT_REST_MPS
 from basu.outcome import Fault
@@ -52,7 +53,6 @@ if TYPE_CHECKING:
 NEAR_TTC_S = 1.0
 NEAR_PET_S = 1.0
 NEAR_M = 0.45
-UNPROTECTED = ("walker.", "vehicle.bh.crossbike", "vehicle.diamondback.century", "vehicle.gazelle.omafiets")
 """Blueprints of people that no body shell protects: walkers and CARLA's bicycles."""
 
 

@@ -2,6 +2,7 @@
 
 import importlib
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -77,6 +78,21 @@ def test_a_campaign_leaves_a_row_for_each_drive_and_folders_of_the_telling_ones(
     page = write_campaign_report(folder).read_text(encoding="utf-8")
     for heading in ("Success", "side by side", "begins to fail", "Worst cases", "Comfort and service", "Cost"):
         assert heading in page
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize("more", ['tracks = {blind = "objects"}', 'open = true\ntracks = {blind = "objects"}'])
+def test_no_table_of_the_page_has_agents_of_two_tracks(run: Callable[..., Path], campaign: Write, more: str) -> None:
+    folder = run(campaign(('name = "crossings"', f'name = "crossings"\n{more}'), ("sweep = 10", "sweep = 2")))
+    page = write_campaign_report(folder).read_text(encoding="utf-8")
+    figures = page[: page.index("<h2>Cost")]  # costs compare no score
+    tables = re.findall(r"<table.*?</table>", figures, re.DOTALL)
+    named = [{name for name in ("basic", "blind") if re.search(rf">\s*{name}\b", table)} for table in tables]
+    assert {"basic"} in named
+    assert {"blind"} in named
+    assert {"basic", "blind"} not in named
+    assert "no score is compared across tracks" in page
+    assert ("NOT COMPARABLE: open" in page) is ("open" in more)
 
 
 @pytest.mark.usefixtures("here")

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from basu.campaigns.command import describe
+from basu.campaigns.campaign_run import RunSettings
+from basu.campaigns.command import describe, player_settings
 from basu.campaigns.planning import plan_of
 from basu.campaigns.settings import checked, read_campaign
 from basu.campaigns.shuffle import Shuffle
@@ -134,6 +135,19 @@ def test_a_value_of_the_wrong_kind_is_named_in_words_of_the_file(key: str, value
 def test_a_dry_run_warns_of_seeds_that_change_nothing(campaign: Write) -> None:
     assert "its 3 seeds change nothing in the world" in describe(campaign())
     assert "warning" not in describe(campaign(("number = 3", "number = 1")))
+
+
+def test_an_open_campaign_is_another_campaign_and_is_marked(campaign: Write) -> None:
+    file = campaign()
+    usual = plan_of(read_campaign(file), file)
+    file = campaign(('name = "crossings"', 'name = "crossings"\nopen = true'))
+    plan = plan_of(read_campaign(file), file)
+    assert {agent.group for agent in plan.agents} == {"world, NOT COMPARABLE: open"}
+    assert plan.job(0)["id"] != usual.job(0)["id"]
+    assert plan.identity()["the tracks"] != usual.identity()["the tracks"]
+    settings = player_settings(plan, Path(), RunSettings(file=Path("campaign.toml"), output=Path()))
+    assert settings.open
+    assert not player_settings(usual, Path(), RunSettings(file=Path("campaign.toml"), output=Path())).open
 
 
 def test_the_plan_names_the_track_of_each_agent(campaign: Write) -> None:

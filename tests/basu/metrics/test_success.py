@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from basu.metrics.result import Result, judge
@@ -9,7 +12,7 @@ from basu.metrics.success import Success, success_of_verdict
 from basu.outcome import Outcome, Status
 from basu.output.report.comparison import row
 from basu.output.report.console import table
-from basu.records.history import History
+from basu.records.history import OTHER, History
 from fakes.drives import at, driven, hit, stop_sign
 from fakes.paths import along, route_along
 
@@ -55,6 +58,44 @@ def test_the_wrong_way_fails_it_and_a_metre_back_does_not() -> None:
     assert any("wrong way" in reason for reason in asked(along(route_along(CORNERS), there_and_back)).success.reasons)
     a_metre = ((0.0, 0.0), (100.0, 0.0), (99.0, 0.0), (200.0, 0.0))
     assert asked(along(route_along(CORNERS), a_metre)).success.passed
+
+
+ROUND = ((0.0, 0.0), (80.0, 0.0), (85.0, -3.5), (105.0, -3.5), (110.0, 0.0), (200.0, 0.0))
+
+
+def beside(other_m: tuple[float, float], type_id: str, speed_mps: float = 0.0) -> History:
+    """The record of a way through the oncoming lane with one other at a place, which moves east by its speed alone."""
+    history = along(route_along(CORNERS), ROUND)
+    others = np.zeros(len(history.frames), dtype=OTHER)
+    others["tick"], others["id"] = history.frames["tick"], 7
+    others["x_m"], others["y_m"], others["velocity_x_mps"] = *other_m, speed_mps
+    return replace(history, others=others, facts=replace(history.facts, actor_types={7: type_id}))
+
+
+@pytest.mark.parametrize(
+    ("history", "passed"),
+    [
+        pytest.param(along(route_along(CORNERS), ROUND), False, id="nothing"),
+        pytest.param(beside((95.0, 0.5), "vehicle.ford.ambulance"), True, id="a parked van"),
+        pytest.param(beside((95.0, 2.5), "static.prop.constructioncone"), True, id="a cone at the edge"),
+        pytest.param(beside((95.0, 0.0), "vehicle.ford.ambulance", 4.0), False, id="a van that drives"),
+        pytest.param(beside((95.0, 1.0), "vehicle.gazelle.omafiets", 4.0), True, id="a cyclist"),
+        pytest.param(beside((95.0, 4.5), "vehicle.ford.ambulance"), False, id="a van on the pavement"),
+        pytest.param(beside((40.0, 0.0), "vehicle.ford.ambulance"), False, id="a van far behind"),
+    ],
+)
+def test_the_oncoming_lane_is_for_passing_what_stands_in_ones_own(
+    history: History,
+    passed: bool,  # noqa: FBT001 - parametrized
+) -> None:
+    found = asked(history).success
+    assert found.passed is passed
+    assert any("in the lane of oncoming traffic at" in reason for reason in found.reasons) is not passed
+
+
+def test_two_metres_in_the_oncoming_lane_are_forgiven() -> None:
+    corners = ((0.0, 0.0), (80.0, 0.0), (84.0, -1.8), (85.0, -1.8), (90.0, 0.0), (200.0, 0.0))
+    assert asked(along(route_along(CORNERS), corners)).success.passed
 
 
 @pytest.mark.parametrize(

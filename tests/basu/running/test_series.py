@@ -33,15 +33,17 @@ def opened(folder: Path, *, resume: bool = False, given: dict[str, Any] | None =
     return open_series(folder, given or GIVEN, JOBS, "basic", resume=resume)
 
 
-def finished(series: Series, job: Job, status: Status = Status.COMPLETED) -> tuple[Path, dict[str, Any]]:
+def finished(
+    series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False
+) -> tuple[Path, dict[str, Any]]:
     """A run that is written and not yet in its place."""
-    draft, document = make_draft(series.folder, series.name(job)), a_result(status)
+    draft, document = make_draft(series.folder, series.name(job)), a_result(status, safe=safe)
     (draft / "result.json").write_text(json.dumps(document))
     return draft, document
 
 
-def run(series: Series, job: Job, status: Status = Status.COMPLETED) -> Path:
-    draft, document = finished(series, job, status)
+def run(series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False) -> Path:
+    draft, document = finished(series, job, status, safe=safe)
     return series.publish(draft, job, document)
 
 
@@ -109,12 +111,25 @@ def test_a_full_disk_loses_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 def test_what_ended_for_no_fault_of_the_agents_is_set_aside_and_driven_again(tmp_path: Path, status: Status) -> None:
     series = opened(tmp_path)
     for _ in range(2):
-        run(series, JOBS[0], status)
+        run(series, JOBS[0], status, safe=True)
     again = opened(tmp_path, resume=True)
     assert again.done == frozenset()
     assert [each["status"] for each in listed(tmp_path)["set_aside"]] == [status.value, status.value]
     run(again, JOBS[0])
     assert listed(tmp_path)["totals"]["statuses"] == {"Completed": 1}
+
+
+@pytest.mark.parametrize("status", [Status.INTERRUPTED, Status.SIMULATOR_FAILED, Status.SETUP_FAILED])
+def test_an_unsafe_record_is_a_failure_whatever_fault_follows_it(tmp_path: Path, status: Status) -> None:
+    series = opened(tmp_path)
+    run(series, JOBS[0], status)
+    document = listed(tmp_path)
+    assert document["set_aside"] == []
+    assert [(each["status"], each["passed"]) for each in document["runs"]] == [(status.value, False)]
+    assert document["totals"]["passed"] == {"passed": 0, "failed": 1, "not judged": 0}
+    assert opened(tmp_path, resume=True).done == {0}
+    run(series, JOBS[1], safe=True)
+    assert "1 failed" in series.table()
 
 
 @pytest.mark.parametrize("status", [Status.AGENT_CRASHED, Status.ROUTE_BLOCKED])

@@ -71,14 +71,20 @@ class Memory(NamedTuple):
 class AgentProcess:
     """One process with its keeper (`basu.agents.process.keeper`), in a session of its own: Ctrl-C does not reach it."""
 
-    def __init__(self, memory: Memory | None = None, writable: tuple[str, ...] = ()) -> None:
-        """Start the process; no call is sent yet. ``writable`` are folders in which it may write beside its own."""
+    def __init__(
+        self, memory: Memory | None = None, writable: tuple[str, ...] = (), closed_ports: tuple[int, ...] = ()
+    ) -> None:
+        """Start the process; no call is sent yet.
+
+        ``writable`` are folders in which it may write beside its own; ``closed_ports`` it may not connect to.
+        """
         ours, theirs = socket.socketpair()
         self._control, kept = socket.socketpair()
         self._folder = Path(tempfile.mkdtemp(prefix="basu-agent-"))
         self._ooms = oom_kills()
         may_write = [str(self._folder), *writable, *ALSO_WRITABLE]
-        arguments = [json.dumps(sys.path), str(theirs.fileno()), str(kept.fileno()), json.dumps(may_write)]
+        limits = [json.dumps(may_write), json.dumps(closed_ports)]
+        arguments = [json.dumps(sys.path), str(theirs.fileno()), str(kept.fileno()), *limits]
         with theirs, kept:
             self._process = subprocess.Popen(  # noqa: S603 - our own command
                 [sys.executable, "-c", KEEPER, *arguments],

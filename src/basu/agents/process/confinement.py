@@ -1,7 +1,7 @@
-"""Confinement of the agent's process by the kernel: it signals and traces its own processes, and writes its own folder.
+"""Confinement of the agent's process by the kernel: its own processes, its own folder, and no way around the gate.
 
-Landlock (Linux 5.13; signals from 6.12; https://docs.kernel.org/userspace-api/landlock.html) needs no privilege. All
-processes that a confined one starts inherit it, and none can take it off.
+Landlock (Linux 5.13; ports from 6.7, signals from 6.12; https://docs.kernel.org/userspace-api/landlock.html) needs no
+privilege. All processes that a confined one starts inherit it, and none can take it off.
 """
 
 from __future__ import annotations
@@ -15,20 +15,23 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-PROCESSES, SIGHT, SIGNALS, FILES = "processes", "sight", "signals", "files"
+PROCESSES, SIGHT, SIGNALS, FILES, PORTS = "processes", "sight", "signals", "files", "ports"
 MEANINGS = {
     PROCESSES: "all that it starts ends with it, and it can neither signal nor limit other processes",
     SIGHT: "it sees no other processes",
     SIGNALS: "it can signal and trace no other processes",
     FILES: "it writes in its own folder only",
+    PORTS: "it cannot connect to the simulator's own ports",
 }
 """The parts of a confinement; which of them hold depends on the kernel and its settings."""
 
 CREATE_RULESET, ADD_RULE, RESTRICT_SELF = 444, 445, 446  # system calls, the same on all of Linux's architectures
 ABI_VERSION = 1  # flag of CREATE_RULESET
-PATH_BENEATH = 1  # LANDLOCK_RULE_PATH_BENEATH
+PATH_BENEATH, NET_PORT = 1, 2  # LANDLOCK_RULE_PATH_BENEATH, LANDLOCK_RULE_NET_PORT
+CONNECT_TCP = 2  # LANDLOCK_ACCESS_NET_CONNECT_TCP
+PORT_NUMBERS = 1 << 16
 SIGNAL_SCOPE = 2  # LANDLOCK_SCOPE_SIGNAL
-ABI_WITH_REFER, ABI_WITH_TRUNCATE, ABI_WITH_SCOPES = 2, 3, 6
+ABI_WITH_REFER, ABI_WITH_TRUNCATE, ABI_WITH_PORTS, ABI_WITH_SCOPES = 2, 3, 4, 6
 WRITE_FILE, REMOVE_AND_MAKE, REFER, TRUNCATE = 1 << 1, 0x1FF0, 1 << 13, 1 << 14  # LANDLOCK_ACCESS_FS_*
 NO_NEW_PRIVILEGES = 38  # prctl(2); Landlock asks for it
 DEVICES, SHARED_MEMORY, OWN_PROCESSES = "/dev", "/dev/shm", "/proc"  # noqa: S108 - system folders, not temporary files
@@ -45,6 +48,12 @@ class _Beneath(ctypes.Structure):
 
     _pack_ = 1
     _fields_ = (("files", ctypes.c_uint64), ("folder", ctypes.c_int32))
+
+
+class _Port(ctypes.Structure):
+    """``struct landlock_net_port_attr``: kinds of access to a port."""
+
+    _fields_ = (("network", ctypes.c_uint64), ("port", ctypes.c_uint64))
 
 
 def sentence(held: Iterable[str]) -> str:
@@ -65,11 +74,14 @@ def is_available() -> bool:
     return landlock_abi() >= ABI_WITH_SCOPES
 
 
-def confine(writable: Sequence[str], *, sees_own_processes: bool = False) -> list[str]:
+def confine(
+    writable: Sequence[str], *, sees_own_processes: bool = False, closed_ports: Sequence[int] = ()
+) -> list[str]:
     """Confine this thread, and all threads and processes that it starts; the parts that hold.
 
     Call it before the process has other threads. ``writable`` are the folders below which it may write;
-    ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust.
+    ``sees_own_processes`` says that ``/proc`` has its own processes only, which it may adjust. It may not connect to
+    ``closed_ports`` of TCP, at any address.
     """
     abi = landlock_abi()
     if abi == 0:
@@ -78,9 +90,12 @@ def confine(writable: Sequence[str], *, sees_own_processes: bool = False) -> lis
     everything |= REFER if abi >= ABI_WITH_REFER else 0
     everything |= TRUNCATE if abi >= ABI_WITH_TRUNCATE else 0
     has_scopes = abi >= ABI_WITH_SCOPES
-    rules = _Ruleset(files=everything, scoped=SIGNAL_SCOPE if has_scopes else 0)
+    has_ports = bool(closed_ports) and abi >= ABI_WITH_PORTS
+    rules = _Ruleset(
+        files=everything, network=CONNECT_TCP if has_ports else 0, scoped=SIGNAL_SCOPE if has_scopes else 0
+    )
     libc = ctypes.CDLL(None)
-    size = ctypes.sizeof(rules) if has_scopes else ctypes.sizeof(ctypes.c_uint64)
+    size = (3 if has_scopes else 2 if has_ports else 1) * ctypes.sizeof(ctypes.c_uint64)
     ruleset = int(libc.syscall(CREATE_RULESET, ctypes.byref(rules), size, 0))
     if ruleset < 0:
         return []
@@ -91,11 +106,13 @@ def confine(writable: Sequence[str], *, sees_own_processes: bool = False) -> lis
     try:
         for folder, access in allowed:
             _allow(libc, ruleset, folder, access)
+        if has_ports:
+            _close_ports(libc, ruleset, closed_ports)
         if libc.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0) != 0 or libc.syscall(RESTRICT_SELF, ruleset, 0) != 0:
             return []
     finally:
         os.close(ruleset)
-    return [SIGNALS, FILES] if has_scopes else [FILES]
+    return [*([SIGNALS] if has_scopes else []), FILES, *([PORTS] if has_ports else [])]
 
 
 def _allow(libc: ctypes.CDLL, ruleset: int, folder: str, access: int) -> None:
@@ -109,3 +126,14 @@ def _allow(libc: ctypes.CDLL, ruleset: int, folder: str, access: int) -> None:
         libc.syscall(ADD_RULE, ruleset, PATH_BENEATH, ctypes.byref(beneath), 0)
     finally:
         os.close(descriptor)
+
+
+def _close_ports(libc: ctypes.CDLL, ruleset: int, closed: Sequence[int]) -> None:
+    """Allow connections to all ports but the closed ones: Landlock has rules that allow, and none that forbid."""
+    add, kept = libc.syscall, frozenset(closed)
+    rule = _Port(network=CONNECT_TCP)
+    at = ctypes.byref(rule)
+    for port in range(PORT_NUMBERS):
+        if port not in kept:
+            rule.port = port
+            add(ADD_RULE, ruleset, NET_PORT, at, 0)

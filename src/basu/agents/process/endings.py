@@ -22,7 +22,7 @@ class Ending(NamedTuple):
     """The end of a process."""
 
     code: int  # the exit status, negative for a signal, as ``subprocess`` has it
-    peak_bytes: int = 0  # the most memory that one of its processes held
+    peak_bytes: int = 0  # the most memory that one of its processes held, or all together that lived at its end
 
 
 def ended_how(ending: Ending) -> str:

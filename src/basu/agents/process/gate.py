@@ -18,6 +18,15 @@ if TYPE_CHECKING:
 
 HOST = "127.0.0.1"  # the agent's process is on this machine
 END_LIMIT_S = 5.0
+PORTS = 3  # of a simulator: calls, streams, and its secondary server
+
+
+def closed_ports(host: str | None, port: int, *, is_open: bool) -> tuple[int, ...]:
+    """Return the ports that only a gate may use: those of a simulator at ``host``.
+
+    None are closed if the agent may connect to it itself. A server of our own accepts its owner's connections only.
+    """
+    return () if host is None or is_open else tuple(range(port, port + PORTS))
 
 
 class Keeper(Protocol):

@@ -38,16 +38,24 @@ LEFT_OUT = (
 )
 
 
+class Limits(NamedTuple):
+    """What the agent's process may do beside its usual rights, and what it may not."""
+
+    writable: list[str]  # folders
+    closed_ports: list[int]  # of TCP, at any address
+
+
 class Ended(NamedTuple):
     """The end of an agent's process, as the kernel has it."""
 
     status: int  # of wait(2)
-    peak_kb: int  # the most memory that one of its processes held
+    peak_kb: int  # the most memory that one of its processes held, or all that were killed together
 
 
 def main() -> None:
-    """Keep an agent's process: arguments are the descriptors of channel and control, and the writable folders."""
-    channel, control, writable = int(sys.argv[2]), int(sys.argv[3]), json.loads(sys.argv[4])
+    """Keep an agent's process: arguments are the descriptors of channel and control, writable folders, closed ports."""
+    channel, control = int(sys.argv[2]), int(sys.argv[3])
+    limits = Limits(json.loads(sys.argv[4]), json.loads(sys.argv[5]))
     sys.argv[:] = ["basu-agent"]  # the rest is not for the agent
     os.set_inheritable(channel, False)
     _set(PR_SET_CHILD_SUBREAPER, 1)
@@ -77,10 +85,10 @@ def main() -> None:
             _be_first(agent, ended_write)
         _set(PR_SET_PDEATHSIG, signal.SIGKILL)
     os.close(ended_write)
-    _become_agent(channel, [write for _, write in outputs], writable, held)
+    _become_agent(channel, [write for _, write in outputs], limits, held)
 
 
-def _become_agent(channel: int, outputs: list[int], writable: list[str], held: list[str]) -> None:
+def _become_agent(channel: int, outputs: list[int], limits: Limits, held: list[str]) -> None:
     """Go on as the agent's process, confined."""
     os.setsid()
     for descriptor, own in zip(outputs, (1, 2), strict=True):
@@ -88,10 +96,33 @@ def _become_agent(channel: int, outputs: list[int], writable: list[str], held: l
         os.close(descriptor)
     if held:
         namespaces.drop_capabilities()
-    held += confinement.confine(writable, sees_own_processes=confinement.SIGHT in held)
+    held += confinement.confine(
+        limits.writable, sees_own_processes=confinement.SIGHT in held, closed_ports=limits.closed_ports
+    )
     from basu.agents.process.child import serve  # noqa: PLC0415 - carla and numpy, which the keeper does without
 
     serve(channel, held)
+
+
+class _Memory:
+    """The most memory that an agent held: the peak of one process, or the sum of the processes that SIGKILL ended.
+
+    Processes that live at the end are ended so, and a process that the kernel ends for want of memory.
+    """
+
+    def __init__(self) -> None:
+        self._largest_kb = self._killed_kb = 0
+
+    def add(self, status: int, peak_kb: int) -> None:
+        """Add a process that has ended: its status as wait(2) has it, and the most that it held."""
+        self._largest_kb = max(self._largest_kb, peak_kb)
+        if os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGKILL:
+            self._killed_kb += peak_kb
+
+    @property
+    def peak_kb(self) -> int:
+        """The larger of both."""
+        return max(self._largest_kb, self._killed_kb)
 
 
 # -- the first process of a namespace
@@ -100,17 +131,18 @@ def _become_agent(channel: int, outputs: list[int], writable: list[str], held: l
 def _be_first(agent: int, ended: int) -> NoReturn:
     """Reap every process of the namespace until the agent's has ended; the rest ends with this process."""
     signal.signal(signal.SIGTERM, lambda *_: os.kill(agent, signal.SIGTERM))
-    end, peak_kb = None, 0
+    end, memory = None, _Memory()
     while end is None:
         pid, status, usage = os.wait4(-1, 0)
-        peak_kb = max(peak_kb, usage.ru_maxrss)
+        memory.add(status, usage.ru_maxrss)
         if pid == agent:
             end = status
     with contextlib.suppress(OSError):
         os.kill(-1, signal.SIGKILL)
         while True:
-            peak_kb = max(peak_kb, os.wait4(-1, 0)[2].ru_maxrss)
-    os.write(ended, json.dumps(Ended(end, peak_kb)).encode())
+            _, status, usage = os.wait4(-1, 0)
+            memory.add(status, usage.ru_maxrss)
+    os.write(ended, json.dumps(Ended(end, memory.peak_kb)).encode())
     os._exit(0)
 
 
@@ -126,8 +158,7 @@ def _keep(child: int, control: int, outputs: list[int], ended: int | None) -> No
     finally:
         with contextlib.suppress(OSError):
             os.kill(child, signal.SIGKILL)
-        last = _end_all(child)
-        end = end or last
+        end = _end_all(child, end)
     if ended is not None:
         os.set_blocking(ended, False)
         with contextlib.suppress(OSError, ValueError):
@@ -230,9 +261,14 @@ def _reaped(child: int) -> Ended | None:
     return None
 
 
-def _end_all(child: int) -> Ended | None:
-    """Kill children until there are none: the orphans of a killed one become children of the keeper."""
-    end = None
+def _end_all(child: int, end: Ended | None) -> Ended | None:
+    """Kill children until there are none, and return the child's end with the memory of all.
+
+    The orphans of a killed process become children of the keeper. ``end`` is the child's, if it has ended.
+    """
+    memory = _Memory()
+    if end is not None:
+        memory.add(end.status, end.peak_kb)
     deadline_s = time.monotonic() + END_LIMIT_S
     while time.monotonic() < deadline_s:
         for pid in _children():
@@ -244,9 +280,11 @@ def _end_all(child: int) -> Ended | None:
             break
         if pid == 0:
             time.sleep(0.001)
+            continue
+        memory.add(status, usage.ru_maxrss)
         if pid == child:
             end = Ended(status, usage.ru_maxrss)
-    return end
+    return None if end is None else end._replace(peak_kb=memory.peak_kb)
 
 
 def _children() -> list[int]:

@@ -55,25 +55,26 @@ class AgentInProcess(NamedTuple):
     agent_config: str | None
     memory: Memory | None
     writes: tuple[str, ...] = ()  # folders in which its process may write beside its own
+    closed_ports: tuple[int, ...] = ()  # to which its process may not connect
 
     def process(self) -> AgentProcess:
         """The process that is kept for this agent; a new one where the last one ended."""
-        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.memory, self.writes)
+        key = (BUILT_IN_KEY if self.file is None else self.wanted, self.memory, self.writes, self.closed_ports)
         kept = _kept.get(key)
         if kept is None or not kept.alive:
-            kept = _kept[key] = AgentProcess(self.memory, self.writes)
+            kept = _kept[key] = AgentProcess(self.memory, self.writes, self.closed_ports)
         return kept
 
     @property
     def confinement(self) -> list[str]:
         """The parts of the confinement of its process that the kernel enforces (`basu.agents.process.confinement`)."""
-        return list(_enforced)
+        return list(_enforced.get(self.closed_ports, ()))
 
 
-_enforced: list[str] = []  # the same for all agents of a machine
+_enforced: dict[tuple[int, ...], tuple[str, ...]] = {}  # by closed ports; the same for all agents of a machine
 FoundAgent = LoadedAgent | AgentInProcess
 
-_kept: dict[tuple[str, Memory | None, tuple[str, ...]], AgentProcess] = {}
+_kept: dict[tuple[str, Memory | None, tuple[str, ...], tuple[int, ...]], AgentProcess] = {}
 
 
 def find_agent(
@@ -83,10 +84,12 @@ def find_agent(
     in_process: bool = False,
     memory_gb: float | None = None,
     writes: tuple[str, ...] = (),
+    closed_ports: tuple[int, ...] = (),
 ) -> FoundAgent:
     """The agent called ``wanted``, as ``load_agent`` finds it, loaded in a process of its own or in this one.
 
-    ``memory_gb`` limits what its process uses, in GB; ``writes`` are folders in which it may write beside its own.
+    ``memory_gb`` limits what its process uses, in GB; ``writes`` are folders in which it may write beside its own;
+    ``closed_ports`` are those of a simulator, to which it may not connect.
 
     Raises:
         UserError: there is none, the file does not load, or it holds no agent or more than one.
@@ -100,11 +103,11 @@ def find_agent(
     file = (
         None if wanted.partition(":")[0] in BUILT_IN else Path(wanted.partition(":")[0] if ".py:" in wanted else wanted)
     )
-    agent = AgentInProcess("", file, "", False, wanted, agent_config, memory, writes)
+    agent = AgentInProcess("", file, "", False, wanted, agent_config, memory, writes, closed_ports)
     try:
         process = agent.process()
         found = process.call("load", (wanted, agent_config), limit_s=LOAD_LIMIT_S)
-        _enforced[:] = process.confinement or ()
+        _enforced[closed_ports] = process.confinement or ()
     except OverLimitError:
         raise UserError(f"the agent's file {wanted} was not loaded within {LOAD_LIMIT_S:g} s") from None
     except Death as death:

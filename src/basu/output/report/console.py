@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from basu.metrics.registry import NAME_WIDTH, built_in, shown
 from basu.metrics.success import not_exercised
 from basu.output.report.scenarios.tally import LOOKS
-from basu.output.report.tracks import NO_GATE
+from basu.output.report.tracks import NO_GATE, ON_OWN_ROUTE
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -81,7 +81,8 @@ def score_lines(result: Result) -> list[str]:
 def why_not_comparable(result: Result) -> str:
     """Return why a score cannot be compared with others; empty if it can."""
     ended = f"the run ended as {result.outcome.status.value}" if result.is_broken_off else ""
-    return " and ".join(reason for reason in (NO_GATE if result.is_open else "", ended) if reason)
+    reasons = (NO_GATE if result.is_open else "", ON_OWN_ROUTE if result.has_own_route else "", ended)
+    return " and ".join(reason for reason in reasons if reason)
 
 
 def _access(result: Result) -> list[str]:

@@ -6,7 +6,7 @@ import statistics
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from basu.output.report.tracks import track_of
+from basu.output.report.tracks import ON_OWN_ROUTE, track_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 SERIES_SCHEMA_VERSION = 1
 SCORES = ("driving", "infraction", "path_following")
 COMPARED = ("driving", "route_completion", "infraction_penalty")  # of each version of the leaderboard
+PASSED = {"passed": True, "failed": False, "not judged": None}  # by the one rule of success
 NAMES = {"driving": "driving score", "infraction": "  infractions", "path_following": "  path following"}
 
 
@@ -29,6 +30,8 @@ def row(document: Mapping[str, Any], *, number: int, repetition: int, folder: st
         "folder": folder,
         "status": document["status"],
         "fault": document["fault"],
+        "passed": document.get("passed"),
+        "own_route": bool(meta.get("own_route")),
         "scores": document["scores"],
         "leaderboard": {
             version: {name: scores[name] for name in COMPARED}
@@ -65,6 +68,7 @@ def totals(rows: Sequence[Mapping[str, Any]], planned: int) -> dict[str, Any]:
             }
             for version in versions
         },
+        "passed": {word: sum(each.get("passed") is value for each in rows) for word, value in PASSED.items()},
         "statuses": dict(sorted(Counter(each["status"] for each in rows).items())),
         "infractions": {
             kind: {"number": kinds[kind], "per_km": kinds[kind] / driven_km if driven_km > 0.0 else None}
@@ -92,6 +96,11 @@ def series_table(name: str, document: Mapping[str, Any]) -> str:
     lines += [
         _line(f"leaderboard {version}", scores["driving"]) for version, scores in sorted(total["leaderboard"].items())
     ]
+    own = sum(bool(each.get("own_route")) for each in document["runs"])
+    if own:
+        lines.append(f"{'NOT COMPARABLE':<18}{ON_OWN_ROUTE} in {own} of {total['done']} runs")
+    judged = {word: count for word, count in total.get("passed", {}).items() if count}
+    lines += [f"{'result':<18}{', '.join(f'{count} {word}' for word, count in judged.items())}"] if judged else []
     lines.append(f"{'ended':<18}{', '.join(f'{count} {status}' for status, count in total['statuses'].items())}")
     lines += [f"{kind:<26}{_often(found)}" for kind, found in total["infractions"].items()] or ["no infraction"]
     pace = f", {total['simulated_s'] / total['wall_s']:.2f}x real time" if total["wall_s"] > 0.0 else ""

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 UNKNOWN = ""  # of a run that no agent of BASU's commands drove, or that an older version drove
 NO_GATE = "no gate stood between the agent and the simulator (--open, or --in-process with an agent of a user)"
 
+ON_OWN_ROUTE = "the route was the agent's own, and not the benchmark's"
+
 
 def track_of(access: Mapping[str, Any] | None) -> str:
     """Return the track of a run as tables name it, with a mark where no gate stood before the agent."""

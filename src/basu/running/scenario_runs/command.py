@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tqdm import tqdm
 
-from basu.agents.process.remote_agent import find_agent
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.jobs.in_process import play_here
 from basu.jobs.job import Job, Lost
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes
+from basu.managers.agents_manager import ignored_wishes
 from basu.outcome import Fault
 from basu.output.report.documents import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.junit import junit_xml
@@ -28,7 +28,7 @@ from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.running.scenario_runs.case_documents import lost, matrix_of, run_config
 from basu.running.scenario_runs.chosen_cases import chosen
-from basu.running.scenario_runs.player import CaseJob, case_player
+from basu.running.scenario_runs.player import CaseJob, agents_of, case_player
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -93,6 +93,8 @@ def play_matrix(
     playables = chosen(options)
     agents = _loaded(options) if given is None else list(given.values())
     names = [agent.name for agent in agents]
+    for sentence in filter(None, map(ignored_wishes, agents)):
+        print(f"basu: warning: {sentence}", file=sys.stderr)
     folder = _folder(options, began)
     write_json(folder / CONFIG_FILE, run_config(options, agents))
     jobs = [
@@ -157,10 +159,7 @@ def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
     Raises:
         UserError: one cannot be had, or two have one name.
     """
-    agents = [
-        find_agent(agent, in_process=options.in_process, memory_gb=options.agent_memory_gb, writes=options.agent_writes)
-        for agent in options.agents
-    ]
+    agents = list(agents_of(options).values())
     names = [agent.name for agent in agents]
     for name in names:
         if names.count(name) > 1:

@@ -13,7 +13,7 @@ from basu.episode import Episode, case_spec
 from basu.episode.failures import outcome_of
 from basu.episode.spec import description_of
 from basu.episode.world import asking, towns_of, weather_called, world_with
-from basu.errors import AgentCrashedError, AgentError, ScenarioError, SimulatorError, UserError
+from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
 from basu.managers.placed_scenario import call_scenario, place_scenario
 from basu.managers.sensors_manager import SensorsManager
@@ -24,7 +24,7 @@ from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
 from basu.routing import lane_graph, plan
 from basu.running.drive import drive
-from basu.running.preparation import SensorSet, new_agents, sensor_set
+from basu.running.preparation import SensorSet, agents_fault, new_agents, sensor_set
 from basu.running.scenario_runs.case_documents import case_config, document_of
 from basu.scenarios.cases import cases_of
 from basu.scenarios.tree_picture import draw
@@ -182,13 +182,9 @@ def _agents(loaded: FoundAgent, options: ScenarioOptions) -> tuple[AgentsManager
     Raises:
         AgentError: the agent failed, or asks for what is no sensor set: it was loaded, so that is its own failure.
     """
-    try:
-        agents = new_agents(loaded, options.run_options(loaded.name), options.drive_seed)
+    with agents_fault(loaded):
+        agents = new_agents(loaded, options.run_options(loaded.name), options.drive_seed, has_conditions=False)
         return agents, SensorSet((), loaded.name) if loaded.file is None else sensor_set(agents, loaded)
-    except UserError as error:
-        if loaded.file is None:
-            raise
-        raise AgentCrashedError(str(error)) from error
 
 
 def drawn(options: ScenarioOptions, form: str) -> str:

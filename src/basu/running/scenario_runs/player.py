@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
 from basu.episode import Towns
 from basu.jobs.job import After, Played, PlayerSpec
@@ -48,6 +49,25 @@ def case_player(options: ScenarioOptions, output: Path, given: Mapping[str, Load
     return PlayerSpec(f"{__name__}:open_cases", (options, output, given))
 
 
+def agents_of(options: ScenarioOptions) -> dict[str, FoundAgent]:
+    """Return the agents of a run of scenarios, loaded, as they were typed.
+
+    Raises:
+        UserError: one cannot be had.
+    """
+    closed = closed_ports(options.host, options.port, is_open=options.open)
+    return {
+        agent: find_agent(
+            agent,
+            in_process=options.in_process,
+            memory_gb=options.agent_memory_gb,
+            writes=options.agent_writes,
+            closed_ports=closed,
+        )
+        for agent in options.agents
+    }
+
+
 @contextlib.contextmanager
 def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None) -> Iterator[Play]:
     """Start a simulator, and play cases in it.
@@ -57,12 +77,7 @@ def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, Loade
         SimulatorError: there is no simulator to play in.
     """
     library = open_library(files_of(options))
-    agents: Mapping[str, FoundAgent] = given or {
-        agent: find_agent(
-            agent, in_process=options.in_process, memory_gb=options.agent_memory_gb, writes=options.agent_writes
-        )
-        for agent in options.agents
-    }
+    agents: Mapping[str, FoundAgent] = given or agents_of(options)
     ending = ENDING_IN_PROCESS if options.in_process or given else ENDING
     with simulator_for(options.run_options(options.agents[0])) as simulator:
         session = CaseSession(options, simulator, Towns(simulator))

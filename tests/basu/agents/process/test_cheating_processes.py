@@ -2,6 +2,7 @@
 
 import contextlib
 import re
+import socket
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 
 from basu.agents.process import agent_process, confinement
 from basu.agents.process.endings import Ending, ended_how, ended_outside, memory_bytes
+from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import AgentInProcess, RemoteAgent, find_agent
 from basu.errors import AgentCrashedError, AgentInvalidControlError, AgentTimedOutError
 
@@ -229,6 +231,52 @@ def test_the_confinement_that_holds_is_known_and_said(tmp_path: Path) -> None:
     assert set(agent.confinement) == set(parts) <= set(confinement.MEANINGS)
     assert ("files" in parts) == (confinement.landlock_abi() > 0)
     assert confinement.sentence(()) == "nothing confines it here"
+
+
+def test_memory_that_is_spread_over_processes_counts_together(tmp_path: Path) -> None:
+    """Six processes with a tenth of the memory each looked like one that held little."""
+    hold = "import time; held = bytearray(40_000_000); print(1, flush=True); time.sleep(60)"
+    deed = (
+        f"started = [subprocess.Popen([sys.executable, '-c', {hold!r}], stdout=subprocess.PIPE) for _ in range(6)]; "
+        "[each.stdout.readline() for each in started]; os.kill(os.getpid(), signal.SIGKILL)"
+    )
+    with pytest.raises(AgentCrashedError, match="SIGKILL") as raised:
+        cheat(tmp_path, deed).own_route()
+    held = re.search(r"at most it held ([\d.]+) GB", str(raised.value))
+    assert held is not None
+    assert float(held[1]) > 6 * 0.04 + 0.05  # the six together, and the agent's own process
+
+
+NEEDS_PORTS = pytest.mark.skipif(
+    confinement.landlock_abi() < confinement.ABI_WITH_PORTS, reason="this kernel's Landlock has no ports (Linux 6.7)"
+)
+
+
+@NEEDS_PORTS
+def test_an_agent_that_scans_for_the_simulator_finds_the_gate_alone(tmp_path: Path) -> None:
+    """At --host the simulator's own port was open to every program of the machine."""
+    with socket.socket() as simulator, socket.socket() as gate:
+        for each in (simulator, gate):
+            each.bind(("127.0.0.1", 0))
+            each.listen()
+        own, free = (each.getsockname()[1] for each in (simulator, gate))
+        deed = (
+            "probe = lambda port: socket.socket().connect_ex(('127.0.0.1', port)) == 0; "
+            f"open_ports = [port for port in ({own}, {free}) if probe(port)]; "
+            f"by_child = subprocess.run([sys.executable, '-c', 'import socket; "
+            f'print(socket.socket().connect_ex(("127.0.0.1", {own})))\'], capture_output=True).stdout; '
+            "raise ValueError(f'found {open_ports}, by a child {by_child}')"
+        )
+        agent = found(tmp_path, deed, closed_ports=(own,))
+        with pytest.raises(AgentCrashedError, match=rf"found \[{free}\], by a child b'13"):
+            RemoteAgent(agent, 10.0, 0).own_route()
+        assert confinement.PORTS in agent.confinement
+        assert confinement.PORTS not in found(tmp_path, "pass").confinement
+
+
+def test_ports_are_closed_for_a_simulator_that_is_not_ours() -> None:
+    assert closed_ports("10.0.0.1", 2000, is_open=False) == (2000, 2001, 2002)
+    assert closed_ports("10.0.0.1", 2000, is_open=True) == closed_ports(None, 2000, is_open=False) == ()
 
 
 def test_only_a_record_of_the_kernel_excuses_a_kill_and_no_agent_that_used_the_memory_up() -> None:
