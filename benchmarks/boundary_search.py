@@ -3,11 +3,13 @@
 usage: boundary_search.py [--seeds N] [--drives N] [--regions tuning|held-out] [--samplers NAME ...] [--flat]
 
 No simulator is needed. Every sampler gets the same number of drives: 10 first, then rounds of 4 from one state of
-knowledge. ``failures`` is the mean number found; ``any`` the share of seeds in which one was found. ``wrong`` is the share of
-the space, and ``missed`` the share of the failing region, on whose verdict the surrogate of the report is wrong after these drives, whatever
-sampler chose them. ``off`` counts drives that the surrogate puts on the side that they are not on. Intervals are 95 % of a mean.
-With ``--flat`` severity leads nowhere. ``optuna`` and ``botorch`` need `pip install optuna botorch`.
+knowledge. ``failures`` is the mean number found; ``any`` the share of seeds in which one was found. ``wrong`` is the
+share of the space, and ``missed`` that of the failing region, on whose verdict the report's surrogate is wrong after
+these drives, whatever sampler chose them. ``off`` counts drives that the surrogate puts on the wrong side. Intervals
+are 95 % of a mean. With ``--flat`` severity leads nowhere. Optuna and BoTorch are not in any extra:
+`pip install optuna botorch`.
 """
+# ruff: noqa: ARG001, E402, FBT001, PLC0415 - samplers have one signature; threads are set, and libraries may be absent
 
 import argparse
 import importlib.util
