@@ -193,6 +193,11 @@ def main() -> None:
                 print(f"{name:<27} {line(sampler, found)}", flush=True)
     for sampler, found in totals.items():
         print(f"{'all':<27} {line(sampler, np.concatenate(found))}")
+    for sampler in [each for each in samplers if each != "ours" and "ours" in samplers]:
+        less = np.concatenate(totals["ours"]) - np.concatenate(totals[sampler])  # the same places, pair by pair
+        mean, half = less.mean(axis=0), 1.96 * less.std(axis=0, ddof=1) / np.sqrt(len(less))
+        print(f"ours less {sampler}: failures {mean[0]:+.1f} ± {half[0]:.1f}, wrong {100.0 * mean[1]:+.1f} ± "
+              f"{100.0 * half[1]:.1f} %, missed {100.0 * mean[2]:+.1f} ± {100.0 * half[2]:.1f} %")  # fmt: skip
 
 
 def line(sampler: str, found: Points) -> str:
