@@ -30,6 +30,7 @@ LENGTH, LENGTHS = 0.3, (0.05, 5.0)  # of the unit cube: where the fit begins, an
 HEIGHT, HEIGHTS = 10.0, (1.0, 1e3)  # variance of the latent function, likewise
 SHORT, SHORTS = 0.2, (0.05, 0.3)  # lengths of a fit that must keep every drive on its side
 TALL, TALLS = 100.0, (30.0, 1e4)  # variance, likewise
+FIRM, FIRM_LENGTHS = 1e4, (0.2, 0.1, 0.05)  # of fits without a search, where the likeliest still misplaces a drive
 LEAST_DEVIATION = 1e-9
 THREADS = ThreadpoolController()  # matrices are small, and the workers have the processors
 
@@ -58,10 +59,20 @@ class Surrogate:
         if kernel is not None:
             self._model = self._fitted(kernel, None)
             return
-        self._model = self._fitted(_kernel(points.shape[1], HEIGHT, HEIGHTS, LENGTH, LENGTHS), OPTIMIZER)
-        if ((self.latent(points)[0] > 0.0) != failed).any():
-            # the likeliest fit takes a few failures among many successes for noise; verdicts have none
-            self._model = self._fitted(_kernel(points.shape[1], TALL, TALLS, SHORT, SHORTS), OPTIMIZER)
+        dimensions = points.shape[1]
+        self._model = self._fitted(_kernel(dimensions, HEIGHT, HEIGHTS, LENGTH, LENGTHS), OPTIMIZER)
+        if self._holds_all():
+            return
+        # the likeliest fit takes a few failures among many successes for noise; verdicts have none
+        self._model = self._fitted(_kernel(dimensions, TALL, TALLS, SHORT, SHORTS), OPTIMIZER)
+        for length in FIRM_LENGTHS:
+            if self._holds_all():
+                return
+            self._model = self._fitted(_kernel(dimensions, FIRM, TALLS, length, SHORTS), None)
+
+    def _holds_all(self) -> bool:
+        """Whether every drive lies on the side of the boundary that its verdict says."""
+        return bool(((self.latent(self._points)[0] > 0.0) == self._failed).all())
 
     def _fitted(self, kernel: ConstantKernel, optimizer: str | None) -> GaussianProcessClassifier:
         """Return a classifier fitted to the drives, with this kernel to begin from."""

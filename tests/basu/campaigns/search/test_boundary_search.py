@@ -11,6 +11,8 @@ from basu.campaigns.search.findings import MAY, SURE
 from basu.campaigns.search.rounds import Known, Round, round_sizes, space_filling
 from basu.campaigns.search.surrogate import Surrogate
 from basu.campaigns.settings import Search
+from boundary_regions import HELD_OUT
+from boundary_regions import searched as drives_in
 
 Points = NDArray[np.float64]
 Fails = Callable[[Points], NDArray[np.bool_]]
@@ -127,3 +129,26 @@ def test_few_failures_among_many_successes_are_not_taken_for_noise(seed: int) ->
     assert 1 <= small(points).sum() <= 4
     mean, _ = Surrogate(points, small(points)).latent(points[small(points)])
     assert (mean > 0.0).all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("dimensions", [2, 3])
+def test_a_failure_close_to_successes_keeps_its_side(dimensions: int, seed: int) -> None:
+    failure = np.full(dimensions, 0.6)
+    close = [failure + sign * APART * np.eye(dimensions)[axis] for axis in range(dimensions) for sign in (-2.0, 2.0)]
+    points = np.vstack([space_filling(20, dimensions, seed), close, failure])
+    failed = np.arange(len(points)) == len(points) - 1
+    mean, _ = Surrogate(points, failed).latent(points)
+    assert ((mean > 0.0) == failed).all()
+
+
+def test_a_search_finds_more_failures_than_chance_where_it_was_not_tuned() -> None:
+    """A disc of 4.5 % that each seed places elsewhere, with 26 drives."""
+    region, found, chance = HELD_OUT["disc 4.5 %"], [], []
+    for seed in range(8):
+        gap = region.gap(seed)
+        drives = drives_in(Search(drives=26, first=10, batch=4), region.dimensions, gap, seed, leads=True)
+        found.append((gap(drives) < 0.0).sum())
+        chance.append((gap(np.random.default_rng(seed).random((26, region.dimensions))) < 0.0).sum())
+    assert np.mean(found) > 1.5 * np.mean(chance)
+    assert np.count_nonzero(found) >= np.count_nonzero(chance)
