@@ -159,7 +159,7 @@ def _loaded(options: ScenarioOptions) -> list[FoundAgent]:
     Raises:
         UserError: one cannot be had, or two have one name.
     """
-    agents = list(agents_of(options).values())
+    agents = agents_of(options)
     names = [agent.name for agent in agents]
     for name in names:
         if names.count(name) > 1:

@@ -49,15 +49,15 @@ def case_player(options: ScenarioOptions, output: Path, given: Mapping[str, Load
     return PlayerSpec(f"{__name__}:open_cases", (options, output, given))
 
 
-def agents_of(options: ScenarioOptions) -> dict[str, FoundAgent]:
-    """Return the agents of a run of scenarios, loaded, as they were typed.
+def agents_of(options: ScenarioOptions) -> list[FoundAgent]:
+    """Return the agents of a run of scenarios, loaded, in the order in which they were typed.
 
     Raises:
         UserError: one cannot be had.
     """
     closed = closed_ports(options.host, options.port, is_open=options.open)
-    return {
-        agent: find_agent(
+    return [
+        find_agent(
             agent,
             in_process=options.in_process,
             memory_gb=options.agent_memory_gb,
@@ -65,7 +65,7 @@ def agents_of(options: ScenarioOptions) -> dict[str, FoundAgent]:
             closed_ports=closed,
         )
         for agent in options.agents
-    }
+    ]
 
 
 @contextlib.contextmanager
@@ -77,7 +77,7 @@ def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, Loade
         SimulatorError: there is no simulator to play in.
     """
     library = open_library(files_of(options))
-    agents: Mapping[str, FoundAgent] = given or agents_of(options)
+    agents: Mapping[str, FoundAgent] = given or dict(zip(options.agents, agents_of(options), strict=True))
     ending = ENDING_IN_PROCESS if options.in_process or given else ENDING
     with simulator_for(options.run_options(options.agents[0])) as simulator:
         session = CaseSession(options, simulator, Towns(simulator))
