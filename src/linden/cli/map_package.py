@@ -15,12 +15,20 @@ from linden.cli import map_convert, map_pointcloud
 from linden.cli.map import add_pointcloud
 from linden.cli.map_files import content_of
 from linden.cli.map_source import parsed, world_map_of
-from linden.cli.output import say
+from linden.cli.output import say, say_step
 from linden.cli.process import broken_off_cleanly
 from linden.errors import UserError
 from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
+
+
+_STEPS = (
+    "lanelets of the streets",
+    "Aisan's vectors and the files of the map",
+    "the point cloud",
+    "metadata and manifest",
+)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -47,7 +55,9 @@ def _for_carla(arguments: argparse.Namespace) -> int:
 def _for_autoware(arguments: argparse.Namespace) -> int:
     source = content_of(arguments.file)
     opendrive = parsed(arguments.file, source)
+    _begin(1)
     converted = convert(opendrive, map_convert.wanted_of(arguments, opendrive))
+    _begin(2)
     vectors = aisan_of(converted.lanelet_map)
     converted = map_convert.written_of(converted, arguments)
     lanelet_map = converted.lanelet_map
@@ -62,7 +72,9 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
             (stage / layout.projector).write_bytes(projector_info(lanelet_map))
         for name, data in vectors.tables.files().items():
             (stage / layout.aisan / name).write_bytes(data)
+        _begin(3)
         _put_cloud(arguments, stage / layout.point_cloud)
+        _begin(4)
         if layout.metadata is not None:
             (stage / layout.metadata).write_bytes(folder.point_cloud_metadata(stage / layout.point_cloud))
         (stage / folder.MANIFEST).write_bytes(folder.manifest(stage, source, lanelet_map))
@@ -70,6 +82,10 @@ def _for_autoware(arguments: argparse.Namespace) -> int:
     for path in sorted(path for path in arguments.output.rglob("*") if path.is_file()):
         say(f"{path.stat().st_size:12,} bytes {path}")
     return 0
+
+
+def _begin(step: int) -> None:
+    say_step(step, len(_STEPS), _STEPS[step - 1])
 
 
 def _put_cloud(arguments: argparse.Namespace, target: Path) -> None:

@@ -33,11 +33,13 @@ def cloud(tmp_path):
     return tmp_path / "own.pcd"
 
 
-def test_the_folder_is_complete_and_its_manifest_names_every_file(tmp_path, cloud):
+def test_the_folder_is_complete_and_its_manifest_names_every_file(tmp_path, cloud, capsys):
     (tmp_path / "small.xodr").write_text(two_roads())
     target = tmp_path / "town"
     words = ["map", "package", str(tmp_path / "small.xodr"), "--for", "autoware", "-o", str(target)]
     assert main([*words, "--pointcloud", str(cloud)]) == 0
+    steps = [line for line in capsys.readouterr().err.splitlines() if line.startswith("step ")]
+    assert [line.partition(":")[0] for line in steps] == [f"step {number} of 4" for number in range(1, 5)]
     assert {path.name for path in target.iterdir()} == {
         "lanelet2_map.osm",
         "map_projector_info.yaml",
