@@ -22,7 +22,6 @@ from linden.maps.opendrive.parse import parse
 from linden.scenery.map_mesh import standing
 from linden.simulation.surroundings import scenery_of
 
-
 _STEPS = (
     "lanelets of the streets",
     "Aisan's vectors and the files of the map",
