@@ -8,6 +8,8 @@ import pytest
 from fakes.osm_quarter import Drawing
 from linden.cli import main
 
+ROOT = Path(__file__).parents[3]
+
 
 @pytest.fixture
 def extract(tmp_path: Path) -> Path:
@@ -36,6 +38,18 @@ def test_the_map_and_its_facts_are_written_and_guesses_are_counted(
     assert json.loads(facts.read_text())["metadata"]["licence"].startswith("Map data from OpenStreetMap")
     assert main(["map", "build", str(facts), "-o", str(again)]) == 0
     assert again.read_bytes() == out.read_bytes()
+
+
+def test_the_extract_that_comes_with_the_project_is_built_as_its_guide_has_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    extract, out = ROOT / "examples" / "maps" / "quarter.osm", tmp_path / "Quarter.xodr"
+    guide = (ROOT / "docs" / "how-to" / "maps-import.md").read_text()
+    assert "linden map build examples/maps/quarter.osm -o Quarter.xodr --facts quarter.geojson" in guide
+    assert "linden[maps]" in guide
+    assert main(["map", "build", str(extract), "-o", str(out), "--facts", str(tmp_path / "quarter.geojson")]) == 0
+    assert main(["map", "check", str(out)]) == 0
+    assert "warning" not in capsys.readouterr().out
 
 
 def test_an_older_map_stays_where_the_extract_is_broken(
