@@ -34,18 +34,19 @@ One function, `responsibility` in `basu.metrics.fault`, decides from the record 
 collision, with the reason in words. Reports, campaigns, cases and the rule of success ask it.
 [Metrics](metrics.md#responsibility-for-a-collision) has its clauses, [0107](../decisions/0107-fault.md) the reasons.
 
-nuPlan classifies by the contact alone. In its words of ours: an ego that stands is not at fault, and one that drives into
-something at rest is. An ego that is struck from behind is not at fault, and one that meets the other with its front is.
-A contact of the ego's side is its fault unless the ego is within one lane. Way and rule before the contact do not count.
+nuPlan classifies by the contact alone, and what led to it does not count. An ego that stands is not at fault. An ego
+that drives into something at rest is. An ego that is struck from behind is not at fault. An ego that meets the other
+with its front is. A contact of the ego's side is its fault unless the ego is within one lane.
 
-The pictures show the last three seconds. The ego is blue, the other is orange, and both are solid at the moment of the
-contact. North is up. `tests/basu/metrics/test_fault.py` checks the verdicts.
+The pictures show the way of the last five seconds. The ego is blue, the other is orange. Both are solid at the moment
+of the contact, and paler one and two seconds before it. North is up. The verdicts are checked by
+`tests/basu/metrics/test_fault.py`.
 
 """
 EGO, THEM = "#1f5fa8", "#d9690f"
 GROUND, ASPHALT, MARKING, PAPER = "#e9efe4", "#b9bdc2", "#f7f7f7", "#ffffff"
-HEIGHT_PX, SHOWN_M = 220.0, 46.0
-LAST_S, GHOST_S = 3.0, 1.0
+HEIGHT_PX, SHOWN_M = 220.0, 52.0
+LAST_S, GHOST_S = 5.0, 1.0
 
 
 def page(found: tuple[Encounter, ...]) -> str:
@@ -78,9 +79,7 @@ def picture(one: Encounter) -> str:
     theirs = other_boxes(history.facts, others)
     middle_m = (own[-1, :2] + theirs[-1, :2]) / 2.0
     scale = WIDTH_PX / SHOWN_M
-    canvas = Canvas(
-        float(middle_m[0]) - SHOWN_M / 2.0, float(middle_m[1]) - HEIGHT_PX / scale / 2.0, scale, HEIGHT_PX
-    )
+    canvas = Canvas(float(middle_m[0]) - SHOWN_M / 2.0, float(middle_m[1]) - HEIGHT_PX / scale / 2.0, scale, HEIGHT_PX)
     step_s = history.facts.step_s
     ghosts = [back for back in (2, 1) if round(back * GHOST_S / step_s) < len(frames)]
     trail = max(0, len(frames) - 1 - round(LAST_S / step_s))
@@ -91,7 +90,7 @@ def picture(one: Encounter) -> str:
         *(_road(canvas, road) for road in one.roads),
         *(_trail(canvas, boxes[trail:], colour) for boxes, colour in ((own, EGO), (theirs, THEM))),
         *(
-            _box(canvas, boxes[-1 - round(back * GHOST_S / step_s)], colour, 0.3)
+            _box(canvas, boxes[-1 - round(back * GHOST_S / step_s)], colour, 0.6 / (1 + back))
             for back in ghosts
             for boxes, colour in ((own, EGO), (theirs, THEM))
         ),

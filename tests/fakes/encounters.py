@@ -233,8 +233,8 @@ def encounters() -> tuple[Encounter, ...]:
             "The ego changes lanes well before a car, which runs into it later",
             drive(
                 6.0,
-                sideways(9.0, -3.5, 0.5, 2.0),
-                ends_at(6.0, 9.0 * 5.95 - 3.95, 0.0, 12.0, 0.0),
+                sideways(5.0, -3.5, 0.5, 2.0),
+                ends_at(6.0, 5.0 * 5.95 - 3.95, 0.0, 7.0, 0.0),
                 lanes=(LANE, LEFT_LANE),
             ),
             TWO_LANES,
@@ -281,11 +281,10 @@ def encounters() -> tuple[Encounter, ...]:
 
 def _turned_left() -> History:
     """A left turn at 4 m/s across the lane to the west, at y = -3.5."""
-    speed_mps, last_s, reached_m = 4.0, 4.95, CROSSING_M - HALF_JUNCTION_M + 0.75 * TURN_M
-    x_m, y_m = left(reached_m)
+    speed_mps, last_s, reached_m = 4.0, 4.95, CROSSING_M - HALF_JUNCTION_M + 0.68 * TURN_M
     return drive(
         5.0,
         lambda t_s: left(reached_m + speed_mps * (t_s - last_s)),
-        ends_at(5.0, x_m + 3.2, y_m + 0.9, -9.0, 0.0),
+        ends_at(5.0, CROSSING_M + 3.75, -3.5, -9.0, 0.0),
         route=left_turn(),
     )

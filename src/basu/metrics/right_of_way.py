@@ -1,16 +1,15 @@
 """Right of way: whether the ego took it from the vehicle that it collided with, and how, in words.
 
-`entered_path` finds an ego that moved sideways into the path of a vehicle that had the lane: it pulled out of a bay, or
-it opened a gap that was too small by changing lanes. The path is the one that the other really drove, extended straight
-on, so it holds in bends, too. The gap that the other needs is that of UN Regulation No. 79 (03 series, 5.6.4.7) for a
-vehicle in the lane that is changed to:
+`entered_path` finds an ego that moved sideways into the path of a vehicle that had the lane. The ego pulled out of a
+bay, or it opened a gap by changing lanes. The path is the one that the other really drove, extended straight on. So it
+holds in bends, too. The gap that the other needs is that of UN Regulation No. 79 (03 series, 5.6.4.7):
 
     (v_other - v_ego) t_B + (v_other - v_ego)² / (2 a) + v_ego t_G,   t_B = 0.4 s, a = 3 m/s², t_G = 1 s
 
 A gap above it may be taken. An ego that takes such a gap and then brakes by more than `a` takes it away again.
 
-`not_yielded` finds an ego that entered a junction on red, past a stop or yield sign before a crossing vehicle, or
-turning left across an oncoming one. The record holds the signs and lights of the ego's route and none of the other's:
+`not_yielded` finds an ego that entered a junction on red, or past a stop or yield sign before a crossing vehicle. It
+also finds a left turn across an oncoming vehicle. The record holds the signs and lights of the ego's route only:
 
 - An other vehicle that stood when the ego entered had no way to be taken. So the order at an all-way stop counts.
 - A green arrow is not told from a full green; after a left turn across an oncoming vehicle the ego is at fault.
