@@ -12,6 +12,7 @@ the same. Metres are of the driven path (equation 5.2), a share is of all of it.
 from __future__ import annotations
 
 import enum
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -156,6 +157,32 @@ def wheres(history: History) -> NDArray[np.int64]:
     found[off] = order.index(Where.OFF_ROAD)
     found[off & (frames["lane_type"] == SIDEWALK)] = order.index(Where.SIDEWALK)
     return found
+
+
+def within_one_lane(history: History, tick: int) -> bool:
+    """Whether the whole box of the ego lies in one lane; in a junction, where lanes overlap, in the planned one.
+
+    nuPlan asks whether all corners of the ego's box lie in one lane or in connected ones.
+    """
+    frame, route = history.frames[tick], history.facts.route
+    if frame["in_junction"]:
+        index = max(0, int(np.searchsorted(route.s_m, frame["route_s_m"], side="right")) - 1)
+        offset_m, width_m = float(frame["lateral_m"]), float(route.lane_width_m[index])
+        heading_rad = float(frame["yaw_rad"]) - float(
+            np.interp(frame["route_s_m"], route.s_m, np.unwrap(route.yaw_rad))
+        )
+    else:
+        offset_m, width_m = float(frame["lane_offset_m"]), float(frame["lane_width_m"])
+        heading_rad = float(frame["lane_heading_rad"])
+    if not (math.isfinite(offset_m) and math.isfinite(width_m)) or frame["off_lane_m"] > 0.0:
+        return False
+    vehicle = history.facts.vehicle
+    corners_m = [
+        offset_m + along_m * math.sin(heading_rad) + beside_m * math.cos(heading_rad)
+        for along_m in (vehicle.front_m, -vehicle.rear_m)
+        for beside_m in (vehicle.width_m / 2.0, -vehicle.width_m / 2.0)
+    ]
+    return max(map(abs, corners_m)) <= width_m / 2.0
 
 
 @register

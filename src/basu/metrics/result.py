@@ -259,7 +259,7 @@ def result_schema() -> dict[str, Any]:
     around = frame.pop("properties")
     definitions = frame.pop("$defs")
     definitions["evidence"]["properties"]["responsibility"] = record(
-        about_="of a collision, by nuPlan's rule: docs/reference/metrics.md",
+        about_="of a collision, by the rules of the road: docs/reference/fault.md",
         at_fault=flag(),
         kind=choice([kind.value for kind in CollisionKind]),
         sentence=text(),

@@ -9,7 +9,8 @@ from __future__ import annotations
 import enum
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.metrics.collisions import beginnings, responsibility
+from basu.metrics.collisions import beginnings
+from basu.metrics.fault import responsibility
 from basu.outcome import Fault, Outcome, Status
 from basu.scenarios.criteria.going import arrival_tick
 from basu.scenarios.criteria.surrogate_measures import margins_of, reported_always

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from basu.metrics.collisions import collisions, kind_of, responsibilities, responsibility
+from basu.metrics.collisions import collisions, kind_of, responsibilities
+from basu.metrics.fault import responsibility
 from basu.metrics.infraction import CollisionKind, Infraction
 from basu.records.history import Collision, History
 from fakes.drives import STEP_S, at, driven, hit, ramp
