@@ -31,7 +31,7 @@ import numpy as np
 from basu.metrics.boxes import other_boxes, own_boxes, touching
 from basu.metrics.infraction import CollisionKind, Responsibility
 from basu.metrics.lanes import within_one_lane
-from basu.metrics.right_of_way import entered_path, not_yielded, track_of
+from basu.metrics.right_of_way import entered_on_red, entered_path, not_yielded, track_of
 
 if TYPE_CHECKING:
     from basu.records.history import Collision, History
@@ -56,11 +56,12 @@ def responsibility(history: History, event: Collision) -> Responsibility:
 
 
 def _taken(history: History, before: int, other_id: int) -> str | None:
-    """How the ego took the right of way of a vehicle, in words; None where it did not."""
+    """How the ego took the right of way of a vehicle, or drove on red before a person, in words; None otherwise."""
     track = track_of(history, other_id, before)
-    is_vehicle = history.facts.actor_types.get(other_id, "").startswith("vehicle.")
-    if not is_vehicle or len(track.tick) == 0 or track.speed_mps[-1] <= STOPPED_MPS:
+    if len(track.tick) == 0 or track.speed_mps[-1] <= STOPPED_MPS:
         return None
+    if not history.facts.actor_types.get(other_id, "").startswith("vehicle."):
+        return entered_on_red(history, before)
     return not_yielded(history, before, track) or entered_path(history, before, track)
 
 

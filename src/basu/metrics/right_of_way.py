@@ -160,29 +160,55 @@ class Junction(NamedTuple):
     turn_rad: float  # from the approach to the exit, clockwise
 
 
+class Entered(NamedTuple):
+    """The ego's entry to a junction of its route."""
+
+    junction: Junction
+    line: Control | None  # the sign or light before it
+    tick: int
+
+
 def not_yielded(history: History, before: int, track: Track) -> str | None:
-    """Return how the ego entered its junction against the other's right of way; None where it did not."""
+    """Return how the ego entered its junction against the other vehicle's right of way; None where it did not."""
+    entered = _entered(history, before)
+    return None if entered is None else _against(history, before, track, entered)
+
+
+def entered_on_red(history: History, before: int) -> str | None:
+    """Return in words that the ego entered its junction on red; None where it did not."""
+    entered = _entered(history, before)
+    if entered is None or entered.line is None or entered.line.kind is not ControlKind.TRAFFIC_LIGHT:
+        return None
+    if history.frames["route_light"][entered.tick] != RED:
+        return None
+    return f"the ego entered the junction on red, past traffic light {entered.line.landmark_id}"
+
+
+def _entered(history: History, before: int) -> Entered | None:
+    """The ego's entry; None where it is in no junction, or has not reached the line of the junction yet."""
     junction = _junction(history, before)
-    return None if junction is None else _against(history, before, track, junction)
-
-
-def _against(history: History, before: int, track: Track, junction: Junction) -> str | None:
-    """How the ego entered this junction against the other's right of way."""
+    if junction is None:
+        return None
     line = _line(history, junction)
     begin_m = junction.begin_m if line is None else line.s_m
-    entry = int(np.argmax(history.frames["route_s_m"] + history.facts.vehicle.front_m >= begin_m))
-    at = min(int(np.searchsorted(track.tick, entry)), len(track.tick) - 1)
+    front_m = history.frames["route_s_m"][: before + 1] + history.facts.vehicle.front_m
+    reached = np.flatnonzero(front_m >= begin_m)
+    return Entered(junction, line, int(reached[0])) if len(reached) else None
+
+
+def _against(history: History, before: int, track: Track, entered: Entered) -> str | None:
+    """How the ego entered this junction against the other's right of way."""
+    at = min(int(np.searchsorted(track.tick, entered.tick)), len(track.tick) - 1)
     other_mps = float(track.speed_mps[at])
-    off_rad = abs(_turned_rad(float(track.course_rad[at]) - junction.approach_rad))
+    off_rad = abs(_turned_rad(float(track.course_rad[at]) - entered.junction.approach_rad))
     if off_rad < SAME_WAY_RAD:
         return None
-    if line is not None and line.kind is ControlKind.TRAFFIC_LIGHT and history.frames["route_light"][entry] == RED:
-        return f"the ego entered the junction on red, past traffic light {line.landmark_id}"
-    if other_mps < WAITING_MPS:
-        return None
+    on_red = entered_on_red(history, before)
+    if on_red is not None or other_mps < WAITING_MPS:
+        return on_red
     if off_rad >= ONCOMING_RAD:
-        return _turned_left(history, before, junction, other_mps)
-    return _passed_sign(line, (before - entry) * history.facts.step_s, other_mps)
+        return _turned_left(history, before, entered.junction, other_mps)
+    return _passed_sign(entered.line, (before - entered.tick) * history.facts.step_s, other_mps)
 
 
 def _passed_sign(line: Control | None, since_s: float, other_mps: float) -> str | None:

@@ -9,13 +9,16 @@ from basu.metrics.fault import responsibility
 from basu.metrics.infraction import CollisionKind, Responsibility
 from basu.metrics.right_of_way import needed_gap_m
 from basu.records.history import History
-from fakes.drives import STEP_S, stop_sign, straight_route
+from fakes.drives import STEP_S, stop_sign, straight_route, traffic_light
 from fakes.encounters import (
     BAY,
     CROSSING_M,
+    GREEN,
+    HALF_JUNCTION_M,
     LANE,
     LEFT_LANE,
     OTHER,
+    RED,
     WALKER,
     Encounter,
     along,
@@ -130,6 +133,26 @@ def test_a_person_has_no_lane_to_be_taken() -> None:
     history = encounters()[2].history
     walker = replace(history, facts=replace(history.facts, actor_types={OTHER: WALKER}))
     assert "pulled out" not in judged(walker).sentence
+
+
+def test_an_ego_that_stands_before_the_line_did_not_enter_on_red() -> None:
+    """The line lies 2 m inside the junction; the ego waits half a metre before it when a car strikes it."""
+    line_m = CROSSING_M - HALF_JUNCTION_M + 2.0
+    route = crossing(traffic_light(line_m))
+    at_m = line_m - route_front_m() - 0.5
+    history = drive(5.0, lambda _: (at_m, 0.0), ends_at(5.0, at_m + 0.5, 2.95, 0.0, -8.0), route=route, light=RED)
+    assert judged(history).sentence.startswith("not at fault: the ego stood")
+
+
+def test_on_red_a_person_has_the_right_of_way_too() -> None:
+    for light, at_fault in ((RED, True), (GREEN, False)):
+        history = side_struck(crossing(traffic_light(CROSSING_M - HALF_JUNCTION_M - 1.0)), light)
+        on_foot = replace(history, facts=replace(history.facts, actor_types={OTHER: WALKER}))
+        assert judged(on_foot).at_fault is at_fault
+
+
+def route_front_m() -> float:
+    return drive(0.2, along(1.0), ends_at(0.2, 50.0, 50.0, 0.0, 0.0)).facts.vehicle.front_m
 
 
 def test_at_an_all_way_stop_the_first_goes_first() -> None:
