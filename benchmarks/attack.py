@@ -2,7 +2,8 @@
 
     python benchmarks/attack.py [--packets 100000] [--seed 1]
 
-One packet in ``CRAFTED_EACH`` is a crafted map (roads on one place, lane sections, widths) or crafted settings.
+One packet in ``CRAFTED_EACH`` is a crafted map (roads on one place, lane sections, widths) or crafted settings. Its
+connection stays open until the answer has come, because the server gives up work for a client that has gone.
 Packets are noise, requests cut off or changed, right types with values that make no sense, and large ones: texts and
 arrays that are announced and do not come, deep nesting, 250,000 empty arrays, pictures of a million pixels.
 Meanwhile a client that behaves ticks a synchronous world with a car. Its wait is that for the server's main thread:
@@ -12,6 +13,7 @@ clock of a busy machine says nothing.
 
 import argparse
 import contextlib
+import queue
 import random
 import struct
 import sys
@@ -40,6 +42,8 @@ CRAFTED_EACH = 2000
 ENDLESS = [True, False, [True, 0.05], True, 1e-6, 10**6, 0.0, True, 3000.0, 2000.0, True]
 MAP_PARAMETERS = [2.0, 50.0, 1.0, 0.6, True, True, True]
 SETTINGS = [True, False, [True, 0.05], True, 0.01, 10, 0.0, True, 3000.0, 2000.0, True]
+ANSWER_S = 120.0
+"""How long a crafted packet waits for its answer."""
 GONE = (EOFError, OSError, ValueError, RuntimeError, AssertionError)
 
 
@@ -89,6 +93,10 @@ def crafted(chance: random.Random) -> bytes:
     return msgpack.packb([0, 1, "copy_opendrive_to_file", [[False], text, MAP_PARAMETERS]])
 
 
+class Crafted(list[bytes]):
+    """A crafted packet, whose connection stays open until its answer."""
+
+
 def packets(seed: int, count: int) -> Iterator[list[bytes]]:
     """Yield the packets of one connection after another, ``count`` in all."""
     chance, sent, since_large, since_crafted = random.Random(seed), 0, 0, 0
@@ -101,7 +109,7 @@ def packets(seed: int, count: int) -> Iterator[list[bytes]]:
             yield [large(chance)]
         if since_crafted >= CRAFTED_EACH:
             since_crafted = 0
-            yield [crafted(chance)]
+            yield Crafted([crafted(chance)])
 
 
 class Behaved(threading.Thread):
@@ -138,6 +146,32 @@ def attack(port: int, group: list[bytes]) -> None:
         client.reset()
 
 
+class Held(threading.Thread):
+    """A client that sends crafted packets one after the other, and waits for the answer to each."""
+
+    def __init__(self, port: int) -> None:
+        super().__init__(daemon=True)
+        self._port, self._waiting = port, queue.SimpleQueue[bytes | None]()
+        self.answers, self.lost, self.longest_s = 0, 0, 0.0
+
+    def send(self, packet: bytes | None) -> None:
+        """Send a packet when the one before is answered; None ends the thread."""
+        self._waiting.put(packet)
+
+    def run(self) -> None:
+        while (packet := self._waiting.get()) is not None:
+            began_s = time.monotonic()
+            try:
+                client = RawClient(self._port, ANSWER_S)
+                client.socket.sendall(packet)
+                answered = bool(client.socket.recv(65536))
+                client.reset()
+            except GONE:
+                answered = False
+            self.answers, self.lost = self.answers + answered, self.lost + (not answered)
+            self.longest_s = max(self.longest_s, time.monotonic() - began_s)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--packets", type=int, default=100_000)
@@ -147,14 +181,21 @@ def main() -> None:
         process = psutil.Process(server.process.pid)
         behaved = Behaved(server)
         behaved.start()
+        held = Held(server.port)
+        held.start()
         before_mib, most_mib, sent, began_s = process.memory_info().rss / 2**20, 0.0, 0, time.monotonic()
         for group in packets(arguments.seed, arguments.packets):
-            attack(server.port, group)
+            if isinstance(group, Crafted):
+                held.send(group[0])
+            else:
+                attack(server.port, group)
             sent += len(group)
             if server.process.poll() is not None:
                 break
             if sent % 100 < len(group):
                 most_mib = max(most_mib, process.memory_info().rss / 2**20)
+        held.send(None)
+        held.join(ANSWER_S)
         behaved.ends.set()
         behaved.join(300)
         stopped = server.process.poll() is not None or behaved.is_alive()
@@ -162,6 +203,10 @@ def main() -> None:
         log = server.log()
         print(f"packets        {sent} in {time.monotonic() - began_s:.0f} s")
         print(f"stops          {int(stopped)}; bugs in the log: {log.count('internal error')}")
+        print(
+            f"crafted        {held.answers} answered, {held.lost} without an answer, the longest after "
+            f"{held.longest_s:.1f} s"
+        )
         print(f"ticks          {len(waits_ms)} by the client that behaves, {behaved.refused} refused")
         print(
             f"its wait       median {waits_ms[len(waits_ms) // 2]:.1f} ms, 99.9 % below "

@@ -37,7 +37,7 @@ from basu.scenarios.continuations import MOVING_MPS
 from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margin import present_in
-from basu.scenarios.criteria.surrogate_measures import gap_m
+from basu.scenarios.criteria.surrogate_measures import ego_moves, gap_m
 from basu.scenarios.exercise import Finding
 
 if TYPE_CHECKING:
@@ -148,12 +148,6 @@ def most_serious(pairs: Sequence[tuple[Criterion, Judgement]]) -> Judgement | No
     return pairs[min(failed)[2]][1] if failed else None
 
 
-def _moving_rows(present: Present) -> NDArray[np.int64]:
-    """Rows of the others in frames in which the ego moves."""
-    history = present.history
-    return np.flatnonzero(history.speed_mps()[history.others["tick"]] > MOVING_MPS)
-
-
 def passing_rows(history: History) -> NDArray[np.int64]:
     """Rows of the others in frames in which the ego moves, or creeps near an actor that a creep endangers."""
     others = history.others
@@ -165,7 +159,8 @@ def passing_rows(history: History) -> NDArray[np.int64]:
 
 def _ttc(present: Present) -> NearMiss | None:
     """The least time to collision, where it is below its limit."""
-    history, rows = present.history, _moving_rows(present)
+    history = present.history
+    rows = np.flatnonzero(ego_moves(history)[history.others["tick"]])
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
     found_s = times_to_collision_s(history, own, others, NEAR_TTC_S)[rows]
     ticks = history.others["tick"][rows].astype(np.int64)

@@ -17,10 +17,11 @@ The parts, each in 0 .. 1:
 
     balance       1 - share of the moving time with balancing steps / 0.1, at least 0; 0 once a step was not enough
     harsh_stops   0.7 for each harsh stop that had a cause, 0.4 for each that had none, multiplied
-    vibration     1 where the total value is "not uncomfortable" (0.315 m/s²), 0 from "very uncomfortable" (1.25 m/s²)
+    vibration     1 where the total value on the move is "not uncomfortable" (0.315 m/s²), 0 from "very uncomfortable"
+                  (1.25 m/s²)
     near_misses   0.6 for each party that was nearly hit, multiplied
-    service       share of the stops that were served and, where the route has a timetable, on time; left out, and its
-                  weight with it, where the route has no stops
+    service       share of the stops that were served, for long enough to board, without a person left behind, and
+                  neither late nor left early by the timetable; left out, and its weight with it, without stops
     collisions    0 for any contact, else 1; it has no weight, because a contact alone decides
 
 Below 0.6 the parts do not count, so the braking that avoids a harm never costs more than the harm itself.
@@ -36,6 +37,7 @@ import numpy as np
 
 from basu.errors import UserError
 from basu.metrics.passengers.filters import WD, WF, WK, weigh
+from basu.metrics.passengers.service import fault_of
 from basu.settings.option import Settings
 
 if TYPE_CHECKING:
@@ -100,6 +102,12 @@ def vibration(felt: Felt) -> Vibration:
     )
 
 
+def on_the_move_mps2(vibration: Vibration, felt: Felt, balance: Balance) -> float:
+    """Return the total value over the time on the move alone: rests and creeping dilute no shaking."""
+    whole_s = len(felt.t_s) * float(felt.t_s[1] - felt.t_s[0])
+    return vibration.total_mps2 * math.sqrt(max(1.0, whole_s / balance.moving_s))
+
+
 def reactions(total_mps2: float) -> tuple[str, ...]:
     """What passengers call a total value: one reaction, or two where the bands overlap."""
     return tuple(name for name, low, high in REACTIONS if low <= total_mps2 < high)
@@ -125,8 +133,8 @@ class Harm(NamedTuple):
     contacts: int = 0
     completion: float = 1.0  # share of the route that was driven; 1 for a ride that arrived
     near_misses: int = 0
-    rules_broken: int = 0  # red lights and stop signs run, speeding, driving beside the road
-    stops_passed: int = 0  # service stops that were not served
+    rules_broken: int = 0  # red lights and stop signs run, speeding, driving beside the road or in the wrong lane
+    stops_passed: int = 0  # service stops that were not served, or not for long enough to board
     phantom_stops: int = 0  # harsh stops without a cause
 
 
@@ -158,19 +166,21 @@ class ComfortWeights(Settings):
 
 
 def parts(
-    balance: Balance, phantom: Sequence[bool], vibration: Vibration, harm: Harm, visits: Sequence[Visit]
+    balance: Balance, phantom: Sequence[bool], shaken_mps2: float, harm: Harm, visits: Sequence[Visit]
 ) -> dict[str, float]:
-    """Each part that can be measured; ``phantom`` says of each harsh stop whether it had no cause."""
+    """Each part that can be measured.
+
+    ``phantom`` says of each harsh stop whether it had no cause, ``shaken_mps2`` is the total value on the move.
+    """
     found = {
         "balance": 0.0 if balance.grip_s > 0.0 else max(0.0, 1.0 - balance.step_share / STEP_SHARE),
         "harsh_stops": math.prod(PHANTOM if nothing else CAUSED for nothing in phantom),
-        "vibration": float(np.interp(vibration.total_mps2, [SMOOTH_MPS2, ROUGH_MPS2], [1.0, 0.0])),
+        "vibration": float(np.interp(shaken_mps2, [SMOOTH_MPS2, ROUGH_MPS2], [1.0, 0.0])),
         "near_misses": NEAR_MISS**harm.near_misses,
         "collisions": 0.0 if harm.contacts else 1.0,
     }
     if visits:
-        good = sum(visit.served and visit.on_time is not False for visit in visits)
-        found["service"] = good / len(visits)
+        found["service"] = sum(fault_of(visit) is None for visit in visits) / len(visits)
     return found
 
 

@@ -130,13 +130,13 @@ def _jerk(filtered_mps2: NDArray[np.float64], step_s: float) -> NDArray[np.float
 
 
 STEP_MPS2, GRIP_MPS2 = 1.0, 2.5
-MOVING_MPS = 0.1
+CREEP_MPS = 1.0  # slower than a slow walk: time at a creep counts by its way, so that it dilutes no share
 
 
 class Balance(NamedTuple):
     """Times and shares count filtered horizontal acceleration at the passenger's place, in any direction."""
 
-    moving_s: float  # the ride without its rests
+    moving_s: float  # the ride without its rests; time at a creep counts by its way
     step_s: float  # above STEP_MPS2
     step_share: float  # of the moving time
     grip_s: float  # above GRIP_MPS2
@@ -150,7 +150,7 @@ def balance(felt: Felt) -> Balance:
     size_mps2 = felt.horizontal_mps2()
     tick_s = float(felt.t_s[1] - felt.t_s[0])
     # a stop throws people when the vehicle stands already: what is felt at rest belongs to the ride
-    moving_s = max(tick_s, float(np.count_nonzero(np.abs(felt.speed_mps) > MOVING_MPS)) * tick_s)
+    moving_s = max(tick_s, float(np.minimum(np.abs(felt.speed_mps) / CREEP_MPS, 1.0).sum()) * tick_s)
     step_s, grip_s = (float(np.count_nonzero(size_mps2 > limit)) * tick_s for limit in (STEP_MPS2, GRIP_MPS2))
     worst = int(np.argmax(size_mps2))
     return Balance(

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from basu.routing.timetable import Call
 
 EARLY_S, LATE_S = 60.0, 300.0
+BOARDING_S = 5.0
+"""Least rest at a stop in which a person can board: doors need 2 to 5 s, a person some 3 s (TCRP Report 165, chapter 6,
+quoted from memory). BASU's own drivers rest for 10 s."""
 
 
 class Visit(NamedTuple):
@@ -43,6 +46,25 @@ class Visit(NamedTuple):
     left_behind: int | None = None
     alighted: int | None = None
     mean_wait_s: float | None = None  # of the passengers that boarded
+
+
+def time_to_board(visit: Visit) -> bool:
+    """Return whether the vehicle rested long enough to board; a rest that lasts to the end of the record does."""
+    return visit.served and (visit.dwell_s is None or visit.dwell_s >= BOARDING_S)
+
+
+def fault_of(visit: Visit) -> str | None:
+    """Return what was wrong with the service at a stop, in words; None where nothing was."""
+    if not visit.served:
+        return "was passed"
+    if not time_to_board(visit):
+        return f"was left after {visit.dwell_s:.1f} s, and boarding takes {BOARDING_S:.0f} s"
+    if visit.left_behind:
+        return f"was left with {visit.left_behind} persons behind"
+    left_s, planned_s = visit.departure_s, visit.planned_departure_s
+    if left_s is not None and planned_s is not None and left_s < planned_s - EARLY_S:
+        return f"was left {planned_s - left_s:.0f} s early"
+    return "was not served on time" if visit.on_time is False else None
 
 
 def service(history: History) -> tuple[Visit, ...]:

@@ -11,19 +11,33 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from basu.metrics.collisions import collisions
-from basu.metrics.lanes import off_road
+from basu.metrics.infraction import Incident
+from basu.metrics.lanes import FORGIVEN_M, Where, off_road, wheres
 from basu.metrics.passengers.causes import Cause, Kind, cause
-from basu.metrics.passengers.comfort_score import ComfortWeights, Harm, Vibration, comfort_score, parts, vibration
+from basu.metrics.passengers.comfort_score import (
+    ComfortWeights,
+    Harm,
+    Vibration,
+    comfort_score,
+    on_the_move_mps2,
+    parts,
+    reactions,
+    vibration,
+)
 from basu.metrics.passengers.felt import GRIP_MPS2, STANDING, Balance, Felt, Place, balance, felt
 from basu.metrics.passengers.harsh_stops import HARSH_MPS2, HarshStop, harsh_stops
 from basu.metrics.passengers.near_misses import Party, near_misses
-from basu.metrics.passengers.service import Visit, service
-from basu.metrics.path_following import completion
+from basu.metrics.passengers.service import Visit, fault_of, service, time_to_board
+from basu.metrics.path_following import PARKED_M, arc_length_m, completion
 from basu.metrics.red_lights import red_lights
 from basu.metrics.scoring import TOLERANCE_MPS
 from basu.metrics.speeding import speeding
 from basu.metrics.stop_signs import stop_signs
+from basu.metrics.stretches import path_m, share_of
+from basu.metrics.validity import PASSING_M, validity
 
 if TYPE_CHECKING:
     from basu.metrics.infraction import Evidence
@@ -83,13 +97,14 @@ def judge(
     phantom = [why.kind is Kind.NOTHING for _, why in stops]
     harm = Harm(
         contacts=len(contacts),
-        completion=1.0 if ended_early else completion(history),
+        completion=float(_went(history)) if ended_early else completion(history),
         near_misses=sum(party.is_near_miss for party in parties),
         rules_broken=len(breaches),
-        stops_passed=sum(not visit.served for visit in visits),
+        stops_passed=sum(not time_to_board(visit) for visit in visits),
         phantom_stops=sum(phantom),
     )
-    measured = parts(upright, phantom, shaken, harm, visits)
+    shaken_mps2 = on_the_move_mps2(shaken, sensed, upright)
+    measured = parts(upright, phantom, shaken_mps2, harm, visits)
     return Judged(
         place=place,
         harsh_mps2=harsh_mps2,
@@ -109,15 +124,44 @@ def judge(
             *(f"collision at {found.t_s:.1f} s: {found.detail}" for found in contacts),
             *(f"near miss: {party.detail}" for party in parties if party.is_near_miss),
             *_rules_and_service(history, harm, breaches, visits),
-            *_pushes(upright, stops, shaken),
+            *_pushes(upright, stops, shaken_mps2),
         ),
     )
 
 
 def _breaches(history: History, tolerance_mps: float) -> tuple[Evidence, ...]:
     """The rules of the road that were broken, in order of time."""
-    found = (*red_lights(history), *stop_signs(history), *speeding(history, tolerance_mps), *off_road(history))
+    found = (
+        *red_lights(history),
+        *stop_signs(history),
+        *speeding(history, tolerance_mps),
+        *off_road(history),
+        *_wrong_lane(history),
+    )
     return tuple(sorted(found, key=lambda each: (each.tick, each.kind.value)))
+
+
+def _wrong_lane(history: History) -> tuple[Evidence, ...]:
+    """Stretches in a lane of oncoming traffic that pass no obstacle any more, and those against the route."""
+    against = np.array([check.against for check in validity(history).checks], dtype=np.bool_)
+    oncoming = (wheres(history) == list(Where).index(Where.WRONG_LANE)) & ~against
+    return (
+        *share_of(history, oncoming, Incident.OUTSIDE_LANES, _in_wrong_lane, forgiven_m=PASSING_M).events,
+        *share_of(history, against, Incident.WRONG_WAY, _wrong_way, forgiven_m=FORGIVEN_M).events,
+    )
+
+
+def _in_wrong_lane(_first: int, _end: int) -> str:
+    return "in the wrong lane"
+
+
+def _wrong_way(_first: int, _end: int) -> str:
+    return "against the direction of the route"
+
+
+def _went(history: History) -> bool:
+    """Whether the vehicle drove at all: standing still earns no comfort."""
+    return arc_length_m(path_m(history.frames)) > PARKED_M
 
 
 def _rules_and_service(
@@ -128,16 +172,21 @@ def _rules_and_service(
     reached_m = float(history.frames["route_s_m"].max())
     place_m = {stop.id: stop.s_m for stop in history.facts.route.stops}
     found.extend(
-        f"the service stop '{visit.name}' was passed"
+        f"the service stop '{visit.name}' {fault_of(visit)}"
         for visit in visits
-        if not visit.served and place_m[visit.stop_id] <= reached_m
+        if not time_to_board(visit) and place_m[visit.stop_id] <= reached_m
     )
-    if harm.completion < 1.0:
+    if not _went(history):
+        found.append("the vehicle stood: a ride that goes nowhere earns no comfort")
+    elif harm.completion < 1.0 and (gaps := validity(history).gaps):
+        pieces = ", ".join(f"{gap.from_s_m:.0f} to {gap.to_s_m:.0f} m" for gap in gaps)
+        found.append(f"the route was not driven from {pieces}")
+    elif harm.completion < 1.0:
         found.append(f"the ride ended after {reached_m:.0f} m of its {history.facts.route.length_m:.0f} m")
     return found
 
 
-def _pushes(upright: Balance, stops: tuple[tuple[HarshStop, Cause], ...], shaken: Vibration) -> list[str]:
+def _pushes(upright: Balance, stops: tuple[tuple[HarshStop, Cause], ...], shaken_mps2: float) -> list[str]:
     """Sentences about harsh stops, strong pushes and shaking."""
     found = [
         f"{'phantom' if why.kind is Kind.NOTHING else 'harsh'} stop at {stop.t_s:.1f} s from {stop.from_mps:.2f} m/s, "
@@ -149,6 +198,6 @@ def _pushes(upright: Balance, stops: tuple[tuple[HarshStop, Cause], ...], shaken
             f"for {upright.grip_s:.2f} s pushed by more than {GRIP_MPS2} m/s², up to {upright.worst_mps2:.2f} at "
             f"{upright.worst_t_s:.1f} s: a standing passenger without a handhold may fall"
         )
-    if shaken.total_mps2 >= UNCOMFORTABLE_MPS2:
-        found.append(f"shaken by {shaken.total_mps2:.2f} m/s²: {' or '.join(shaken.reactions)}")
+    if shaken_mps2 >= UNCOMFORTABLE_MPS2:
+        found.append(f"shaken by {shaken_mps2:.2f} m/s² on the move: {' or '.join(reactions(shaken_mps2))}")
     return found

@@ -144,7 +144,11 @@ class Margin(Criterion):
         present = present_in(played)
         rows = present.rows_of(self.to)
         ticks = present.history.others["tick"][rows]
-        rows = rows[(ticks >= first) & self.frames(present)[ticks]]
+        near = rows[ticks >= first]
+        rows = near[self.frames(present)[present.history.others["tick"][near]]]
+        if len(near) > len(rows) == 0:
+            sentence = f"the ego never moved while an actor was within {NEAR_M:g} m"
+            return self.says(played, None, sentence, unit=self.unit, limit=limit)
         if len(rows) == 0:
             party = "no actor" if self.to is None else f"{self.to} never"
             return self.says(played, None, f"{party} was within {NEAR_M:g} m of the ego", unit=self.unit, limit=limit)

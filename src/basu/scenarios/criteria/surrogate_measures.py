@@ -5,13 +5,16 @@ The first three are reported of every case, whether its scenario asks for them o
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes, touching
 from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, post_encroachment_s, times_to_collision_s
+from basu.scenarios.continuations import MOVING_MPS as EGO_MOVES_MPS
 from basu.scenarios.criteria.margin import Margin
 
 if TYPE_CHECKING:
@@ -20,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.metrics.boxes import Boxes
+    from basu.records.history import History
     from basu.scenarios.criteria.criterion import Criterion, Judgement
     from basu.scenarios.criteria.margin import Present
 
@@ -98,17 +102,39 @@ class LeastDistance(Margin):
 HORIZON_S = 5.0
 
 
+def ego_moves(history: History) -> NDArray[np.bool_]:
+    """(T,) the frames in which a time to collision counts as a near miss: the ego is not at a creep."""
+    return np.asarray(history.speed_mps() > EGO_MOVES_MPS)
+
+
 class LeastTtc(Margin):
     """The time to collision stays at ``at_least`` s or more.
 
     Hayward 1972, by oriented boxes, as ``basu.metrics.passengers.near_misses`` has it: each frame, both are moved on
     with the speeds they have, the ego on its present bend, the other straight ahead, until their boxes touch. It is
-    measured up to 5 s. Two standing actors are in no danger.
+    measured up to 5 s. Two standing actors are in no danger. With ``while_moving`` only the frames of the policy
+    count, in which the ego is faster than 0.5 m/s.
     """
 
     called = "least time to collision"
     unit = "s"
     horizon = HORIZON_S
+
+    def __init__(
+        self,
+        at_least: float | None = None,
+        *,
+        to: str | None = None,
+        since: str | None = None,
+        while_moving: bool = False,
+        deciding: bool = True,
+    ) -> None:
+        super().__init__(at_least, to=to, since=since, deciding=deciding)
+        self.while_moving = while_moving
+
+    def frames(self, present: Present) -> NDArray[np.bool_]:
+        """All, or those in which the ego counts as moving."""
+        return ego_moves(present.history) if self.while_moving else super().frames(present)
 
     def measure(self, present: Present, rows: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """From each row's frame on."""
@@ -210,12 +236,16 @@ class KeepsHeadway(Margin):
 
 
 MARGINS: dict[str, type[Margin]] = {"distance_m": LeastDistance, "ttc_s": LeastTtc, "pet_s": Pet}
+REPORTED: tuple[Callable[[], Margin], ...] = (LeastDistance, functools.partial(LeastTtc, while_moving=True), Pet)
 
 
 def reported_always(criteria: Sequence[Criterion] = ()) -> tuple[Criterion, ...]:
-    """The three margins to all actors, not deciding, without the ones that ``criteria`` already hold."""
+    """The three margins to all actors, not deciding, without the ones that ``criteria`` already hold.
+
+    The time to collision is that of the policy: both take it in the same frames.
+    """
     names = {criterion.name for criterion in criteria}
-    return tuple(margin() for margin in MARGINS.values() if margin.called not in names)
+    return tuple(margin() for margin in REPORTED if margin().name not in names)
 
 
 def margins_of(judgements: Sequence[Judgement]) -> dict[str, float | None]:

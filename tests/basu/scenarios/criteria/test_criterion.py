@@ -15,9 +15,10 @@ from basu.scenarios.criteria import (
     margins_of,
     reported_always,
 )
+from basu.scenarios.policy import NEAR_TTC_S, NoNearMiss
 from fakes.drives import at, driven, hit
 from fakes.played import judgement, played
-from fakes.rides import eastward, moving, ride
+from fakes.rides import braked, eastward, moving, ride
 
 
 class NeverBacks(Criterion):
@@ -71,6 +72,24 @@ def test_the_margins_of_a_drive_are_figures_or_nothing() -> None:
         "ttc_s": None,
         "pet_s": None,
     }
+
+
+def test_the_printed_time_to_collision_is_the_one_that_the_policy_used() -> None:
+    """A car drives up to an ego that has come to rest: no near miss of the ego's, and no figure of it."""
+    history = ride(6.0, eastward(braked(5.0, 1.0, 2.5), 6.0), others=[(9, moving(46.0, 0.0, -6.0, 0.0))])
+    case = played(history)
+    with_standing = LeastTtc().judge(case).measured
+    printed = margins_of([one.judge(case) for one in reported_always()])["ttc_s"]
+    assert with_standing is not None
+    assert printed is not None
+    assert with_standing < NEAR_TTC_S <= printed
+    assert "from a collision" not in NoNearMiss().judge(case).sentence
+
+
+def test_an_ego_that_never_moved_has_no_time_to_collision() -> None:
+    case = played(ride(3.0, eastward(lambda _: 0.0, 3.0), others=[(9, moving(20.0, 0.0, -4.0, 0.0))]))
+    said = LeastTtc(while_moving=True).judge(case)
+    assert (said.measured, said.sentence) == (None, "the ego never moved while an actor was within 60 m")
 
 
 def test_the_least_of_several_is_taken_and_other_figures_are_not() -> None:
