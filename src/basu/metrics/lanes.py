@@ -21,8 +21,18 @@ import numpy as np
 from basu.metrics.infraction import Incident
 from basu.metrics.json_schema import mapping, number
 from basu.metrics.registry import Drive, Metric, register
-from basu.metrics.stretches import Share, chords, path_m, share_line, share_of, share_record, share_row, total_m
-from basu.metrics.validity import AGAINST_RAD, BEYOND_M, MOVING_MPS
+from basu.metrics.stretches import (
+    Share,
+    chords,
+    path_m,
+    share_line,
+    share_of,
+    share_record,
+    share_row,
+    stretches,
+    total_m,
+)
+from basu.metrics.validity import AGAINST_RAD, BEYOND_M, MOVING_MPS, PASSING_M, validity
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -38,7 +48,7 @@ AROUND_M = 20.0  # before and behind: the shifting taper of `basu.metrics.validi
 BESIDE_LANE_M = 1.5  # from the lane's edge to the middle of an obstacle that stands half on it
 UNPROTECTED = ("walker.", "vehicle.bh.crossbike", "vehicle.diamondback.century", "vehicle.gazelle.omafiets")
 """What the blueprints of walkers and bicycles begin with: they may be passed while they move."""
-NO_OBSTACLE = "with nothing to pass"
+NO_OBSTACLE, TOO_FAR = "with nothing to pass", "farther than passing takes"
 # values of carla.LaneType
 DRIVING, SIDEWALK = 2, 32
 
@@ -108,20 +118,45 @@ def off_road(history: History) -> tuple[Evidence, ...]:
     return share.events
 
 
+def against_route(history: History) -> tuple[Evidence, ...]:
+    """Return one event for each stretch of more than 2 m in which the vehicle points or moves against its route."""
+    share = share_of(
+        history,
+        _is_against(history),
+        Incident.WRONG_WAY,
+        lambda _first, _end: "against the direction of the route",
+        forgiven_m=FORGIVEN_M,
+    )
+    return share.events
+
+
 def in_oncoming_lane(history: History) -> tuple[Evidence, ...]:
     """Return one event for each stretch of more than 2 m in a lane of oncoming traffic that passes no obstacle.
 
     An obstacle is slower than 0.5 m/s, or a walker or a cyclist. Its middle is at most 1.5 m beyond the planned lane's
-    edge and at most 20 m before or behind the stretch. It counts from 5 s before the stretch to its end.
+    edge and at most 20 m before or behind the stretch. It counts from 5 s before the stretch to its end. A stretch of
+    more than `PASSING_M` passes none. What is against the route is left to `against_route`.
     """
-    share = share_of(
-        history,
-        wheres(history) == list(Where).index(Where.WRONG_LANE),
-        Incident.OUTSIDE_LANES,
-        lambda first, end: "with something to pass" if _passes(history, first, end) else NO_OBSTACLE,
-        forgiven_m=FORGIVEN_M,
-    )
-    return tuple(event for event in share.events if event.detail.startswith(NO_OBSTACLE))
+    oncoming = wheres(history) == list(Where).index(Where.WRONG_LANE)
+    if not oncoming.any():
+        return ()
+    oncoming &= ~_is_against(history)
+    unneeded = np.zeros_like(oncoming)
+    for first, end in stretches(oncoming):
+        unneeded[first:end] = not _passes(history, first, end)
+    found = [
+        share_of(history, frames, Incident.OUTSIDE_LANES, words, forgiven_m=forgiven_m).events
+        for frames, words, forgiven_m in (
+            (unneeded, lambda _first, _end: NO_OBSTACLE, FORGIVEN_M),
+            (oncoming & ~unneeded, lambda _first, _end: TOO_FAR, PASSING_M),
+        )
+    ]
+    return tuple(sorted((event for events in found for event in events), key=lambda event: event.tick))
+
+
+def _is_against(history: History) -> NDArray[np.bool_]:
+    """(T,) whether the vehicle points or moves against its route."""
+    return np.array([check.against for check in validity(history).checks], dtype=np.bool_)
 
 
 def _passes(history: History, first: int, end: int) -> bool:

@@ -20,17 +20,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-import numpy as np
-
 from basu.metrics.collisions import responsibilities
 from basu.metrics.infraction import Infraction
-from basu.metrics.lanes import FORGIVEN_M, in_oncoming_lane, off_road
-from basu.metrics.stretches import path_m, stretches
-from basu.metrics.validity import validity
+from basu.metrics.lanes import against_route, in_oncoming_lane, off_road
 from basu.outcome import Fault, Status
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     from basu.metrics.infraction import Evidence
     from basu.outcome import Outcome
@@ -110,7 +106,8 @@ def _wrong(history: History, infractions: Sequence[Evidence]) -> list[str]:
         (each.t_s, f"drove in the lane of oncoming traffic at {each.t_s:.1f} s: {each.detail}")
         for each in in_oncoming_lane(history)
     ]
-    return [sentence for _, sentence in sorted([*found, *_against(history)])]
+    found += [(each.t_s, f"drove the wrong way at {each.t_s:.1f} s: {each.detail}") for each in against_route(history)]
+    return [sentence for _, sentence in sorted(found)]
 
 
 def _rule(found: Evidence) -> str:
@@ -121,14 +118,3 @@ def _rule(found: Evidence) -> str:
         Infraction.SPEEDING: "was too fast",
     }
     return f"{began[Infraction(found.kind)]} at {found.t_s:.1f} s: {found.detail}"
-
-
-def _against(history: History) -> Iterator[tuple[float, str]]:
-    """Each stretch of more than 2 m that points or moves against the route, as nuPlan's direction compliance has it."""
-    checks = validity(history).checks
-    against = np.array([check.against for check in checks], dtype=np.bool_)
-    steps_m = np.linalg.norm(np.diff(path_m(history.frames), axis=0, prepend=path_m(history.frames)[:1]), axis=1)
-    for first, end in stretches(against):
-        way_m, t_s = float(steps_m[first:end].sum()), float(history.frames["t_s"][first])
-        if way_m > FORGIVEN_M:
-            yield t_s, f"drove the wrong way for {way_m:.1f} m at {t_s:.1f} s"

@@ -53,7 +53,6 @@ if TYPE_CHECKING:
 NEAR_TTC_S = 1.0
 NEAR_PET_S = 1.0
 NEAR_M = 0.45
-"""Blueprints of people that no body shell protects: walkers and CARLA's bicycles."""
 
 
 class Assessment(NamedTuple):

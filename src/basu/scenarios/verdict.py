@@ -37,7 +37,7 @@ class Verdict(enum.Enum):
 
     @property
     def counts(self) -> bool:
-        """Whether the case tells something about the agent; the others are left out of shares."""
+        """Whether the case was passed or failed; the share shown counts all others as not passed."""
         return self in (Verdict.SUCCESS, Verdict.FAILURE, Verdict.AGENT_FAULT)
 
     @property

@@ -8,14 +8,11 @@ call uncomfortable. Delays and single balancing steps lower the comfort score an
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from basu.metrics.collisions import collisions
-from basu.metrics.infraction import Incident
-from basu.metrics.lanes import FORGIVEN_M, Where, off_road, wheres
+from basu.metrics.lanes import against_route, in_oncoming_lane, off_road
 from basu.metrics.passengers.causes import Cause, Kind, cause
 from basu.metrics.passengers.comfort_score import (
     ComfortWeights,
@@ -36,8 +33,8 @@ from basu.metrics.red_lights import red_lights
 from basu.metrics.scoring import TOLERANCE_MPS
 from basu.metrics.speeding import speeding
 from basu.metrics.stop_signs import stop_signs
-from basu.metrics.stretches import path_m, share_of
-from basu.metrics.validity import PASSING_M, validity
+from basu.metrics.stretches import path_m
+from basu.metrics.validity import validity
 
 if TYPE_CHECKING:
     from basu.metrics.infraction import Evidence
@@ -136,27 +133,10 @@ def _breaches(history: History, tolerance_mps: float) -> tuple[Evidence, ...]:
         *stop_signs(history),
         *speeding(history, tolerance_mps),
         *off_road(history),
-        *_wrong_lane(history),
+        *(replace(each, detail=f"in a lane of oncoming traffic {each.detail}") for each in in_oncoming_lane(history)),
+        *against_route(history),
     )
     return tuple(sorted(found, key=lambda each: (each.tick, each.kind.value)))
-
-
-def _wrong_lane(history: History) -> tuple[Evidence, ...]:
-    """Stretches in a lane of oncoming traffic that pass no obstacle any more, and those against the route."""
-    against = np.array([check.against for check in validity(history).checks], dtype=np.bool_)
-    oncoming = (wheres(history) == list(Where).index(Where.WRONG_LANE)) & ~against
-    return (
-        *share_of(history, oncoming, Incident.OUTSIDE_LANES, _in_wrong_lane, forgiven_m=PASSING_M).events,
-        *share_of(history, against, Incident.WRONG_WAY, _wrong_way, forgiven_m=FORGIVEN_M).events,
-    )
-
-
-def _in_wrong_lane(_first: int, _end: int) -> str:
-    return "in the wrong lane"
-
-
-def _wrong_way(_first: int, _end: int) -> str:
-    return "against the direction of the route"
 
 
 def _went(history: History) -> bool:

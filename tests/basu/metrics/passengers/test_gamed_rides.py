@@ -8,6 +8,8 @@ import pytest
 
 from basu.metrics.passengers.service import Visit, fault_of, service
 from basu.metrics.passengers.verdict import Judged, judge
+from basu.metrics.success import success
+from basu.outcome import Outcome, Status
 from basu.records.history import History
 from basu.routing import Stop
 from basu.routing.timetable import Call, Hours, Timetable
@@ -15,6 +17,7 @@ from fakes.drives import stop_sign, straight_route
 from fakes.rides import eastward, ride
 
 LENGTH_M = 100.0
+ARRIVED = Outcome(Status.COMPLETED, "arrived")
 
 
 def judged(history: History, *, ended_early: bool = False) -> Judged:
@@ -70,21 +73,32 @@ def test_the_sign_that_was_missed_is_a_reason() -> None:
     assert any("crossed the line of stop sign 7" in reason for reason in found.reasons)
 
 
-def test_a_long_way_in_the_wrong_lane_is_a_reason() -> None:
-    """The passing of an obstacle is none."""
+def oncoming(metres: float, *, past_a_van: bool = False) -> History:
+    """A ride of 100 m at 5 m/s, from 20 m on in the oncoming lane, perhaps beside a parked van."""
 
-    def oncoming(metres: float) -> History:
-        def state(t_s: float) -> dict[str, float]:
-            row = eastward(lambda _: 5.0, 22.0)(t_s)
-            wrong = 20.0 <= row["x_m"] <= 20.0 + metres
-            lane = {"y_m": -3.5, "lateral_m": -3.5, "lane_id": 1.0, "lane_heading_rad": math.pi} if wrong else {}
-            return {**row, "road_id": 1.0, "lane_id": -1.0, "lane_type": 2.0, "lane_width_m": 3.5, **lane}
+    def state(t_s: float) -> dict[str, float]:
+        row = eastward(lambda _: 5.0, 22.0)(t_s)
+        wrong = 20.0 <= row["x_m"] <= 20.0 + metres
+        lane = {"y_m": -3.5, "lateral_m": -3.5, "lane_id": 1.0, "lane_heading_rad": math.pi} if wrong else {}
+        return {**row, "road_id": 1.0, "lane_id": -1.0, "lane_type": 2.0, "lane_width_m": 3.5, **lane}
 
-        return ride(20.0, state, route=straight_route(LENGTH_M))
+    van = [(9, lambda _: {"x_m": 30.0, "y_m": 0.0})]
+    return ride(20.0, state, others=van if past_a_van else (), route=straight_route(LENGTH_M))
 
-    reasons = judged(oncoming(70.0), ended_early=True).reasons
-    assert any("in the wrong lane for" in reason for reason in reasons)
-    assert not any("wrong lane" in reason for reason in judged(oncoming(20.0), ended_early=True).reasons)
+
+@pytest.mark.parametrize(
+    ("history", "reason"),
+    [
+        pytest.param(oncoming(20.0), "with nothing to pass", id="nothing to pass"),
+        pytest.param(oncoming(20.0, past_a_van=True), None, id="a parked van"),
+        pytest.param(oncoming(70.0, past_a_van=True), "farther than passing takes", id="far past a van"),
+    ],
+)
+def test_the_wrong_lane_is_a_reason_by_the_rule_of_success(history: History, reason: str | None) -> None:
+    for reasons in (judged(history, ended_early=True).reasons, success(ARRIVED, history, ()).reasons):
+        found = [each for each in reasons if "lane of oncoming traffic" in each]
+        assert len(found) == (reason is not None), reasons
+        assert reason is None or reason in found[0]
 
 
 def test_to_ride_against_the_route_is_a_reason() -> None:
