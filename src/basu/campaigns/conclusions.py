@@ -30,6 +30,7 @@ class Rate(NamedTuple):
     successes: int
     wilson: Interval
     exact: Interval  # Clopper and Pearson
+    shown: Interval  # Wilson, of all drives: what was not judged counts as not passed
     faults: dict[str, int]  # drives that say nothing of the agent, by the party at fault; without one: not exercised
 
 
@@ -110,7 +111,8 @@ def _rate(table: pa.Table, agent: str, confidence: float) -> Rate:
     faults = {str(row["values"]): int(row["counts"]) for row in pc.value_counts(rest["fault"]).to_pylist()}
     trials = judged.num_rows
     exact = clopper_pearson(successes, trials, confidence)
-    return Rate(agent, table.num_rows, trials, successes, wilson(successes, trials, confidence), exact, faults)
+    judged_rate, shown = (wilson(successes, number, confidence) for number in (trials, table.num_rows))
+    return Rate(agent, table.num_rows, trials, successes, judged_rate, exact, shown, faults)
 
 
 def pairs(table: pa.Table, agents: Sequence[str]) -> list[Pair]:

@@ -17,6 +17,9 @@ also finds a left turn across an oncoming vehicle. The record holds the signs an
 - Without a sign or light, and for priority to the right, there is no clause here.
 
 Traffic keeps to the right, as in all of CARLA's towns: LibCarla knows no other.
+
+The rules are those of the Ohio Revised Code: 4511.33 (changes of lanes), 4511.38 and 4511.44 (pulling out), 4511.13
+(red), 4511.43 (stop and yield signs), 4511.42 (left turns).
 """
 
 from __future__ import annotations

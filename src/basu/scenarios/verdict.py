@@ -63,7 +63,7 @@ ELSEWHERE = {
 
 
 class Collision(NamedTuple):
-    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.collisions`)."""
+    """A contact of the ego, and whether the ego is at fault for it (`basu.metrics.fault`)."""
 
     t_s: float
     other: str  # a role, a thing's name or a blueprint id
