@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 FORGIVEN_M = 2.0  # a stretch against the lane no longer than this; nuPlan's direction compliance forgives as much
+PUSHED_S = (
+    2.0  # after a message of a contact: the other party may push the vehicle back, which is no driving; a convention
+)
 STANDING_MPS = 0.5  # slower is an obstacle: the speed from which on near misses of cases count
 BEFORE_S = 5.0  # that an obstacle may have stood before the ego is beside it
 AROUND_M = 20.0  # before and behind: the shifting taper of `basu.metrics.validity.PASSING_M`
@@ -119,10 +122,16 @@ def off_road(history: History) -> tuple[Evidence, ...]:
 
 
 def against_route(history: History) -> tuple[Evidence, ...]:
-    """Return one event for each stretch of more than 2 m in which the vehicle points or moves against its route."""
+    """Return one event for each stretch of more than 2 m in which the vehicle points or moves against its route.
+
+    The 2 s after a contact do not count: a contact has a fault of its own (`basu.metrics.fault`).
+    """
+    pushed = np.zeros(len(history.frames), dtype=np.bool_)
+    for event in history.collisions:
+        pushed[event.tick : event.tick + round(PUSHED_S / history.facts.step_s) + 1] = True
     share = share_of(
         history,
-        _is_against(history),
+        _is_against(history) & ~pushed,
         Incident.WRONG_WAY,
         lambda _first, _end: "against the direction of the route",
         forgiven_m=FORGIVEN_M,

@@ -60,6 +60,19 @@ def test_the_wrong_way_fails_it_and_a_metre_back_does_not() -> None:
     assert asked(along(route_along(CORNERS), a_metre)).success.passed
 
 
+def test_to_be_pushed_back_by_a_contact_is_not_the_wrong_way() -> None:
+    back = along(route_along(CORNERS), ((0.0, 0.0), (100.0, 0.0), (94.0, 0.0), (200.0, 0.0)))
+    turn = int(np.argmin(np.abs(back.frames["x_m"][:260] - 100.0)))
+
+    def reasons(*ticks: int) -> tuple[str, ...]:
+        contacts = tuple(hit(tick, "vehicle.lincoln.mkz_2020", 9) for tick in ticks)
+        return asked(replace(back, collisions=contacts)).success.reasons
+
+    assert any("wrong way" in reason for reason in reasons())
+    assert not any("wrong way" in reason for reason in reasons(turn))
+    assert any("wrong way" in reason for reason in reasons(turn - 60))
+
+
 ROUND = ((0.0, 0.0), (80.0, 0.0), (85.0, -3.5), (105.0, -3.5), (110.0, 0.0), (200.0, 0.0))
 
 
