@@ -32,7 +32,7 @@ from basu.metrics.stretches import (
     stretches,
     total_m,
 )
-from basu.metrics.validity import AGAINST_RAD, AT_REST_MPS, BEYOND_M, PASSING_M, validity
+from basu.metrics.validity import AGAINST_RAD, BEYOND_M, MOVING_MPS, PASSING_M, validity
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -45,7 +45,7 @@ FORGIVEN_M = 2.0  # a stretch against the lane no longer than this; nuPlan's dir
 PUSHED_S = (
     2.0  # after a message of a contact: the other party may push the vehicle back, which is no driving; a convention
 )
-STANDING_MPS = 0.5  # slower is an obstacle: the speed from which on near misses of cases count
+STANDING_MPS = 0.5  # slower is an obstacle: the same speed at which near misses and collisions take others for resting
 BEFORE_S = 5.0  # that an obstacle may have stood before the ego is beside it
 AROUND_M = 20.0  # before and behind: the shifting taper of `basu.metrics.validity.PASSING_M`
 BESIDE_LANE_M = 1.5  # from the lane's edge to the middle of an obstacle that stands half on it
@@ -94,7 +94,7 @@ def outside_lanes(history: History) -> OutsideLanes:
 def wrong_way(history: History) -> Share:
     """How far the vehicle moved against the direction of its lane, one event for each stretch of 2 m and more."""
     frames = history.frames
-    moving = np.hypot(frames["velocity_x_mps"], frames["velocity_y_mps"]) > AT_REST_MPS
+    moving = np.hypot(frames["velocity_x_mps"], frames["velocity_y_mps"]) > MOVING_MPS
     course_rad = np.arctan2(frames["velocity_y_mps"], frames["velocity_x_mps"])
     lane_rad = frames["yaw_rad"] - frames["lane_heading_rad"]
     against = np.cos(course_rad - lane_rad) < np.cos(AGAINST_RAD)  # nan, where there is no lane, is not

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.metrics.stretches import chords, path_m, total_m
-from basu.metrics.validity import AT_REST_MPS, counts_at, validity
+from basu.metrics.validity import counts_at, validity
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 AT_END_M, PARKED_M = 1.0, 5.0
 SERVED_M = 3.0
+AT_REST_MPS = 0.1
 
 
 def has_arrived(left_m: float, speed_mps: float, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> bool:

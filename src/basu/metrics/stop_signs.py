@@ -17,7 +17,7 @@ import numpy as np
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
 from basu.metrics.json_schema import flag, listing, number, record, text
 from basu.metrics.registry import Column, Drive, Metric, register
-from basu.metrics.validity import AT_REST_MPS, counts_at
+from basu.metrics.validity import counts_at
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
     from basu.routing import Control
 
+AT_REST_MPS = 0.1
 ZONE_BEFORE_M, ZONE_BEYOND_M = 3.0, 1.0
 
 

@@ -18,9 +18,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.boxes import boxes, other_boxes, touching
-from basu.metrics.passengers.near_misses import CROSSING_RAD
-from basu.metrics.stop_signs import ZONE_BEFORE_M, ZONE_BEYOND_M
-from basu.metrics.validity import AT_REST_MPS
+from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS
+from basu.metrics.stop_signs import AT_REST_MPS, ZONE_BEFORE_M, ZONE_BEYOND_M
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -192,5 +191,5 @@ def _by_tick(history: History, key: int) -> tuple[NDArray[np.float64], NDArray[n
     box = other_boxes(history.facts, rows)
     box[:, 3:] += BESIDE_M
     found[rows["tick"]] = box
-    moving[rows["tick"]] = np.hypot(rows["velocity_x_mps"], rows["velocity_y_mps"]) > AT_REST_MPS
+    moving[rows["tick"]] = np.hypot(rows["velocity_x_mps"], rows["velocity_y_mps"]) > STILL_MPS
     return found, moving

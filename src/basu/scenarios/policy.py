@@ -31,7 +31,7 @@ import numpy as np
 from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.lanes import UNPROTECTED
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
-from basu.metrics.validity import AT_REST_MPS
+from basu.metrics.path_following import AT_REST_MPS
 from basu.outcome import Fault
 from basu.scenarios.continuations import MOVING_MPS
 from basu.scenarios.criteria.contact import NoCollision

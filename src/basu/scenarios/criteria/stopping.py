@@ -8,9 +8,7 @@ import numpy as np
 
 from basu.errors import ScenarioError
 from basu.metrics.boxes import other_boxes, own_boxes
-from basu.metrics.stop_signs import ZONE_BEYOND_M
 from basu.metrics.stretches import stretches
-from basu.metrics.validity import AT_REST_MPS
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margin import present_in
 from basu.scenarios.criteria.surrogate_measures import gap_m
@@ -20,6 +18,8 @@ if TYPE_CHECKING:
 
     from basu.scenarios.criteria.criterion import Judgement, Played
 
+AT_REST_MPS = 0.1  # as for stop signs
+BEYOND_M = 1.0  # over a line that is still before it, as for stop signs
 APART_M = 1e-6  # boxes nearer than that touch
 
 
@@ -58,7 +58,7 @@ class StoppedFor(Criterion):
         away_m = self._away_m(played)
         if np.isnan(away_m).all():
             return self.says(played, None, f"{self.what} never was near the ego", unit="m", limit=limit)
-        near = (away_m <= self.within_m) & (away_m >= (-ZONE_BEYOND_M if self.s_m is not None else APART_M))
+        near = (away_m <= self.within_m) & (away_m >= (-BEYOND_M if self.s_m is not None else APART_M))
         near[:first] = False
         resting = stretches(near & (history.speed_mps() < AT_REST_MPS))
         if not resting:

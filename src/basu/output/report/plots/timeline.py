@@ -5,10 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.metrics.path_following import serving
-from basu.metrics.validity import AT_REST_MPS
 from basu.output.report import events
 from basu.output.report.plots.chart import share, times
-from basu.output.report.plots.signals import stretches
+from basu.output.report.plots.signals import STANDING_MPS, stretches
 from basu.output.report.templates import e, percent
 
 if TYPE_CHECKING:
@@ -86,7 +85,7 @@ def _signs(signs: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> lis
 def _services(history: History, felt: Signals) -> list[Span]:
     """At rest at a service stop."""
     found = []
-    standing = felt.speed_mps < AT_REST_MPS
+    standing = felt.speed_mps < STANDING_MPS
     for stop in history.facts.route.stops:
         here = standing & serving(history, stop.s_m)
         found += [
@@ -97,7 +96,7 @@ def _services(history: History, felt: Signals) -> list[Span]:
 
 def _standing(felt: Signals) -> list[Span]:
     """At rest, wherever."""
-    at_rest = stretches(felt.speed_mps < AT_REST_MPS, felt.t_s)
+    at_rest = stretches(felt.speed_mps < STANDING_MPS, felt.t_s)
     return [Span(*s, "standing", "", _lasted("standing", *s)) for s in at_rest]
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.validity import AT_REST_MPS
+from basu.metrics.stop_signs import AT_REST_MPS
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
 from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, NoCollision
 from basu.scenarios.criteria.margin import present_in
