@@ -12,7 +12,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from basu import intervals
+from basu import intervals, thresholds
 from basu.agents import calls
 from basu.campaigns.settings import Campaign
 from basu.managers import scenario_manager
@@ -66,6 +66,7 @@ MODULES = (
     service,
     speeding,
     stop_signs,
+    thresholds,
     validity,
     verdict,
     sys.modules["basu.metrics.passengers.felt"],  # the package has a function of this name

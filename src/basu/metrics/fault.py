@@ -32,11 +32,11 @@ from basu.metrics.boxes import other_boxes, own_boxes, touching
 from basu.metrics.infraction import CollisionKind, Responsibility
 from basu.metrics.lanes import within_one_lane
 from basu.metrics.right_of_way import entered_on_red, entered_path, not_yielded, track_of
+from basu.thresholds import STANDSTILL_MPS
 
 if TYPE_CHECKING:
     from basu.records.history import Collision, History
 
-STOPPED_MPS = 0.05
 BEHIND_RAD = math.radians(150.0)  # between the ego's heading and the direction to the other's middle
 HEAD_ON_RAD = math.radians(150.0)  # between the two courses; a vehicle that crosses or turns comes at less
 AGAINST_RAD = math.radians(90.0)  # between the ego's heading and its lane's
@@ -58,7 +58,7 @@ def responsibility(history: History, event: Collision) -> Responsibility:
 def _taken(history: History, before: int, other_id: int) -> str | None:
     """How the ego took the right of way of a vehicle, or drove on red before a person, in words; None otherwise."""
     track = track_of(history, other_id, before)
-    if len(track.tick) == 0 or track.speed_mps[-1] <= STOPPED_MPS:
+    if len(track.tick) == 0 or track.speed_mps[-1] <= STANDSTILL_MPS:
         return None
     if not history.facts.actor_types.get(other_id, "").startswith("vehicle."):
         return entered_on_red(history, before)
@@ -68,14 +68,14 @@ def _taken(history: History, before: int, other_id: int) -> str | None:
 def _by_contact(history: History, event: Collision, before: int) -> Responsibility:
     """The responsibility by the contact alone: both speeds, and the sides that met."""
     speed_mps = float(history.speed_mps()[before])
-    if speed_mps <= STOPPED_MPS:
+    if speed_mps <= STANDSTILL_MPS:
         return _not_at_fault(CollisionKind.STOPPED_EGO, f"the ego stood ({speed_mps:.2f} m/s) when it was struck")
     other = _row(history, event.other_id, before)
     other_mps = 0.0 if other is None else math.hypot(other["velocity_x_mps"], other["velocity_y_mps"])
-    if other is None or other_mps <= STOPPED_MPS:
+    if other is None or other_mps <= STANDSTILL_MPS:
         return _at_fault(CollisionKind.STOPPED_OTHER, f"the ego drove at {speed_mps:.2f} m/s into what stood still")
     if _is_behind(history, before, other):
-        if _along_mps(history, before) < -STOPPED_MPS:
+        if _along_mps(history, before) < -STANDSTILL_MPS:
             return _at_fault(CollisionKind.REAR, f"the ego reversed at {speed_mps:.2f} m/s into the other behind it")
         return _not_at_fault(CollisionKind.REAR, f"the ego was struck from behind at {other_mps:.2f} m/s")
     if _meets_front(history, event):

@@ -32,7 +32,8 @@ from basu.metrics.stretches import (
     stretches,
     total_m,
 )
-from basu.metrics.validity import AGAINST_RAD, BEYOND_M, MOVING_MPS, PASSING_M, validity
+from basu.metrics.validity import AGAINST_RAD, BEYOND_M, PASSING_M, validity
+from basu.thresholds import AT_REST_MPS, IN_MOTION_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -42,10 +43,7 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 FORGIVEN_M = 2.0  # a stretch against the lane no longer than this; nuPlan's direction compliance forgives as much
-PUSHED_S = (
-    2.0  # after a message of a contact: the other party may push the vehicle back, which is no driving; a convention
-)
-STANDING_MPS = 0.5  # slower is an obstacle: the same speed at which near misses and collisions take others for resting
+PUSHED_S = 2.0  # after a message of a contact: the other party may push the vehicle, which is no driving; a convention
 BEFORE_S = 5.0  # that an obstacle may have stood before the ego is beside it
 AROUND_M = 20.0  # before and behind: the shifting taper of `basu.metrics.validity.PASSING_M`
 BESIDE_LANE_M = 1.5  # from the lane's edge to the middle of an obstacle that stands half on it
@@ -94,7 +92,7 @@ def outside_lanes(history: History) -> OutsideLanes:
 def wrong_way(history: History) -> Share:
     """How far the vehicle moved against the direction of its lane, one event for each stretch of 2 m and more."""
     frames = history.frames
-    moving = np.hypot(frames["velocity_x_mps"], frames["velocity_y_mps"]) > MOVING_MPS
+    moving = np.hypot(frames["velocity_x_mps"], frames["velocity_y_mps"]) > AT_REST_MPS
     course_rad = np.arctan2(frames["velocity_y_mps"], frames["velocity_x_mps"])
     lane_rad = frames["yaw_rad"] - frames["lane_heading_rad"]
     against = np.cos(course_rad - lane_rad) < np.cos(AGAINST_RAD)  # nan, where there is no lane, is not
@@ -175,7 +173,7 @@ def _passes(history: History, first: int, end: int) -> bool:
     near = others[(others["tick"] >= ticks[0]) & (others["tick"] <= ticks[1])]
     speed_mps = np.hypot(near["velocity_x_mps"], near["velocity_y_mps"])
     slow = [key for key, kind in history.facts.actor_types.items() if kind.startswith(UNPROTECTED)]
-    near = near[(speed_mps < STANDING_MPS) | np.isin(near["id"], slow)]
+    near = near[(speed_mps < IN_MOTION_MPS) | np.isin(near["id"], slow)]
     if not len(near):
         return False
     way_s_m = frames["route_s_m"][first:end]

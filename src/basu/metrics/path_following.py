@@ -14,6 +14,7 @@ import numpy as np
 
 from basu.metrics.stretches import chords, path_m, total_m
 from basu.metrics.validity import counts_at, validity
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 AT_END_M, PARKED_M = 1.0, 5.0
 SERVED_M = 3.0
-AT_REST_MPS = 0.1
 
 
 def has_arrived(left_m: float, speed_mps: float, *, slack_m: float = 0.0, slack_mps: float = 0.0) -> bool:

@@ -24,6 +24,7 @@ from basu.metrics.stretches import stretches
 from basu.metrics.validity import in_planned_lane
 from basu.records.history.model import NO_LIGHT
 from basu.routing import ControlKind
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,7 +37,6 @@ STATES = ("red", "yellow", "green", "off", "unknown")  # the values of carla.Tra
 RED = 0
 TAIL_FROM, TAIL_BEHIND_M = 0.8, 1.0  # of half the length; beyond the bumper
 ZONE_END_M = 5.0  # a zone of a light that ends so near to a line of the route is that line's
-MOVING_MPS = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -109,7 +109,7 @@ def _off_route(history: History) -> tuple[Evidence, ...]:
     beside = ~in_planned_lane(history) & ~_at_line_of_route(history)
     found = []
     for _, end in stretches(state != NO_LIGHT):
-        if end == len(frames) or state[end - 1] != RED or not beside[end] or forward_mps[end] <= MOVING_MPS:
+        if end == len(frames) or state[end - 1] != RED or not beside[end] or forward_mps[end] <= AT_REST_MPS:
             continue
         speed_mps = float(history.speed_mps()[end])
         found.append(

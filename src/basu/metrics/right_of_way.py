@@ -32,6 +32,7 @@ import numpy as np
 from basu.metrics.boxes import UNKNOWN_M, distance_m, own_boxes
 from basu.metrics.lanes import DRIVING, within_one_lane
 from basu.routing import ControlKind
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -44,7 +45,6 @@ REACTION_S, BRAKING_MPS2, TIME_GAP_S = 0.4, 3.0, 1.0  # UN Regulation No. 79, 5.
 BRAKED_OVER_S = 0.5  # a braking is the mean over this
 AHEAD_M, SPACING_M = 60.0, 0.5  # the other's path is extended by so much both ways; records reach as far
 ALONG_RAD = math.radians(135.0)  # a vehicle that comes at more is oncoming, and no follower
-AT_REST_MPS = 0.1
 WAITING_MPS = 0.5  # an other vehicle that was slower when the ego entered the junction still waited
 LINE_M = 15.0  # a line this far before a junction is that junction's
 INSIDE_M = 3.0  # and so is one this far inside

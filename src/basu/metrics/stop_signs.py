@@ -19,6 +19,7 @@ from basu.metrics.json_schema import flag, listing, number, record, text
 from basu.metrics.registry import Column, Drive, Metric, register
 from basu.metrics.validity import counts_at
 from basu.routing import ControlKind
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from basu.records.history import History
     from basu.routing import Control
 
-AT_REST_MPS = 0.1
 ZONE_BEFORE_M, ZONE_BEYOND_M = 3.0, 1.0
 
 

@@ -24,6 +24,7 @@ import numpy as np
 
 from basu.metrics.stretches import stretches
 from basu.records.structured import StructuredArray
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,7 +36,6 @@ if TYPE_CHECKING:
 
 BEYOND_M = 0.5  # ALLOWED_OUT_DISTANCE of leaderboard 2.0 and 2.1 (OutsideRouteLanesTest); 1.0 has 1.3
 AGAINST_RAD = math.radians(120.0)  # between two directions; MAX_VEHICLE_ANGLE of the same test
-MOVING_MPS = 0.1  # slower is at rest: the leaderboard's figure; only the heading counts then
 LOST_M = 30.0  # from the route: a run ends there (the leaderboard's InRouteTest)
 PASSING_M = 50.0
 """Way through the lane beside, to pass an obstacle: two shifting tapers of 19 m (MUTCD 2009, tables 6C-3 and 6C-4: half
@@ -198,7 +198,7 @@ class _Lanes:
             return True
         speed_mps = math.hypot(moment.velocity_x_mps, moment.velocity_y_mps)
         along_mps = moment.velocity_x_mps * math.cos(planned_rad) + moment.velocity_y_mps * math.sin(planned_rad)
-        return speed_mps > MOVING_MPS and along_mps < _AGAINST * speed_mps
+        return speed_mps > AT_REST_MPS and along_mps < _AGAINST * speed_mps
 
 
 def _widths_m(route: Route) -> NDArray[np.float64]:

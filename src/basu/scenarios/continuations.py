@@ -18,9 +18,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.boxes import boxes, other_boxes, touching
-from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS
-from basu.metrics.stop_signs import AT_REST_MPS, ZONE_BEFORE_M, ZONE_BEYOND_M
+from basu.metrics.passengers.near_misses import CROSSING_RAD
+from basu.metrics.stop_signs import ZONE_BEFORE_M, ZONE_BEYOND_M
 from basu.routing import ControlKind
+from basu.thresholds import AT_REST_MPS, IN_MOTION_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -35,7 +36,6 @@ AHEAD_S, CROSSING_S = 6.0, 4.0  # how far ahead a meeting counts: in line, and w
 ACCELERATE_MPS2, BRAKE_MPS2, LATERAL_MPS2 = 1.0, 1.5, 2.0
 """Of BASU's own drivers, for standing and seated passengers; sources and doubts: docs/decisions/0054-verdicts.md"""
 DWELL_S = 2.0  # at a stop sign: the stop, and the look to both sides
-MOVING_MPS = 0.5  # below this the ego stands; an actor that comes near a standing ego has done so alone
 RED = 0  # carla.TrafficLightState.Red
 
 
@@ -134,7 +134,8 @@ class Continuations:
 def continuations(history: History, first: int) -> Continuations | None:
     """The continuations from the frame ``first`` on; None where the ego never moved."""
     starts = np.arange(first, len(history.frames), max(1, round(START_S / history.facts.step_s)))
-    starts = starts[np.maximum.accumulate(history.speed_mps())[starts] > MOVING_MPS]
+    # an actor that comes near an ego that stands has done so alone
+    starts = starts[np.maximum.accumulate(history.speed_mps())[starts] > IN_MOTION_MPS]
     return Continuations(history, starts) if len(starts) else None
 
 
@@ -191,5 +192,5 @@ def _by_tick(history: History, key: int) -> tuple[NDArray[np.float64], NDArray[n
     box = other_boxes(history.facts, rows)
     box[:, 3:] += BESIDE_M
     found[rows["tick"]] = box
-    moving[rows["tick"]] = np.hypot(rows["velocity_x_mps"], rows["velocity_y_mps"]) > STILL_MPS
+    moving[rows["tick"]] = np.hypot(rows["velocity_x_mps"], rows["velocity_y_mps"]) > AT_REST_MPS
     return found, moving

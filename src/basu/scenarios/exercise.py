@@ -19,8 +19,9 @@ import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.passengers.near_misses import times_to_collision_s
-from basu.scenarios.continuations import MOVING_MPS, continuations, meeting
+from basu.scenarios.continuations import continuations, meeting
 from basu.scenarios.criteria.margin import present_in
+from basu.thresholds import IN_MOTION_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -94,7 +95,7 @@ def _nearly_collided(present: Present, keys: list[int], first: int) -> Finding |
     history = present.history
     others = history.others
     rows = np.flatnonzero(
-        np.isin(others["id"], keys) & (others["tick"] >= first) & (history.speed_mps()[others["tick"]] > MOVING_MPS)
+        np.isin(others["id"], keys) & (others["tick"] >= first) & (history.speed_mps()[others["tick"]] > IN_MOTION_MPS)
     )
     if len(rows) == 0:
         return None
@@ -141,7 +142,9 @@ def _apart(present: Present, keys: list[int], first: int) -> str:
     away_m = np.hypot(rows["x_m"] - frames["x_m"], rows["y_m"] - frames["y_m"])
     nearest = int(np.argmin(away_m))
     at_s = float(frames["t_s"][nearest])
-    drove = "the ego never moved" if top_mps <= MOVING_MPS else f"the ego, at most {top_mps:.2f} m/s fast, met no actor"
+    drove = (
+        "the ego never moved" if top_mps <= IN_MOTION_MPS else f"the ego, at most {top_mps:.2f} m/s fast, met no actor"
+    )
     return (
         f"{drove} and would have met none, had it driven on: the nearest conflict partner, "
         f"{present.described(int(rows['id'][nearest]))}, was {away_m[nearest]:.1f} m away at {at_s:.2f} s"

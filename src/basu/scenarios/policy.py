@@ -31,14 +31,13 @@ import numpy as np
 from basu.metrics.boxes import other_boxes, own_boxes
 from basu.metrics.lanes import UNPROTECTED
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
-from basu.metrics.path_following import AT_REST_MPS
 from basu.outcome import Fault
-from basu.scenarios.continuations import MOVING_MPS
 from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margin import present_in
 from basu.scenarios.criteria.surrogate_measures import ego_moves, gap_m
 from basu.scenarios.exercise import Finding
+from basu.thresholds import AT_REST_MPS, IN_MOTION_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -152,8 +151,8 @@ def passing_rows(history: History) -> NDArray[np.int64]:
     others = history.others
     exposed = [key for key, kind in history.facts.actor_types.items() if kind.startswith(UNPROTECTED)]
     theirs_mps = np.hypot(others["velocity_x_mps"], others["velocity_y_mps"])
-    endangered = np.isin(others["id"], exposed) | (theirs_mps > MOVING_MPS)
-    return np.flatnonzero(history.speed_mps()[others["tick"]] > np.where(endangered, AT_REST_MPS, MOVING_MPS))
+    endangered = np.isin(others["id"], exposed) | (theirs_mps > IN_MOTION_MPS)
+    return np.flatnonzero(history.speed_mps()[others["tick"]] > np.where(endangered, AT_REST_MPS, IN_MOTION_MPS))
 
 
 def _ttc(present: Present) -> NearMiss | None:
@@ -171,7 +170,7 @@ def _pet(present: Present) -> NearMiss | None:
     history = present.history
     own, others = own_boxes(history.facts, history.frames), other_boxes(history.facts, history.others)
     found_s, later = post_encroachment_s(history, own, others, NEAR_PET_S)
-    rows = np.flatnonzero((later >= 0) & (history.speed_mps()[np.maximum(later, 0)] > MOVING_MPS))
+    rows = np.flatnonzero((later >= 0) & (history.speed_mps()[np.maximum(later, 0)] > IN_MOTION_MPS))
     words = "and the ego took the same place {:.2f} s apart"
     return _least(present, rows, found_s[rows], later[rows], (NEAR_PET_S, "s", words))
 

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import pytest
 
-from basu.metrics.stop_signs import AT_REST_MPS, signs_passed, stop_signs
+from basu.metrics.stop_signs import signs_passed, stop_signs
 from basu.records.history import History
+from basu.thresholds import AT_REST_MPS
 from fakes.drives import at, driven, ramp, stop_sign, straight_route
 
 FRONT_M = 2.0

@@ -16,6 +16,7 @@ import carla
 from basu.agents.builtin.basic import BasicAgent
 from basu.agents.builtin.driving.controllers import HOLD_BRAKE
 from basu.agents.builtin.perception import SHUTTLE
+from basu.thresholds import STANDSTILL_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -26,7 +27,6 @@ DEVIATION_STEER = 0.01
 TOLERATED_STEER = 0.005  # a deviation above this is taken for a failure
 STOP_MPS2 = 3.5
 STANDING_S = 10.0  # until the operator has looked round and lets it go on
-AT_REST_MPS = 0.05
 
 
 class IncidentAgent(BasicAgent):
@@ -70,7 +70,7 @@ class IncidentAgent(BasicAgent):
     def _stop(self) -> carla.VehicleControl:
         """Brake to rest, stand, and get in anew."""
         assert self.facts is not None  # a stop begins while driving
-        if self.vehicle.get_velocity().length() > AT_REST_MPS:
+        if self.vehicle.get_velocity().length() > STANDSTILL_MPS:
             return carla.VehicleControl(brake=min(1.0, STOP_MPS2 / self.facts.model.full_brake_mps2))
         self._rested += 1
         if self._rested * self.time_step_s >= STANDING_S:

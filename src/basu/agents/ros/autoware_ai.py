@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import carla
 
 from basu.agents.ros.autoware_base import AutowareBase
-from basu.agents.ros.commands import STANDS_MPS, Wanted, finite
+from basu.agents.ros.commands import Wanted, finite
 from basu.agents.ros.legs import Legs
 from basu.agents.ros.lockstep import NODE, is_answer
 from basu.agents.ros.ros1 import FIRST_S
@@ -23,6 +23,7 @@ from basu.ros import autoware_ai as ai
 from basu.ros import vehicle_messages as of_vehicle
 from basu.ros.ros1 import Node
 from basu.ros.topics import CLOCK, Message, odometry_of, path_message, path_of
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -163,7 +164,7 @@ class AutowareAiAgent(AutowareBase):
         assert self.facts is not None, "the first frame reads them"
         if order.tyre_angle_rad is not None:
             self.tyre_angle_rad = finite(order.tyre_angle_rad, "ctrl_cmd.steering_angle")
-        elif abs(speed) > STANDS_MPS:
+        elif abs(speed) > AT_REST_MPS:
             self.tyre_angle_rad = ai.tyre_angle_rad(speed, rate, self.facts.body.wheelbase_m)
         return Wanted(speed, self.tyre_angle_rad)
 

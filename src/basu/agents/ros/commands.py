@@ -9,12 +9,12 @@ import carla
 
 from basu.agents.builtin.driving.controllers import PedalControl
 from basu.errors import AgentInvalidControlError
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from basu.agents.builtin.perception import VehicleFacts
 
 DRIVE, REVERSE, PARK = 2, 20, 22  # autoware_vehicle_msgs/GearCommand
-STANDS_MPS = 0.1  # a wanted speed below this is a stop
 REACH_S = 0.5  # a speed without an acceleration is to be reached in this time …
 MOST_MPS2 = 3.0  # … but with no more than this
 
@@ -91,10 +91,10 @@ class AckermannControl:
 
     def step(self, wanted: Wanted, speed_mps: float, gear: int) -> carla.VehicleControl:
         """Return the control until the next step; ``speed_mps`` is the present one along the axis."""
-        is_back = wanted.speed_mps < -STANDS_MPS
+        is_back = wanted.speed_mps < -AT_REST_MPS
         way = -1.0 if is_back else 1.0
         now_mps, goal_mps = way * speed_mps, way * wanted.speed_mps
-        holding = goal_mps < STANDS_MPS and now_mps < STANDS_MPS
+        holding = goal_mps < AT_REST_MPS and now_mps < AT_REST_MPS
         towards = (goal_mps - now_mps) / REACH_S
         given = wanted.acceleration_mps2
         rate = max(-MOST_MPS2, min(MOST_MPS2, towards)) if given is None else way * given

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from basu.thresholds import AT_REST_MPS
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -18,7 +20,6 @@ if TYPE_CHECKING:
 HARSH_MPS2 = 1.5
 ONSET_MPS2 = 0.3  # a braking begins where it is first felt as one
 APART_S = 1.0  # brakings nearer to each other than this are one
-AT_REST_MPS = 0.1
 
 
 class HarshStop(NamedTuple):

@@ -21,6 +21,7 @@ import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes, time_to_touch_s, touching
 from basu.metrics.passengers.felt import GRIP_MPS2
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +32,6 @@ NEAR_S = 1.5  # a time to collision or a post-encroachment time up to this is a 
 SEEN_S = 3.0  # up to this it is listed
 LEG_S = 0.25  # the vehicle's bend is followed in straight legs of this
 CROSSING_RAD = math.radians(30.0)
-STILL_MPS = 0.1  # two standing actors are in no danger from each other
 
 
 class Party(NamedTuple):
@@ -105,7 +105,8 @@ def times_to_collision_s(
     theirs_mps = np.column_stack([history.others["velocity_x_mps"], history.others["velocity_y_mps"]])
     speeds_mps = np.hypot(*velocity_mps.T) + np.hypot(*theirs_mps.T)
     away_m = np.hypot(*(others[:, :2] - own[tick, :2]).T) - np.hypot(*others[:, 3:].T) - np.hypot(*own[tick, 3:].T)
-    rows = np.flatnonzero((speeds_mps > STILL_MPS) & (away_m <= speeds_mps * horizon_s))
+    # two actors at rest are in no danger from each other
+    rows = np.flatnonzero((speeds_mps > AT_REST_MPS) & (away_m <= speeds_mps * horizon_s))
     found = np.full(len(others), np.inf)
     a, b, turn_radps = own[tick[rows]], others[rows].copy(), turning_radps[tick[rows]]
     mine, theirs = velocity_mps[rows], theirs_mps[rows]
@@ -140,7 +141,7 @@ def post_encroachment_s(
     Times are inf, and ticks -1, beyond ``horizon_s``; boxes as for `times_to_collision_s`.
     """
     tick, step_s = history.others["tick"].astype(np.int64), history.facts.step_s
-    moving = np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > STILL_MPS
+    moving = np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > AT_REST_MPS
     radius_m = np.hypot(*others[:, 3:].T) + np.hypot(*own[0, 3:])
     reach_m = radius_m + horizon_s * float(history.speed_mps().max())
     left = np.flatnonzero(moving & (np.hypot(*(others[:, :2] - own[tick, :2]).T) <= reach_m))

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from basu.metrics.collisions import beginnings
 from basu.scenarios.criteria.criterion import Criterion
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -14,7 +15,6 @@ if TYPE_CHECKING:
     from basu.records.history import Collision
     from basu.scenarios.criteria.criterion import Judgement, Played
 
-STANDING_MPS = 0.1
 TOLD = 3  # contacts that the sentence tells of one by one
 
 
@@ -40,7 +40,7 @@ class NoCollision(Criterion):
         speed_mps = history.speed_mps()
         begun = [event for event in beginnings(history, {}) if played.roles.get(event.other_id) not in self.except_with]
         before_mps = [float(speed_mps[max(0, event.tick - 1)]) for event in begun]
-        counting = [index for index in range(len(begun)) if self.standing_counts or before_mps[index] >= STANDING_MPS]
+        counting = [index for index in range(len(begun)) if self.standing_counts or before_mps[index] >= AT_REST_MPS]
         said = [_sentence(played, event, mps) for event, mps in zip(begun, before_mps, strict=True)]
         more = f"; and {len(said) - TOLD} more" if len(said) > TOLD else ""
         sentence = "; ".join(said[:TOLD]) + more
@@ -70,7 +70,7 @@ def _sentence(played: Played, event: Collision, before_mps: float) -> str:
         their_mps = math.hypot(float(near[0]["velocity_x_mps"]), float(near[0]["velocity_y_mps"]))
         theirs = f", which had {their_mps:.2f} m/s,"
     t_s = float(history.frames["t_s"][event.tick])
-    verb = "was touched by" if before_mps < STANDING_MPS else "hit"
+    verb = "was touched by" if before_mps < AT_REST_MPS else "hit"
     return (
         f"{verb} {other}{theirs} at {t_s:.2f} s at {before_mps:.2f} m/s "
         f"with an impulse of {math.hypot(*event.impulse_ns):.0f} N s"

@@ -12,13 +12,13 @@ from basu.metrics.stretches import stretches
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margin import present_in
 from basu.scenarios.criteria.surrogate_measures import gap_m
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from basu.scenarios.criteria.criterion import Judgement, Played
 
-AT_REST_MPS = 0.1  # as for stop signs
 BEYOND_M = 1.0  # over a line that is still before it, as for stop signs
 APART_M = 1e-6  # boxes nearer than that touch
 

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes, touching
-from basu.metrics.passengers.near_misses import CROSSING_RAD, STILL_MPS, post_encroachment_s, times_to_collision_s
-from basu.scenarios.continuations import MOVING_MPS as EGO_MOVES_MPS
+from basu.metrics.passengers.near_misses import CROSSING_RAD, post_encroachment_s, times_to_collision_s
 from basu.scenarios.criteria.margin import Margin
+from basu.thresholds import AT_REST_MPS, IN_MOTION_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -57,9 +57,6 @@ def _turned(points: NDArray[np.float64], yaw_rad: NDArray[np.float64]) -> NDArra
     return np.stack([x * cos - y * sin, x * sin + y * cos], axis=-1)
 
 
-MOVING_MPS = 0.1
-
-
 class LeastDistance(Margin):
     """The ego's box stays ``at_least`` m away from the boxes of others, seen from above.
 
@@ -85,7 +82,7 @@ class LeastDistance(Margin):
     def frames(self, present: Present) -> NDArray[np.bool_]:
         """All, or those in which the ego moved."""
         speed_mps = present.history.speed_mps()
-        return np.asarray(speed_mps > MOVING_MPS) if self.while_moving else np.ones(len(speed_mps), dtype=np.bool_)
+        return np.asarray(speed_mps > AT_REST_MPS) if self.while_moving else np.ones(len(speed_mps), dtype=np.bool_)
 
     def measure(self, present: Present, rows: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
         """Between the boxes in each row's frame."""
@@ -104,7 +101,7 @@ HORIZON_S = 5.0
 
 def ego_moves(history: History) -> NDArray[np.bool_]:
     """(T,) the frames in which a time to collision counts as a near miss: the ego is not at a creep."""
-    return np.asarray(history.speed_mps() > EGO_MOVES_MPS)
+    return np.asarray(history.speed_mps() > IN_MOTION_MPS)
 
 
 class LeastTtc(Margin):
@@ -175,7 +172,9 @@ class Pet(Margin):
         """Only actors that crossed the ego's way, neither those hit from behind nor standing ones."""
         history = present.history
         others = history.others[rows]
-        came = history.others[np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > STILL_MPS]
+        came = history.others[
+            np.hypot(history.others["velocity_x_mps"], history.others["velocity_y_mps"]) > AT_REST_MPS
+        ]
         just_before = set(zip((came["tick"] + 1).tolist(), came["id"].tolist(), strict=True))
         pairs = zip(others["tick"].tolist(), others["id"].tolist(), strict=True)
         moving = np.array([pair in just_before for pair in pairs], dtype=np.bool_)

@@ -6,6 +6,7 @@ import math
 
 from basu.scenarios.stage import EGO
 from basu.scenarios.tree_node import Node
+from basu.thresholds import AT_REST_MPS
 
 
 def named(actor: str) -> str:
@@ -23,9 +24,6 @@ class Trigger(Node):
     def done(self) -> str | None:
         """Ask."""
         return self.has_come()
-
-
-STILL_MPS = 0.1  # slower than this stands
 
 
 class Faster(Trigger):
@@ -68,7 +66,7 @@ class StandsStill(Trigger):
     def has_come(self) -> str | None:
         """How long, once it has."""
         now_s = self.stage.time_s
-        if self.stage.body(self.actor).speed_mps >= STILL_MPS:
+        if self.stage.body(self.actor).speed_mps >= AT_REST_MPS:
             self.moved_s = now_s
         stood_s = now_s - self.moved_s
         return f"stood for {stood_s:.1f} s" if stood_s >= self.seconds - 1e-6 else None

@@ -25,7 +25,7 @@ HARD_BUT_SMOOTH = Limits(HARD.accel_mps2, FIRM.jerk_mps3)  # ISO 15622:2018, 6.3
 RESERVE = Limits(5.0, FULL_JERK_MPS3)  # counted on where another part looks after comfort
 ESCALATE_M = 0.3  # missing a mark by less than this in comfort is better than firm braking
 ARRIVED_M = 0.8  # standing this near before a mark, one stays rather than creep up to it
-STANDING_MPS = 0.005
+STANDING_MPS = 0.005  # the plan has come to rest at its line: far below what `basu.thresholds` calls a standstill
 OVERSPEED_MPS = 0.15  # this much above the limit nothing is done about it
 STRAY_MPS = 0.6  # the reference is never farther than this from the vehicle's own speed
 

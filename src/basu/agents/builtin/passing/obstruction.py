@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from basu.agents.builtin.rules.corridor import Strip
 from basu.agents.builtin.rules.obstacles import SIDE_MARGIN_M
 from basu.agents.builtin.scene import Kind
+from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from basu.agents.builtin.scene import Body, Ego, Other
 
 
-STANDING_MPS = 0.3
 LOOK_M = 65.0  # beyond what a strip reaches ahead
 SAME_BLOCK_M = 10.0  # between two that stand in the lane: nearer than this one does not go back in between
 LONGEST_BLOCK_M = 25.0  # more than this is a jam
@@ -86,7 +86,7 @@ class Standing:
         """Keep the time at which each came to rest."""
         now = {}
         for other in others:
-            if other.speed_mps < STANDING_MPS:
+            if other.speed_mps < STANDING_TRAFFIC_MPS:
                 now[other.id] = self._since_s.get(other.id, time_s)
             else:
                 self._drove.add(other.id)

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.agents.builtin.passing.obstruction import STANDING_MPS
 from basu.agents.builtin.rules.corridor import Strip
 from basu.agents.builtin.rules.gap_acceptance import START_S, time_to_cover_s
 from basu.agents.builtin.rules.obstacles import SIDE_MARGIN_M
 from basu.agents.builtin.scene import Kind
+from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -63,7 +63,7 @@ def is_free(path: Path, road: Road, body: Body, ego: Ego, place: Place, others: 
     for other in others:
         if other.id in need.members:
             continue
-        if other.speed_mps < STANDING_MPS:
+        if other.speed_mps < STANDING_TRAFFIC_MPS:
             if _stands_in_it(strip, other, body, extent.from_s_m, extent.to_s_m):
                 return False
         elif other.kind is Kind.VEHICLE and _comes(path, road, place, other, need, within_s):

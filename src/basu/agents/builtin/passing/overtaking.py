@@ -19,10 +19,11 @@ from typing import TYPE_CHECKING
 from basu.agents.builtin.driving.manner import slowing_distance_m
 from basu.agents.builtin.driving.planner import ARRIVED_M, FIRM
 from basu.agents.builtin.passing.detour import Extent, make_detour, swing_m, tightest_swing_m
-from basu.agents.builtin.passing.obstruction import LONGEST_BLOCK_M, STANDING_MPS, Standing
+from basu.agents.builtin.passing.obstruction import LONGEST_BLOCK_M, Standing
 from basu.agents.builtin.passing.opposite_lane import Need, is_free
 from basu.agents.builtin.rules.gap_acceptance import USED_SHARE
 from basu.agents.builtin.scene import Restriction, Urgency
+from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -180,7 +181,7 @@ class Overtaking:
     def _drives_beside(self, place: Place, others: Sequence[Other], need: Need) -> bool:
         """Whether an actor that was to be passed has begun to drive beside us; it goes first."""
         for other in others:
-            if other.id in need.members and other.speed_mps > STANDING_MPS:
+            if other.id in need.members and other.speed_mps > STANDING_TRAFFIC_MPS:
                 s_m = self._path.follow(other.x_m, other.y_m, place.near).s_m
                 ahead_m = s_m - place.s_m
                 reach_m = other.half_length_m + 1.0

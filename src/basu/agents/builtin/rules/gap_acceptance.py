@@ -14,6 +14,7 @@ import numpy as np
 
 from basu.agents.builtin.driving.manner import LEFT_FROM_MINOR_S, RIGHT_FROM_MINOR_S, THROUGH_FROM_MINOR_S
 from basu.agents.builtin.scene import Kind
+from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -83,7 +84,6 @@ def make_rule(gaps: Gaps, manner: Manner, critical_s: float, top_mps: float) -> 
 TURNING_S = 2.0  # a vehicle that turns now is taken to turn on for this long, then to go straight
 STEP_S = 0.5  # of predictions
 CLEARANCE_M = 0.4  # beyond both half widths
-MOVING_MPS = 0.3  # slower than this is standing
 ASTERN_RAD = math.radians(110.0)  # seen at more than this from straight ahead, with our heading: it follows us
 SAME_WAY_RAD = math.radians(50.0)
 NEARBY_M = 12.0  # a standing vehicle this near to the zone may be waiting to cross it
@@ -122,7 +122,7 @@ def crossing(zone: Zone, ego: Ego, others: Iterable[Other], within_s: float) -> 
         other.id
         for other in others
         if other.kind is Kind.VEHICLE
-        and other.speed_mps > MOVING_MPS
+        and other.speed_mps > STANDING_TRAFFIC_MPS
         and _may_reach(zone, other, within_s)
         and not _follows(ego, other)
         and _touches(zone, predicted_m(other, within_s), other)
@@ -135,7 +135,7 @@ def waiting(zone: Zone, ego: Ego, others: Iterable[Other]) -> frozenset[int]:
         other.id
         for other in others
         if other.kind is Kind.VEHICLE
-        and other.speed_mps <= MOVING_MPS
+        and other.speed_mps <= STANDING_TRAFFIC_MPS
         and not _follows(ego, other)
         and float(_away_m(zone, np.array([[other.x_m, other.y_m]])).min()) <= NEARBY_M + other.half_length_m
         and _touches(zone, _straight_on_m(other), other)

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.builtin.rules.corridor import AHEAD_M, Strip
 from basu.agents.builtin.scene import Kind, Restriction, Urgency
+from basu.thresholds import IN_MOTION_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
     from basu.agents.builtin.scene import Body, Ego, Other
 
 
-MOVING_MPS = 0.5  # slower than this a body is stopped for, not followed
 LEADER_LIMIT_MPS2 = 8.0  # the most that a leader brakes: a car on dry asphalt, 0.8 g
 CLOSEST_M = 1.0  # what is left between the bumpers when it does
 LEAST_GAP_M = 0.1  # nearer than this the model's quotient means nothing any more
@@ -125,11 +125,11 @@ class Obstacles:
         if gap_m < -2.0 * CONTACT_M:
             return
         ahead_mps = other.velocity_x_mps * math.cos(now.heading_rad) + other.velocity_y_mps * math.sin(now.heading_rad)
-        if self._following is not None and other.kind is Kind.VEHICLE and ahead_mps > MOVING_MPS:
+        if self._following is not None and other.kind is Kind.VEHICLE and ahead_mps > IN_MOTION_MPS:
             following = follow_mps2(gap_m, max(sight.ego.speed_mps, 0.0), ahead_mps, self._following)
             self.follow_mps2 = min(self.follow_mps2, following)
             yield floor(gap_m, ahead_mps)
-        elif self._following is not None and ahead_mps < -MOVING_MPS and _stays(sight, other, gap_m, ahead_mps):
+        elif self._following is not None and ahead_mps < -IN_MOTION_MPS and _stays(sight, other, gap_m, ahead_mps):
             # it comes towards us: it needs a moment to see that, and its way to stop
             comes_m = -ahead_mps * REACTION_S + ahead_mps * ahead_mps / (2.0 * ONCOMING_BRAKING_MPS2)
             yield _stopping_for(gap_m - comes_m, 0.0, other)

@@ -9,6 +9,7 @@ from basu.agents.builtin.driving.manner import slowing_distance_m
 from basu.agents.builtin.driving.planner import FIRM
 from basu.agents.builtin.scene import Restriction, Urgency
 from basu.metrics.path_following import serves
+from basu.thresholds import STANDSTILL_MPS
 
 if TYPE_CHECKING:
     from basu.agents.builtin.scene import Ego
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
 
 BEFORE_LINE_M = 0.7  # where the front bumper comes to rest
 AT_LINE_M = 1.6  # a bumper that rests farther from the line than this has not stopped at it
-REST_MPS = 0.05  # slower is standing
 
 
 def hold_at(line_s_m: float, front_s_m: float, reason: str) -> Restriction:
@@ -26,7 +26,7 @@ def hold_at(line_s_m: float, front_s_m: float, reason: str) -> Restriction:
 
 def is_resting_at(line_s_m: float, front_s_m: float, speed_mps: float) -> bool:
     """Whether the vehicle stands with its front bumper at the line."""
-    return abs(speed_mps) < REST_MPS and line_s_m - front_s_m <= AT_LINE_M
+    return abs(speed_mps) < STANDSTILL_MPS and line_s_m - front_s_m <= AT_LINE_M
 
 
 LOOK_M = 60.0  # a light is obeyed from here on
@@ -99,7 +99,7 @@ class ServiceStop:
     def step(self, ego: Ego, ego_s_m: float) -> Restriction | None:
         """What the stop asks for now; None once it has been served."""
         left_m = self.s_m - ego_s_m
-        stands = abs(ego.speed_mps) < REST_MPS  # the doors open at a standstill, below what the metric calls rest
+        stands = abs(ego.speed_mps) < STANDSTILL_MPS  # the doors open at a standstill, below what the metric calls rest
         if self.phase is Phase.APPROACHING and stands and serves(left_m, ego.speed_mps):
             self.phase, self._halted_at_s = Phase.DWELLING, ego.time_s
         if self.phase is Phase.DWELLING and ego.time_s - self._halted_at_s >= self._dwell_s - 1e-6:

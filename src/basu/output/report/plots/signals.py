@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from basu.records.history import History
 
 
-STANDING_MPS = 0.1  # slower than this the vehicle stands, as for stop signs
-
-
 class Signals(NamedTuple):
     """All (T,), one value a tick."""
 

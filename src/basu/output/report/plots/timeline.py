@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.metrics.path_following import serving
 from basu.output.report import events
 from basu.output.report.plots.chart import share, times
-from basu.output.report.plots.signals import STANDING_MPS, stretches
+from basu.output.report.plots.signals import stretches
 from basu.output.report.templates import e, percent
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -85,7 +86,7 @@ def _signs(signs: Sequence[dict[str, Any]], begin_s: float, end_s: float) -> lis
 def _services(history: History, felt: Signals) -> list[Span]:
     """At rest at a service stop."""
     found = []
-    standing = felt.speed_mps < STANDING_MPS
+    standing = felt.speed_mps < AT_REST_MPS
     for stop in history.facts.route.stops:
         here = standing & serving(history, stop.s_m)
         found += [
@@ -96,7 +97,7 @@ def _services(history: History, felt: Signals) -> list[Span]:
 
 def _standing(felt: Signals) -> list[Span]:
     """At rest, wherever."""
-    at_rest = stretches(felt.speed_mps < STANDING_MPS, felt.t_s)
+    at_rest = stretches(felt.speed_mps < AT_REST_MPS, felt.t_s)
     return [Span(*s, "standing", "", _lasted("standing", *s)) for s in at_rest]
 
 

@@ -16,6 +16,7 @@ from basu.scenarios.library.crossing_paths.from_the_side import (
 from basu.scenarios.library.road_users import SETS_OFF_MPS2
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.triggers import Slower
+from basu.thresholds import STANDING_TRAFFIC_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
     from basu.scenarios.parameters import Parameter
 
-STANDS_MPS = 0.3
 STOPS_M = 6.0  # it brakes over the last of its way
 
 
@@ -72,7 +72,7 @@ class CarAcrossJunction(AcrossTheWay):
                 accelerate_mps2=SETS_OFF_MPS2,
             ),
             DriveAlong(OTHER, way.path, speed_mps, to_m=way.meet_s_m),
-            Slower(STANDS_MPS),
+            Slower(STANDING_TRAFFIC_MPS),
             Wait(self.number("stands")),
             DriveAlong(OTHER, way.path, speed_mps, to_m=way.meet_s_m + LEAVES_M - 2.0, at_end="vanish"),
         )

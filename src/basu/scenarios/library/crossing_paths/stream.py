@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from basu.metrics.stop_signs import AT_REST_MPS
 from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
 from basu.scenarios.criteria import Arrives, HeedsStopSigns, InTime, NoCollision
 from basu.scenarios.criteria.margin import present_in
@@ -24,6 +23,7 @@ from basu.scenarios.scenario import Scenario
 from basu.scenarios.stage import ActorSpec
 from basu.scenarios.triggers import TimeToRest
 from basu.scenarios.triggers.along_route import AT_LINE_M
+from basu.thresholds import AT_REST_MPS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
