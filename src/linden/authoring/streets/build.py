@@ -338,7 +338,7 @@ class _Assembly:
 
 
 def off_ground_m(built: Built) -> tuple[float, float]:
-    """Return by how many m roads leave the ground at most: away from junctions, and near them, where they are plane."""
+    """Return by how many m roads leave the ground at most: away from junctions, and beside them."""
     ground, worst_m = built.facts.ground, [0.0, 0.0]
     for record in (road for road in built.roads if road is not None):
         total_m, ramp_m = length(record.path), ground.profile.ramp_m

@@ -1,8 +1,8 @@
 """The surface of each junction: a plane fitted to the ground, on which all roads of the junction lie.
 
-LibCarla knows no superelevation, so a street is level from side to side, also where it meets a junction on a slope. The
-surface therefore blends the plane with the level ends of the streets. The roads inside are laid on it with all lanes, so
-that lanes that cross have one height.
+LibCarla knows no superelevation, so a street is level from side to side, also where it meets a junction on a slope.
+The surface therefore blends the plane with the level ends of the streets. The roads inside are laid on it with all
+lanes, so that lanes that cross have one height.
 """
 
 import math
@@ -260,4 +260,5 @@ def _edges_m(lane: LaneRecord, record: RoadRecord, s_m: float) -> tuple[float, f
 
 
 def _sum_of_products(ones: Sequence[float], others: Sequence[float]) -> float:
+    """Return the scalar product of two rows; ``math.sumprod`` came with Python 3.12."""
     return math.fsum(map(mul, ones, others))
