@@ -147,7 +147,8 @@ def test_a_step_in_the_ground_between_two_junctions_is_made_gentle(sketch: Any) 
 
 
 def test_junctions_on_an_estimated_plane_stay_level(sketch: Any) -> None:
-    built = assembled(read(sketch.collection(sketch.crossing(), elevation={"base_m": 250.0, "north_per_m": 0.01})))
+    built = assembled(read(sketch.collection(sketch.crossing(), ground={"base_m": 250.0, "rise_north": 0.01})))
+    assert {road.elevation[-1].a > 250.5 for road in built.roads if road is not None} == {True, False}
     for road in built.document.roads:
         if road.junction >= 0:
             assert len(road.elevation) == 1
