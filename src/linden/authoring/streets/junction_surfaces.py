@@ -217,8 +217,8 @@ def _above_m(plane: Plane, leg: Leg) -> float:
 def _most_rise_m(profile: Profile, road_m: float, slopes: float) -> float:
     """Return by how much a road may rise; ``slopes`` is the sum of those at its ends, upwards.
 
-    A road without room for two ramps is one cubic, which is steepest in its middle: there it rises by 3/2 of the mean
-    less 1/4 of the sum of the slopes at its ends.
+    A road without room for two ramps is one cubic. In its middle it rises by 3/2 of the mean, less 1/4 of the sum of
+    the slopes at its ends.
     """
     mean = profile.steepest
     if road_m <= 2 * profile.ramp_m:

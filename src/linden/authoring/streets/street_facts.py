@@ -156,9 +156,9 @@ class Route(NamedTuple):
 class Profile(NamedTuple):
     """How closely roads follow the ground.
 
-    A road finds back to the ground over ``ramp_m`` from a junction. Its height is given every ``knot_m``. ``steepest``
-    is the greatest mean rise of a road between junctions, ``steepest_spot`` the greatest rise anywhere on a road that
-    is too short for two ramps. ``tilt`` is the greatest slope of a junction; with 0 all junctions are level.
+    A road finds back to the ground over ``ramp_m`` from a junction. Its height is given every ``knot_m``. No road
+    between junctions rises by more than ``steepest`` on the whole. A road too short for two ramps rises nowhere by more
+    than ``steepest_spot``. ``tilt`` is the greatest slope of a junction; with 0 all junctions are level.
     """
 
     ramp_m: float
