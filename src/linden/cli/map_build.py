@@ -46,7 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         _report(imported)
     if arguments.elevation is not None:
         away_m, near_m = off_ground_m(built)
-        say(f"off the ground: {away_m:.2f} m at most, {near_m:.2f} m where roads come down to level junctions")
+        say(f"off the ground: {away_m:.2f} m at most, {near_m:.2f} m beside junctions")
     _report_simplified(built)
     unwritten = [name for name in built.facts.routes if name not in {name for name, _ in wanted}]
     if unwritten and source is not None:

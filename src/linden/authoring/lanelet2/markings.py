@@ -72,8 +72,14 @@ def beside_boundary(boundary: int) -> tuple[int, int]:
 
 
 def is_step(beside: list[Lane | None]) -> bool:
-    """Return whether one of two lanes lies higher than the other; where there is one only, than the road."""
-    heights = [max((height.inner_m for height in lane.heights), default=0.0) if lane else 0.0 for lane in beside]
+    """Return whether one of two lanes lies higher than the other; where there is one only, than the road.
+
+    A lane lies higher with both its edges: one that leans to a side, as on a junction on a slope, has no step.
+    """
+    heights = [
+        max((min(height.inner_m, height.outer_m) for height in lane.heights), default=0.0) if lane else 0.0
+        for lane in beside
+    ]
     return abs(heights[0] - heights[1]) >= KERB_M
 
 

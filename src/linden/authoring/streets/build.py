@@ -5,7 +5,7 @@ import math
 from collections import defaultdict
 from typing import NamedTuple
 
-from linden.authoring.streets import controls, crosswalks, junctions, roads, roundabouts
+from linden.authoring.streets import controls, crosswalks, junction_surfaces, junctions, roads, roundabouts
 from linden.authoring.streets.curves import Point, length, pose_at, seen_from
 from linden.authoring.streets.document import (
     Controller,
@@ -93,7 +93,8 @@ class _Assembly:
         self.object_ids = itertools.count(1)
         self.controller_ids = itertools.count(FIRST_CONTROLLER_ID)
         self.touches: dict[End, roads.Touch] = {}
-        self.heights_m: dict[End, float] = {}
+        self.surfaces: dict[End, junction_surfaces.Surface] = {}
+        self.meetings: dict[End, roads.HeightAndSlope] = {}
         self.signals: dict[int, list[Signal]] = defaultdict(list)
         self.objects: dict[int, list[Object]] = defaultdict(list)
         self.ways: list[Way] = []
@@ -165,10 +166,13 @@ class _Assembly:
         return all(len(come.driving(right=side)) == len(go.driving(right=not side)) for side in (False, True))
 
     def _level(self, junctions_legs: tuple[tuple[Leg, ...], ...]) -> None:
+        """Lay out the surfaces of all junctions, and so the height and slope of each road where it meets one."""
         roads_m = [None if road is None else length(road) for road in self.network.roads]
-        levels = roads.levels(self.facts.ground, junctions_legs, roads_m)
-        for legs, height_m in zip(junctions_legs, levels, strict=True):
-            self.heights_m.update({leg.end: height_m + self.lifts_m[leg.node] for leg in legs})
+        found = junction_surfaces.surfaces(self.facts.ground, junctions_legs, roads_m, self.lifts_m)
+        for legs, surface in zip(junctions_legs, found, strict=True):
+            for leg, end in zip(legs, surface.ends, strict=True):
+                self.surfaces[leg.end] = surface
+                self.meetings[leg.end] = end.height_m, end.slope if leg.end.at_end else -end.slope
 
     def _road_m(self, leg: Leg) -> float:
         road = self.network.roads[leg.end.edge]
@@ -184,7 +188,7 @@ class _Assembly:
     def _add_junction(self, nodes: tuple[int, ...], legs: tuple[Leg, ...], crossings: frozenset[int]) -> None:
         found = self._intersections(nodes)
         number = FIRST_JUNCTION_ID + len(self.junctions)
-        height_m = self.heights_m[legs[0].end]
+        surface = self.surfaces[legs[0].end]
         for leg in legs:
             self.touches[leg.end] = roads.Touch(Link("junction", number), {})
         rules = [controls.control_of(found, self.network.nodes[leg.node].intersection) for leg in legs]
@@ -193,24 +197,23 @@ class _Assembly:
         is_roundabout = Control.ROUNDABOUT in rules
         connections, turn_ids = [], []
         for turn in turns:
-            record = junctions.turn_road(next(self.way_ids), number, turn, self._ids(turn.come, turn.go), height_m)
+            record = junctions.turn_road(next(self.way_ids), number, turn, self._ids(turn.come, turn.go))
+            record = junction_surfaces.laid(record, surface)
             self.ways.append(Way(record, turn.come.end, turn.go.end))
             connections.append(junctions.connection(record))
             turn_ids.append(record.id)
         driven = junctions.surface(turns)
         kerb = roundabouts.circle_kerb(legs[0], centre) if len(legs) == 1 else None
         for come, go in zip(legs, (*legs[1:], legs[0]), strict=True):
-            record = junctions.corner_road(
-                next(self.way_ids), number, (come, go), self._ids(come, go), height_m, driven, kerb
-            )
-            self.corners.append(record)
+            record = junctions.corner_road(next(self.way_ids), number, (come, go), self._ids(come, go), driven, kerb)
+            self.corners.append(junction_surfaces.laid(record, surface))
             connections.append(junctions.connection(record))
         ranks = self._add_controls(legs, rules, found, walked=not crossings.isdisjoint(nodes))
         if Control.SIGNAL in rules:
             self._refer_to_lights(turns)
         if is_roundabout or len(legs) == 1:
             self._add_island(legs[0], centre, found)
-            self.corners.append(roundabouts.island(next(self.way_ids), centre, height_m))
+            self.corners.append(junction_surfaces.laid(roundabouts.island(next(self.way_ids), centre), surface))
         self.junctions.append(
             JunctionRecord(
                 id=number,
@@ -326,16 +329,16 @@ class _Assembly:
             return None
         begin, end = End(edge, at_end=False), End(edge, at_end=True)
         one = self.network.edges[edge]
-        ends_m = self.heights_m.get(begin), self.heights_m.get(end)
+        ends = self.meetings.get(begin), self.meetings.get(end)
         lifts_m = self.lifts_m[one.nodes[0]], self.lifts_m[one.nodes[1]]
-        heights = roads.elevation(self.facts.ground, path, ends_m, lifts_m)
+        heights = roads.elevation(self.facts.ground, path, ends, lifts_m)
         record = roads.street_road(self.road_ids[edge], one.street, one.section, path, heights)
         record = roads.linked(record, self.touches.get(begin), self.touches.get(end))
         return record._replace(signals=tuple(self.signals[edge]), objects=tuple(self.objects[edge]))
 
 
 def off_ground_m(built: Built) -> tuple[float, float]:
-    """Return by how many m roads leave the ground at most: away from junctions, and near them, where they are level."""
+    """Return by how many m roads leave the ground at most: away from junctions, and beside them."""
     ground, worst_m = built.facts.ground, [0.0, 0.0]
     for record in (road for road in built.roads if road is not None):
         total_m, ramp_m = length(record.path), ground.profile.ramp_m

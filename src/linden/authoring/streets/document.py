@@ -46,8 +46,16 @@ class Mark(NamedTuple):
     lane_change: str = "none"
 
 
+class EdgeHeights(NamedTuple):
+    """How far a lane's inner and outer edge lie above the road's height, from ``s_m`` on."""
+
+    s_m: float
+    inner_m: float
+    outer_m: float
+
+
 class LaneRecord(NamedTuple):
-    """One lane of a road's only lane section."""
+    """One lane of a road's only lane section. ``heights`` are those of a lane that is not level from side to side."""
 
     id: int
     kind: str
@@ -56,6 +64,7 @@ class LaneRecord(NamedTuple):
     predecessor: int | None = None
     successor: int | None = None
     height_m: float = 0.0
+    heights: tuple[EdgeHeights, ...] = ()
 
 
 class Link(NamedTuple):

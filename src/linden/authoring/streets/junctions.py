@@ -71,7 +71,7 @@ def pose_out(leg: Leg, lane: int) -> Pose:
     return turned_back(moved(leg.pose, left_m=leg.view.middle_m(lane, right=False)))
 
 
-def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int], height_m: float) -> RoadRecord:
+def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int]) -> RoadRecord:
     """Return the connecting road of a turn: one driving lane, its middle on the path (half its width is the offset)."""
     lane = LaneRecord(
         id=-1, kind="driving", widths=turn.widths, mark=Mark(), predecessor=turn.lane_in, successor=turn.lane_out
@@ -84,7 +84,7 @@ def turn_road(number: int, junction: int, turn: Turn, road_ids: tuple[int, int],
         predecessor=Link("road", road_ids[0], contact(turn.come.end)),
         successor=Link("road", road_ids[1], contact(turn.go.end)),
         speed=slower(turn.come.street.speed_limit, turn.go.street.speed_limit),
-        elevation=(Cubic(0.0, height_m),),
+        elevation=(),
         axis=tuple(Cubic(w.s_m, w.a / 2, w.b / 2, w.c / 2, w.d / 2) for w in turn.widths),
         left=(),
         right=(lane,),
@@ -111,7 +111,6 @@ def corner_road(
     junction: int,
     legs: tuple[Leg, Leg],
     road_ids: tuple[int, int],
-    height_m: float,
     driven: Polygon | MultiPolygon,
     kerb: Path | None = None,
 ) -> RoadRecord:
@@ -131,7 +130,7 @@ def corner_road(
         predecessor=Link("road", road_ids[0], contact(come.end)),
         successor=Link("road", road_ids[1], contact(go.end)),
         speed=slower(come.street.speed_limit, go.street.speed_limit),
-        elevation=(Cubic(0.0, height_m),),
+        elevation=(),
         axis=(),
         left=_shoulder(path, driven),
         right=strips(found, -1, length(path)),

@@ -1,7 +1,6 @@
 """Roads between junctions as OpenDRIVE records: lanes and their marks, height, and the bends where two roads meet."""
 
 import math
-from collections.abc import Sequence
 from itertools import zip_longest
 from typing import NamedTuple
 
@@ -11,10 +10,10 @@ from linden.authoring.streets.document import Cubic, LaneRecord, Link, Mark, Roa
 from linden.authoring.streets.network import End, Leg
 from linden.authoring.streets.street_facts import AnyGround, Street, slower
 
-LEVELLING_ROUNDS = 100
 KINDS = ("driving", "biking", "parking", "shoulder", "border", "none", "sidewalk")  # from the axis outward
 
 Numbered = tuple[tuple[int, Lane], ...]
+HeightAndSlope = tuple[float, float]
 
 
 class Touch(NamedTuple):
@@ -47,12 +46,13 @@ def slope(ground: AnyGround, pose: Pose) -> float:
 def elevation(
     ground: AnyGround,
     path: Path,
-    ends_m: tuple[float | None, float | None],
+    ends: tuple[HeightAndSlope | None, HeightAndSlope | None],
     lifts_m: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[Cubic, ...]:
-    """Return the height along a path: on the ground, but level and at the given height where it meets a junction.
+    """Return the height along a path: on the ground, but at the given height and slope where it meets a junction.
 
-    ``None`` stands for an end where the ground goes on. ``lifts_m``: how far both ends lie above the ground.
+    A slope is the rise per metre along the path. ``None`` stands for an end where the ground goes on. ``lifts_m``: how
+    far both ends lie above the ground.
     """
     total_m = length(path)
     ramp_m = min(ground.profile.ramp_m, total_m / 2)
@@ -69,37 +69,13 @@ def elevation(
             (z + value((rise,), s), g + s * (2 * rise.c + 3 * rise.d * s))
             for s, (z, g) in zip(knots, points, strict=True)
         ]
-    for index, end_m in ((0, ends_m[0]), (-1, ends_m[1])):
-        if end_m is not None:
-            points[index] = (end_m, 0.0)
+    for index, end in ((0, ends[0]), (-1, ends[1])):
+        if end is not None:
+            points[index] = end
     return tuple(
         eased(s, after - s, (z, z_after), (g, g_after))
         for s, after, (z, g), (z_after, g_after) in zip(knots, knots[1:], points, points[1:], strict=False)
     )
-
-
-def levels(
-    ground: AnyGround, junctions: Sequence[tuple[Leg, ...]], roads_m: Sequence[float | None]
-) -> tuple[float, ...]:
-    """Return each junction's height: the ground's under its legs, but no road between two of them too steep.
-
-    Where a road would rise by more than the profile's ``steepest`` on the whole, both its junctions give way by half
-    the rest; a few rounds of that settle. ``roads_m``: length of each edge's road, None inside junctions.
-    """
-    found = [math.fsum(height(ground, leg.pose) for leg in legs) / len(legs) for legs in junctions]
-    at = {leg.end: number for number, legs in enumerate(junctions) for leg in legs}
-    links = [
-        (at[begin], at[end], road_m)
-        for begin, end, road_m in ((End(i, at_end=False), End(i, at_end=True), m) for i, m in enumerate(roads_m))
-        if road_m is not None and begin in at and end in at
-    ]
-    for _ in range(LEVELLING_ROUNDS):
-        for a, b, road_m in links:
-            rise_m = found[b] - found[a]
-            rest_m = math.copysign(max(abs(rise_m) - ground.profile.steepest * road_m, 0.0), rise_m) / 2
-            found[a] += rest_m
-            found[b] -= rest_m
-    return tuple(round(height_m, 3) for height_m in found)
 
 
 def street_road(number: int, street: Street, section: Section, path: Path, heights: tuple[Cubic, ...]) -> RoadRecord:

@@ -55,7 +55,7 @@ def circle_kerb(leg: Leg, centre: Point) -> Path:
     return tuple(piece for piece in round_ring(begin, end, centre, KERB_RADII_M) if piece.length_m > 1e-4)
 
 
-def island(number: int, centre: Point, height_m: float) -> RoadRecord:
+def island(number: int, centre: Point) -> RoadRecord:
     """Return the central island: a kerb and grass to the left of a circle without traffic."""
     start = Pose(centre[0] + ISLAND_RADIUS_M, centre[1], math.pi / 2)
     first = Piece(start, math.pi * ISLAND_RADIUS_M, 1 / ISLAND_RADIUS_M)
@@ -68,7 +68,7 @@ def island(number: int, centre: Point, height_m: float) -> RoadRecord:
         predecessor=None,
         successor=None,
         speed=None,
-        elevation=(Cubic(0.0, height_m),),
+        elevation=(),
         axis=(),
         left=(
             LaneRecord(id=1, kind="border", widths=(Cubic(0.0, KERB_M),), height_m=KERB_HEIGHT_M),

@@ -156,13 +156,16 @@ class Route(NamedTuple):
 class Profile(NamedTuple):
     """How closely roads follow the ground.
 
-    A junction is level. A road finds back to the ground over ``ramp_m``. Its height is given every ``knot_m``.
-    ``steepest`` is the greatest mean rise of a road between level junctions.
+    A road finds back to the ground over ``ramp_m`` from a junction. Its height is given every ``knot_m``. No road
+    between junctions rises by more than ``steepest`` on the whole. A road too short for two ramps rises nowhere by more
+    than ``steepest_spot``. ``tilt`` is the greatest slope of a junction; with 0 all junctions are level.
     """
 
     ramp_m: float
     knot_m: float
     steepest: float
+    steepest_spot: float
+    tilt: float
 
 
 class Ground(NamedTuple):
@@ -172,7 +175,7 @@ class Ground(NamedTuple):
     north: float
     east: float
     confidence: str
-    profile: Profile = Profile(ramp_m=30.0, knot_m=60.0, steepest=0.012)
+    profile: Profile = Profile(ramp_m=30.0, knot_m=60.0, steepest=0.012, steepest_spot=0.018, tilt=0.0)
 
     def height_m(self, x_m: float, y_m: float) -> float:
         """Return the height in m at a place."""

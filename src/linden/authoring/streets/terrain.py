@@ -32,7 +32,7 @@ class Terrain(NamedTuple):
     corner_m: tuple[float, float]
     step_m: float
     confidence: str
-    profile: Profile = Profile(ramp_m=25.0, knot_m=12.0, steepest=0.15)
+    profile: Profile = Profile(ramp_m=25.0, knot_m=12.0, steepest=0.15, steepest_spot=0.15, tilt=0.10)
 
     def height_m(self, x_m: float, y_m: float) -> float:
         """Return the height in m at a place; beyond the grid that of its edge."""

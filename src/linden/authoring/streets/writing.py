@@ -9,6 +9,7 @@ from linden.authoring.streets.curves import Path
 from linden.authoring.streets.document import (
     Cubic,
     Document,
+    EdgeHeights,
     JunctionRecord,
     LaneRecord,
     Mark,
@@ -157,8 +158,10 @@ def _add_lane(parent: etree._Element, lane: LaneRecord, speed: Speed | None) -> 
     _add_mark(element, lane.mark)
     if lane.kind == "driving" and speed is not None:  # SUMO's netconvert reads no speed of a road
         _add(element, "speed", sOffset=0, max=_fixed(speed.value, 3), unit=speed.unit)
-    if lane.height_m:
-        _add(element, "height", sOffset=0, inner=_metres(lane.height_m), outer=_metres(lane.height_m))
+    flat = (EdgeHeights(0.0, lane.height_m, lane.height_m),) if lane.height_m else ()
+    for heights in lane.heights or flat:
+        inner, outer = _metres(heights.inner_m), _metres(heights.outer_m)
+        _add(element, "height", sOffset=_metres(heights.s_m), inner=inner, outer=outer)
 
 
 def _add_mark(parent: etree._Element, mark: Mark) -> None:

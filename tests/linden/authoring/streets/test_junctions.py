@@ -92,7 +92,7 @@ def test_crossing_ways_are_in_conflict_and_parallel_ones_are_not(crossing_legs: 
 
 def test_a_corner_leads_the_kerb_round_and_paves_the_rest(crossing_legs: tuple[Leg, ...]) -> None:
     east, north = crossing_legs[:2]
-    road = corner_road(7, 100, (east, north), (1, 2), 250.0, surface(turns(crossing_legs)))
+    road = corner_road(7, 100, (east, north), (1, 2), surface(turns(crossing_legs)))
     begin = moved(east.pose, left_m=east.view.kerb_m(right=True))
     assert math.dist(road.path[0].start[:2], begin[:2]) < 1e-6
     assert [lane.kind for lane in road.right] == ["border", "none", "sidewalk"]

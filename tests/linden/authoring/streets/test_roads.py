@@ -21,14 +21,14 @@ def test_a_road_in_the_open_lies_on_the_plane() -> None:
 
 
 def test_a_road_meets_a_junction_level_and_at_its_height() -> None:
-    heights = elevation(GROUND, NORTHWARD, (250.2, None))
+    heights = elevation(GROUND, NORTHWARD, ((250.2, 0.0), None))
     assert value(heights, 0.0) == pytest.approx(250.2)
     assert value(heights, 0.01) - value(heights, 0.0) < 1e-6
     assert value(heights, GROUND.profile.ramp_m) == pytest.approx(250.0 + 0.01 * GROUND.profile.ramp_m)
 
 
 def test_pieces_of_a_profile_meet_in_height_and_slope() -> None:
-    heights = elevation(GROUND, NORTHWARD, (249.9, 252.3))
+    heights = elevation(GROUND, NORTHWARD, ((249.9, 0.0), (252.3, 0.0)))
     for cubic in heights[1:]:
         before, after = (value(heights, cubic.s_m + d) for d in (-1e-4, 1e-4))
         assert abs(after - before) < 1e-5

@@ -90,11 +90,9 @@ def test_heights_are_those_of_the_landscape(facts: Facts, tmp_path: Path) -> Non
         assert ground.rise(x_m, y_m) == pytest.approx(rise, abs=1e-3)
 
 
-def test_roads_follow_steep_ground_within_a_decimetre_away_from_level_junctions(facts: Facts, tmp_path: Path) -> None:
+def test_roads_follow_steep_ground_within_a_decimetre_everywhere(facts: Facts, tmp_path: Path) -> None:
     built = assembled(with_terrain(facts, geotiff(tmp_path / "hills.tif", steep)))
-    away_m, near_m = off_ground_m(built)
-    assert away_m < 0.1
-    assert near_m < 1.0  # a junction 20 m wide in a slope of 8 % is level
+    assert max(off_ground_m(built)) < 0.1  # a junction 20 m wide in a slope of 8 % takes the slope
 
 
 def test_roads_follow_gentle_ground_within_a_decimetre_everywhere(facts: Facts, tmp_path: Path) -> None:
