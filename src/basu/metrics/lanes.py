@@ -23,6 +23,7 @@ from basu.metrics.json_schema import mapping, number
 from basu.metrics.registry import Drive, Metric, register
 from basu.metrics.stretches import Share, chords, path_m, share_line, share_of, share_record, share_row, total_m
 from basu.metrics.validity import AGAINST_RAD, BEYOND_M, MOVING_MPS
+from basu.records.partners import UNPROTECTED
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -36,8 +37,6 @@ STANDING_MPS = 0.5  # slower is an obstacle: the same speed at which near misses
 BEFORE_S = 5.0  # that an obstacle may have stood before the ego is beside it
 AROUND_M = 20.0  # before and behind: the shifting taper of `basu.metrics.validity.PASSING_M`
 BESIDE_LANE_M = 1.5  # from the lane's edge to the middle of an obstacle that stands half on it
-UNPROTECTED = ("walker.", "vehicle.bh.crossbike", "vehicle.diamondback.century", "vehicle.gazelle.omafiets")
-"""What the blueprints of walkers and bicycles begin with: they may be passed while they move."""
 NO_OBSTACLE = "with nothing to pass"
 # values of carla.LaneType
 DRIVING, SIDEWALK = 2, 32

@@ -29,10 +29,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes
-from basu.metrics.lanes import UNPROTECTED
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
 from basu.metrics.path_following import AT_REST_MPS
 from basu.outcome import Fault
+from basu.records.partners import UNPROTECTED
 from basu.scenarios.continuations import MOVING_MPS
 from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Aspect, Criterion
@@ -53,7 +53,6 @@ if TYPE_CHECKING:
 NEAR_TTC_S = 1.0
 NEAR_PET_S = 1.0
 NEAR_M = 0.45
-"""Blueprints of people that no body shell protects: walkers and CARLA's bicycles."""
 
 
 class Assessment(NamedTuple):
