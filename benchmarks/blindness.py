@@ -70,7 +70,11 @@ def matrix(playables: list[Playable], driver: str | None, wanted: str | None, wo
         seen = characteristics_of(one.case, one.scenario)
         jobs[of].append(one.case.name)
         for kind in KINDS:
-            if wanted is None or f"{kind.value}s" in wanted.split(",") or (wanted == "partner" and must_fail(seen, kind)):
+            if (
+                wanted is None
+                or f"{kind.value}s" in wanted.split(",")
+                or (wanted == "partner" and must_fail(seen, kind))
+            ):
                 jobs[f"{of}:no-{kind.value}s"].append(one.case.name)
     found = play(jobs, workers)
     rows = []
@@ -118,7 +122,9 @@ def run() -> int:
     rows = matrix(first_cases(given.what), given.driver, given.blind, given.workers)
     print(table(rows, markdown=given.markdown))
     wrong = [text for row in rows for text in row[2:] if text.isupper()]
-    print(f"\n{len(rows)} cases, {sum(bool(t) for row in rows for t in row[2:])} drives, {len(wrong)} not as they must be")
+    print(
+        f"\n{len(rows)} cases, {sum(bool(t) for row in rows for t in row[2:])} drives, {len(wrong)} not as they must be"
+    )
     return 1 if wrong else 0
 
 

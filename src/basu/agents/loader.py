@@ -18,8 +18,8 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.calls import OverrunError, call_within
 from basu.agents.sight import Knowledge
 from basu.errors import UserError
-from basu.records.partners import Partner
 from basu.files import module_of
+from basu.records.partners import Partner
 
 BUILT_IN = {
     "autoware": "basu.agents.ros.autoware:AutowareAgent",
@@ -73,8 +73,8 @@ class LoadedAgent(NamedTuple):
 def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     """The agent called ``wanted``: a name, ``file.py``, or ``file.py:ClassName`` where a file holds several.
 
-    ``basic:full`` is ``basic`` with full knowledge of others, instead of those in its line of sight. ``basic:no-cyclists``
-    is ``basic`` blind to cyclists; so for every kind of ``basu.records.partners.Partner``.
+    ``basic:full`` is ``basic`` with full knowledge of others, instead of those in its line of sight.
+    ``basic:no-cyclists`` is ``basic`` blind to cyclists; so for every kind of ``basu.records.partners.Partner``.
 
     ``agent_config`` is the text of ``--agent-config``: agents of the leaderboard and of ScenarioRunner take one, mostly
     a file's name.

@@ -1,9 +1,9 @@
-"""Characteristics of a case, after table 3.1 of the thesis: surroundings, road, junction, control device, view, partner.
+"""Characteristics of a case: those of table 3.1 of the thesis, and the partner that a driver has to see.
 
-Atmosphere, lighting and surface follow from the case's weather. The partner, whom a driver has to see
-to pass, follows from the class or from the value that chooses the partner's blueprint. The rest is known from the
-scenario's class, and a case may state any of them: ``<characteristics alignment="curve" obstruction="vehicle"/>``. A played case also has figures of
-its route and drive (`measured`). Driver characteristics of the table, such as age, have no meaning here.
+Atmosphere, lighting and surface follow from the case's weather. The partner, whom a driver has to see to pass, follows
+from the class, or from the value that chooses the partner's blueprint. The rest is known from the scenario's class. A
+case may state any of them: ``<characteristics alignment="curve" obstruction="vehicle"/>``. A played case also has
+figures of its route and drive (`measured`). Driver characteristics of the table, such as age, have no meaning here.
 """
 
 from __future__ import annotations
@@ -142,7 +142,7 @@ OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ fro
     "StopSignRunner": {"junction": "intersection"},
     "StraightCrossingPaths": _AT_STOP_SIGN,
     "TurnIntoTraffic": _AT_STOP_SIGN,
-    "UnsignalizedIntersection": {"junction": "intersection"},
+    "UnsignalizedIntersection": _AT_STOP_SIGN,
 }
 
 
