@@ -1,6 +1,6 @@
 """Characteristics of a case: those of table 3.1 of the thesis, and the partner that a driver has to see.
 
-Atmosphere, lighting and surface follow from the case's weather. The partner, whom a driver has to see to pass, follows
+Atmosphere, lighting and surface follow from the case's weather. The partner, which a driver has to see to pass, follows
 from the class, or from the value that chooses the partner's blueprint. The rest is known from the scenario's class. A
 case may state any of them: ``<characteristics alignment="curve" obstruction="vehicle"/>``. A played case also has
 figures of its route and drive (`measured`). Driver characteristics of the table, such as age, have no meaning here.

@@ -35,8 +35,8 @@ class CyclistSwerves(Scenario):
 
     The ego comes up from behind, faster than they are: it must brake behind them, or have kept enough room. NHTSA 2007,
     scenario 14: pedalcyclist, no prior vehicle maneuver; what leads to it is a dooring. A hard one. The door takes no
-    space, unlike that of ``dooring``, and is shut again before the ego comes to it: a driver that brakes for doors and
-    sees no cyclist gains nothing.
+    space, unlike that of ``dooring``, and is shut again before the ego comes to it. So a driver that sees the door and
+    no cyclist gains nothing.
     """
 
     group = Group.PEDALCYCLIST
