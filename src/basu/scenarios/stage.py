@@ -59,9 +59,9 @@ class ActorSpec(NamedTuple):
     blueprint: str  # an id or a pattern such as `vehicle.*`: the first in alphabetical order is taken
     pose: Pose  # z is found from the road where `on_ground`
     on_ground: bool = True
-    stand_in: str = ""  # the blueprint to take where the simulator lacks the first: CARLA has no animals
     attributes: tuple[tuple[str, str], ...] = ()  # of the blueprint, such as ("color", "255,0,0")
     speed_mps: float = 0.0  # along its heading, from the first frame on
+    stand_in: str = ""  # the blueprint to take where the simulator lacks the first: CARLA has no animals
 
 
 class Controls(NamedTuple):
