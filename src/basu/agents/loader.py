@@ -19,6 +19,7 @@ from basu.agents.calls import OverrunError, call_within
 from basu.agents.sight import Knowledge
 from basu.errors import UserError
 from basu.files import module_of
+from basu.records.partners import Partner
 
 BUILT_IN = {
     "autoware": "basu.agents.ros.autoware:AutowareAgent",
@@ -36,6 +37,11 @@ BUILT_IN = {
     "incident": "basu.agents.builtin.incident",
     "ros": "basu.agents.ros.ros2:RosAgent",
     "ros1": "basu.agents.ros.ros1:Ros1Agent",
+}
+
+PERCEPTIONS: dict[str, dict[str, object]] = {  # what a variant of a built-in agent has in place of the agent's own
+    Knowledge.FULL.value: {"knowledge": Knowledge.FULL},
+    **{f"no-{kind.value}s": {"blind_to": frozenset({kind})} for kind in Partner if kind is not Partner.NONE},
 }
 
 LOAD_LIMIT_S = 120.0  # of wall time: what an agent imports may be large
@@ -68,6 +74,7 @@ def load_agent(wanted: str, agent_config: str | None = None) -> LoadedAgent:
     """The agent called ``wanted``: a name, ``file.py``, or ``file.py:ClassName`` where a file holds several.
 
     ``basic:full`` is ``basic`` with full knowledge of others, instead of those in its line of sight.
+    ``basic:no-cyclists`` is ``basic`` blind to cyclists; so for every kind of ``basu.records.partners.Partner``.
 
     ``agent_config`` is the text of ``--agent-config``: agents of the leaderboard and of ScenarioRunner take one, mostly
     a file's name.
@@ -112,14 +119,17 @@ def _find(wanted: str, agent_config: str | None) -> LoadedAgent:
 
 
 def _with_knowledge(agent: type[AutonomousAgent], name: str, knowledge: str) -> LoadedAgent:
-    """A built-in agent as it is, or the variant that knows all other actors (``basic:full``)."""
+    """A built-in agent as it is, or a variant of its perception: ``basic:full``, ``basic:no-cyclists``."""
     if not knowledge:
         return LoadedAgent(agent, name, None)
     if getattr(agent, "knowledge", Knowledge.NONE) is Knowledge.NONE:
         raise UserError(f"the agent '{name}' looks at no other actors; leave ':{knowledge}' out")
-    if knowledge != Knowledge.FULL.value:
-        raise UserError(f"there is no agent '{name}:{knowledge}'; there are '{name}' and '{name}:full'")
-    variant = type(agent.__name__, (agent,), {"knowledge": Knowledge.FULL, "__module__": agent.__module__})
+    if knowledge not in PERCEPTIONS:
+        raise UserError(
+            f"there is no agent '{name}:{knowledge}'; there are '{name}' and '{name}:full', and the control drivers "
+            + ", ".join(f"'{name}:{each}'" for each in PERCEPTIONS if each != Knowledge.FULL.value)
+        )
+    variant = type(agent.__name__, (agent,), {**PERCEPTIONS[knowledge], "__module__": agent.__module__})
     return LoadedAgent(variant, f"{name}-{knowledge}", None)
 
 

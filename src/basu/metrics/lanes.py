@@ -33,6 +33,7 @@ from basu.metrics.stretches import (
     total_m,
 )
 from basu.metrics.validity import AGAINST_RAD, BEYOND_M, PASSING_M, validity
+from basu.records.partners import UNPROTECTED
 from basu.thresholds import AT_REST_MPS, IN_MOTION_MPS
 
 if TYPE_CHECKING:
@@ -47,8 +48,6 @@ PUSHED_S = 2.0  # after a message of a contact: the other party may push the veh
 BEFORE_S = 5.0  # that an obstacle may have stood before the ego is beside it
 AROUND_M = 20.0  # before and behind: the shifting taper of `basu.metrics.validity.PASSING_M`
 BESIDE_LANE_M = 1.5  # from the lane's edge to the middle of an obstacle that stands half on it
-UNPROTECTED = ("walker.", "vehicle.bh.crossbike", "vehicle.diamondback.century", "vehicle.gazelle.omafiets")
-"""What the blueprints of walkers and bicycles begin with: they may be passed while they move."""
 NO_OBSTACLE, TOO_FAR = "with nothing to pass", "farther than passing takes"
 # values of carla.LaneType
 DRIVING, SIDEWALK = 2, 32

@@ -1,8 +1,9 @@
-"""Characteristics of a case, after table 3.1 of the thesis: surroundings, road, junction, control device, view.
+"""Characteristics of a case: those of table 3.1 of the thesis, and the partner that a driver has to see.
 
-Atmosphere, lighting and surface follow from the case's weather. The rest is known from the scenario's class, and a case
-may state any of them: ``<characteristics alignment="curve" obstruction="vehicle"/>``. A played case also has figures of
-its route and drive (`measured`). Driver characteristics of the table, such as age, have no meaning here.
+Atmosphere, lighting and surface follow from the case's weather. The partner, which a driver has to see to pass, follows
+from the class, or from the value that chooses the partner's blueprint. The rest is known from the scenario's class. A
+case may state any of them: ``<characteristics alignment="curve" obstruction="vehicle"/>``. A played case also has
+figures of its route and drive (`measured`). Driver characteristics of the table, such as age, have no meaning here.
 """
 
 from __future__ import annotations
@@ -16,6 +17,9 @@ from typing import TYPE_CHECKING, Any, get_type_hints
 import numpy as np
 
 from basu.errors import ScenarioError
+from basu.records.partners import Partner, partner_of
+from basu.scenarios.nhtsa import Group
+from basu.scenarios.parameters import narrowed
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -97,6 +101,7 @@ class Characteristics:
     junction: Junction = Junction.NONE
     control: Control = Control.NONE
     obstruction: Obstruction = Obstruction.NONE
+    partner: Partner = Partner.VEHICLE
 
     def among(self, wanted: Mapping[str, Sequence[enum.Enum]]) -> bool:
         """Whether each field that is ``wanted`` has one of its values there."""
@@ -112,9 +117,12 @@ KINDS: dict[str, type[enum.Enum]] = get_type_hints(Characteristics)
 
 _AT_STOP_SIGN = {"junction": "intersection", "control": "stop-sign"}
 OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ from the defaults
-    "ControlLoss": {"surface": "slippery"},
-    "SlipperyStop": {"surface": "slippery", "junction": "approach", "control": "stop-sign"},
-    "BendDeparture": {"alignment": "curve"},
+    "ControlLoss": {"surface": "slippery", "partner": "none"},
+    "SlipperyStop": {"surface": "slippery", "junction": "approach", "control": "stop-sign", "partner": "sign"},
+    "BendDeparture": {"alignment": "curve", "partner": "none"},
+    "CrossWind": {"partner": "none"},
+    "SteeringDeviation": {"partner": "none"},
+    "RunningForTheShuttle": {"partner": "walker"},
     "OccludedChild": {"obstruction": "vehicle"},
     "DynamicObject": {"obstruction": "vehicle"},
     "LeadVehicleSwerves": {"obstruction": "vehicle"},
@@ -134,7 +142,14 @@ OF_SCENARIO: dict[str, Mapping[str, str]] = {  # by class, where they differ fro
     "StopSignRunner": {"junction": "intersection"},
     "StraightCrossingPaths": _AT_STOP_SIGN,
     "TurnIntoTraffic": _AT_STOP_SIGN,
-    "UnsignalizedIntersection": {"junction": "intersection"},
+    "UnsignalizedIntersection": _AT_STOP_SIGN,
+}
+
+
+OF_GROUP = {  # the partner in a group's scenarios; in the others a vehicle
+    Group.ANIMAL: Partner.ANIMAL,
+    Group.PEDESTRIAN: Partner.WALKER,
+    Group.PEDALCYCLIST: Partner.CYCLIST,
 }
 
 
@@ -146,12 +161,23 @@ def characteristics_of(case: Case, scenario: type[Scenario]) -> Characteristics:
     """
     weather = scenario.weather if case.weather is None else case.weather
     stated = {
+        "partner": _partner(case, scenario).value,
         **OF_SCENARIO.get(scenario.__name__, {}),
         **scenario.characteristics,
         **case.characteristics,
     }
     values: dict[str, Any] = {**_of_weather(weather), **{name: value_of(name, text) for name, text in stated.items()}}
     return Characteristics(**values)
+
+
+def _partner(case: Case, scenario: type[Scenario]) -> Partner:
+    """The partner by the value that chooses its blueprint, else by the group."""
+    if scenario.partner_choice is None:
+        return OF_GROUP.get(scenario.group, Partner.VEHICLE)
+    name, blueprints = scenario.partner_choice
+    parameters, given = narrowed(scenario.parameters, case.values)
+    default = next(str(parameter.unsaid) for parameter in parameters if parameter.name == name)
+    return partner_of(blueprints.get(given.get(name, default), ""))
 
 
 def value_of(field: str, text: str) -> enum.Enum:

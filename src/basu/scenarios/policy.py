@@ -29,9 +29,9 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from basu.metrics.boxes import other_boxes, own_boxes
-from basu.metrics.lanes import UNPROTECTED
 from basu.metrics.passengers.near_misses import post_encroachment_s, times_to_collision_s
 from basu.outcome import Fault
+from basu.records.partners import UNPROTECTED
 from basu.scenarios.criteria.contact import NoCollision
 from basu.scenarios.criteria.criterion import Aspect, Criterion
 from basu.scenarios.criteria.margin import present_in

@@ -64,7 +64,7 @@ class Scenario(ABC):
     characteristics: ClassVar[Mapping[str, str]] = {}  # fields of `basu.scenarios.characteristics`
     pre_crash: ClassVar[tuple[int, ...]] = ()  # numbers in DOT HS 810 767; BASU's are in `basu.scenarios.nhtsa`
     reference: ClassVar[str] = "behavioral"  # an agent that comes with BASU and passes every case
-    needs_perception: ClassVar[bool] = True  # of others: the agent `blind` passes no case
+    partner_choice: ClassVar[tuple[str, Mapping[str, str]] | None] = None  # parameter that chooses its blueprint
 
     def __init__(self, place: Place, values: Mapping[str, Value]) -> None:
         """Take the place and the values; nothing is in the world yet."""

@@ -61,6 +61,7 @@ class ActorSpec(NamedTuple):
     on_ground: bool = True
     attributes: tuple[tuple[str, str], ...] = ()  # of the blueprint, such as ("color", "255,0,0")
     speed_mps: float = 0.0  # along its heading, from the first frame on
+    stand_in: str = ""  # the blueprint to take where the simulator lacks the first: CARLA has no animals
 
 
 class Controls(NamedTuple):

@@ -56,6 +56,8 @@ def offline_place(
 HELD_MPS2, ROLLING_MPS2 = 8.0, 0.5  # deceleration of a braked and of a rolling body
 # half length and half width in m where a blueprint's id begins so; the first that fits. Rounded from CARLA's boxes.
 SIZES_M: tuple[tuple[str, float, float], ...] = (
+    ("walker.animal.deer", 0.85, 0.23),
+    ("walker.animal.dog", 0.48, 0.13),
     ("walker.", 0.25, 0.25),
     ("static.", 0.5, 0.5),
     ("vehicle.easymile", 2.0, 1.0),

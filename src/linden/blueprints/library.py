@@ -21,6 +21,9 @@ SENSOR_ROLES = ("front", "back", "left", "right", "front_left", "front_right", "
 DOT = BoundingBox(Vector3D(), Vector3D(0.05, 0.05, 0.05))
 """Box of what has no size: the official client distrusts a box of zeros."""
 
+ANIMALS = "walker.animal."
+"""What the ids of animals begin with: they move as walkers do, and have none of a walker's bones."""
+
 PROP_DENSITY_KG_M3 = 60.0
 """Estimated: what a hollow prop weighs for the volume of its box."""
 
@@ -73,7 +76,14 @@ class BlueprintLibrary:
     def load(cls) -> "BlueprintLibrary":
         """Read the packaged facts; takes a few milliseconds."""
         facts = json.loads(resources.files("linden").joinpath("data/blueprints.json").read_text("utf-8"))
-        unnumbered = (*_sensors(facts), *_statics(facts), *_vehicles(facts), *_walkers(facts), *_others())
+        unnumbered = (
+            *_sensors(facts),
+            *_statics(facts),
+            *_vehicles(facts),
+            *_walkers(facts),
+            *_others(),
+            *_animals(facts),
+        )
         return cls(
             tuple(
                 blueprint._replace(definition=blueprint.definition._replace(uid=number))
@@ -168,11 +178,27 @@ def _walkers(facts: dict[str, Any]) -> Iterator[Blueprint]:
         )
 
 
-def _walker_attributes(group: dict[str, Any]) -> tuple[ActorAttribute, ...]:
+def _animals(facts: dict[str, Any]) -> Iterator[Blueprint]:
+    """Yield Linden's animals, last so that the numbers of CARLA's blueprints stay. Their sources are in the facts."""
+    for name, own in facts["animals"].items():
+        length_m, width_m, height_m = own["size_m"]
+        group = {"gender": "other", "generation": 0, "age": "adult", **own}
+        yield Blueprint(
+            _definition(
+                f"{ANIMALS}{name}", (*_walker_attributes(group, "animal"), constant("height", float(height_m)))
+            ),
+            Kind.WALKER,
+            BoundingBox(Vector3D(), Vector3D(0.5 * length_m, 0.5 * width_m, 0.5 * height_m)),
+            bytes([SemanticTag.DYNAMIC]),
+            float(own["mass_kg"]),
+        )
+
+
+def _walker_attributes(group: dict[str, Any], role: str = "pedestrian") -> tuple[ActorAttribute, ...]:
     with_wheelchair = group.get("wheelchair", False)
     choices = ("false", "true") if with_wheelchair else ("false",)
     return (
-        *names("pedestrian"),
+        *names(role),
         variation("speed", AttributeType.FLOAT, *map(str, group["speeds_mps"])),  # standing, walking, running
         variation("is_invincible", AttributeType.BOOL, "true"),
         variation("use_wheelchair", AttributeType.BOOL, *choices, restricted=True),

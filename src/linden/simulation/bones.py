@@ -1,7 +1,7 @@
 """The bones, sockets and components of any actor: where they are now, and the poses that clients give walkers.
 
 Walkers have CARLA's skeleton; a vehicle has its body and its wheels, which steer and turn. As in Unreal, every bone is
-a socket too. What else there is (props, sensors, signs) has one component and no bones.
+a socket too. What else there is (animals, props, sensors, signs) has one component and no bones.
 """
 
 from typing import NamedTuple
@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from linden.blueprints.library import Kind
+from linden.blueprints.library import ANIMALS, Kind
 from linden.blueprints.skeleton import blended, frame_of, in_component, skeleton, transform_of, walking_pose
 from linden.errors import Refusal
 from linden.physics.columns import finite
@@ -100,10 +100,17 @@ class Poses:
 
 def _animated(episode: EpisodeState, actor_id: int) -> F64:
     slot = episode.walker(actor_id)
+    if not _is_person(episode.actors.get(actor_id)):
+        raise ActorRefusal("animals have no bones; only walker.pedestrian.* take a pose", actor_id)
     stature_m = 2.0 * episode.actors.get(actor_id).box.extent.z
     velocity = episode.bodies.velocity[slot]
     speed_mps = 0.0 if episode.walkers.is_dead(actor_id) else float(np.hypot(velocity[0], velocity[1]))
     return walking_pose(stature_m, episode.walkers.walked_m(actor_id), speed_mps)
+
+
+def _is_person(record: ActorRecord) -> bool:
+    """Whether it has CARLA's skeleton: a walker that is no animal."""
+    return record.kind is Kind.WALKER and not record.description.id.startswith(ANIMALS)
 
 
 def bones_of(episode: EpisodeState, actor_id: int) -> Bones:
@@ -113,7 +120,7 @@ def bones_of(episode: EpisodeState, actor_id: int) -> Bones:
         ActorRefusal: no such actor, or it has none.
     """
     record = episode.actors.get(actor_id)
-    if record.kind is Kind.WALKER and record.slot != NO_BODY:
+    if _is_person(record) and record.slot != NO_BODY:
         pose = episode.poses.shown(episode, actor_id)
         return Bones(skeleton().names, pose, _mesh_frame(record) @ in_component(pose))
     if record.kind is Kind.VEHICLE and record.slot != NO_BODY:
@@ -140,7 +147,7 @@ def sockets_of(episode: EpisodeState, actor_id: int) -> Bones:
         ActorRefusal: no such actor.
     """
     record = episode.actors.get(actor_id)
-    if record.kind in (Kind.WALKER, Kind.VEHICLE) and record.slot != NO_BODY:
+    if (_is_person(record) or record.kind is Kind.VEHICLE) and record.slot != NO_BODY:
         return bones_of(episode, actor_id)
     return Bones((), np.empty((0, 4, 4)), np.empty((0, 4, 4)))
 

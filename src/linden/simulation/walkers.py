@@ -167,14 +167,19 @@ def _can_die(record: ActorRecord) -> bool:
 
 
 def _lay_down(bodies: Bodies, slot: int, share: float, upright_half_m: F64) -> None:
-    """Tip a body: share 0 is upright, 1 on its back, -1 on its face. Its lowest point stays where it is."""
+    """Tip a body: share 0 is upright, 1 on its back, -1 on its face. Its lowest point stays where it is.
+
+    What is longer than wide, as animals are, tips onto its side.
+    """
     lean_rad = 0.5 * math.pi * share
     cosine, sine = abs(math.cos(lean_rad)), abs(math.sin(lean_rad))
-    half_x, half_y, half_z = upright_half_m.tolist()
-    lies = (cosine * half_x + sine * half_z, half_y, sine * half_x + cosine * half_z)
+    half_m = upright_half_m.tolist()
+    across, angle = (1, 2) if half_m[0] > half_m[1] else (0, 0)  # the horizontal axis that rises; pitch or roll
+    lies = [*half_m[:2], sine * half_m[across] + cosine * half_m[2]]
+    lies[across] = cosine * half_m[across] + sine * half_m[2]
     bodies.position[slot, 2] += lies[2] - bodies.half_extent[slot, 2]
     bodies.half_extent[slot] = lies
-    bodies.rotation[slot, 0] = lean_rad
+    bodies.rotation[slot, angle] = lean_rad
 
 
 def mesh_file(episode: EpisodeState, meshes: MeshLibrary) -> MeshFile | None:

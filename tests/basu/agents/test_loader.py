@@ -10,6 +10,7 @@ from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import load_agent
 from basu.agents.sight import Knowledge
 from basu.errors import UserError
+from basu.records.partners import Partner
 
 SAMPLE = Path(__file__).parents[3] / "examples" / "forward_agent.py"
 COMPLETE = """
@@ -51,10 +52,22 @@ def test_a_built_in_agent_knows_the_actors_in_sight_or_all() -> None:
     assert knowing.name == "behavioral-full"
 
 
+@pytest.mark.parametrize("kind", [kind for kind in Partner if kind is not Partner.NONE])
+def test_a_built_in_agent_can_be_blind_to_one_kind_of_partner(kind: Partner) -> None:
+    blind = load_agent(f"behavioral:no-{kind.value}s")
+    assert blind.agent_class.blind_to == {kind}  # type: ignore[attr-defined]
+    assert blind.agent_class.knowledge is Knowledge.SEEN  # type: ignore[attr-defined]
+    assert blind.name == f"behavioral-no-{kind.value}s"
+
+
 @pytest.mark.parametrize(
     ("wanted", "sentence"),
     [
-        ("basic:all", "there is no agent 'basic:all'; there are 'basic' and 'basic:full'"),
+        (
+            "basic:all",
+            "'basic:all'; there are 'basic' and 'basic:full', and the control drivers 'basic:no-walkers'",
+        ),
+        ("blind:no-signs", "the agent 'blind' looks at no other actors; leave ':no-signs' out"),
         ("forward:full", "the agent 'forward' looks at no other actors; leave ':full' out"),
         ("blind:full", "the agent 'blind' looks at no other actors; leave ':full' out"),
     ],

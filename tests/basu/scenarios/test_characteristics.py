@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from basu.errors import ScenarioError
+from basu.records.partners import Partner
 from basu.scenarios.cases import cases_of
 from basu.scenarios.characteristics import (
     KINDS,
@@ -51,6 +52,28 @@ def test_atmosphere_light_and_surface_follow_from_the_weather(
     tmp_path: Path, weather: str, field: str, value: str
 ) -> None:
     assert characteristics_in(tmp_path, f"<weather {weather}/>").document()[field] == value
+
+
+@pytest.mark.parametrize(
+    ("words", "partner"),
+    [
+        ("pedestrian_crossing_1", Partner.WALKER),
+        ("cyclist_swerves_1", Partner.CYCLIST),
+        ("deer_at_dusk_1", Partner.ANIMAL),
+        ("roundabout_1", Partner.VEHICLE),
+        ("running_for_the_shuttle_1", Partner.WALKER),
+        ("slippery_stop_1", Partner.SIGN),
+        ("cross_wind_1", Partner.NONE),
+        ("static_object_1", Partner.VEHICLE),
+        ("static_object_2", Partner.PROP),
+        ("static_object_1:object=bin", Partner.PROP),
+        ("dynamic_object_1:object=bicycle", Partner.CYCLIST),
+        ("dynamic_object_1:object=moped", Partner.VEHICLE),
+    ],
+)
+def test_a_case_states_the_partner_that_a_driver_has_to_see(words: str, partner: Partner) -> None:
+    (playable,) = cases_of(words)
+    assert characteristics_of(playable.case, playable.scenario).partner is partner
 
 
 def test_a_case_may_state_what_its_class_and_weather_do_not(tmp_path: Path) -> None:

@@ -264,3 +264,15 @@ def test_every_number_of_a_sensor_has_bounds_that_allow_its_default() -> None:
     for attribute in numbers:
         least, most = bounds_of(attribute)
         assert least <= float(attribute.value) <= most <= 2**31, attribute.id
+
+
+def test_animals_have_sizes_and_masses_of_their_own_and_come_after_carlas_blueprints() -> None:
+    assert [definition.id for definition in LIBRARY.definitions[-2:]] == ["walker.animal.deer", "walker.animal.dog"]
+    deer, dog, child = map(LIBRARY.find, ("walker.animal.deer", "walker.animal.dog", "walker.pedestrian.0048"))
+    assert (deer.mass_kg, dog.mass_kg, child.mass_kg) == (66.0, 32.0, 30.0)
+    assert tuple(deer.box.extent) == pytest.approx((0.85, 0.225, 0.455))  # half of length, width, shoulder height
+    assert deer.semantic_tags == dog.semantic_tags == bytes([SemanticTag.DYNAMIC])
+    # a script that takes any walker finds all that it asks of people
+    people = {attribute.id for attribute in child.definition.attributes}
+    assert people <= {attribute.id for attribute in deer.definition.attributes}
+    assert default_of(deer, "height") == "0.91"

@@ -15,6 +15,7 @@ from linden.protocol.values.enums import AttributeType
 from linden.protocol.values.space import Rotation, Transform, Vector3D
 from linden.replay.file.read import Recording
 from linden.simulation.actor_table import ActorRefusal
+from linden.simulation.bones import bones_of, sockets_of
 from linden.world import World
 from opendrive_texts import street_through_junction
 
@@ -29,9 +30,9 @@ def at(x: float, y: float, z: float, yaw: float = 0.0) -> Transform:
     return Transform(Vector3D(x, y, z), Rotation(0.0, yaw, 0.0))
 
 
-def walker(simulation: World, pose: Transform, *, invincible: bool = True) -> int:
+def walker(simulation: World, pose: Transform, *, invincible: bool = True, kind: str = "walker.pedestrian.0001") -> int:
     attribute = AttributeValue("is_invincible", AttributeType.BOOL, "true" if invincible else "false")
-    return simulation.spawn(ActorDescription(0, "walker.pedestrian.0001", (attribute,)), pose).id
+    return simulation.spawn(ActorDescription(0, kind, (attribute,)), pose).id
 
 
 def led(simulation: World, actor_id: int, pose: Transform, speed_mps: float = 1.5) -> None:
@@ -152,6 +153,23 @@ def test_a_walker_struck_by_a_car_falls_lies_and_is_gone_after_ten_seconds(simul
     for _ in range(30):
         simulation.step(DT_S)
     assert victim not in episode.actors
+
+
+def test_an_animal_that_is_struck_falls_onto_its_side_and_has_no_pose(simulation: World) -> None:
+    deer = walker(simulation, at(20.0, 1.75, 0.5, yaw=90.0), invincible=False, kind="walker.animal.deer")
+    episode = simulation.episode
+    assert len(sockets_of(episode, deer).names) == 0
+    with pytest.raises(ActorRefusal, match="could not be found"):
+        bones_of(episode, deer)
+    with pytest.raises(ActorRefusal, match="animals have no bones"):
+        episode.poses.take(episode, deer)
+    strike(simulation, 10.0)
+    assert episode.walkers.is_dead(deer)
+    for _ in range(20):
+        simulation.step(DT_S)
+    pose = episode.transform(deer)
+    assert (abs(pose.rotation.roll), pose.rotation.pitch) == (pytest.approx(90.0), pytest.approx(0.0, abs=1e-3))
+    assert pose.location.z == pytest.approx(0.225, abs=0.02)
 
 
 def test_an_invincible_one_is_pushed_and_lives(simulation: World) -> None:

@@ -10,6 +10,7 @@ not drive. ``basu.agents.manual.inputs`` decides between the two.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import carla
@@ -21,6 +22,7 @@ from basu.agents.builtin.driving.task import make_task
 from basu.agents.builtin.perception import SHUTTLE, Lights, read_facts, see_ego
 from basu.agents.sight import RADIUS_M, Knowledge, Sight
 from basu.errors import UserError
+from basu.records.partners import Partner
 from basu.routing import ControlKind
 
 if TYPE_CHECKING:
@@ -28,6 +30,13 @@ if TYPE_CHECKING:
 
     from basu.agents.builtin.driving.driver import Command
     from basu.agents.builtin.perception import VehicleFacts
+    from basu.routing import Route
+
+PARTNER_OF_CONTROL = {
+    ControlKind.STOP_SIGN: Partner.SIGN,
+    ControlKind.YIELD_SIGN: Partner.SIGN,
+    ControlKind.TRAFFIC_LIGHT: Partner.LIGHT,
+}
 
 
 class BasicAgent(AutonomousAgent):
@@ -35,6 +44,7 @@ class BasicAgent(AutonomousAgent):
 
     sight_m = RADIUS_M  # others farther away than this do not matter to it
     knowledge = Knowledge.SEEN
+    blind_to: frozenset[Partner] = frozenset()  # what it does not see, as a control driver
     cruise_mps = math.inf  # never faster than this, whatever vehicle and limits allow
     driver: Driver | None = None
     facts: VehicleFacts | None = None
@@ -43,8 +53,8 @@ class BasicAgent(AutonomousAgent):
         """Look up the lights on the way; the vehicle is read at the first step, when it stands where it starts."""
         if self.route is None:
             raise UserError(f"{type(self).__name__} follows a route and was given none; name one with --routes")
-        self._sees = Sight(self.world, self.vehicle, self.sight_m, self.knowledge)
-        lights = [c.landmark_id for c in self.route.controls if c.kind is ControlKind.TRAFFIC_LIGHT]
+        self._sees = Sight(self.world, self.vehicle, self.sight_m, self.knowledge, self.blind_to)
+        lights = [c.landmark_id for c in self.seen_route.controls if c.kind is ControlKind.TRAFFIC_LIGHT]
         self._lights = Lights(self.world, lights)
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
@@ -69,11 +79,17 @@ class BasicAgent(AutonomousAgent):
             "weather": "ClearNoon",
         }
 
+    @property
+    def seen_route(self) -> Route:
+        """The route with the signs and lights that it sees."""
+        assert self.route is not None  # setup refuses
+        controls = tuple(c for c in self.route.controls if PARTNER_OF_CONTROL[c.kind] not in self.blind_to)
+        return replace(self.route, controls=controls)
+
     def _get_in(self, pose: carla.Transform) -> tuple[Driver, VehicleFacts]:
         """Read the vehicle and plan its task."""
-        assert self.route is not None  # setup refuses
         facts = read_facts(self.vehicle, pose)
-        task = make_task(self.route, facts.body, min(self.cruise_mps, facts.top_mps))
+        task = make_task(self.seen_route, facts.body, min(self.cruise_mps, facts.top_mps))
         return Driver(task, facts.body, facts.model, self.time_step_s), facts
 
 

@@ -50,11 +50,11 @@ class BehavioralAgent(BasicAgent):
 
     def _get_in(self, pose: carla.Transform) -> tuple[BehavioralDriver, VehicleFacts]:
         """Read the vehicle, plan its task, and read the lanes beside the route."""
-        assert self.route is not None  # setup refuses
+        route = self.seen_route
         facts = read_facts(self.vehicle, pose)
-        task = make_task(self.route, facts.body, facts.top_mps, self.manner)
-        left_width_m, right_lane_m = beside(self.route)
-        road = make_road(self.route, task.path, left_width_m, right_lane_m, UNPOSTED_MPS)
+        task = make_task(route, facts.body, facts.top_mps, self.manner)
+        left_width_m, right_lane_m = beside(route)
+        road = make_road(route, task.path, left_width_m, right_lane_m, UNPOSTED_MPS)
         return BehavioralDriver(task, road, facts.body, facts.model, self.time_step_s, self.manner), facts
 
 

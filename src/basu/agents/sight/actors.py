@@ -9,6 +9,7 @@ import enum
 import math
 from typing import TYPE_CHECKING, NamedTuple
 
+from basu.records.partners import ANIMALS, Partner, partner_of
 from basu.records.placed_motion import PlacedMotion, PlanarMotion, own_motion
 
 if TYPE_CHECKING:
@@ -25,11 +26,16 @@ class Kind(enum.Enum):
     """What another actor is; a prop may be anything that lies or stands about."""
 
     VEHICLE = "vehicle"
-    WALKER = "walker"
+    WALKER = "walker"  # an animal too
     PROP = "prop"
 
 
-KIND_OF_PREFIX = {"vehicle.": Kind.VEHICLE, "walker.pedestrian.": Kind.WALKER, "static.prop.": Kind.PROP}
+KIND_OF_PREFIX = {
+    "vehicle.": Kind.VEHICLE,
+    "walker.pedestrian.": Kind.WALKER,
+    ANIMALS: Kind.WALKER,
+    "static.prop.": Kind.PROP,
+}
 
 
 class Other(NamedTuple):
@@ -71,6 +77,7 @@ class _Shape(NamedTuple):
     """What stays the same about another actor."""
 
     kind: Kind
+    partner: Partner
     half_length_m: float
     half_width_m: float
     half_height_m: float
@@ -108,6 +115,11 @@ class Census:
                 found.append(_other(actor_id, pose, shape, motion))
         return found
 
+    def partner(self, actor_id: int) -> Partner:
+        """Return the kind of a body that `near` has returned."""
+        shape = self._shapes[actor_id]
+        return Partner.NONE if shape is None else shape.partner
+
     def _go_through(self, snapshot: carla.WorldSnapshot) -> None:
         """List the bodies: a town has hundreds of lights and signs, and in most ticks no actor comes or goes."""
         ids = [actor.id for actor in snapshot]
@@ -126,7 +138,9 @@ class Census:
             if kind is not None:
                 box = actor.bounding_box
                 length_m, width_m, height_m = (max(half_m, SMALLEST_M) for half_m in _vector(box.extent))
-                self._shapes[actor.id] = _Shape(kind, length_m, width_m, height_m, box.location.x, box.location.z)
+                self._shapes[actor.id] = _Shape(
+                    kind, partner_of(actor.type_id), length_m, width_m, height_m, box.location.x, box.location.z
+                )
 
 
 def _vector(vector: carla.Vector3D) -> tuple[float, float, float]:

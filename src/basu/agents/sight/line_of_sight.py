@@ -27,10 +27,13 @@ from basu.agents.sight.actors import Census, Kind, Other
 from basu.agents.sight.occlusion import hidden, make_boxes, static_boxes
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     import carla
     from numpy.typing import NDArray
 
     from basu.agents.sight.occlusion import StaticBoxes
+    from basu.records.partners import Partner
 
 
 FOOT_M = 0.3048
@@ -106,6 +109,7 @@ class Sight:
         vehicle: carla.Vehicle,
         radius_m: float = RADIUS_M,
         knowledge: Knowledge = Knowledge.SEEN,
+        blind_to: Collection[Partner] = (),
     ) -> None:
         """Look from a vehicle.
 
@@ -114,9 +118,11 @@ class Sight:
             vehicle: the sensors sit on its roof.
             radius_m: actors farther than this along x or y are left out.
             knowledge: ``FULL`` leaves the filter out; ``NONE`` sees no actor.
+            blind_to: actors of these kinds are left out; they hide others all the same.
         """
         self._world, self._own_id, self._radius_m, self._knowledge = world, vehicle.id, radius_m, knowledge
         self._census = Census(world, vehicle.id, radius_m)
+        self._blind_to = frozenset(blind_to)
         box = vehicle.bounding_box
         self._ahead_m = float(box.location.x + box.extent.x)
         self._above_m = float(box.location.z + box.extent.z)
@@ -138,9 +144,12 @@ class Sight:
             return []  # None: before the vehicle's first tick
         pose = own.get_transform()
         found = self._census.near(snapshot, pose.location.x, pose.location.y)
-        if self._knowledge is Knowledge.FULL:
-            return found
-        return self._remembered(found, self._visible(found, pose), snapshot.timestamp.elapsed_seconds)
+        known = found
+        if self._knowledge is not Knowledge.FULL:
+            known = self._remembered(found, self._visible(found, pose), snapshot.timestamp.elapsed_seconds)
+        if not self._blind_to:
+            return known
+        return [other for other in known if self._census.partner(other.id) not in self._blind_to]
 
     def _visible(self, found: list[Other], pose: carla.Transform) -> list[bool]:
         """Return for each actor whether it is in sight."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import carla
 
 from basu.errors import ScenarioError
+from basu.records.partners import ANIMALS
 from basu.scenarios.stage import EGO
 
 if TYPE_CHECKING:
@@ -103,8 +104,9 @@ def _spawned(world: carla.World, library: carla.BlueprintLibrary, spec: ActorSpe
 
 
 def _blueprint(library: carla.BlueprintLibrary, spec: ActorSpec, case: str) -> carla.ActorBlueprint:
-    """Its blueprint with its attributes: of a pattern, the first in alphabetical order."""
-    found = sorted(library.filter(spec.blueprint), key=lambda blueprint: str(blueprint.id))
+    """Its blueprint with its attributes: of a pattern, the first in alphabetical order, people before animals."""
+    kinds = library.filter(spec.blueprint) or library.filter(spec.stand_in or spec.blueprint)
+    found = sorted(kinds, key=lambda blueprint: (str(blueprint.id).startswith(ANIMALS), str(blueprint.id)))
     if not found:
         known = sorted(blueprint.id for blueprint in library)
         close = difflib.get_close_matches(spec.blueprint, known, 1)
@@ -142,7 +144,9 @@ def _out_of_doors(world: carla.World, spec: ActorSpec, case: str) -> None:
 
 
 def _half_height_m(blueprint: carla.ActorBlueprint) -> float:
-    """How high a walker's origin, its middle, is above its feet, which no blueprint says."""
+    """How high a walker's origin, its middle, is above its feet, which CARLA's blueprints do not say."""
+    if blueprint.has_attribute("height"):
+        return 0.5 * float(blueprint.get_attribute("height").as_float())
     grown = not blueprint.has_attribute("age") or blueprint.get_attribute("age").as_str() != "child"
     return ADULT_M if grown else CHILD_M
 

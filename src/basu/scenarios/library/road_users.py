@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from basu.records.partners import ANIMALS
 from basu.scenarios.paths import Path
+from basu.scenarios.stage import ActorSpec
 from basu.scenarios.triggers import TimeToArrival
 
 if TYPE_CHECKING:
     from basu.scenarios.place import Place
+    from basu.scenarios.stage import Pose
 
 
 BLUEPRINTS = {
@@ -29,6 +32,15 @@ HALF_LENGTH_M = {  # of their boxes, rounded up, for places that must be known b
 }
 EGO_HALF_LENGTH_M = 2.0  # of the shuttle: gaps are meant between bumpers; a longer ego has a little less
 SETS_OFF_MPS2 = 3.5  # a hurried driver: half of what tyres give
+
+
+STAND_INS = {"deer": "walker.pedestrian.0048", "dog": "walker.pedestrian.0009"}
+"""Walkers of a child's size, 0.5 m across and 1.1 m high, for a simulator without animals: the original CARLA."""
+
+
+def animal(name: str, kind: str, pose: Pose) -> ActorSpec:
+    """A deer or a dog by its role; Linden's `data/blueprints.json` has their sizes and masses, with sources."""
+    return ActorSpec(name, f"{ANIMALS}{kind}", pose, stand_in=STAND_INS[kind])
 
 
 def run_up_m(speed_mps: float, notice_s: float) -> float:

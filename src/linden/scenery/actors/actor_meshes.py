@@ -3,8 +3,9 @@
 from collections.abc import Callable
 from typing import NamedTuple
 
-from linden.blueprints.library import Blueprint, BlueprintLibrary, Kind
+from linden.blueprints.library import ANIMALS, Blueprint, BlueprintLibrary, Kind
 from linden.protocol.values.actors import ActorDescription
+from linden.scenery.actors.animals import animal
 from linden.scenery.actors.cars import car, shuttle
 from linden.scenery.actors.heavy import ambulance, bus, firetruck, freight_truck
 from linden.scenery.actors.people import in_wheelchair, walker
@@ -88,6 +89,8 @@ def _shapes(blueprint: Blueprint) -> dict[str, list[Shape]]:
     """Return the parts of a blueprint's actors by the value of what tells them apart, "" the plain ones."""
     if blueprint.kind is Kind.VEHICLE:
         return vehicle(blueprint)
+    if blueprint.definition.id.startswith(ANIMALS):
+        return {"": animal(blueprint)}
     if blueprint.kind is Kind.WALKER:
         can_sit = any(
             "true" in a.recommended_values for a in blueprint.definition.attributes if a.id == "use_wheelchair"

@@ -1,6 +1,7 @@
 """Tests of ``basu.agents.sight.line_of_sight``."""
 
 import math
+from collections.abc import Collection
 from types import SimpleNamespace
 from typing import Any
 
@@ -19,6 +20,7 @@ from basu.agents.sight.line_of_sight import (
     light_range_m,
     ranges_m,
 )
+from basu.records.partners import Partner
 
 
 def test_by_day_light_sets_no_limit() -> None:
@@ -115,10 +117,15 @@ class World:
         return [SimpleNamespace(bounding_box=box) for box in boxes]
 
 
-def sight_in(world: World, radius_m: float = RADIUS_M, knowledge: Knowledge = Knowledge.SEEN) -> Sight:
+def sight_in(
+    world: World,
+    radius_m: float = RADIUS_M,
+    knowledge: Knowledge = Knowledge.SEEN,
+    blind_to: Collection[Partner] = (),
+) -> Sight:
     """What the shuttle sees."""
     box = carla.BoundingBox(carla.Location(0.0, 0.0, 1.435), carla.Vector3D(2.01, 1.0, 1.435))
-    return Sight(world, SimpleNamespace(id=1, bounding_box=box), radius_m, knowledge)
+    return Sight(world, SimpleNamespace(id=1, bounding_box=box), radius_m, knowledge, blind_to)
 
 
 def met(sight: Sight, *actors: SimpleNamespace, time_s: float = 0.0) -> list[Other]:
@@ -136,6 +143,25 @@ def test_vehicles_walkers_and_props_are_seen_and_nothing_else() -> None:
     )
     others = met(sight_in(world), *(actor(i, 110.0, 50.0 + i) for i in (2, 3, 4, 5, 6)))
     assert [(other.id, other.kind) for other in others] == [(2, Kind.VEHICLE), (3, Kind.WALKER), (4, Kind.PROP)]
+
+
+@pytest.mark.parametrize("knowledge", [Knowledge.SEEN, Knowledge.FULL])
+@pytest.mark.parametrize(
+    ("kind", "number"),
+    [(Partner.VEHICLE, 2), (Partner.WALKER, 3), (Partner.PROP, 4), (Partner.CYCLIST, 5), (Partner.ANIMAL, 6)],
+)
+def test_a_driver_blind_to_a_kind_sees_all_others(kind: Partner, number: int, knowledge: Knowledge) -> None:
+    world = World(
+        _2="vehicle.tesla.model3",
+        _3="walker.pedestrian.0001",
+        _4="static.prop.barrel",
+        _5="vehicle.diamondback.century",
+        _6="walker.animal.deer",
+    )
+    there = [actor(i, 110.0, 50.0 + 3.0 * i) for i in (2, 3, 4, 5, 6)]
+    assert [other.id for other in met(sight_in(world, knowledge=knowledge), *there)] == [2, 3, 4, 5, 6]
+    seen = met(sight_in(world, knowledge=knowledge, blind_to=[kind]), *there)
+    assert [other.id for other in seen] == [other.id for other in there if other.id != number]
 
 
 def test_an_actor_behind_a_house_is_not_seen_but_known_where_knowledge_is_full() -> None:

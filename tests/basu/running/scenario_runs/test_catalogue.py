@@ -1,8 +1,10 @@
 """Every scenario tells drivers apart, and the controls gain nothing; played live.
 
 The first case of each scenario is played here; ``benchmarks/scenarios.py`` plays all. What the control drivers prove
-is in `docs/decisions/0055-control-drivers.md`. The drivers are in the benchmark's process, which halves the processor
-time. They are checked for cheating as if they were in their own, because no scenario may set off these checks.
+is in `docs/decisions/0055-control-drivers.md`, and what those prove that are blind to one kind of partner in
+`docs/decisions/0108-blind-drivers.md`; ``benchmarks/blindness.py`` plays their matrix. The drivers are in the
+benchmark's process, which halves the processor time. They are checked for cheating as if they were in their own,
+because no scenario may set off these checks.
 """
 
 import json
@@ -15,7 +17,9 @@ import pytest
 from basu.agents.calls import AgentCalls
 from basu.cli import main
 from basu.managers import agents_manager
+from basu.records.partners import ACTORS
 from basu.scenarios.cases import open_library
+from basu.scenarios.characteristics import characteristics_of
 from servers import RunningServer
 
 LIBRARY = open_library()
@@ -33,6 +37,16 @@ MISSED_BY_THE_SLOW = (
 OF_THE_SLOW = {  # one that stands stays there until the time is up, whatever the conflict
     "creeper": MISSED_BY_THE_SLOW,
     "standing": MISSED_BY_THE_SLOW[-2:],
+}
+
+
+BLIND_TO_THE_PARTNER = {
+    "cyclist_swerves_1": "cyclist",
+    "deer_at_dusk_1": "animal",
+    "occluded_child_1": "walker",
+    "parked_car_pulls_out_1": "vehicle",
+    "slippery_stop_1": "sign",
+    "static_object_2": "prop",
 }
 
 
@@ -54,7 +68,9 @@ def drives() -> dict[str, list[str]]:
     for scenario in LIBRARY.scenarios:
         case, reference = FIRST[scenario.__name__]
         found[reference].append(case)
-        found[BLIND if scenario.needs_perception else FORWARD].append(case)
+        found[FORWARD if scenario.__name__ in WITHOUT_OTHERS else BLIND].append(case)
+    for case, kind in BLIND_TO_THE_PARTNER.items():
+        found[f"behavioral:no-{kind}s"].append(case)
     return {**found, **{driver: list(cases) for driver, cases in OF_THE_SLOW.items()}}
 
 
@@ -70,7 +86,7 @@ def results(
         for driver, cases in drives().items():
             output = tmp_path_factory.mktemp(driver)
             main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), *options])
-            for path in (output / "latest").glob(f"{driver}/*/result.json"):
+            for path in (output / "latest").glob(f"{driver.replace(':', '-')}/*/result.json"):
                 result = json.loads(path.read_text(encoding="utf-8"))
                 found[result["id"], driver] = result
     return found
@@ -107,8 +123,20 @@ def test_nothing_is_gained_by_absence(results: dict[tuple[str, str], dict[str, A
     assert (result["verdict"], result["message"]) != ("SUCCESS", result["message"])
 
 
-def test_only_those_scenarios_need_no_perception_that_disturb_the_egos_own_course() -> None:
-    assert {s.__name__ for s in LIBRARY.scenarios if not s.needs_perception} == WITHOUT_OTHERS
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize(("case", "kind"), BLIND_TO_THE_PARTNER.items())
+def test_a_driver_blind_to_the_partner_alone_does_not_pass(
+    results: dict[tuple[str, str], dict[str, Any]], case: str, kind: str
+) -> None:
+    result = results[case, f"behavioral:no-{kind}s"]
+    assert result["characteristics"]["partner"] == kind
+    assert (result["verdict"], result["message"]) == ("FAILURE", result["message"])
+
+
+def test_only_those_scenarios_have_no_actor_as_partner_that_disturb_the_egos_own_course() -> None:
+    partners = {one.scenario.__name__: characteristics_of(*one[:2]).partner for one in LIBRARY.choose(["all"])}
+    assert {name for name, partner in partners.items() if partner not in ACTORS} == WITHOUT_OTHERS
 
 
 def test_every_scenario_has_three_cases_on_the_route_and_off_it() -> None:

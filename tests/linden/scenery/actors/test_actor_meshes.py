@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linden.blueprints.library import BlueprintLibrary, Kind
+from linden.blueprints.library import ANIMALS, BlueprintLibrary, Kind
 from linden.protocol.values.actors import ActorDescription
 from linden.protocol.values.enums import SemanticTag
 from linden.scenery.actors.actor_meshes import SCALED, Bodies
@@ -15,6 +15,7 @@ from linden.sensors.casting.choose import caster_of
 LIBRARY = BlueprintLibrary.load()
 VISIBLE = [b for b in LIBRARY if b.kind in (Kind.VEHICLE, Kind.WALKER, Kind.PROP)]
 VEHICLES = [b for b in VISIBLE if b.kind is Kind.VEHICLE]
+PEOPLE = [b for b in VISIBLE if b.definition.id.startswith("walker.pedestrian.")]
 CARS = [b for b in VEHICLES if len(b.vehicle.wheel_offsets_m) == 4]
 EMPTY = join([])
 
@@ -36,7 +37,7 @@ def frames_of(blueprint):
         hubs = np.zeros((1, 4, 3))
         hubs[0, : len(blueprint.vehicle.wheel_offsets_m)] = blueprint.vehicle.wheel_offsets_m
         return vehicle_frames(hubs, np.zeros((1, 4)), np.zeros((1, 4)))[0]
-    if blueprint.kind is Kind.WALKER:
+    if blueprint.kind is Kind.WALKER and not blueprint.definition.id.startswith(ANIMALS):
         return walker_frames(np.array([2.0 * blueprint.box.extent.z]), np.zeros(1), np.zeros(1))[0]
     return np.eye(4)[None, :3]
 
@@ -63,7 +64,7 @@ def test_a_body_is_as_long_and_wide_and_high_as_its_box_within_2_cm(bodies, blue
     middle, half = np.array(blueprint.box.location), np.array(blueprint.box.extent)
     low, high = mesh.vertices_m.min(0), mesh.vertices_m.max(0)
     assert high[2] == pytest.approx(middle[2] + half[2], abs=0.02)
-    if blueprint.kind is Kind.WALKER:  # arms and feet reach out of the box, which is a capsule's
+    if blueprint in PEOPLE:  # arms and feet reach out of the box, which is a capsule's
         assert low[2] == pytest.approx(-half[2], abs=0.02)
         return
     np.testing.assert_allclose(low[:2], (middle - half)[:2], atol=0.02)
@@ -143,7 +144,7 @@ def test_a_wheel_is_round_about_its_hub_so_that_it_can_roll(bodies, blueprint):
         assert np.hypot(vertices[:, 0], vertices[:, 2]).max() == pytest.approx(radius_m, abs=0.005)
 
 
-@pytest.mark.parametrize("blueprint", [b for b in VISIBLE if b.kind is Kind.WALKER], ids=lambda b: b.definition.id)
+@pytest.mark.parametrize("blueprint", PEOPLE, ids=lambda b: b.definition.id)
 def test_a_walker_has_a_part_for_every_bone_that_moves(bodies, blueprint):
     parts = bodies.parts(description(blueprint.definition.id))
     assert {part.frame for part in parts} == set(range(1, len(WALKER_FRAMES)))
@@ -192,3 +193,10 @@ def test_two_libraries_give_the_same_bytes(bodies):
         assert one.vertices_m.tobytes() == other.vertices_m.tobytes()
         assert one.triangles.tobytes() == other.triangles.tobytes()
         assert one.faces.tobytes() == other.faces.tobytes()
+
+
+def test_an_animal_is_one_part_with_the_tag_of_what_moves(bodies):
+    for name in ("deer", "dog"):
+        (part,) = bodies.parts(description(f"{ANIMALS}{name}"))
+        assert part.frame == 0
+        assert set(bodies.meshes[part.mesh].faces["tag"].tolist()) == {SemanticTag.DYNAMIC}

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import InTurn, Together, Wait, WalkAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.road_users import STARTS_MPS2, across, ego_is_due, facing_deg, walking_s
+from basu.scenarios.library.road_users import STARTS_MPS2, across, animal, ego_is_due, facing_deg, walking_s
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.scenario import Scenario
-from basu.scenarios.stage import ActorSpec
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -20,8 +19,8 @@ if TYPE_CHECKING:
 
     from basu.scenarios.actions.walking import Then
     from basu.scenarios.criteria import Criterion
+    from basu.scenarios.stage import ActorSpec
 
-DEER = "walker.pedestrian.0048"  # half a metre across, 1.1 m high
 AWAY_M = 8.0  # from the middle of the lane, where they stand and where they vanish to
 SLOW_MPS = 3.0  # to which the second one has come down when it is in the lane's middle
 APART_M = 2.5  # the second one runs so far behind the first, seen along the street
@@ -33,7 +32,8 @@ class DeerAtDusk(Scenario):
 
     The first crosses in time and is the warning. The second follows a second later, is dazzled, stands in the middle of
     the lane ``sight`` seconds before the ego would be there, and runs on after a moment. NHTSA 2007, scenario 10:
-    animal, no prior vehicle maneuver. The hard one of its group. CARLA has no animals: walkers of a child's size run in
+    animal, no prior vehicle maneuver. The hard one of its group. The deer are of 66 kg and 1.7 m long (the
+    sources stand in Linden's blueprints); on the original CARLA, which has no animals, walkers of a child's size run in
     their place. It is the end of civil twilight: BASU's own agents see them in their low beams only, 30 m ahead.
     """
 
@@ -69,8 +69,8 @@ class DeerAtDusk(Scenario):
         """Both beside the street."""
         ahead_m = self.number("ahead")
         return [
-            ActorSpec("deer_1", DEER, self.place.at(ahead_m, self._from_m, facing_deg(self._from_m))),
-            ActorSpec("deer_2", DEER, self.place.at(ahead_m + APART_M, self._from_m, facing_deg(self._from_m))),
+            animal("deer_1", "deer", self.place.at(ahead_m, self._from_m, facing_deg(self._from_m))),
+            animal("deer_2", "deer", self.place.at(ahead_m + APART_M, self._from_m, facing_deg(self._from_m))),
         ]
 
     def trigger(self) -> Behaviour:

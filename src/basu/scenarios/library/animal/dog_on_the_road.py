@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 
 from basu.scenarios.actions import InTurn, Wait, WalkAlong
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.road_users import across, ego_is_due, facing_deg
+from basu.scenarios.library.road_users import across, animal, ego_is_due, facing_deg
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import pavement_m
 from basu.scenarios.scenario import Scenario
-from basu.scenarios.stage import ActorSpec
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -19,8 +18,8 @@ if TYPE_CHECKING:
     from py_trees.behaviour import Behaviour
 
     from basu.scenarios.criteria import Criterion
+    from basu.scenarios.stage import ActorSpec
 
-DOG = "walker.pedestrian.0009"  # half a metre across, 1.1 m high: a large dog
 NEAR_M = 0.5
 
 
@@ -28,7 +27,8 @@ class DogOnTheRoad(Scenario):
     """A dog stands in the ego's lane from the outset, and trots off a while after the ego has come near.
 
     The ego must stop for it and wait. NHTSA 2007, scenario 10: animal, no prior vehicle maneuver. The clear one of its
-    group. CARLA has no animals: a walker of a child's size stands in its place.
+    group. A dog of 32 kg, 0.6 m high; on the original CARLA, which has no animals, a walker of a child's size stands
+    in its place.
     """
 
     group = Group.ANIMAL
@@ -43,7 +43,7 @@ class DogOnTheRoad(Scenario):
 
     def actors(self) -> Sequence[ActorSpec]:
         """The dog in the lane, across it."""
-        return [ActorSpec("dog", DOG, self.place.at(self.number("ahead"), self.number("right"), facing_deg(-1.0)))]
+        return [animal("dog", "dog", self.place.at(self.number("ahead"), self.number("right"), facing_deg(-1.0)))]
 
     def trigger(self) -> Behaviour:
         """The ego is four seconds away."""

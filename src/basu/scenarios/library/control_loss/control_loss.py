@@ -42,7 +42,6 @@ class ControlLoss(Scenario):
     """
 
     group = Group.CONTROL_LOSS
-    needs_perception = False
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("cause", ("wet", "bump"), "what the control is lost by"),
         Choice("side", ("right", "left"), "to which it is pulled first; then to the other, by turns"),

@@ -42,7 +42,6 @@ class SlipperyStop(Scenario):
     """
 
     group = Group.CONTROL_LOSS
-    needs_perception = False
     parameters: ClassVar[Sequence[Parameter]] = (
         Number("friction", 0.25, 0.15, 1.0, "", "of the tyres on the patch; a dry road has 1.1 for the shuttle"),
         Number("slippery", 27.0, 12.0, 40.0, "m", "of road before the line that are slippery"),

@@ -53,6 +53,7 @@ class DynamicObject(Scenario):
         Number("speed", 3.0, 1.5, 6.0, "m/s", "of it at most"),
         Number("offset", 0.0, -1.0, 1.0, "s", "after the ego it would be at the meeting point"),
     )
+    partner_choice = ("object", MODELS)
     timeout_s = 45.0
     needs_m = 75.0
 

@@ -48,6 +48,7 @@ class StaticObject(Scenario):
         Number("right", 0.2, -0.8, 1.5, "m", "of the middle of the lane"),
         Number("turned", 0.0, -90.0, 90.0, "°", "from the direction of the lane, clockwise"),
     )
+    partner_choice = ("object", MODELS)
     timeout_s = 45.0
     needs_m = 95.0
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from basu.scenarios.actions import DriveAlong, InTurn, ReachAtEgosArrival, Together
+from basu.scenarios.actions import CloseDoor, DriveAlong, InTurn, OpenDoor, ReachAtEgosArrival, Together, Wait
 from basu.scenarios.criteria import Arrives, InTime, LeastDistance, NoCollision
-from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, HINGE_M, SWAY_M, car_with_door, opens_and_shuts
+from basu.scenarios.library.pedalcyclist.bicycles import BICYCLE, CAR, HINGE_M, SWAY_M
 from basu.scenarios.library.road_users import FRONT_M, ego_is_due
 from basu.scenarios.nhtsa import Group
 from basu.scenarios.parameters import Number
@@ -27,14 +27,16 @@ RIDES_S = 5.0  # from setting out to the swerve
 OVER_M = 7.0  # the swerve
 CLEAR_M = 2.5  # before the door's hinge they are all the way out, and so far behind it they turn back
 BACK_M = 14.0  # the way back to the edge
+OPEN_S = 2.5  # the door is shut again before the ego comes to it
 
 
 class CyclistSwerves(Scenario):
     """A cyclist at the edge of the street swerves into the ego's lane, round a door that opens before them.
 
     The ego comes up from behind, faster than they are: it must brake behind them, or have kept enough room. NHTSA 2007,
-    scenario 14: pedalcyclist, no prior vehicle maneuver; what leads to it is a dooring. A hard one. The door is a sheet
-    of its size, as in ``bicycles``; it is shut again before the ego comes to it.
+    scenario 14: pedalcyclist, no prior vehicle maneuver; what leads to it is a dooring. A hard one. The door takes no
+    space, unlike that of ``dooring``, and is shut again before the ego comes to it. So a driver that sees the door and
+    no cyclist gains nothing.
     """
 
     group = Group.PEDALCYCLIST
@@ -72,8 +74,8 @@ class CyclistSwerves(Scenario):
         return out.swerved(swerve_m + OVER_M + 2.0 * CLEAR_M, BACK_M, 0.0, edge_m - into_m)
 
     def actors(self) -> Sequence[ActorSpec]:
-        """The cyclist at the edge, the parked car, and its door."""
-        return [ActorSpec("cyclist", BICYCLE, self._way.at(0.0)), *car_with_door(self._car)]
+        """The cyclist at the edge, and the parked car."""
+        return [ActorSpec("cyclist", BICYCLE, self._way.at(0.0)), ActorSpec("parked", CAR, self._car)]
 
     def trigger(self) -> Behaviour:
         """The ego will come by when they swerve."""
@@ -82,6 +84,7 @@ class CyclistSwerves(Scenario):
     def conflict(self) -> Behaviour:
         """They ride up, the door opens, they swerve, and go on at the edge; the door shuts."""
         speed_mps, swerve_m = self.number("speed"), self._swerve_m - self._begin_m
+        door = InTurn(OpenDoor("parked"), Wait(OPEN_S), CloseDoor("parked"), name="the door")
         on_m = swerve_m + OVER_M + 2.0 * CLEAR_M + BACK_M
         return InTurn(
             ReachAtEgosArrival(
@@ -94,7 +97,7 @@ class CyclistSwerves(Scenario):
                 high_mps=1.4 * speed_mps,
                 settled_s=1.0,
             ),
-            Together(opens_and_shuts(self._car, 2.5), DriveAlong("cyclist", self._way, speed_mps, to_m=on_m + 5.0)),
+            Together(door, DriveAlong("cyclist", self._way, speed_mps, to_m=on_m + 5.0)),
         )
 
     def criteria(self) -> Sequence[Criterion]:

@@ -50,6 +50,7 @@ class FollowLeadingVehicle(Scenario):
         Number("brake", 2.0, 1.0, 6.0, "m/s²", "of the leader before the junction"),
     )
     weather: ClassVar[Mapping[str, float]] = DAYLIGHT
+    partner_choice = ("leader", MODELS)
     timeout_s = 60.0
     needs_m = 40.0
     needs_junction = True

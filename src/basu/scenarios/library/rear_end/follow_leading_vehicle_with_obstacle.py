@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from basu.scenarios.actions import Brake, DriveAlong, InTurn, Together, WalkAlong
 from basu.scenarios.library.rear_end.follow_leading_vehicle import LEADER, FollowLeadingVehicle
+from basu.scenarios.library.road_users import animal
 from basu.scenarios.parameters import Choice, Number
 from basu.scenarios.paths import Path
 from basu.scenarios.stage import ActorSpec
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
     from basu.scenarios.parameters import Parameter
 
 CROSSER = "crosser"
-MODELS: dict[str, str] = {
-    "dog": "walker.pedestrian.0012",  # the smallest walker there is: CARLA has no animals
+PEOPLE = {
     "child": "walker.pedestrian.0009",
     "adult": "walker.pedestrian.0001",
 }
@@ -39,7 +39,7 @@ class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
 
     parameters: ClassVar[Sequence[Parameter]] = (
         *(p for p in FollowLeadingVehicle.parameters if p.name != "brake"),
-        Choice("crosser", tuple(MODELS), "the actor that crosses before the leader"),
+        Choice("crosser", ("dog", *PEOPLE), "the actor that crosses before the leader"),
         Number("after", 25.0, 10.0, 60.0, "m", "that the leader drives until it brakes"),
         Number("brake", 5.0, 2.0, 8.0, "m/s²", "of the leader for the crossing actor"),
         Number("pace", 1.4, 0.8, 3.0, "m/s", "of the crossing actor"),
@@ -48,7 +48,9 @@ class FollowLeadingVehicleWithObstacle(FollowLeadingVehicle):
     def actors(self) -> Sequence[ActorSpec]:
         """The leader, and on the right the crossing actor."""
         stands = self.place.at(self.cross_m, KERB_M, -90.0)
-        return [*super().actors(), ActorSpec(CROSSER, MODELS[self.choice("crosser")], stands)]
+        kind = self.choice("crosser")
+        crosser = ActorSpec(CROSSER, PEOPLE[kind], stands) if kind in PEOPLE else animal(CROSSER, kind, stands)
+        return [*super().actors(), crosser]
 
     @property
     def brakes_m(self) -> float:

@@ -43,6 +43,7 @@ class LeadVehicleBrakes(Scenario):
         Number("stands", 2.0, 0.0, 6.0, "s", "that the leader stands"),
     )
     weather: ClassVar[Mapping[str, float]] = DAYLIGHT
+    partner_choice = ("leader", MODELS)
     timeout_s = 45.0
     needs_m = 80.0
 

@@ -49,7 +49,6 @@ class BendDeparture(Scenario):
     """
 
     group = Group.ROAD_DEPARTURE
-    needs_perception = False
     parameters: ClassVar[Sequence[Parameter]] = (
         Number("friction", 0.3, 0.15, 1.0, "", "of the tyres in the bend; a dry road has 1.1 for the shuttle"),
         Number("pull", 0.1, 0.0, 0.3, "", "share of the full steering, towards the outside of the bend"),

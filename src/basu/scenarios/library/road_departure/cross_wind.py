@@ -32,7 +32,6 @@ class CrossWind(Scenario):
     """
 
     group = Group.ROAD_DEPARTURE
-    needs_perception = False
     parameters: ClassVar[Sequence[Parameter]] = (
         Choice("side", ("right", "left"), "to which it is pushed"),
         Number("push", 0.22, 0.05, 0.5, "", "share of the full steering that a gust is worth"),

@@ -31,7 +31,6 @@ class SteeringDeviation(Scenario):
     """
 
     group = Group.SHUTTLE
-    needs_perception = False
     parameters = (
         Number("ahead", 50.0, 20.0, 80.0, "m", "from the trigger point to where it begins"),
         Number("deviation", 0.03, 0.01, 0.1, "", "of full lock"),

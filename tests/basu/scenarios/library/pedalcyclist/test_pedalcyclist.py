@@ -67,8 +67,7 @@ def test_round_the_door_the_cyclist_comes_into_the_lane_and_leaves_it(laid: Laid
     assert right_m[0] == pytest.approx(edge_m, abs=0.05)
     assert right_m.min() == pytest.approx(into_m, abs=0.15)
     assert right_m[-1] == pytest.approx(edge_m, abs=0.1)
-    opened = [command.details[0] for command in played.commands if command.what == "put"]
-    assert len(opened) == 4  # three frames of the swing, and shut again
+    assert "put" not in {command.what for command in played.commands}  # no thing stands in for the door
     assert {"open door", "close door"} <= {command.what for command in played.commands}
 
 
