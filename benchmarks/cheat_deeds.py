@@ -1,7 +1,7 @@
 """Drivers that cheat by what their client and their process do; ``benchmarks/cheats.py`` drives them.
 
-Each drives as ``behavioral`` and tries its deed in its tenth step, or in all steps. What refuses it, it reports and drives on, as a
-cheat would that does not want to be seen.
+Each drives as ``behavioral`` and tries its deed in its tenth step, or in each step from there on. If the deed is refused,
+it prints why and drives on.
 """
 
 from __future__ import annotations
@@ -438,7 +438,7 @@ class FailsInDestroyAfterAHit(Excuse):
 def channel() -> int:
     """Return the descriptor of the benchmark's channel."""
     for file in Path("/proc/self/fd").iterdir():
-        if int(file.name) > 2 and file.is_symlink() and os.readlink(file).startswith("socket:"):
+        if int(file.name) > 2 and file.is_symlink() and str(file.readlink()).startswith("socket:"):
             return int(file.name)
     raise OSError("no channel")
 
@@ -541,17 +541,6 @@ class OtherDoorsAllTheTime(OtherDoors):
             while True:
                 print(super().deed(), flush=True)
         return "begun"
-
-
-class TrafficManagers(Deed):
-    """Scans for Traffic Managers and stops all cars by them."""
-
-    def deed(self) -> str:
-        found = []
-        for port in open_ports():
-            if port != self.server_address[1]:
-                found.append(port)
-        return f"open: {found}"
 
 
 class ReadsSecrets(Deed):

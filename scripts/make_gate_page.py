@@ -32,8 +32,8 @@ takes orders, one JSON object a line on stdin, as `linden serve --gates` does:
     {"see": {"frame": 1200, "ids": [31, 32]}}      (no answer)
     {"close": {}}                                  {"gate": {"refused": {"tick_cue": 1}}}
 
-`agent` is the agent's process. On Linux the gate accepts its connections and those of processes that it started, and closes
-others: an agent could else drive the vehicle of another one. If it is left out, all processes of the machine may connect.
+`agent` is the agent's process. On Linux the gate accepts its connections and those of processes that it started.
+It closes others, because an agent could drive the vehicle of another one. Without `agent` all processes may connect.
 
 ## Calls
 """

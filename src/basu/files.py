@@ -82,7 +82,7 @@ def _whole(digits: str) -> int:
 def printable(value: Any) -> Any:  # noqa: ANN401 - whatever the text holds
     """Return a JSON value with control characters replaced by U+FFFD; keys and values alike.
 
-    Line ends and tabs stay. An agent could else steer the terminal that its error is printed on, and write a table of its own there.
+    Line ends and tabs stay. An agent could else steer the terminal that its error is printed on.
     """
     if isinstance(value, str):
         return value if value.isprintable() else "".join(map(_shown, value))
