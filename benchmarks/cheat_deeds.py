@@ -686,7 +686,7 @@ class ReadsTheRun(Deed):
                 *(each for part in OUTPUT.rglob("*.part") for each in part.rglob("*")),
             ][:40]
         ]
-        return f"environment {found}, arguments {sys.argv}, folder {os.getcwd()}, runs {runs}, route {self.route.id}"
+        return f"environment {found}, arguments {sys.argv}, folder {Path.cwd()}, runs {runs}, route {self.route.id}"
 
 
 class Random(Deed):

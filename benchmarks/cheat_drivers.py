@@ -1,4 +1,4 @@
-"""Drivers that cheat by where and how they drive; ``benchmarks/cheats.py`` drives them. Each docstring says what it tries.
+"""Drivers that cheat by where and how they drive. Each docstring says what it tries; see ``cheats.py``.
 
 basu run benchmarks/cheat_drivers.py:OppositeLaneAtLines --routes benchmarks/cheats.xml
 """
@@ -26,7 +26,7 @@ ROUNDABOUT_M = (566.4, -376.4)  # its middle, on the route of cheats.xml
 
 
 class Honest(BehavioralAgent):
-    """Drives as ``behavioral``: what a cheat is compared with, and the base of those that drive and do something more."""
+    """Drives as ``behavioral``: what a cheat is compared with, and the base of drivers that do something more."""
 
     def config(self) -> dict[str, str]:
         return {}
@@ -186,6 +186,7 @@ class DiesAtOnce(Honest):
     """Fails in its first step, while nothing has gone wrong yet."""
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
+        del sensor_data
         raise RuntimeError("no step")
 
 

@@ -1,10 +1,10 @@
-"""Drives every cheat through the public commands, and prints what each tried, what came of it before, and the verdict now.
+"""Drives every cheat through the public commands: a table of what each tried, what came of it before, and now.
 
-    unshare --net --map-root-user python benchmarks/cheats.py [--output DIR] [--only NAME ...] [--markdown]
+    unshare --net --map-root-user python benchmarks/cheats.py --own-network [--output DIR] [--only NAME ...] [--markdown]
 
-A network of its own is asked for because ``OtherDoors`` tries all ports of the machine; without one it is left out.
-``before`` is what issue 24 says; a cheat without it is not named there. A drive that is where the honest drive is, frame
-by frame, is "as without it". Exit status 1: a cheat won, or an honest driver beside the cheats had another drive.
+``OtherDoorsAllTheTime`` tries all ports of the machine, so it is left out without a network of its own. ``before`` is
+what issue 24 says; a cheat without it is not named there. A drive that is where the honest drive is, frame by frame, is
+"as without it". Exit status 1: a cheat won, or an honest driver beside the cheats had another drive.
 """
 
 import argparse
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
@@ -26,12 +27,28 @@ import numpy as np
 from basu.records.history.files import read_history
 
 HERE = Path(__file__).parent
-BASU = [sys.executable, "-m", "basu"]
+BASU = [str(Path(sys.executable).with_name("basu"))]
 CASE, GROUP = "pedestrian_crossing_1", 12
-ON_THE_ROUTE = (
-    "Honest OppositeLaneAtLines FourMetresLeft FarBeside OverTheBlock RoundaboutBackwards PastTheSigns ThreeTimesTheLimit "
-    "TwoPoints ByHand DiesAtOnce ReversesAlong Shuttles Circles OneWheelInLane StopsBesideTheLine Weaves SkipsTheEnd"
-).split()
+ON_THE_ROUTE = [
+    "Honest",
+    "OppositeLaneAtLines",
+    "FourMetresLeft",
+    "FarBeside",
+    "OverTheBlock",
+    "RoundaboutBackwards",
+    "PastTheSigns",
+    "ThreeTimesTheLimit",
+    "TwoPoints",
+    "ByHand",
+    "DiesAtOnce",
+    "ReversesAlong",
+    "Shuttles",
+    "Circles",
+    "OneWheelInLane",
+    "StopsBesideTheLine",
+    "Weaves",
+    "SkipsTheEnd",
+]
 NO_CHEATS = {"Honest", "Polyline", "Deed", "OwnControl"}
 NEEDS_OWN_NETWORK = {"OtherDoors", "OtherDoorsAllTheTime"}
 IN_BOTH = {"Honest", "PastTheSigns", "ThreeTimesTheLimit", "ByHand", "OneWheelInLane"}
@@ -64,8 +81,24 @@ BEFORE = {
     "FailsInDestroy": "changed the outcome",
     "FailsInDestroyAfterAHit": "changed the outcome",
 } | dict.fromkeys(
-    "Teleports Pushes ConstantVelocity BetterPhysics NoCollisions NoWitness BetterWeather OwnClock OwnSettings Reloads "
-    "GreenLights ClearsTheRoad MovesOthers StopsOthers ABatchWithAll Records".split(),
+    [
+        "Teleports",
+        "Pushes",
+        "ConstantVelocity",
+        "BetterPhysics",
+        "NoCollisions",
+        "NoWitness",
+        "BetterWeather",
+        "OwnClock",
+        "OwnSettings",
+        "Reloads",
+        "GreenLights",
+        "ClearsTheRoad",
+        "MovesOthers",
+        "StopsOthers",
+        "ABatchWithAll",
+        "Records",
+    ],
     "carried out, some found afterwards",
 )
 FAIR = {"WaitsThenRuns": "waits for the walker, then drives as others do: no cheat"}
@@ -87,18 +120,20 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--output", type=Path, help="keep the drives here (default: a folder that is deleted)")
     parser.add_argument("--only", nargs="+", default=[], metavar="NAME")
+    parser.add_argument("--own-network", action="store_true", help="this network holds nothing else")
     parser.add_argument("--markdown", action="store_true")
     arguments = parser.parse_args()
-    has_network = Path("/proc/self/ns/net").readlink() != Path("/proc/1/ns/net").readlink()
-    if has_network:
+    if arguments.own_network:
         subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
-    cheats = all_cheats(has_own_network=has_network)
+    cheats = all_cheats(has_own_network=arguments.own_network)
     chosen = [name for name in cheats if not arguments.only or name in {*arguments.only, "Honest"}]
     with tempfile.TemporaryDirectory() as short:
         output = (arguments.output or Path(short)).resolve()
         files = {name: agent_file(output / "agents", name, cheats[name]) for name in chosen}
         os.environ["CHEATS_OUTPUT"] = str(output)  # what a search of an agent's would find
-        rows = [*routes(output, files), *cases(output, files)]
+        with ThreadPoolExecutor(2) as threads:
+            both = [threads.submit(drive, output, files) for drive in (routes, cases)]
+            rows = [row for each in both for row in each.result()]
     for title, named in (("named in issue 24", True), ("not named", False)):
         print(f"\n{title}\n")
         show([row for row in rows if bool(row.before) is named], markdown=arguments.markdown)

@@ -15,7 +15,8 @@ from basu.metrics.result import judge
 from basu.metrics.stop_signs import stop_signs
 from basu.metrics.validity import PASSING_M, SLIP_M, Follower, moments, validity
 from basu.outcome import Outcome, Status
-from basu.output.report.series_document import row, totals
+from basu.output.report.series_document import row as series_row
+from basu.output.report.series_document import totals
 from basu.records.history import History
 from basu.routing import Route, Stop
 from basu.scenarios.criteria.going import Arrives, Reaches
@@ -195,6 +196,6 @@ def test_the_driven_distance_is_what_was_driven() -> None:
     driven_m = document["reported"]["driven_m"]
     assert driven_m == pytest.approx(54.8, abs=1.0)
     assert document["reported"]["route_completion"] < 0.02
-    total = totals([row(document, number=0, repetition=0, folder="run")], 1)
+    total = totals([series_row(document, number=0, repetition=0, folder="run")], 1)
     assert total["driven_km"] == pytest.approx(driven_m / 1000.0)
     assert total["infractions"]["stop_sign"] == {"number": 1, "per_km": pytest.approx(1000.0 / driven_m)}
