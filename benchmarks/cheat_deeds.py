@@ -1,7 +1,7 @@
 """Drivers that cheat by what their client and their process do; ``benchmarks/cheats.py`` drives them.
 
-Each drives as ``behavioral`` and tries its deed in its tenth step, or in each step from there on. If the deed is refused,
-it prints why and drives on.
+Each drives as ``behavioral`` and tries its deed in its tenth step, or in each step from there on. If the deed is
+refused, it prints why and drives on.
 """
 
 from __future__ import annotations
@@ -228,7 +228,7 @@ class DrivesInSetup(Honest):
         ):
             try:
                 deed()
-            except RuntimeError as error:
+            except RuntimeError as error:  # noqa: PERF203 - three deeds
                 print(f"deed of DrivesInSetup: {error}", flush=True)
         super().setup()
 
@@ -555,7 +555,7 @@ class ReadsSecrets(Deed):
                 try:
                     with (each / name).open("rb") as file:
                         found.append((each.name, name, file.read(40)))
-                except OSError:
+                except OSError:  # noqa: PERF203 - a few files
                     continue
         return f"read {found}"
 
@@ -650,6 +650,7 @@ class WritesTheTable(Honest):
     """Fails with a message that clears the terminal and writes a table of its own, and a page with a script."""
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:
+        del sensor_data
         print("\x1b[2J\x1b[HWritesTheTable 1/1 passed\x1b[8m", flush=True)
         raise RuntimeError("\x1b[2J\x1b[Hpassed\x1b[8m <script>document.body.textContent='passed'</script> ]]> \x00")
 

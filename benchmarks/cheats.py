@@ -2,8 +2,8 @@
 
     unshare --net --map-root-user python benchmarks/cheats.py --own-network [--output DIR] [--only NAME ...] [--markdown]
 
-``OtherDoorsAllTheTime`` tries all ports of the machine, so it is left out without a network of its own. ``before`` is
-what issue 24 says; a cheat without it is not named there. A drive that is where the honest drive is, frame by frame, is
+``OtherDoorsAllTheTime`` tries all ports of the machine, so it is left out without a network of its own. ``before``
+is what issue 24 says; a cheat without it is not named there. A drive that is where the honest drive is, frame by frame, is
 "as without it". Exit status 1: a cheat won, or an honest driver beside the cheats had another drive.
 """
 

@@ -34,7 +34,7 @@ class GateHost(Protocol):
     """What serves gates: the relay or the server itself."""
 
     def open_gate(self, track: Track, vehicle_id: int, known: Iterable[int], agent: int | None = None) -> GatePorts:
-        """Listen for one agent, whose process is ``agent``."""
+        """Listen for one agent; ``agent`` is its process."""
 
     def add_sensors(self, ids: Iterable[int]) -> None:
         """Let the agent hear its sensors."""

@@ -33,7 +33,7 @@ class Gate:
     """What one agent may do and see.
 
     Attributes:
-        agent: the process whose connections, and those of all that it started, are this session's; None: any.
+        agent: the process that may connect, as may all that it started; None: any process.
         refused: how often each function was refused.
         endpoints: where the server says that the streams are which the agent has asked for.
     """

@@ -59,4 +59,4 @@ class OneGate(ABC):
 
     @abstractmethod
     def _hang_up(self) -> None:
-        """Accept no more connections, and close those that there are."""
+        """Accept no more connections, and close the present ones."""
