@@ -314,7 +314,7 @@ class TooMuchControl(Polyline):
         return carla.VehicleControl(throttle=100.0, brake=-50.0, steer=control.steer * 9.0, gear=-1)
 
 
-class NoReverseGear(Honest):
+class ShiftsByHand(Honest):
     """Holds the engine in a gear that its speed does not fit, for more power."""
 
     def run_step(self, sensor_data: Mapping[str, tuple[int, Any]]) -> carla.VehicleControl:

@@ -1,10 +1,10 @@
 """Drives every cheat through the public commands: a table of what each tried, what came of it before, and now.
 
-    unshare --net --map-root-user python benchmarks/cheats.py --own-network [--output DIR] [--only NAME ...] [--markdown]
+    unshare --net --map-root-user python benchmarks/cheats.py --own-network [--output DIR] [--markdown]
 
-``OtherDoorsAllTheTime`` tries all ports of the machine, so it is left out without a network of its own. ``before``
-is what issue 24 says; a cheat without it is not named there. A drive that is where the honest drive is, frame by frame, is
-"as without it". Exit status 1: a cheat won, or an honest driver beside the cheats had another drive.
+``OtherDoorsAllTheTime`` tries all ports of the machine, so it is left out without a network of its own. The column
+"before" is what issue 24 says; a cheat without it is not named there. "As without it": the vehicle was where the
+honest driver's was, in each frame. Exit status 1: a cheat won, or an honest driver beside the cheats had another drive.
 """
 
 import argparse
@@ -101,7 +101,10 @@ BEFORE = {
     ],
     "carried out, some found afterwards",
 )
-FAIR = {"WaitsThenRuns": "waits for the walker, then drives as others do: no cheat"}
+FAIR = {
+    "ShiftsByHand": "a gear is part of a control: it yields as others do",
+    "WaitsThenRuns": "waits for the walker, then drives as others do: no cheat",
+}
 
 
 class Row(NamedTuple):
