@@ -26,10 +26,14 @@ do not end the run. A function that is not named here is refused.
 `linden gate --port 2000 --vehicle 24` puts a gate before a running server, CARLA's own included. Without `--vehicle` it
 takes orders, one JSON object a line on stdin, as `linden serve --gates` does:
 
-    {"open": {"vehicle": 24, "track": "objects", "known": [3, 4]}}   {"gate": {"rpc": 40001, "streaming": 40002}}
-    {"sensors": [25, 26]}                                            {"gate": {}}
-    {"see": {"frame": 1200, "ids": [31, 32]}}                        (no answer)
-    {"close": {}}                                                    {"gate": {"refused": {"tick_cue": 1}}}
+    {"open": {"vehicle": 24, "track": "objects", "known": [3, 4], "agent": 71}}
+                                                   {"gate": {"rpc": 40001, "streaming": 40002}}
+    {"sensors": [25, 26]}                          {"gate": {}}
+    {"see": {"frame": 1200, "ids": [31, 32]}}      (no answer)
+    {"close": {}}                                  {"gate": {"refused": {"tick_cue": 1}}}
+
+`agent` is the agent's process. On Linux the gate accepts its connections and those of processes that it started.
+It closes others, because an agent could drive the vehicle of another one. Without `agent` all processes may connect.
 
 ## Calls
 """

@@ -68,7 +68,7 @@ def loads(text: str) -> Any:  # noqa: ANN401 - whatever the text holds
         ValueError: the text is no JSON, is nested too deeply, or has a number that does not fit into 64 bits.
     """
     try:
-        return _printable(json.loads(text, parse_int=_whole))
+        return printable(json.loads(text, parse_int=_whole))
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
 
@@ -79,14 +79,17 @@ def _whole(digits: str) -> int:
     return int(digits)
 
 
-def _printable(value: Any) -> Any:  # noqa: ANN401 - whatever the text holds
-    """Return a JSON value with control characters replaced by U+FFFD; keys and values alike."""
+def printable(value: Any) -> Any:  # noqa: ANN401 - whatever the text holds
+    """Return a JSON value with control characters replaced by U+FFFD; keys and values alike.
+
+    Line ends and tabs stay. An agent could else steer the terminal that its error is printed on.
+    """
     if isinstance(value, str):
         return value if value.isprintable() else "".join(map(_shown, value))
     if isinstance(value, list):
-        return [_printable(each) for each in value]
+        return [printable(each) for each in value]
     if isinstance(value, dict):
-        return {_printable(key): _printable(each) for key, each in value.items()}
+        return {printable(key): printable(each) for key, each in value.items()}
     return value
 
 

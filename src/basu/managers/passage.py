@@ -35,6 +35,7 @@ class Passage:
 
     def __init__(self, agent: AgentCalls | RemoteAgent, loaded: FoundAgent, *, is_open: bool) -> None:
         """``is_open``: the agent's process connects to the simulator itself."""
+        self._process = agent.process_id if isinstance(agent, RemoteAgent) else None
         self._is_remote = isinstance(agent, RemoteAgent)
         # an agent of BASU's own in this process passes no gate, and is trusted
         self._is_open = is_open if self._is_remote else isinstance(loaded, LoadedAgent) and loaded.file is not None
@@ -55,7 +56,7 @@ class Passage:
         if track == OBJECTS:
             known = [actor.id for actor in run.world.get_actors().filter(MAP_ACTORS)]
             self._sight = Sight(run.world, run.vehicle)
-        address = self._gate.open(track, run.vehicle.id, known)
+        address = self._gate.open(track, run.vehicle.id, known, self._process)
         self._see(run.world.get_snapshot())
         return address
 

@@ -2,12 +2,14 @@
 
 ::
 
-    {"open": {"vehicle": 24, "track": "objects", "known": [3, 4]}}     {"gate": {"rpc": 40001, "streaming": 40002}}
-    {"sensors": [25, 26]}                                              {"gate": {}}
+    {"open": {"vehicle": 24, "track": "objects", "known": [3, 4], "agent": 71}}
+                                                   {"gate": {"rpc": 40001, "streaming": 40002}}
+    {"sensors": [25, 26]}                          {"gate": {}}
     {"see": {"frame": 1200, "ids": [31, 32]}}
-    {"close": {}}                                                      {"gate": {"refused": {"tick_cue": 1}}}
+    {"close": {}}                                  {"gate": {"refused": {"tick_cue": 1}}}
 
-A gate is opened for one drive of one agent. Opening another closes the one before, with all its connections.
+A gate is opened for one drive of one agent. Opening another closes the one before, with all its connections. It closes
+connections of other processes than ``agent`` and all that it started. Without ``agent`` all processes may connect.
 """
 
 import json
@@ -31,8 +33,8 @@ class GatePorts(NamedTuple):
 class GateHost(Protocol):
     """What serves gates: the relay or the server itself."""
 
-    def open_gate(self, track: Track, vehicle_id: int, known: Iterable[int]) -> GatePorts:
-        """Listen for one agent."""
+    def open_gate(self, track: Track, vehicle_id: int, known: Iterable[int], agent: int | None = None) -> GatePorts:
+        """Listen for one agent; ``agent`` is its process."""
 
     def add_sensors(self, ids: Iterable[int]) -> None:
         """Let the agent hear its sensors."""
@@ -75,8 +77,12 @@ class Control:
             self._host.see(int(value["frame"]), map(int, value["ids"]))
             return None
         if name == "open":
+            agent = value.get("agent")
             return self._host.open_gate(
-                Track(value["track"]), int(value["vehicle"]), map(int, value["known"])
+                Track(value["track"]),
+                int(value["vehicle"]),
+                map(int, value["known"]),
+                None if agent is None else int(agent),
             )._asdict()
         if name == "sensors":
             self._host.add_sensors(map(int, value))

@@ -33,6 +33,7 @@ class Gate:
     """What one agent may do and see.
 
     Attributes:
+        agent: the process that may connect, as may all that it started; None: any process.
         refused: how often each function was refused.
         endpoints: where the server says that the streams are which the agent has asked for.
     """
@@ -45,13 +46,15 @@ class Gate:
         *,
         sensors: Iterable[int] = (),
         known: Iterable[int] = (),
+        agent: int | None = None,
     ) -> None:
         """Open a session for the driver of ``vehicle_id``.
 
         It subscribes to streams at ``streaming_port``. Its sensors may come later. ``known`` are actors that it sees in
-        each frame of the track ``objects``: lights and signs.
+        each frame of the track ``objects``: lights and signs. ``agent`` is its process; None: any process.
         """
         self.track = track
+        self.agent = agent
         self._vehicle_id = vehicle_id
         self._port = streaming_port
         self._sensors = set(sensors)

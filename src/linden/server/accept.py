@@ -12,7 +12,7 @@ from collections.abc import Callable
 from itertools import chain, islice
 
 from linden.gate.session import Gate
-from linden.server.owner import belongs_to
+from linden.server.owner import admits, belongs_to
 from linden.server.peers import Peer, RpcPeer, StreamPeer
 from linden.server.ports import Ports
 
@@ -144,6 +144,9 @@ class Acceptor:
                 continue  # else it was gone before it was accepted
             if gate is None and self.owner is not None and not belongs_to(sock, self.owner):
                 log.info("a connection that is not of process %d is closed: agents use their gate", self.owner)
+                sock.close()
+                continue
+            if gate is not None and not admits(gate.agent, sock):
                 sock.close()
                 continue
             self._add(sock, kind, gate)

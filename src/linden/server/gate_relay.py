@@ -9,20 +9,20 @@ import logging
 import selectors
 import socket
 import struct
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
 import msgpack
 
 from linden.errors import ProtocolError
-from linden.gate.calls import Track
-from linden.gate.control import GatePorts
 from linden.gate.session import Gate
 from linden.protocol.wire.answers import Call, call_of
 from linden.protocol.wire.stream import WORLD_OBSERVER_ID, Subscription, size_prefix
+from linden.server.one_gate import OneGate
 from linden.server.outgoing import Outgoing
-from linden.server.ports import Ports, open_ports, port_of
+from linden.server.owner import admits
+from linden.server.ports import Ports
 
 log = logging.getLogger("linden")
 
@@ -166,14 +166,14 @@ class _Stream(_Link):
             self.agent.outgoing.send(size_prefix(len(payload)), payload)
 
 
-class Relay:
-    """Serves one gate at a time before the server at an address; a :class:`linden.gate.control.GateHost`."""
+class Relay(OneGate):
+    """Serves one gate at a time before the server at an address."""
 
     def __init__(self, host: str, port: int) -> None:
         """Name the server; it is connected to when an agent's client comes."""
+        super().__init__()
         self._host, self._port = host, port
         self._selector = selectors.DefaultSelector()
-        self._gate: Gate | None = None
         self._ports: Ports | None = None
         self._links: dict[_Link, None] = {}  # an ordered set
         self._stopping = False
@@ -197,53 +197,36 @@ class Relay:
 
     # -- the gate
 
-    def open_gate(self, track: Track, vehicle_id: int, known: Iterable[int]) -> GatePorts:
-        """Listen for one agent on two ports of the system's choice."""
-        self.close_gate()
-        self._ports = ports = open_ports("127.0.0.1", 0)
-        opened = GatePorts(port_of(ports.rpc), port_of(ports.streaming))
-        self._gate = Gate(track, vehicle_id, opened.streaming, known=known)
-        self._selector.register(ports.rpc, _READ, lambda _: self._accept(ports.rpc, self._calls_of))
-        self._selector.register(ports.streaming, _READ, lambda _: self._accept(ports.streaming, self._stream_of))
-        return opened
+    def _listen(self, ports: Ports, gate: Gate) -> None:
+        self._ports = ports
+        self._selector.register(ports.rpc, _READ, lambda _: self._accept(ports.rpc, gate, self._calls_of))
+        self._selector.register(ports.streaming, _READ, lambda _: self._accept(ports.streaming, gate, self._stream_of))
 
-    def add_sensors(self, ids: Iterable[int]) -> None:
-        """Let the agent hear its sensors."""
-        if self._gate is not None:
-            self._gate.add_sensors(ids)
-
-    def see(self, frame: int, ids: Iterable[int]) -> None:
-        """Say what the agent sees of others in a frame."""
-        if self._gate is None:
-            return
-        self._gate.see(frame, ids)
+    def _send_held(self) -> None:
         for link in tuple(self._links):
             self._guarded(link, link.seen)
 
-    def close_gate(self) -> Mapping[str, int]:
-        """Close the gate with its connections, and return how often each function was refused."""
+    def _hang_up(self) -> None:
         for link in tuple(self._links):
             self._close(link)
         if self._ports is not None:
             self._selector.unregister(self._ports.rpc)
             self._selector.unregister(self._ports.streaming)
             self._ports.close()
-        refused = {} if self._gate is None else dict(self._gate.refused)
-        self._gate = self._ports = None
-        return refused
+            self._ports = None
 
     # -- connections
 
-    def _accept(self, listener: socket.socket, make: Callable[[Gate, socket.socket], _Link]) -> None:
+    def _accept(self, listener: socket.socket, gate: Gate, make: Callable[[Gate, socket.socket], _Link]) -> None:
         try:
             sock, _ = listener.accept()
         except OSError:  # it has gone again
             return
-        if self._gate is None:
+        if not admits(gate.agent, sock):
             sock.close()
             return
         try:
-            link = make(self._gate, sock)
+            link = make(gate, sock)
         except OSError as error:
             log.warning("the gate does not reach the server at %s:%d: %s", self._host, self._port, error)
             sock.close()

@@ -4,6 +4,10 @@ The drivers are real and the simulator is live.
 """
 
 import json
+import os
+import socket
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from pathlib import Path
@@ -22,7 +26,7 @@ from basu.managers.conduct import Conduct, is_same_control
 from basu.records.history.files import read_history
 from basu.running import runner
 from basu.running.scenario_runs import player
-from basu.simulator import Simulator, connect, linden_command
+from basu.simulator import OwnServer, Simulator, connect, linden_command
 from cheating_agent import cheating_agent
 from servers import RunningServer
 
@@ -162,6 +166,23 @@ def test_a_server_of_our_own_has_the_gate_in_itself_and_no_door_beside_it(route_
     result = result_of(tmp_path / "runs")
     assert result["status"] == "Stopped", result["message"]
     assert result["meta"]["access"]["refused"]["tick_cue"] == 1
+
+
+@pytest.mark.parametrize("where", ["in the server", "before it"])
+def test_an_agent_goes_through_no_gate_but_its_own(simulator: RunningServer, where: str) -> None:
+    """An agent that scanned the machine could control the vehicle of an agent that drove beside it."""
+    own = OwnServer(gates=True) if where == "in the server" else None
+    keeper = own or Relay([*linden_command(), "gate", "--port", str(simulator.port)])
+    try:
+        with subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE) as agent:
+            address = Gate(keeper).open("world", 1, [], agent.pid)
+            with socket.create_connection(address) as other:
+                assert other.recv(1) == b""
+            agent.communicate(b"\n")
+        address = Gate(keeper).open("world", 1, [], os.getpid())
+        connect(*address, 20.0).get_server_version()
+    finally:
+        keeper.end()
 
 
 def test_a_step_with_another_control_has_a_sentence() -> None:

@@ -15,12 +15,15 @@ from basu.metrics.result import judge
 from basu.metrics.stop_signs import stop_signs
 from basu.metrics.validity import PASSING_M, SLIP_M, Follower, moments, validity
 from basu.outcome import Outcome, Status
+from basu.output.report.series_document import row as series_row
+from basu.output.report.series_document import totals
 from basu.records.history import History
 from basu.routing import Route, Stop
 from basu.scenarios.criteria.going import Arrives, Reaches
 from fakes.drives import STEP_S, stop_sign, straight_route
 from fakes.paths import Points, along, driven_through, lane_under, route_along
 from fakes.played import played
+from fakes.results import META
 
 LENGTH_M = 200.0
 LEFT_M = -3.5  # the middle of the oncoming lane
@@ -187,7 +190,12 @@ def test_frame_by_frame_it_is_what_the_record_tells() -> None:
 
 def test_the_driven_distance_is_what_was_driven() -> None:
     """A drive of 53.8 m away from the route is not 1 m long, and rates for each km are of what was driven."""
-    history = along(straight_route(), [(0, 0), (1, 0), (1, 25.0), (3, 25.0), (3, -1.8)], speed_mps=6.0)
-    reported = judge(Outcome(Status.ROUTE_DEVIATION, "left the route"), history).metrics["reported"]
-    assert reported["driven_m"] == pytest.approx(54.8, abs=1.0)
-    assert reported["route_completion"] < 0.02
+    way = [(0, 0), (1, 0), (1, 25.0), (3, 25.0), (3, -1.8)]
+    history = along(straight_route(controls=(stop_sign(2.0),)), way, speed_mps=6.0)
+    document = judge(Outcome(Status.ROUTE_DEVIATION, "left the route"), history, meta=META).document()
+    driven_m = document["reported"]["driven_m"]
+    assert driven_m == pytest.approx(54.8, abs=1.0)
+    assert document["reported"]["route_completion"] < 0.02
+    total = totals([series_row(document, number=0, repetition=0, folder="run")], 1)
+    assert total["driven_km"] == pytest.approx(driven_m / 1000.0)
+    assert total["infractions"]["stop_sign"] == {"number": 1, "per_km": pytest.approx(1000.0 / driven_m)}

@@ -104,6 +104,11 @@ class AgentProcess:
         _running.add(self)
 
     @property
+    def pid(self) -> int:
+        """The identifier of the keeper."""
+        return self._process.pid
+
+    @property
     def alive(self) -> bool:
         """Whether it can take calls."""
         return self._process.poll() is None and not self._own_kill

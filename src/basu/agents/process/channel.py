@@ -14,6 +14,8 @@ import struct
 import time
 from typing import Any
 
+from basu.files import printable
+
 LENGTH = struct.Struct("<I")  # before each message: its length in bytes
 MOST_BYTES = 8 << 20  # of an answer: more is none that BASU's own code gives
 CHUNK_BYTES = 1 << 16
@@ -133,7 +135,7 @@ class BenchmarksEnd:
         if len(self._received) < end:
             return None
         try:
-            answer = json.loads(bytes(self._received[LENGTH.size : end]))
+            answer = printable(json.loads(bytes(self._received[LENGTH.size : end])))
         except (ValueError, RecursionError) as error:
             raise ChannelClosedError from error
         del self._received[:end]

@@ -50,15 +50,16 @@ class Gate:
         """``keeper`` has the gates."""
         self._keeper = keeper
 
-    def open(self, track: str, vehicle_id: int, known: Iterable[int]) -> tuple[str, int]:
+    def open(self, track: str, vehicle_id: int, known: Iterable[int], agent: int | None = None) -> tuple[str, int]:
         """Open a gate for the driver of a vehicle, and return its address; the one before is closed.
 
-        ``known`` are actors that it sees in each frame in the track ``objects``.
+        ``known`` are actors that it sees in each frame in the track ``objects``. The gate lets in the process ``agent``
+        and all that it started; None: all processes.
 
         Raises:
             SimulatorError: the gate has ended.
         """
-        ports = self._asked(open={"track": track, "vehicle": vehicle_id, "known": list(known)})
+        ports = self._asked(open={"track": track, "vehicle": vehicle_id, "known": list(known), "agent": agent})
         return HOST, int(ports["rpc"])
 
     def add_sensors(self, ids: Iterable[int]) -> None:

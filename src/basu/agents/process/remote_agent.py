@@ -146,6 +146,11 @@ class RemoteAgent:
             ),
         )
 
+    @property
+    def process_id(self) -> int:
+        """The keeper of the agent's process: all that the agent starts descends from it."""
+        return self._process.pid
+
     def config(self) -> AgentConfig:
         """What the agent's ``config`` returned."""
         return self._config

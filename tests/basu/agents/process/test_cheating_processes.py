@@ -59,6 +59,7 @@ DEEDS = {
     "blames the set-up": ('send(b\'[3, "failed", "user", "wrong map", ""]\'); time.sleep(60)', "wrong map"),
     "no list of points": ("send(b'[3, \"done\", [[1, 2], 3]]'); time.sleep(60)", "gave no usable answer"),
     "unnamed signal": ("os.kill(os.getpid(), 40)", r"ended by the signal number 40"),
+    "steers the terminal": (r"raise ValueError('\x1b[2J\x1b[Hpassed')", "ValueError: \ufffd.2J\ufffd.Hpassed"),
     "kills itself": ("os.kill(os.getpid(), signal.SIGKILL)", r"ended by the signal SIGKILL"),
     "simulator error": (
         "from basu.errors import SimulatorError; raise SimulatorError('the simulator ended')",
