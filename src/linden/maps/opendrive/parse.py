@@ -1,16 +1,14 @@
 """OpenDRIVE text to a map. Hostile text is refused: no DTD, no entities, no network, numbers finite."""
 
-import gc
 import hashlib
 import re
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
 from typing import Any, cast
 from weakref import WeakValueDictionary
 
 from lxml import etree
 
-from linden.background import checkpoint
+from linden.background import checkpoint, young_collector
 from linden.maps.opendrive.limits import LONGEST_TOTAL_M, MOST_ELEMENTS, MOST_SIGNALS, MapError, refuse_beyond
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.reading.attributes import line_of
@@ -31,21 +29,9 @@ def parse(text: str | bytes) -> OpenDrive:
     digest = hashlib.sha256(text.encode() if isinstance(text, str) else text).digest()
     found = _in_use.get(digest)
     if found is None:
-        with _collector_paused():
+        with young_collector():
             found = _in_use[digest] = _read(_root(text))
     return found
-
-
-@contextmanager
-def _collector_paused() -> Iterator[None]:
-    """Keep Python from looking for garbage among a million new values, none of which is: a fifth of the time."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
 
 
 def _read(root: etree._Element) -> OpenDrive:
