@@ -69,7 +69,8 @@ def _refuse_many_lanes(opendrive: OpenDrive) -> None:
     looks = 0
     for road in opendrive.roads:
         checkpoint()
-        for signal in (*road.signals, *road.signal_references):
+        speaking: tuple[Signal | SignalReference, ...] = (*road.signals, *road.signal_references)
+        for signal in speaking:
             looks += len(road.section_at(signal.s_m).lanes) * (1 + len(signal.validities))
     refuse_beyond(looks, MOST_SIGNAL_LANES, "lanes at the places of its signals and of references to them")
 
