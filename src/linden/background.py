@@ -16,6 +16,8 @@ from types import TracebackType
 from typing import TypeAlias, TypeVar
 from weakref import WeakSet
 
+from linden.errors import LindenError
+
 Made = TypeVar("Made")
 
 
@@ -50,6 +52,7 @@ def in_background(work: Callable[[], Made], unwanted: Unwanted | None = None) ->
         _here.unwanted = Event() if unwanted is None else unwanted
         with young_collector():
             carry_out(work, made)
+        give_memory_back()
 
     thread = Thread(target=begin, name="background", daemon=True)
     _threads.add(thread)
@@ -136,5 +139,8 @@ def carry_out(work: Callable[[], Made], done: "Future[Made]") -> None:
     """Do the work and note in ``done`` what it returned or raised."""
     try:
         done.set_result(work())
+    except (LindenError, NotWantedError) as error:  # their frames hold all that was made so far
+        error.__cause__ = error.__context__ = None
+        done.set_exception(error.with_traceback(None))
     except BaseException as error:  # noqa: BLE001 - it is raised again where the result is read
         done.set_exception(error)
