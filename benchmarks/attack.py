@@ -2,7 +2,7 @@
 
     python benchmarks/attack.py [--packets 100000] [--seed 1]
 
-One packet in ``CRAFTED_EACH`` is a crafted map (roads on one place, lane sections, widths) or crafted settings. Its
+One packet in ``CRAFTED_EACH`` is a crafted map (``tests/fakes/crafted_maps.py``) or crafted settings. Its
 connection stays open until the answer has come, because the server gives up work for a client that has gone.
 Packets are noise, requests cut off or changed, right types with values that make no sense, and large ones: texts and
 arrays that are announced and do not come, deep nesting, 250,000 empty arrays, pictures of a million pixels.
@@ -28,6 +28,7 @@ import psutil
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
+from fakes.crafted_maps import KINDS, opendrive
 from fakes.nonsense import connections
 from fakes.raw_client import RawClient
 from lock_waits import LockWatch, held_up_s
@@ -62,34 +63,11 @@ def large(chance: random.Random) -> bytes:
     )()
 
 
-def road(number: int, length_m: float, sections: str) -> str:
-    line = f'<geometry s="0" x="0" y="0" hdg="0" length="{length_m}"><line/></geometry>'
-    plan = f"<planView>{line}</planView><lanes>{sections}</lanes>"
-    return f'<road name="" length="{length_m}" id="{number}" junction="-1">{plan}</road>'
-
-
-def section(s_m: float, widths: str) -> str:
-    lane = f'<right><lane id="-1" type="driving">{widths}</lane></right>'
-    return f'<laneSection s="{s_m}"><center><lane id="0" type="none"/></center>{lane}</laneSection>'
-
-
-def width(s_m: float) -> str:
-    return f'<width sOffset="{s_m}" a="3.5" b="0" c="0" d="0"/>'
-
-
 def crafted(chance: random.Random) -> bytes:
     """Return a call that asks for far more work than its bytes are."""
-    many = chance.choice([1000, 4000, 20_000])
-    roads = chance.choice(
-        [
-            lambda: "".join(road(number, 100.0, section(0.0, width(0.0))) for number in range(many)),
-            lambda: road(1, 0.5 * many, "".join(section(0.5 * n, width(0.0)) for n in range(many))),
-            lambda: road(1, 0.5 * many, section(0.0, "".join(width(0.5 * n) for n in range(many)))),
-        ]
-    )
     if chance.random() < 0.2:
         return msgpack.packb([0, 1, "set_episode_settings", [[False], ENDLESS]])
-    text = f"<OpenDRIVE><header/>{roads()}</OpenDRIVE>"
+    text = opendrive(chance.choice(list(KINDS)), chance.choice([1000, 4000, 20_000, 100_000]))
     return msgpack.packb([0, 1, "copy_opendrive_to_file", [[False], text, MAP_PARAMETERS]])
 
 

@@ -4,7 +4,6 @@ They stand along both sides of every road outside of junctions, as far beyond a 
 Source: CARLA's MeshFactory.cpp (GenerateWalls) and Lane.cpp (GetCornerPositions). Frame: CARLA's.
 """
 
-import math
 from collections.abc import Iterator
 from itertools import pairwise
 from typing import NamedTuple
@@ -15,13 +14,14 @@ from numpy.typing import NDArray
 from linden.background import checkpoint
 from linden.geometry import points_from_opendrive
 from linden.maps.ground import Ground
-from linden.maps.opendrive.evaluate.strips import Edges, edges_of, strips_of
+from linden.maps.opendrive.evaluate.strips import edges_of, strips_of
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.limits import MOST_WALL_PIECES
 from linden.maps.opendrive.model import OpenDrive
 from linden.protocol.values.enums import LaneType
 
 F64 = NDArray[np.float64]
+I64 = NDArray[np.int64]
 
 _LONGEST_M = 20.0  # of one piece: so that only those near a body are looked at
 _MOST_RISE_M = 0.25  # of one piece: pieces are upright boxes
@@ -43,11 +43,10 @@ def walls_along(opendrive: OpenDrive, ground: Ground, beyond_m: float) -> F64:
     Unlike CARLA's they leave out what would stand on another road, as between the two directions of a street.
     """
     tables = tables_of(opendrive)
-    pieces = [piece for side, line in _lines(tables) for piece in _along(tables, side, line, beyond_m)]
-    if not pieces:
+    sides = list(_sides(tables))
+    if not sides:
         return np.empty((0, 2, 3))
-    feet = np.concatenate([piece[0] for piece in pieces])
-    probes = np.concatenate([piece[1] for piece in pieces])
+    feet, probes = _pieces(*_along(tables, sides, *_lines(tables, sides), beyond_m))
     _, triangle = ground.surfaces_under(np.column_stack([probes, np.full(len(probes), _HIGH_M)]))
     free: F64 = feet[triangle < 0]
     return free
@@ -57,6 +56,7 @@ def _sides(tables: Tables) -> Iterator[_Side]:
     """Yield the lanes along which walls run: those furthest to either hand, or on a bare hand the innermost one."""
     for road_index, road in enumerate(tables.roads):
         for section_index, section in enumerate(() if road.is_in_junction else road.sections):
+            checkpoint()
             ids = sorted(lane.id for lane in section.lanes if lane.id != 0)
             if ids:
                 rows = {lane_id: tables.lane_row[road_index, section_index, lane_id] for lane_id in ids}
@@ -64,47 +64,72 @@ def _sides(tables: Tables) -> Iterator[_Side]:
                 yield _Side(rows[ids[-1]], ids[-1] > 0, is_left=True)
 
 
-def _lines(tables: Tables) -> Iterator[tuple[_Side, F64]]:
-    """Yield each side with the edge (N, 3) of its lane that it stands on; all lanes are laid out at once."""
-    sides = list(_sides(tables))
-    if not sides:
-        return
+def _lines(tables: Tables, sides: list[_Side]) -> tuple[F64, I64]:
+    """Return the places (N, 3) of the edges that walls stand on, side after side, and the number of each one's side.
+
+    All lanes are laid out at once. A section shorter than any piece has no places.
+    """
     strips = strips_of(tables, np.array([side.lane for side in sides]))
-    edges = Edges(*(points_from_opendrive(edge) for edge in edges_of(tables, strips)))
-    begins = np.flatnonzero(np.concatenate([[True], ~strips.continues[:-1]]))
+    inner, outer = (points_from_opendrive(edge) for edge in edges_of(tables, strips))
+    begins = np.flatnonzero(np.concatenate([[True], ~strips.continues[:-1]])[: len(strips.lane)])
     of_lane = {int(strips.lane[begin]): at for begin, at in zip(begins, pairwise([*begins, None]), strict=True)}
-    for side in sides:
-        checkpoint()
-        if side.lane in of_lane:  # a section shorter than any piece has no places
+    parts: list[F64] = [np.empty((0, 3))]
+    numbers = [np.empty(0, np.int64)]
+    for number, side in enumerate(sides):
+        if side.lane in of_lane:
             begin, end = of_lane[side.lane]
-            yield side, (edges.outer if side.is_outer else edges.inner)[begin:end]
+            parts.append((outer if side.is_outer else inner)[begin:end])
+            numbers.append(np.full(len(parts[-1]), number))
+    return np.concatenate(parts), np.concatenate(numbers)
 
 
-def _along(tables: Tables, side: _Side, line: F64, beyond_m: float) -> Iterator[tuple[F64, F64]]:
-    """Yield feet (K, 2, 3) and probes (K, 2), which lie just behind the middles of the pieces."""
-    line = line[np.concatenate([[True], np.hypot(*np.diff(line[:, :2], axis=0).T) > _SHORTEST_M])]
-    if len(line) < 2:
-        return
-    direction = np.gradient(line[:, :2], axis=0)
+def _along(tables: Tables, sides: list[_Side], line: F64, number: I64, beyond_m: float) -> tuple[F64, F64, I64]:
+    """Return the nodes (N, 3) of the walls, which way is outward there (N, 2), and the number of each one's side."""
+    far = np.hypot(*np.diff(line[:, :2], axis=0).T) > _SHORTEST_M
+    kept = np.concatenate([[True], far | (np.diff(number) != 0)])[: len(line)]
+    line, number = line[kept], number[kept]
+    first, last = _ends(number)
+    kept = ~(first & last)  # a wall has two nodes at least
+    line, number = line[kept], number[kept]
+    first, last = _ends(number)
+    rows = np.arange(len(line))
+    behind, ahead = rows - ~first, rows + ~last
+    direction = (line[ahead, :2] - line[behind, :2]) / (ahead - behind)[:, None]
     direction /= np.hypot(*direction.T)[:, None]
-    outward = np.column_stack([-direction[:, 1], direction[:, 0]]) * (-1.0 if side.is_left else 1.0)  # y points south
-    if tables.lanes["type_bits"][side.lane] == LaneType.DRIVING:
-        line[:, :2] += outward * beyond_m
-    line, outward = line[bends := _bends(line)], outward[bends]
-    for begin, end, behind in zip(line[:-1], line[1:], outward[:-1], strict=True):
-        length_m, rise_m = math.hypot(*(end - begin)[:2]), abs(end[2] - begin[2])
-        wanted = max(math.ceil(length_m / _LONGEST_M), math.ceil(rise_m / _MOST_RISE_M))
-        count = min(wanted, MOST_WALL_PIECES)
-        nodes = begin + np.linspace(0.0, 1.0, count + 1)[:, None] * (end - begin)
-        yield np.stack([nodes[:-1], nodes[1:]], axis=1), 0.5 * (nodes[:-1] + nodes[1:])[:, :2] + _PROBE_M * behind
+    hand = np.where(np.array([side.is_left for side in sides]), -1.0, 1.0)[number]
+    outward = np.column_stack([-direction[:, 1], direction[:, 0]]) * hand[:, None]  # y points south
+    lane = np.array([side.lane for side in sides])[number]
+    line[:, :2] += np.where((tables.lanes["type_bits"][lane] == LaneType.DRIVING)[:, None], outward * beyond_m, 0.0)
+    needed = first | last | _bends(line)
+    return line[needed], outward[needed], number[needed]
+
+
+def _ends(number: I64) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which nodes are the first and which are the last of their side."""
+    changes = np.diff(number) != 0
+    return np.concatenate([[True], changes])[: len(number)], np.concatenate([changes, [True]])[: len(number)]
 
 
 def _bends(line: F64) -> NDArray[np.bool_]:
-    """Return which nodes of a line (N, 3) are needed: its ends, and where its direction changes.
+    """Return which nodes of a line (N, 3) are needed because its direction changes there.
 
     Every joint of two pieces is an edge that a body which slides along the wall may catch on.
     """
+    turns = np.zeros(len(line), np.bool_)
     ahead = np.diff(line, axis=0)
-    ahead /= np.linalg.norm(ahead, axis=1)[:, None]
-    turns: NDArray[np.bool_] = np.linalg.norm(np.diff(ahead, axis=0), axis=1) > _STRAIGHT
-    return np.concatenate([[True], turns, [True]])
+    ahead /= np.maximum(np.linalg.norm(ahead, axis=1), _SHORTEST_M * _SHORTEST_M)[:, None]
+    turns[1:-1] = np.linalg.norm(np.diff(ahead, axis=0), axis=1) > _STRAIGHT
+    return turns
+
+
+def _pieces(nodes: F64, outward: F64, number: I64) -> tuple[F64, F64]:
+    """Return feet (K, 2, 3) and probes (K, 2), which lie just behind the middles of the pieces."""
+    begins = np.flatnonzero(np.diff(number) == 0)
+    begin, step = nodes[begins], nodes[begins + 1] - nodes[begins]
+    wanted = np.maximum(np.ceil(np.hypot(step[:, 0], step[:, 1]) / _LONGEST_M), np.ceil(abs(step[:, 2]) / _MOST_RISE_M))
+    count = np.minimum(wanted, MOST_WALL_PIECES).astype(np.int64)
+    of = np.repeat(np.arange(len(begins)), count)
+    nth = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    shares = [np.where(k == count[of], 1.0, k * (1.0 / count[of])) for k in (nth, nth + 1)]
+    low, high = (begin[of] + share[:, None] * step[of] for share in shares)
+    return np.stack([low, high], axis=1), 0.5 * (low + high)[:, :2] + _PROBE_M * outward[begins][of]

@@ -78,10 +78,11 @@ def _rules(placed: Sequence[PlacedSignal], give_way: StructuredArray) -> SignRul
     kinds = (STOP_SIGN_TYPE, YIELD_SIGN_TYPE)
     numbered = [nth for nth, signal in enumerate(placed) if signal.type in kinds and signal.name != PAINTED]
     signs = [_actor(placed[nth], NO_LIGHT) for nth in numbered]
+    first, behind = (np.searchsorted(give_way["signal"], numbered, side) for side in ("left", "right"))
     return sign_rules(
         trigger_grid(_world_volumes(signs)),
         np.array([placed[nth].type == STOP_SIGN_TYPE for nth in numbered], bool),
-        [give_way[give_way["signal"] == nth] for nth in numbered],
+        [give_way[begin:end] for begin, end in zip(first, behind, strict=True)],
     )
 
 

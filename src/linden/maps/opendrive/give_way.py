@@ -12,9 +12,11 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from linden.background import checkpoint
 from linden.geometry import from_opendrive
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
-from linden.maps.opendrive.links import LaneLinks, is_forward, lane_links
+from linden.maps.opendrive.limits import MOST_GIVE_WAY, MOST_MEETINGS, refuse_beyond
+from linden.maps.opendrive.links import LaneLinks, ends_of_roads, is_forward, lane_links
 from linden.maps.opendrive.model import OpenDrive
 from linden.maps.opendrive.roadside import STOP_SIGN_TYPE, YIELD_SIGN_TYPE
 from linden.maps.records import GIVE_WAY, PlacedSignal
@@ -26,6 +28,8 @@ F64 = NDArray[np.float64]
 COVERED_WIDTHS = 0.9
 """How much of a lane's width the squares cover: CARLA's."""
 SAMPLE_M = 1.0
+MOST_SAMPLES = 500
+"""Of one lane in a junction; a longer one is sampled further apart."""
 
 
 def give_way_areas(opendrive: OpenDrive, placed: tuple[PlacedSignal, ...]) -> StructuredArray:
@@ -33,7 +37,11 @@ def give_way_areas(opendrive: OpenDrive, placed: tuple[PlacedSignal, ...]) -> St
     ways = _Ways(opendrive)
     guarded = {nth: ways.approached_by(signal) for nth, signal in enumerate(placed) if _gives_way(signal)}
     approaches = {lane for lanes in guarded.values() for entry in lanes for lane in ways.links.predecessors[entry]}
-    found = [(nth, *place) for nth, own in guarded.items() for place in ways.crossing(own, approaches)]
+    ways.refuse_many(guarded.values())
+    found = []
+    for nth, own in guarded.items():
+        found += [(nth, *place) for place in ways.crossing(own, approaches)]
+        refuse_beyond(len(found), MOST_GIVE_WAY, "squares to which traffic at stop and yield signs gives way")
     areas = np.zeros(len(found), GIVE_WAY)
     if found:
         signal, lane, s_m = (np.array(column) for column in zip(*found, strict=True))
@@ -56,6 +64,7 @@ class _Ways:
     def __init__(self, opendrive: OpenDrive) -> None:
         self.tables: Tables = tables_of(opendrive)
         self.links: LaneLinks = lane_links(opendrive)
+        self._ends = ends_of_roads(self.tables, self.links)
         lanes = self.tables.lanes
         self._road_index = {road.id: index for index, road in enumerate(self.tables.roads)}
         self._of_junction: dict[int, list[int]] = defaultdict(list)
@@ -73,17 +82,24 @@ class _Ways:
         for road_id, lane_id, s_m in signal.lanes:
             index = self._road_index[road_id]
             road = self.tables.roads[index]
-            rows = {self.tables.lane_row[index, road.section_index_at(s_m), lane_id]}
-            for _ in range(len(road.sections) + 1):  # through the later sections of the same road
-                entered |= {row for row in rows if self._in_junction(row)}
-                rows = {after for row in rows if not self._in_junction(row) for after in self.links.successors[row]}
+            row = self.tables.lane_row[index, road.section_index_at(s_m), lane_id]
+            ahead = (row,) if road.is_in_junction else self.links.successors[self._ends[row]]
+            entered |= {row for row in ahead if self._in_junction(row)}
         return entered
+
+    def refuse_many(self, guarded: Iterable[set[int]]) -> None:
+        """Raise a MapError where the lanes that signs guard have to be compared with very many others."""
+        pairs = sum(len(own) * len(self._of_junction[junction]) for own in guarded for junction in self._junctions(own))
+        refuse_beyond(pairs, MOST_MEETINGS, "pairs of lanes in junctions with stop and yield signs")
+
+    def _junctions(self, rows: set[int]) -> list[int]:
+        return sorted({self.tables.roads[self.tables.lanes["road"][row]].junction_id for row in rows})
 
     def crossing(self, own: set[int], guarded: set[int]) -> Iterable[tuple[int, float]]:
         """Yield the places (row, s) of the squares on the lanes that meet these, and one before each."""
-        lanes, origins = self.tables.lanes, self._origins(own)
-        junctions = sorted({self.tables.roads[lanes["road"][row]].junction_id for row in own})
-        for other in [row for junction in junctions for row in self._of_junction[junction]]:
+        origins = self._origins(own)
+        for other in [row for junction in self._junctions(own) for row in self._of_junction[junction]]:
+            checkpoint()
             if other in own or self._origins({other}) & origins or not any(self._meet(row, other) for row in own):
                 continue
             yield from ((other, s_m) for s_m in self._places(other))
@@ -103,7 +119,7 @@ class _Ways:
         """Return points (P, 2) along the middle of a lane, m, and its mean width."""
         if row not in self._line:
             lane = self.tables.lanes[row]
-            count = max(2, int((lane["end_m"] - lane["start_m"]) / SAMPLE_M) + 1)
+            count = min(max(2, int((lane["end_m"] - lane["start_m"]) / SAMPLE_M) + 1), MOST_SAMPLES)
             s_m = np.linspace(lane["start_m"], lane["end_m"], count)
             places = self.tables.lane_centres(np.full(count, row), s_m)
             self._line[row] = np.column_stack([places.x_m, places.y_m]), float(places.width_m.mean())
@@ -117,6 +133,7 @@ class _Ways:
         """Return s of squares that cover a lane from end to end."""
         start_m, end_m = float(self.tables.lanes["start_m"][row]), float(self.tables.lanes["end_m"][row])
         count = max(1, round((end_m - start_m) / (2.0 * self.half_m(row))))
+        refuse_beyond(count, MOST_GIVE_WAY, "squares to which traffic at stop and yield signs gives way")
         return [start_m + (nth + 0.5) * (end_m - start_m) / count for nth in range(count)]
 
     def _last_place(self, row: int) -> float:

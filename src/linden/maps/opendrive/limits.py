@@ -38,6 +38,15 @@ MOST_IN_A_PLACE = 2000
 middle of a star of 24 legs has some 500."""
 MOST_SIGNALS = 10_000
 """Each is an actor, with a row in every snapshot; CARLA's largest towns have some 2,000."""
+MOST_SIGNAL_LANES = 2_000_000
+"""Lanes at the places of signals and of references to them, each once for every validity. A town with 2,000 signals
+has 50,000."""
+MOST_SIGNAL_PLACES = 200_000
+"""Lanes that signals speak to, of all signals together; a town with 2,000 signals has 10,000."""
+MOST_MEETINGS = 500_000
+"""Pairs of lanes in junctions that are compared for stop and yield signs; a town with 1,000 of them has 100,000."""
+MOST_GIVE_WAY = 200_000
+"""Squares before and in junctions to which traffic at signs gives way."""
 MOST_ELEMENTS = 3_000_000
 """Of XML; a text of 64 MB has 1 million."""
 MOST_CORNERS = 1000

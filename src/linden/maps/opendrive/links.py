@@ -1,12 +1,20 @@
 """Successors and predecessors of lanes in the direction of travel, as in LibCarla (MapBuilder.cpp, GetLaneNext)."""
 
+from bisect import bisect_left, bisect_right
 from collections import defaultdict
 from typing import NamedTuple
 
+import numpy as np
+
+from linden.background import checkpoint
+from linden.maps.opendrive.evaluate.pieces import I64
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.model import Lane, OpenDrive, Road, kept
 
 _Rows = tuple[int, ...]
+
+
+_LANES_AT_ONCE = 10_000  # between two looks whether the work is still wanted
 
 
 class LaneLinks(NamedTuple):
@@ -31,11 +39,27 @@ def lane_links(opendrive: OpenDrive) -> LaneLinks:
     predecessors: list[list[int]] = [[] for _ in range(len(tables.lanes))]
     places = zip(*(tables.lanes[name].tolist() for name in ("road", "section", "lane_id")), strict=True)
     for row, place in enumerate(places):
+        if row % _LANES_AT_ONCE == 0:
+            checkpoint()
         after = _after(tables, ways, index_of_road, row, place)
         successors.append(after)
         for next_row in after:
             predecessors[next_row].append(row)
     return LaneLinks(tuple(successors), tuple(map(tuple, predecessors)))
+
+
+def ends_of_roads(tables: Tables, links: LaneLinks) -> I64:
+    """Return for each row the last row of its road that its traffic comes to: itself where no section follows."""
+    rows = np.arange(len(tables.lanes))
+    ahead = np.array([after[0] if after else row for row, after in enumerate(links.successors)], np.int64)
+    road, section = tables.lanes["road"], tables.lanes["section"]
+    right_hand = np.array([road.is_right_hand for road in tables.roads], np.bool_)
+    step = np.where((tables.lanes["lane_id"] < 0) == right_hand[road], 1, -1)
+    goes_on = (road[ahead] == road) & ((section[ahead] - section) * step > 0)
+    ends = np.where(goes_on, ahead, rows)
+    while (ends != (further := ends[ends])).any():
+        ends = further
+    return ends
 
 
 _Ways = dict[tuple[int, int, int], list[tuple[int, int]]]
@@ -72,9 +96,8 @@ def _after(tables: Tables, ways: _Ways, index_of_road: dict[int, int], row: int,
     lane = tables.lane_values[row]
     forward = is_forward(road, lane_id)
     linked = lane.successor if forward else lane.predecessor
-    following = range(section_index + 1, len(road.sections)) if forward else range(section_index - 1, -1, -1)
-    if following:
-        return _first_row(tables, road_index, following, linked)
+    if section_index + 1 < len(road.sections) if forward else section_index > 0:
+        return _first_row(tables, road_index, linked, section_index, forward=forward)
     link = road.successor if forward else road.predecessor
     if link is None:
         return ()
@@ -88,14 +111,17 @@ def _after(tables: Tables, ways: _Ways, index_of_road: dict[int, int], row: int,
 
 def _entrance(tables: Tables, road_index: int, lane_id: int | None) -> _Rows:
     """Return where one enters a road by a lane: at its start on forward lanes, at its end on the others."""
-    road = tables.roads[road_index]
-    sections = range(len(road.sections))
-    return _first_row(tables, road_index, sections if is_forward(road, lane_id or 0) else sections[::-1], lane_id)
+    forward = is_forward(tables.roads[road_index], lane_id or 0)
+    return _first_row(tables, road_index, lane_id, None, forward=forward)
 
 
-def _first_row(tables: Tables, road_index: int, sections: range, lane_id: int | None) -> _Rows:
-    if not lane_id:
+def _first_row(tables: Tables, road_index: int, lane_id: int | None, behind: int | None, *, forward: bool) -> _Rows:
+    """Return the first lane of an id behind a section of a road, None for all sections, in the direction of travel."""
+    sections = tables.sections_of_lane.get((road_index, lane_id), ()) if lane_id else ()
+    if forward:
+        nth = 0 if behind is None else bisect_right(sections, behind)
+    else:
+        nth = (len(sections) if behind is None else bisect_left(sections, behind)) - 1
+    if lane_id is None or not 0 <= nth < len(sections):
         return ()
-    rows = (tables.lane_row.get((road_index, section, lane_id)) for section in sections)
-    found = next((row for row in rows if row is not None), None)
-    return () if found is None else (found,)
+    return (tables.lane_row[road_index, sections[nth], lane_id],)

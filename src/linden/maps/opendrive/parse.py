@@ -1,18 +1,16 @@
 """OpenDRIVE text to a map. Hostile text is refused: no DTD, no entities, no network, numbers finite."""
 
-import gc
 import hashlib
 import re
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
 from typing import Any, cast
 from weakref import WeakValueDictionary
 
 from lxml import etree
 
-from linden.background import checkpoint
+from linden.background import NotWantedError, checkpoint, young_collector
 from linden.maps.opendrive.limits import LONGEST_TOTAL_M, MOST_ELEMENTS, MOST_SIGNALS, MapError, refuse_beyond
-from linden.maps.opendrive.model import OpenDrive
+from linden.maps.opendrive.model import OpenDrive, Road
 from linden.maps.opendrive.reading.attributes import line_of
 from linden.maps.opendrive.reading.roads import read_junction, read_road
 from linden.maps.opendrive.reading.roadside import read_controllers
@@ -31,29 +29,13 @@ def parse(text: str | bytes) -> OpenDrive:
     digest = hashlib.sha256(text.encode() if isinstance(text, str) else text).digest()
     found = _in_use.get(digest)
     if found is None:
-        with _collector_paused():
+        with young_collector():
             found = _in_use[digest] = _read(_root(text))
     return found
 
 
-@contextmanager
-def _collector_paused() -> Iterator[None]:
-    """Keep Python from looking for garbage among a million new values, none of which is: a fifth of the time."""
-    was_enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_enabled:
-            gc.enable()
-
-
 def _read(root: etree._Element) -> OpenDrive:
-    found = [read_road(node) for node in _wanted(root.iterchildren("road"))]
-    roads = tuple(road for road in found if road is not None)
-    total_m = sum(road.length_m for road in roads)
-    refuse_beyond(total_m / 1000.0, LONGEST_TOTAL_M / 1000.0, "km of roads")
-    refuse_beyond(sum(len(road.signals) for road in roads), MOST_SIGNALS, "signals")
+    roads = _read_roads(root)
     junctions = tuple(read_junction(node) for node in root.iterchildren("junction"))
     _refuse_repeated("road", [(road.id, road.source_line) for road in roads])
     _refuse_repeated("junction", [(junction.id, junction.source_line) for junction in junctions])
@@ -65,6 +47,25 @@ def _read(root: etree._Element) -> OpenDrive:
         junctions=junctions,
         controllers=read_controllers(root),
     )
+
+
+def _read_roads(root: etree._Element) -> tuple[Road, ...]:
+    """Return the roads; where there are too many, those read so far are freed one by one, so that others may go on."""
+    roads: list[Road] = []
+    total_m, signals = 0.0, 0
+    try:
+        for node in _wanted(root.iterchildren("road")):
+            road = read_road(node)
+            if road is not None:
+                roads.append(road)
+                total_m, signals = total_m + road.length_m, signals + len(road.signals)
+                refuse_beyond(total_m / 1000.0, LONGEST_TOTAL_M / 1000.0, "km of roads")
+                refuse_beyond(signals, MOST_SIGNALS, "signals")
+    except (MapError, NotWantedError):
+        while roads:
+            roads.pop()
+        raise
+    return tuple(roads)
 
 
 def _wanted(nodes: Iterable[etree._Element]) -> Iterator[etree._Element]:

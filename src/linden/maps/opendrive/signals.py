@@ -2,9 +2,11 @@
 
 from collections import defaultdict
 
+from linden.background import checkpoint
 from linden.maps.opendrive.evaluate.tables import Tables, tables_of
 from linden.maps.opendrive.landmarks import landmark_transforms
-from linden.maps.opendrive.links import LaneLinks, lane_links
+from linden.maps.opendrive.limits import MOST_SIGNAL_LANES, MOST_SIGNAL_PLACES, refuse_beyond
+from linden.maps.opendrive.links import LaneLinks, ends_of_roads, lane_links
 from linden.maps.opendrive.model import NO_JUNCTION, OpenDrive, Road
 from linden.maps.opendrive.roadside import Signal, SignalReference, Validity
 from linden.maps.opendrive.signal_zones import LanePlace, trigger_boxes
@@ -19,20 +21,26 @@ def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
     """Return every signal of the map, in the order of the file."""
     tables, links = tables_of(opendrive), lane_links(opendrive)
     controllers = _controllers(opendrive)
-    references = _references(opendrive)
     signals = list(opendrive.signals())
-    places = [
-        [lane for reference in references[signal.id] for lane in _driving_lanes(tables, reference)]
-        for _, signal in signals
-    ]
+    _refuse_many_lanes(opendrive)
+    spoken_to = {
+        signal_id: [lane for reference in found for lane in _driving_lanes(tables, reference)]
+        for signal_id, found in _references(opendrive).items()
+    }
+    refuse_beyond(
+        sum(len(spoken_to[signal.id]) for _, signal in signals), MOST_SIGNAL_PLACES, "lanes that signals speak to"
+    )
+    places = [spoken_to[signal.id] for _, signal in signals]
     landmarks = landmark_transforms(opendrive)
     transforms = [
         Transform(landmark.location, Rotation(0.0, landmark.rotation.yaw + _MODEL_YAW_DEG, 0.0))
         for landmark in landmarks
     ]
     boxes = trigger_boxes(tables, links, transforms, places)
+    junctions = _Junctions(opendrive, tables, links)
     placed = []
     for nth, (road, signal) in enumerate(signals):
+        checkpoint()
         placed.append(
             PlacedSignal(
                 signal_id=signal.id,
@@ -48,12 +56,23 @@ def place(opendrive: OpenDrive) -> tuple[PlacedSignal, ...]:
                 landmark=landmarks[nth],
                 transform=transforms[nth],
                 controllers=tuple(controllers[signal.id]),
-                junction_id=_junction(opendrive, links, road, controllers[signal.id], places[nth]),
+                junction_id=junctions.of_signal(road, controllers[signal.id], places[nth]),
                 lanes=tuple(_affected(tables, lane) for lane in places[nth]),
                 trigger_volumes=boxes[nth],
             )
         )
     return tuple(placed)
+
+
+def _refuse_many_lanes(opendrive: OpenDrive) -> None:
+    """Raise a MapError where signals or references to them ask for a look at very many lanes."""
+    looks = 0
+    for road in opendrive.roads:
+        checkpoint()
+        speaking: tuple[Signal | SignalReference, ...] = (*road.signals, *road.signal_references)
+        for signal in speaking:
+            looks += len(road.section_at(signal.s_m).lanes) * (1 + len(signal.validities))
+    refuse_beyond(looks, MOST_SIGNAL_LANES, "lanes at the places of its signals and of references to them")
 
 
 def _controllers(opendrive: OpenDrive) -> dict[str, list[str]]:
@@ -139,23 +158,24 @@ def _affected(tables: Tables, place: LanePlace) -> AffectedLane:
     return AffectedLane(tables.roads[row["road"]].id, int(row["lane_id"]), place.s_m)
 
 
-def _junction(
-    opendrive: OpenDrive, links: LaneLinks, road: Road, controllers: list[str], places: list[LanePlace]
-) -> int:
-    """Return the junction of the signal's controller or road, else the one its lanes lead into, -1 for none."""
-    for junction in opendrive.junctions if controllers else ():
-        if controllers[0] in junction.controllers:
-            return junction.id
-    if road.is_in_junction:
-        return road.junction_id
-    tables = tables_of(opendrive)
-    for place in places:
-        here = int(tables.lanes["road"][place.lane])
-        rows = links.successors[place.lane]
-        for _ in road.sections:  # through the later sections of the same road
-            if rows and int(tables.lanes["road"][rows[0]]) == here:
-                rows = links.successors[rows[0]]
-        ahead = tables.roads[tables.lanes["road"][rows[0]]] if rows else road
-        if ahead.is_in_junction:
-            return ahead.junction_id
-    return NO_JUNCTION
+class _Junctions:
+    """The junctions that signals belong to."""
+
+    def __init__(self, opendrive: OpenDrive, tables: Tables, links: LaneLinks) -> None:
+        self._tables, self._links, self._ends = tables, links, ends_of_roads(tables, links)
+        self._of_controller = {
+            controller: junction.id for junction in reversed(opendrive.junctions) for controller in junction.controllers
+        }
+
+    def of_signal(self, road: Road, controllers: list[str], places: list[LanePlace]) -> int:
+        """Return the junction of the signal's controller or road, else the one its lanes lead into, -1 for none."""
+        if controllers and controllers[0] in self._of_controller:
+            return self._of_controller[controllers[0]]
+        if road.is_in_junction:
+            return road.junction_id
+        for place in places:
+            rows = self._links.successors[self._ends[place.lane]]
+            ahead = self._tables.roads[self._tables.lanes["road"][rows[0]]] if rows else road
+            if ahead.is_in_junction:
+                return ahead.junction_id
+        return NO_JUNCTION

@@ -76,8 +76,9 @@ HALF_THICKNESS_M = 0.02
 
 def walls(feet_m: F64, height_m: float) -> Scene:
     """Return walls of a height over pieces (N, 2, 3) of their feet, from and to."""
-    middle, ahead = feet_m.mean(axis=1), feet_m[:, 1] - feet_m[:, 0]
-    middle[:, 2] = feet_m[:, :, 2].min(axis=1)
+    begin, end = feet_m[:, 0], feet_m[:, 1]
+    middle, ahead = 0.5 * (begin + end), end - begin
+    middle[:, 2] = np.minimum(begin[:, 2], end[:, 2])
     things = things_with(Kind.WALL, middle, np.arctan2(ahead[:, 1], ahead[:, 0]))
     half = 0.5 * np.column_stack(
         [np.hypot(ahead[:, 0], ahead[:, 1]), np.zeros(len(ahead)), abs(ahead[:, 2]) + height_m]

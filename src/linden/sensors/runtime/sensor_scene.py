@@ -96,6 +96,8 @@ class SensorScene:
             self._coming = None
         if self._scene is not None and self._scene.scene is not episode.surroundings.scene:
             self._scene = self._whole = None
+        if episode is not self._episode:
+            self._episode = self._instances = self._visible_actors = self._signals = None
 
     def _give_up(self) -> None:
         if self._unwanted is not None:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from linden import CARLA_VERSION
-from linden.background import give_memory_back
+from linden.background import give_memory_back, in_background
 from linden.errors import Refusal
 from linden.maps.library import LoadedMap
 from linden.maps.navigation.library import MeshFile
@@ -32,8 +32,6 @@ _HALF_TURN_DEG = 180.0
 MAX_FIXED_DELTA_S = 10.0
 """Longest fixed step accepted; CARLA sets none, but a step of minutes can only be a unit mixed up."""
 
-LARGE_TEXT = 1_000_000
-"""Characters of a map after which memory is given back to the system; Town04 has 6 million."""
 MOST_SUBSTEPS = 100
 """Most substeps of a frame. Unreal's editor offers 16 at most, and a step of 1 s in substeps of 10 ms takes 100.
 
@@ -82,7 +80,11 @@ def load_new_episode(context: Context, name: str, reset_settings: bool, layers: 
 
 
 def _begin(simulation: World, ready: LoadedMap, reset_settings: bool, layers: int) -> None:  # noqa: FBT001
+    before = simulation.episode.map
     simulation.load(ready, reset_settings=reset_settings)
+    if before is not ready:
+        del before
+        in_background(give_memory_back)
     if layers != MapLayer.ALL:
         simulation.episode.surroundings.unload_layers(~layers & MapLayer.ALL)
 
@@ -94,17 +96,9 @@ def copy_opendrive_to_file(context: Context, opendrive: str, parameters: Opendri
     Walls are built as high and as far beyond driving lanes as the parameters say. The others say how a mesh is cut and
     smoothed; here the surface follows from the text alone, and goes on beside the road, so that none of them shows.
     """
-    maps, beyond_m, refused = context.maps, max(0.0, parameters.additional_width), ""
-    try:
-        made = yield lambda: maps.from_opendrive(opendrive, wall_height_m=parameters.wall_height, beyond_m=beyond_m)
-    except Refusal as refusal:
-        refused = str(refusal)  # the refusal itself would hold what was made of the text so far
-    else:
-        maps.keep(made)
-    if len(opendrive) > LARGE_TEXT:
-        yield give_memory_back
-    if refused:
-        raise Refusal(refused)
+    maps, beyond_m = context.maps, max(0.0, parameters.additional_width)
+    made = yield lambda: maps.from_opendrive(opendrive, wall_height_m=parameters.wall_height, beyond_m=beyond_m)
+    maps.keep(made)
 
 
 @method("get_map_info")

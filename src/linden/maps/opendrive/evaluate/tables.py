@@ -1,6 +1,7 @@
 """A whole map as arrays: reference lines, profiles, lanes; and where lanes lie at given places."""
 
 import math
+from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -95,6 +96,14 @@ class Tables:
         """Row of a lane by index of its road, index of its section, and lane id."""
         columns = (self.lanes[name].tolist() for name in ("road", "section", "lane_id"))
         return {key: row for row, key in enumerate(zip(*columns, strict=True))}
+
+    @cached_property
+    def sections_of_lane(self) -> dict[tuple[int, int], list[int]]:
+        """Indices of the sections with a lane, ascending, by index of the road and lane id."""
+        found: dict[tuple[int, int], list[int]] = defaultdict(list)
+        for road, section, lane_id in self.lane_row:
+            found[road, lane_id].append(section)
+        return dict(found)
 
 
 @kept
