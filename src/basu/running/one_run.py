@@ -4,36 +4,28 @@ from __future__ import annotations
 
 import shutil
 import sys
-import traceback
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.episode import Episode, EpisodeSpec
+from basu.episode import EpisodeSpec
 from basu.episode.failures import outcome_of
 from basu.episode.world import weather_called
 from basu.errors import AgentCrashedError, AgentError, UserError
-from basu.managers.recording_manager import RecordingManager
 from basu.managers.scenario_results import results_of
-from basu.managers.sensors_manager import SensorsManager
 from basu.metrics.registry import user_metrics
-from basu.output.hud.person_input import onlookers_for
-from basu.output.progress import ProgressBar
 from basu.output.report.documents import make_draft
-from basu.records.carla_log.sources import LOG_FILE
-from basu.running.drive import Driven, drive
+from basu.running.agent_drive import AgentDrive
+from basu.running.drive import Driven
 from basu.running.preparation import agents_fault, new_agents, sumo_folder
 from basu.running.run_folder import import_pictures, run_config, write_run_folder
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
     from pathlib import Path
 
-    from basu.episode import Towns
+    from basu.episode import Episode, Towns
     from basu.episode.episode import Ground
-    from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
-    from basu.managers.base_manager import BaseManager
     from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
@@ -80,50 +72,27 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
     started = datetime.now(timezone.utc)
     points = agents.own_route()
     spec = _spec(session, agents, job, points)
-    recording: list[RecordingManager] = []
-    options = session.options
-    shown = options.hud is not None or options.viewer or options.ros2 or options.ros1 or options.rosbag is not None
-    watched = shown or agents.person is not None
-
-    def observers(live: Live) -> Sequence[BaseManager]:
-        live = live._replace(agents=agents)
-        if session.options.record:
-            log = str((episode.run.folder / LOG_FILE).resolve()) if session.simulator.own else f"{name}.log"
-            recording.append(RecordingManager(log))
-        return [
-            *([] if session.quiet else [ProgressBar(live)]),
-            *recording,
-            *_onlookers(session.options, live, quiet=session.quiet),
-        ]
-
-    episode = Episode(
+    one = AgentDrive(
         session.simulator,
+        session.towns,
         spec,
-        towns=session.towns,
-        sensors=lambda: SensorsManager(
-            *session.plan.sensors,
-            late=agents.late_sensors,
-            listener=agents,
-            is_watched=watched,
-            by_agent=session.plan.loaded.file is not None,
-        ),
-        participants=[agents],
-        observers=observers,
+        agents,
+        session.plan.sensors,
+        session.options,
+        name=name,
+        by_agent=session.plan.loaded.file is not None,
+        quiet=session.quiet,
     )
+    episode = one.episode
     ground = _laid(episode, is_planned_by_agent=points is not None)
     if session.pictures:
         import_pictures()
     draft = make_draft(output, name)
     try:
-        episode.prepare(job.seed, draft)
-        driven = drive(episode, agents)
+        driven = one.play(job.seed, draft)
     except BaseException:  # nothing was driven: no folder is kept
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    finally:
-        episode.close()
-    if session.options.debug and driven.agent_error is not None:
-        traceback.print_exception(driven.agent_error)
     config = run_config(
         session.options,
         session.scoring,
@@ -134,7 +103,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         started=started,
         seed=job.seed,
         traffic=episode.traffic,
-        log=recording[0].path if recording else None,
+        log=one.log,
         access=agents.access,
         ignored=agents.ignored,
     )
@@ -250,18 +219,3 @@ def _spec(session: Session, agents: AgentsManager, job: Job, points: tuple[Route
         timeout_s=options.timeout_s,
         stop_after_s=options.stop_after_s,
     )
-
-
-def _onlookers(options: RunOptions, live: Live, *, quiet: bool) -> list[BaseManager]:
-    """The managers that show the run: the window with its keys, Rerun's viewer, and ROS."""
-    say = (lambda _: None) if quiet else print
-    found: list[BaseManager] = [*onlookers_for(options, live)]
-    if options.viewer:
-        from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, an extra
-
-        found.append(ViewerManager(live, print))
-    if options.ros2 or options.ros1 or options.rosbag is not None:
-        from basu.output.ros.run_managers import ros_managers  # noqa: PLC0415 - rosbags, an extra
-
-        found += ros_managers(options, live, say)
-    return found

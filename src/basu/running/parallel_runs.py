@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.episode import Towns
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.jobs.job import After, Job, Lost, Played, PlayerSpec
-from basu.jobs.pool import Pool
-from basu.jobs.processes import Processes
+from basu.jobs.playing import play_jobs
 from basu.metrics.registry import user_metrics
 from basu.metrics.result import Result
 from basu.outcome import Fault, Status
@@ -112,15 +111,14 @@ def run_in_parallel(
         for job in jobs
     }
     output = options.output if series is None else series.folder
-    pool = Pool(Processes(PlayerSpec(f"{__name__}:open_runs", (options, scoring))), min(options.workers, len(jobs)))
+    player = PlayerSpec(f"{__name__}:open_runs", (options, scoring))
+    to_play = [Job(job.number, (job.number, output, names[job.number])) for job in jobs]
     worst = 0
-    try:
-        for answer in pool.play(Job(job.number, (job.number, output, names[job.number])) for job in jobs):
+    with contextlib.closing(play_jobs(player, to_play, options.workers)) as answers:
+        for answer in answers:
             print(f"run {answer.number + 1} of {len(prepared.jobs)}")
             name = plain(names[answer.number])
             worst = max(worst, _finished(answer, by_number[answer.number], name, series, options))
-    finally:
-        pool.close()
     return worst
 
 

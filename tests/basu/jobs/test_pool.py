@@ -12,8 +12,8 @@ import pytest
 
 from basu.errors import UserError
 from basu.jobs import processes
-from basu.jobs.in_process import play_here
 from basu.jobs.job import Answer, Done, Job, Lost, PlayerSpec, Ready
+from basu.jobs.playing import play_here, play_jobs
 from basu.jobs.pool import Pool
 from basu.jobs.processes import Processes
 
@@ -152,3 +152,18 @@ def test_one_process_plays_jobs_too(player: str) -> None:
     answers = list(play_here(PlayerSpec(player, ()), jobs_of("ok", "again", "fresh", "ok")))
     assert [answer.number for answer in answers] == [0, 1, 2, 3]
     assert [answer.attempts for answer in answers] == [1, 3, 1, 1]
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_jobs_are_played_in_this_process_unless_several_workers_are_wanted(player: str, workers: int) -> None:
+    answers = list(play_jobs(PlayerSpec(player), jobs_of(*["ok"] * 6), workers))
+    assert sorted(answer.number for answer in answers) == list(range(6))
+    assert all(isinstance(answer, Done) for answer in answers)
+    is_here = {answer.value[2] == os.getpid() for answer in answers if isinstance(answer, Done)}
+    assert is_here == {workers == 1}
+
+
+def test_a_single_job_needs_no_worker(player: str) -> None:
+    (answer,) = play_jobs(PlayerSpec(player), jobs_of("ok"), 4)
+    assert isinstance(answer, Done)
+    assert answer.value[2] == os.getpid()

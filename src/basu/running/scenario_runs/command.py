@@ -13,10 +13,8 @@ from tqdm import tqdm
 
 from basu.errors import UserError
 from basu.files import write_bytes
-from basu.jobs.in_process import play_here
 from basu.jobs.job import Job, Lost
-from basu.jobs.pool import Pool
-from basu.jobs.processes import Processes
+from basu.jobs.playing import play_jobs
 from basu.managers.agents_manager import ignored_wishes
 from basu.outcome import Fault
 from basu.output.report.documents import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
@@ -185,17 +183,8 @@ def _played(
     quiet: bool,
 ) -> Iterator[Done | Lost]:
     """What came of each job, as they end. Classes that are given stay in this process: no other one has them."""
-    player = case_player(options, folder, given)
+    workers = options.workers if options.host is None and given is None else 1
     with tqdm(total=len(jobs), unit="case", disable=quiet or None, file=sys.stderr) as bar:
-        if options.workers > 1 and options.host is None and len(jobs) > 1 and given is None:
-            pool = Pool(Processes(player), min(options.workers, len(jobs)))
-            try:
-                for answer in pool.play(jobs):
-                    bar.update()
-                    yield answer
-            finally:
-                pool.close()
-            return
-        for done in play_here(player, jobs):
+        for answer in play_jobs(case_player(options, folder, given), jobs, workers):
             bar.update()
-            yield done
+            yield answer

@@ -9,21 +9,20 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from basu.episode import Episode, case_spec
+from basu.episode import case_spec
 from basu.episode.failures import outcome_of
 from basu.episode.spec import description_of
 from basu.episode.world import asking, towns_of, weather_called, world_with
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
 from basu.managers.placed_scenario import call_scenario, place_scenario
-from basu.managers.sensors_manager import SensorsManager
 from basu.outcome import Outcome, Status
 from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
 from basu.output.report.scenarios.drawing.picture import PICTURE_FILE, case_picture
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
 from basu.routing import lane_graph, plan
-from basu.running.drive import drive
+from basu.running.agent_drive import AgentDrive
 from basu.running.preparation import SensorSet, agents_fault, new_agents, sensor_set
 from basu.running.scenario_runs.case_documents import case_config, document_of
 from basu.scenarios.cases import cases_of
@@ -136,7 +135,7 @@ def _judged(attempt: _Attempt, history: History | None) -> Judged:
 
 def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folder: Path) -> _Attempt:
     """Drive it, or find out why that is not possible."""
-    options, episode = session.options, None
+    options, one = session.options, None
     try:
         agents, sensors = _agents(loaded, options)
         check_town(playable.case, session.towns.names([playable.case.town]))
@@ -144,36 +143,32 @@ def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folde
         if session.weather is not None:
             spec = replace(spec, weather=weather_called(session.weather))
         agents.config = replace(agents.config, vehicle=spec.config.vehicle)
-        episode = Episode(
+        one = AgentDrive(
             session.simulator,
+            session.towns,
             replace(spec, config=agents.config),
-            towns=session.towns,
-            sensors=lambda: SensorsManager(
-                *sensors, late=agents.late_sensors, listener=agents, by_agent=loaded.file is not None
-            ),
-            participants=[agents],
-            folder=folder,
+            agents,
+            sensors,
+            options.run_options(loaded.name),
+            name=f"{plain(loaded.name)}-{plain(playable.case.name)}",
+            by_agent=loaded.file is not None,
+            quiet=True,
         )
-        episode.prepare(options.drive_seed)
-        driven = drive(episode, agents)
+        driven = one.play(options.drive_seed, folder)
     except UserError as error:
-        return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), _streets(episode))
+        return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), _streets(one))
     except AgentError as error:
-        return _Attempt(None, None, outcome_of(error, session.simulator.why_gone), _streets(episode))
+        return _Attempt(None, None, outcome_of(error, session.simulator.why_gone), _streets(one))
     except SimulatorError as error:
-        return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), _streets(episode))
-    finally:
-        if episode is not None:
-            episode.close()
-    for failure in (driven.bug, driven.agent_error if options.debug else None):
-        if failure is not None:
-            traceback.print_exception(failure)
-    return _Attempt(driven, next(iter(episode.playing), None), driven.outcome, _streets(episode), agents.access)
+        return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), _streets(one))
+    if driven.bug is not None:
+        traceback.print_exception(driven.bug)
+    return _Attempt(driven, next(iter(one.episode.playing), None), driven.outcome, _streets(one), agents.access)
 
 
-def _streets(episode: Episode | None) -> list[NDArray[np.float64]]:
+def _streets(one: AgentDrive | None) -> list[NDArray[np.float64]]:
     """The lanes of an episode's town, where it was loaded."""
-    return [] if episode is None or episode.ground is None else episode.ground.town.streets_m
+    return [] if one is None or one.episode.ground is None else one.episode.ground.town.streets_m
 
 
 def _agents(loaded: FoundAgent, options: ScenarioOptions) -> tuple[AgentsManager, SensorSet]:

@@ -1,0 +1,119 @@
+"""`AgentDrive`: one drive of an agent, on a route or in a case, with its recording and the managers that show it."""
+
+from __future__ import annotations
+
+import traceback
+from typing import TYPE_CHECKING
+
+from basu.episode import Episode
+from basu.managers.recording_manager import RecordingManager
+from basu.managers.sensors_manager import SensorsManager
+from basu.output.hud.person_input import onlookers_for
+from basu.output.progress import ProgressBar
+from basu.records.carla_log.sources import LOG_FILE
+from basu.running.drive import drive
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from basu.episode import EpisodeSpec, Towns
+    from basu.managers import Live
+    from basu.managers.agents_manager import AgentsManager
+    from basu.managers.base_manager import BaseManager
+    from basu.options.run import RunOptions
+    from basu.running.drive import Driven
+    from basu.running.preparation import SensorSet
+    from basu.simulator import Simulator
+
+
+class AgentDrive:
+    """A drive that is played once: ``episode`` may be laid on its town before; ``play`` drives it to its end."""
+
+    def __init__(
+        self,
+        simulator: Simulator,
+        towns: Towns,
+        spec: EpisodeSpec,
+        agents: AgentsManager,
+        sensors: SensorSet,
+        options: RunOptions,
+        *,
+        name: str,
+        by_agent: bool,
+        quiet: bool,
+    ) -> None:
+        """Describe the drive; the simulator gets no call yet.
+
+        Args:
+            simulator: the one to drive in.
+            towns: of that simulator.
+            spec: the world, the route or case, and the vehicle.
+            agents: a new agent.
+            sensors: of the agent.
+            options: say what is recorded and shown, and whether an agent's error is shown in full.
+            name: of the log on the disk of a simulator that is not ours.
+            by_agent: whether sensors that cannot be served are the agent's failure.
+            quiet: without a progress bar and without messages.
+        """
+        self._simulator, self._agents, self._options, self._quiet = simulator, agents, options, quiet
+        self._log_name = name
+        self._recording: RecordingManager | None = None
+        ros = options.ros2 or options.ros1 or options.rosbag is not None
+        is_watched = options.hud is not None or options.viewer or ros or agents.person is not None
+        self.episode = Episode(
+            simulator,
+            spec,
+            towns=towns,
+            sensors=lambda: SensorsManager(
+                *sensors, late=agents.late_sensors, listener=agents, is_watched=is_watched, by_agent=by_agent
+            ),
+            participants=[agents],
+            observers=self._observers,
+        )
+
+    @property
+    def log(self) -> str | None:
+        """The path of CARLA's log as the simulator gave it; None where none was begun."""
+        return None if self._recording is None else self._recording.path
+
+    def play(self, seed: int, folder: Path) -> Driven:
+        """Drive to the end, whatever that is, and close the episode; files of the drive go into ``folder``.
+
+        Raises:
+            UserError, AgentError: it cannot begin like this.
+            SimulatorError: the simulator failed before the drive began.
+        """
+        try:
+            self.episode.prepare(seed, folder)
+            driven = drive(self.episode, self._agents)
+        finally:
+            self.episode.close()
+        if self._options.debug and driven.agent_error is not None:
+            traceback.print_exception(driven.agent_error)
+        return driven
+
+    def _observers(self, live: Live) -> Sequence[BaseManager]:
+        """The progress bar, the recording, and all that shows the drive."""
+        live = live._replace(agents=self._agents)
+        found: list[BaseManager] = [] if self._quiet else [ProgressBar(live)]
+        if self._options.record:
+            here = str((self.episode.run.folder / LOG_FILE).resolve())
+            self._recording = RecordingManager(here if self._simulator.own else f"{self._log_name}.log")
+            found.append(self._recording)
+        return [*found, *_onlookers(self._options, live, quiet=self._quiet)]
+
+
+def _onlookers(options: RunOptions, live: Live, *, quiet: bool) -> list[BaseManager]:
+    """The managers that show the run: the window with its keys, Rerun's viewer, and ROS."""
+    say = (lambda _: None) if quiet else print
+    found: list[BaseManager] = [*onlookers_for(options, live)]
+    if options.viewer:
+        from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, an extra
+
+        found.append(ViewerManager(live, print))
+    if options.ros2 or options.ros1 or options.rosbag is not None:
+        from basu.output.ros.run_managers import ros_managers  # noqa: PLC0415 - rosbags, an extra
+
+        found += ros_managers(options, live, say)
+    return found
