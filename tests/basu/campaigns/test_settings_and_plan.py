@@ -123,6 +123,20 @@ def test_a_file_of_scenarios_is_found_beside_the_campaign_and_workers_open_it(ca
         ("vehicle", 3, "vehicle is 3; write a text in quotation marks"),
         ("keep", {"failures": "many"}, "keep.failures is 'many'; write a whole number"),
         ("scoring", 3, "scoring is 3; write a table: {KEY = VALUE}"),
+        ("name", "x" * 81, f"name is '{'x' * 81}'; use 80 characters at most"),
+        ("order", "random", "order is 'random'; write 'given' or 'shuffled'"),
+        ("tracks", {"basic": "all"}, "tracks.basic is 'all'; write 'world', 'objects' or 'sensors'"),
+        ("confidence", 95, "confidence is 95; write a number below 1.0"),
+        ("confidence", 0.5, "confidence is 0.5; write a number above 0.5"),
+        ("step_limit_s", float("inf"), "step_limit_s is inf; write a finite number"),
+        ("seeds", {"first": -1}, "seeds.first is -1; write 0 or more"),
+        ("work", {"attempts": 11}, "work.attempts is 11; write 10 or less"),
+        ("until", {}, "until.width is missing; give it a value"),
+        (
+            "drives",
+            [{"cases": ["all"], "set": {"ahead": [1]}}],
+            "drives.0.set.ahead is [1]; write a text in quotation marks or a number",
+        ),
     ],
 )
 def test_a_value_of_the_wrong_kind_is_named_in_words_of_the_file(key: str, value: object, sentence: str) -> None:
