@@ -26,7 +26,7 @@ NAME = r"^[A-Za-z0-9][A-Za-z0-9._-]*$"  # a folder is called so
 class Table(BaseModel):
     """A table of the file; unknown keys are refused."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
 class OtherTraffic(Table):
@@ -230,7 +230,9 @@ def checked(document: dict[str, Any], source: str) -> Campaign:
 
 def _sentence(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
     """Return the first mistake: its place and what it must be."""
-    place = ".".join(str(part) for part in mistake["loc"])
+    # a value of `set` may be a text or a number; the library appends the kind that it tried
+    where = mistake["loc"][:-1] if "set" in mistake["loc"][:-2] else mistake["loc"]
+    place = ".".join(str(part) for part in where)
     kind = mistake["type"]
     if kind == "extra_forbidden":
         table = next((model for name, model in _TABLES.items() if name in mistake["loc"][:-1]), Campaign)
@@ -238,8 +240,12 @@ def _sentence(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
         return f"{place} means nothing here; {suggestion(str(mistake['loc'][-1]), known)}"
     if kind == "value_error":
         return f"{place}: {mistake['ctx']['error']}".removeprefix(": ")
+    if kind == "missing" and len(where) > 1:
+        return f"{place} is missing; give it a value"
     if kind in _NOTHING:
         return f"{place} {_NOTHING[kind]}"
+    if where != mistake["loc"]:
+        return f"{place} is {mistake['input']!r}; write a text in quotation marks or a number"
     return f"{place} is {mistake['input']!r}; {_wanted(mistake)}"
 
 
@@ -247,7 +253,7 @@ def _wanted(mistake: Any) -> str:  # noqa: ANN401 - a dictionary of pydantic's
     """Return what must stand in the place of a value, in words of the file and not of the library."""
     if mistake["type"] == "model_type":
         return f"write a table with {', '.join(_keys_of(mistake['loc']))}"
-    return _WANTED.get(mistake["type"], f"{mistake['msg'][0].lower()}{mistake['msg'][1:]}")
+    return _WANTED[mistake["type"]].format(**mistake.get("ctx", {}))
 
 
 def _keys_of(place: tuple[Any, ...]) -> list[str]:
@@ -264,8 +270,16 @@ _NOTHING = {
 }
 _WANTED = {
     "string_pattern_mismatch": "use letters, digits, '.', '_' and '-', and begin with a letter or digit",
+    "string_too_long": "use {max_length} characters at most",
+    "literal_error": "write {expected}",
+    "enum": "write {expected}",
+    "greater_than": "write a number above {gt}",
+    "greater_than_equal": "write {ge} or more",
+    "less_than": "write a number below {lt}",
+    "less_than_equal": "write {le} or less",
+    "finite_number": "write a finite number",
     "tuple_type": "write a list in square brackets",
-    "dict_type": "write a table: {KEY = VALUE}",
+    "dict_type": "write a table: {{KEY = VALUE}}",
     "string_type": "write a text in quotation marks",
     "int_type": "write a whole number",
     "int_from_float": "write a whole number",
