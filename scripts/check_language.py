@@ -51,6 +51,8 @@ _AVOID = [(re.compile(rf"\b(?:{words})\b", re.IGNORECASE), advice) for words, ad
 _NAME = re.compile(r"^\s*(?:async )?(?:def (test_\w+)|class (Test\w+))")
 _SENTENCE_END = re.compile(r"(?<=[.!?])[\"')`*]*\s+(?=[\"'(`*]*[A-Z0-9])|;\s|\n\s*\n|\n\s*(?:[-*]|\d+\.)\s")
 _WORD = re.compile(r"[A-Za-z][\w'-]*")
+_SECTION = re.compile(r"^( *)(?:Args|Attributes|Raises):\n(?:(?:\1 +\S.*)?(?:\n|$))+", re.MULTILINE)
+_ENTRY = re.compile(r"\n(?= +[\w*]+: )")
 
 
 class Finding(NamedTuple):
@@ -105,7 +107,12 @@ def docstrings(source: str) -> Iterator[tuple[int, str]]:
         for statement in getattr(node, "body", []) if not isinstance(node, (ast.Lambda, ast.IfExp)) else []:
             value = statement.value if isinstance(statement, ast.Expr) else None
             if isinstance(value, ast.Constant) and isinstance(value.value, str):
-                yield statement.lineno, value.value
+                yield statement.lineno, entries_apart(value.value)
+
+
+def entries_apart(text: str) -> str:
+    """Return a docstring in which a semicolon ends each entry of its lists of arguments, attributes and errors."""
+    return _SECTION.sub(lambda section: _ENTRY.sub(";\n", section[0]), text)
 
 
 def comments(source: str) -> Iterator[tuple[int, str]]:

@@ -52,6 +52,16 @@ def test_a_part_of_a_longer_word_is_no_finding(check: ModuleType, tmp_path: Path
     assert check.main([]) == 0
 
 
+def test_each_entry_of_a_list_of_arguments_is_a_statement_of_its_own(check: ModuleType, tmp_path: Path) -> None:
+    entry = "        {}: " + " ".join(["word"] * 15) + "\n"
+    text = '"""Do it.\n\n    Args:\n' + entry.format("one") + entry.format("two") + '    """\n'
+    (tmp_path / "code.py").write_text("def do(one, two):\n    " + text)
+    with_baseline(tmp_path)
+    assert check.main([]) == 0
+    (tmp_path / "code.py").write_text("def do(one, two):\n    " + text.replace("two: ", "and "))
+    assert check.main([]) == 1
+
+
 @pytest.mark.parametrize(("words", "fails"), [(25, 0), (26, 1)])
 def test_a_sentence_has_at_most_25_words(check: ModuleType, tmp_path: Path, words: int, fails: int) -> None:
     (tmp_path / "page.md").write_text("Short one. " + " ".join(["word"] * words).capitalize() + ". Another one.\n")

@@ -46,15 +46,15 @@ class AgentDrive:
         """Describe the drive; the simulator gets no call yet.
 
         Args:
-            simulator: the one to drive in.
-            towns: of that simulator.
-            spec: the world, the route or case, and the vehicle.
-            agents: a new agent.
-            sensors: of the agent.
-            options: say what is recorded and shown, and whether an agent's error is shown in full.
-            name: of the log on the disk of a simulator that is not ours.
-            by_agent: whether sensors that cannot be served are the agent's failure.
-            quiet: without a progress bar and without messages.
+            simulator: the simulator to drive in; it stays open after the drive.
+            towns: the towns that the simulator has loaded.
+            spec: world, task and vehicle of the drive.
+            agents: a manager with a newly created agent.
+            sensors: the sensors that the agent declares.
+            options: what is recorded and shown.
+            name: file name of the recorder log on a simulator at ``--host``.
+            by_agent: True if a sensor that cannot be served is the agent's failure.
+            quiet: True to print no progress and no messages.
         """
         self._simulator, self._agents, self._options, self._quiet = simulator, agents, options, quiet
         self._log_name = name
