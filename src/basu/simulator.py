@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from typing import IO
 
-    from basu.options.run import RunOptions
+    from basu.options.drive import DriveOptions
 
 GATE = '{"gate"'  # begins an answer of the gate
 READY = re.compile(r"ready, rpc port (\d+)")
@@ -78,7 +78,7 @@ def _longer_timeout(client: carla.Client, usual_s: float) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def simulator_for(options: RunOptions) -> Iterator[Simulator]:
+def simulator_for(options: DriveOptions) -> Iterator[Simulator]:
     """The simulator at --host, or one of our own that is ended in every case.
 
     Raises:
@@ -126,7 +126,7 @@ _early: list[OwnServer] = []  # at most one: a server that started ahead of its 
 
 
 @contextlib.contextmanager
-def started_early(options: RunOptions) -> Iterator[None]:
+def started_early(options: DriveOptions) -> Iterator[None]:
     """Start our own server, if the run needs one, while this process still imports; ``simulator_for`` takes it over."""
     if options.host is None and options.workers == 1:
         _early.append(own_server(options))
@@ -137,12 +137,12 @@ def started_early(options: RunOptions) -> Iterator[None]:
             _early.pop().end()
 
 
-def own_server(options: RunOptions) -> OwnServer:
+def own_server(options: DriveOptions) -> OwnServer:
     """Start a server of our own, which need not be ready yet."""
     return OwnServer(options.output if options.record else None, options.maps, gates=not options.open, wait=False)
 
 
-def _silence(client: carla.Client, options: RunOptions) -> str | None:
+def _silence(client: carla.Client, options: DriveOptions) -> str | None:
     """Check that a simulator of another owner still answers."""
     try:
         client.get_server_version()

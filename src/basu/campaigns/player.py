@@ -24,9 +24,7 @@ from basu.episode.failures import STATUS_OF
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.jobs.job import After, Played, PlayerSpec, versions
 from basu.metrics.registry import user_metrics
-from basu.metrics.result import judge
-from basu.metrics.success import not_exercised, success, success_of_verdict
-from basu.options.conditions import STEP_S
+from basu.metrics.success import not_exercised, success
 from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
 from basu.running.one_run import Session, run_one
@@ -184,7 +182,7 @@ class _Player:
         try:
             plan = self._plan(options, job)
             with agents_fault(plan.loaded):
-                agents = new_agents(plan.loaded, options, job["seed"], has_conditions=False)
+                agents = new_agents(plan.loaded, options, job["seed"], options.routes, has_conditions=False)
             session = Session(options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False)
             run = plan.jobs[0]._replace(seed=job["seed"])
             done = run_one(session, agents, run, output=self._scratch, name=job["id"])
@@ -216,30 +214,28 @@ class _Player:
             track=job["track"],
             files=settings.scenario_files,
             seed=job["seed"],
+            weather=None if job["weather"] == AS_GIVEN else job["weather"],
             vehicle=settings.vehicle,
             open=settings.open,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
             agent_writes=settings.agent_writes,
+            metric_files=settings.metric_files,
         )
-        weather = None if job["weather"] == AS_GIVEN else job["weather"]
-        session = CaseSession(options, self._simulator, self._towns, pictures=False, weather=weather)
+        session = CaseSession(options, self._simulator, self._towns, settings.scoring, pictures=False)
         (playable,) = self._library.of_id(job["identity"])
         done = play_case(session, self._agents[job["agent"]], playable, self._scratch)
-        document = done.document
-        found = success_of_verdict(document["verdict"], document["message"])
-        result = judge(done.outcome, done.history, settings.scoring, own=self._own)
-        ticks = 0 if done.history is None else len(done.history.frames)
+        result, document = done.result, done.case
         row = {
-            **_verdict(found.passed, _narrowness(document["margins"])),
+            **_verdict(result.success.passed, _narrowness(document["margins"])),
             **metric_values(result, self._own),
             "fault": document["fault"],
             "message": document["message"],
             "not_exercised": not_exercised([document]),
             **{f"margin_{name}": value for name, value in document["margins"].items()},
-            "simulated_s": round(ticks * STEP_S, 3),
+            "simulated_s": round(result.meta["simulated_s"], 3),
         }
-        return _Driven(done.outcome, row, done.folder)
+        return _Driven(result.outcome, row, done.folder)
 
     def _not_begun(self, error: UserError | AgentError | SimulatorError) -> _Driven:
         """The outcome of a drive that could not begin."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from basu.cli.driving import add_config
+from basu.cli.driving import add_config, add_scoring
 from basu.cli.later import later
 from basu.outcome import EXIT_CODES
 from basu.running.scenario_runs.options import ScenarioOptions
@@ -57,6 +57,7 @@ def _add_run(run: argparse.ArgumentParser) -> None:
     run.epilog = EXIT_CODES
     add_config(run)
     add_options(run, ScenarioOptions)
+    add_scoring(run)
     run.set_defaults(command=later("basu.cli.scenario_run:run"))
 
 

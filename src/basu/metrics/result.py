@@ -1,10 +1,10 @@
-"""The result of a run as one object, which `judge` makes, and the JSON Schema of ``result.json``.
+"""The result of a drive, on a route or in a case, which `judge` makes, and the JSON Schema of ``result.json``.
 
 `Result.document` is ``result.json``, and `Result.from_document` reads it back. Report, console, comparisons and tables
 read the object. It is computed from the record alone.
 
-``data/result.frame.json`` holds what is no metric: meta, scoring, scenarios, evidence. ``scripts/result_schema.py``
-writes ``data/result.schema.json``, and a test holds the two against each other.
+``data/result.frame.json`` holds what is no metric: meta, scoring, scenarios, the case, evidence.
+``scripts/result_schema.py`` writes ``data/result.schema.json``, and a test holds the two against each other.
 """
 
 from __future__ import annotations
@@ -40,7 +40,9 @@ if TYPE_CHECKING:
 
 
 SCHEMA_VERSION = 3
-LATER = frozenset({"scenarios", "passed", "reasons"})  # absent where there is nothing, or from an earlier version
+LATER = frozenset(
+    {"scenarios", "case", "passed", "reasons"}
+)  # absent where there is nothing, or from an earlier version
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +59,7 @@ class OwnMetric:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """The judgement of one run.
+    """The judgement of one drive.
 
     Attributes:
         scores: of the thesis; None where nothing was driven.
@@ -67,6 +69,7 @@ class Result:
         scoring: the rules as plain values, as ``result.json`` has them.
         meta: what was run.
         scenarios: those on the way of the route.
+        case: the drive's own case with its verdict, as plain values; None for a drive on a route.
         success: passed or not, by the one rule; a document that an earlier version wrote is not judged.
         history: the record; None where nothing was driven, and in a result read from its document.
     """
@@ -79,6 +82,7 @@ class Result:
     scoring: Mapping[str, Any]
     meta: Mapping[str, Any]
     scenarios: tuple[Mapping[str, Any], ...] = ()
+    case: Mapping[str, Any] | None = None
     success: Success = NOT_JUDGED
     history: History | None = field(default=None, compare=False, repr=False)
 
@@ -135,7 +139,11 @@ class Result:
             "scoring": dict(self.scoring),
             "meta": dict(self.meta),
         }
-        return {**document, "scenarios": [dict(row) for row in self.scenarios]} if self.scenarios else document
+        if self.scenarios:
+            document["scenarios"] = [dict(row) for row in self.scenarios]
+        if self.case is not None:
+            document["case"] = dict(self.case)
+        return document
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> Result:
@@ -153,6 +161,7 @@ class Result:
             scoring=document["scoring"],
             meta=document["meta"],
             scenarios=tuple(document.get("scenarios", ())),
+            case=document.get("case"),
             success=Success(document.get("passed"), tuple(document.get("reasons", ()))),
         )
 
@@ -177,8 +186,12 @@ def judge(
     *,
     own: Sequence[Metric] = (),
     scenarios: Sequence[Mapping[str, Any]] = (),
+    case: Mapping[str, Any] | None = None,
 ) -> Result:
-    """Judge a run from its record; ``history`` is None where nothing was driven, ``own`` are users' metrics."""
+    """Judge a drive from its record; ``history`` is None where nothing was driven, ``own`` are users' metrics.
+
+    The verdict of a ``case`` decides whether its drive passed; on a route the record decides.
+    """
     scoring = scoring or Scoring()
     rules = scoring_to_json(scoring)
     rules["penalties"] |= {kind: factor for metric in own for kind, factor in metric.penalties.items()}
@@ -190,8 +203,9 @@ def judge(
         scoring=rules,
         meta=meta or {},
         scenarios=tuple(scenarios),
+        case=case,
         own={metric.name: _own(metric, metric.nothing, ()) for metric in own},
-        success=success(outcome, None, (), scenarios),
+        success=success(outcome, None, (), scenarios, case),
     )
     if history is None or len(history.frames) == 0:
         return empty
@@ -210,7 +224,7 @@ def judge(
         infractions=tuple(replace(each, responsibility=blame.get(each)) for each in in_order(scored)),
         metrics={metric.name: metric.compute(drive) for metric in built_in()},
         own={metric.name: _own(metric, metric.compute(drive), found[metric.name]) for metric in own},
-        success=success(outcome, history, scored, scenarios),
+        success=success(outcome, history, scored, scenarios, case),
         history=history,
     )
 
@@ -282,7 +296,7 @@ def result_schema() -> dict[str, Any]:
         **{name: around[name] for name in ("scores", "infractions")},
         **{metric.name: {**metric.schema, "title": metric.title} for metric in built_in()},
         "metrics": mapping(own, about="users' metrics by name"),
-        **{name: around[name] for name in ("scoring", "scenarios", "meta")},
+        **{name: around[name] for name in ("scoring", "scenarios", "case", "meta")},
     }
     return {
         **{key: value for key, value in frame.items() if key != "additionalProperties"},

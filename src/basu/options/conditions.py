@@ -10,11 +10,6 @@ from basu.settings.option import Option, Settings
 
 STEP_S = 0.05  # simulated time from tick to tick: 20 Hz
 
-Vehicle = Annotated[
-    str | None,
-    Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the agent says"),
-]
-
 
 class Traffic(NamedTuple):
     """How many others are to be on the road; vehicles by number or, where a density is given, by that."""
@@ -53,7 +48,10 @@ class ConditionOptions(Settings):
             default_text="as the route or the agent says",
         ),
     ] = None
-    vehicle: Vehicle = None
+    vehicle: Annotated[
+        str | None,
+        Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the agent says"),
+    ] = None
     vehicles: Annotated[
         int,
         Option(

@@ -79,6 +79,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         agents,
         session.plan.sensors,
         session.options,
+        agent=session.plan.loaded.name,
         name=name,
         by_agent=session.plan.loaded.file is not None,
         quiet=session.quiet,
@@ -147,7 +148,7 @@ def next_agents(session: Session, job: Job) -> AgentsManager:
     Raises:
         UserError, AgentError: the agent cannot be made.
     """
-    agents = new_agents(session.plan.loaded, session.options, job.seed)
+    agents = new_agents(session.plan.loaded, session.options, job.seed, session.options.routes)
     agents.config = session.plan.agents.config
     return agents
 

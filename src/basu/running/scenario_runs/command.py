@@ -6,6 +6,7 @@ import shlex
 import shutil
 import sys
 import time
+from dataclasses import replace
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,6 +17,8 @@ from basu.files import write_bytes
 from basu.jobs.job import Job, Lost
 from basu.jobs.playing import play_jobs
 from basu.managers.agents_manager import ignored_wishes
+from basu.metrics.registry import user_metrics
+from basu.metrics.scoring import Scoring
 from basu.outcome import Fault
 from basu.output.report.documents import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.junit import junit_xml
@@ -34,7 +37,7 @@ if TYPE_CHECKING:
 
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
-    from basu.jobs.job import Done
+    from basu.jobs.job import Done, PlayerSpec
     from basu.running.scenario_runs.options import ScenarioOptions
 
 TEXT_FILE, JUNIT_FILE = "matrix.txt", "junit.xml"
@@ -49,14 +52,14 @@ class MatrixRun(NamedTuple):
     code: int  # the exit code of the worst verdict
 
 
-def run_scenarios(options: ScenarioOptions) -> int:
+def run_scenarios(options: ScenarioOptions, scoring: Scoring) -> int:
     """Play all requested cases and show the matrix; the exit code is that of the worst verdict.
 
     Raises:
         UserError: nothing can be played like this.
         SimulatorError: there is no simulator to play in.
     """
-    played = play_matrix(options)
+    played = play_matrix(options, scoring=scoring)
     if played.matrix is not None:
         _show(played.folder, played.matrix)
         print(f"repeat  basu scenario run --config {shlex.quote(str(played.folder / CONFIG_FILE))}")
@@ -79,7 +82,11 @@ def _show(folder: Path, matrix: dict[str, Any]) -> None:
 
 
 def play_matrix(
-    options: ScenarioOptions, given: Mapping[str, LoadedAgent] | None = None, *, quiet: bool = False
+    options: ScenarioOptions,
+    given: Mapping[str, LoadedAgent] | None = None,
+    *,
+    scoring: Scoring | None = None,
+    quiet: bool = False,
 ) -> MatrixRun:
     """Play every case with every agent and write the folder; ``given`` are agents' classes that are loaded, by name.
 
@@ -87,27 +94,42 @@ def play_matrix(
         UserError: nothing can be played like this.
         SimulatorError: there is no simulator to play in.
     """
+    scoring = scoring or Scoring()
     began, began_s = datetime.now(timezone.utc), time.perf_counter()
     playables = chosen(options)
     agents = _loaded(options) if given is None else list(given.values())
     names = [agent.name for agent in agents]
     for sentence in filter(None, map(ignored_wishes, agents)):
         print(f"basu: warning: {sentence}", file=sys.stderr)
+    user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
+    drives = [(playable, repetition) for playable in playables for repetition in range(options.repetitions)]
+    if options.record_keys is not None and len(drives) * len(agents) > 1:
+        raise UserError(
+            f"--record-keys records one drive, and these are {len(drives) * len(agents)}; name one case and one agent"
+        )
     folder = _folder(options, began)
-    write_json(folder / CONFIG_FILE, run_config(options, agents))
+    write_json(folder / CONFIG_FILE, run_config(options, scoring, agents))
     jobs = [
-        Job(number, CaseJob(agent, playable.case.name))
-        for number, (playable, agent) in enumerate((each, agent) for each in playables for agent in options.agents)
+        Job(number, CaseJob(agent, playable.case.name, repetition))
+        for number, ((playable, repetition), agent) in enumerate(
+            (drive, agent) for drive in drives for agent in options.agents
+        )
     ]
+    # Classes that are given stay in this process: no other one has them.
+    workers = 1 if options.needs_one_simulator or given is not None else options.workers
     documents: dict[int, tuple[dict[str, Any], str]] = {}
     interrupted, matrix = False, None
     try:
-        for answer in _played(options, folder, jobs, given, quiet=quiet):
+        for answer in _played(case_player(options, scoring, folder, given), jobs, workers, quiet=quiet):
             if isinstance(answer, Lost):
-                playable, agent = playables[answer.number // len(agents)], agents[answer.number % len(agents)]
-                documents[answer.number] = (lost(playable, agent, answer.sentence, options), "")
+                (playable, repetition), agent = (
+                    drives[answer.number // len(agents)],
+                    agents[answer.number % len(agents)],
+                )
+                again = replace(options, seed=options.drive_seed + repetition)
+                documents[answer.number] = (lost(playable, agent, answer.sentence, again), "")
             else:
-                documents[answer.number] = (answer.value.document, answer.value.folder)
+                documents[answer.number] = (answer.value.row, answer.value.folder)
     except KeyboardInterrupt:
         interrupted = True
     finally:
@@ -115,7 +137,7 @@ def play_matrix(
             shutil.rmtree(draft, ignore_errors=True)
         if documents:
             wall_s = time.perf_counter() - began_s
-            matrix = matrix_of(options, names, playables, documents, began, wall_s)
+            matrix = matrix_of(options, names, drives, documents, began, wall_s)
             write_json(folder / MATRIX_FILE, matrix)
             _write_reports(folder, matrix, options.junit)
     code = Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
@@ -174,17 +196,9 @@ def _folder(options: ScenarioOptions, began: datetime) -> Path:
     return folder
 
 
-def _played(
-    options: ScenarioOptions,
-    folder: Path,
-    jobs: Sequence[Job],
-    given: Mapping[str, LoadedAgent] | None,
-    *,
-    quiet: bool,
-) -> Iterator[Done | Lost]:
-    """What came of each job, as they end. Classes that are given stay in this process: no other one has them."""
-    workers = options.workers if options.host is None and given is None else 1
+def _played(player: PlayerSpec, jobs: Sequence[Job], workers: int, *, quiet: bool) -> Iterator[Done | Lost]:
+    """Yield what came of each job, as they end."""
     with tqdm(total=len(jobs), unit="case", disable=quiet or None, file=sys.stderr) as bar:
-        for answer in play_jobs(case_player(options, folder, given), jobs, workers):
+        for answer in play_jobs(player, jobs, workers):
             bar.update()
             yield answer

@@ -75,7 +75,7 @@ def report(run: RunRecord) -> bytes:
         "last_s": float(history.frames["t_s"][-1]),
         "samples_number": SAMPLES,
         "timeline": timeline(history, felt, document, found),
-        "scenarios": on_the_way(document, run.config.get("command", []), history, run.streets),
+        "scenarios": on_the_way(result, run.config.get("command", []), history, run.streets),
         "charts": charts(history, felt, found),
         "evidence": evidence(history, felt, found),
         "reported": table(rows(document["reported"])) if document["reported"] else None,
@@ -83,7 +83,7 @@ def report(run: RunRecord) -> bytes:
         "samples": _samples(history, felt),
         "script": script,
     }
-    style = card_style() if document.get("scenarios") else ""
+    style = card_style() if result.scenarios or result.case is not None else ""
     return page(title, render("templates/report.j2", **values), script, style)
 
 
