@@ -224,7 +224,7 @@ class _Player:
         )
         session = CaseSession(options, self._simulator, self._towns, settings.scoring, pictures=False)
         (playable,) = self._library.of_id(job["identity"])
-        done = play_case(session, self._agents[job["agent"]], playable, self._scratch)
+        done = play_case(session, self._agents[job["agent"]], playable, self._scratch, job["id"])
         result, document = done.result, done.case
         row = {
             **_verdict(result.success.passed, _narrowness(document["margins"])),
@@ -235,7 +235,7 @@ class _Player:
             **{f"margin_{name}": value for name, value in document["margins"].items()},
             "simulated_s": round(result.meta["simulated_s"], 3),
         }
-        return _Driven(result.outcome, row, done.folder)
+        return _Driven(result.outcome, row, done.draft)
 
     def _not_begun(self, error: UserError | AgentError | SimulatorError) -> _Driven:
         """The outcome of a drive that could not begin."""

@@ -44,7 +44,7 @@ class Session:
     plan: Plan
     simulator: Simulator
     towns: Towns
-    quiet: bool = False  # no progress bar and no table
+    quiet: bool = False  # no progress bar
     pictures: bool = True  # whether each run gets its picture and its report
 
 
@@ -119,7 +119,6 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
             config,
             met,
             own,
-            quiet=session.quiet,
             pictures=session.pictures,
         )
     except UserError as error:
@@ -182,7 +181,7 @@ def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, out
         access=plan.agents.access,
     )
     draft = make_draft(output, name)
-    result = write_run_folder(draft, driven, session.scoring, None, config, quiet=session.quiet, pictures=False)
+    result = write_run_folder(draft, driven, session.scoring, None, config, pictures=False)
     return Finished(outcome, draft, result, None)
 
 

@@ -212,10 +212,9 @@ def write_run_folder(
     scenarios: Sequence[dict[str, Any]] = (),
     own: Sequence[Metric] = (),
     *,
-    quiet: bool = False,
     pictures: bool = True,
 ) -> Result:
-    """Write the folder of a run, print its table unless ``quiet``, and return its result.
+    """Write the folder of a run and return its result.
 
     ``scenarios`` are those on the route, ``own`` are users' metrics. Without ``pictures`` the folder gets neither
     picture nor report; `basu report` makes them from the folder later. ``lanes`` may be None where nothing was driven.
@@ -224,8 +223,6 @@ def write_run_folder(
     result = judge(driven.outcome, history, scoring, meta_of(driven, config), scenarios=scenarios, own=own)
     document = result.document()
     text = table(result)
-    if not quiet:
-        print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
@@ -243,8 +240,6 @@ def write_run_folder(
 
         run = RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets)
         write_report(folder, run)
-    if config["recording"] is not None and not quiet:
-        print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return result
 
 

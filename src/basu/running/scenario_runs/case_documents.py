@@ -154,31 +154,37 @@ SUMMARY = (  # entries of a result
 )
 
 
+def row_of(document: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], str]:
+    """Return the case of a drive's result with the agent's access, and its folder below that of the matrix."""
+    access = document["meta"].get("access")
+    return {**document["case"], **({} if access is None else {"access": access})}, folder.as_posix()
+
+
 def matrix_of(
     options: ScenarioOptions,
     agents: Sequence[str],
     drives: Sequence[tuple[Playable, int]],
-    documents: Mapping[int, tuple[dict[str, Any], str]],
+    found: Mapping[int, tuple[dict[str, Any], str]],
     began: datetime,
     wall_s: float,
 ) -> dict[str, Any]:
     """Return the document.
 
-    ``drives`` are cases with the number of their repetition. ``documents`` are results and folders by number of the
-    job, drives before agents.
+    ``drives`` are cases with the number of their repetition. ``found`` has rows and folders by number of the job,
+    drives before agents.
     """
     rows: list[dict[str, Any]] = []
     by_agent: dict[str, list[Result]] = {agent: [] for agent in agents}
     for nth, (playable, repetition) in enumerate(drives):
         results = {}
         for column, agent in enumerate(agents):
-            done = documents.get(nth * len(agents) + column)
+            done = found.get(nth * len(agents) + column)
             if done is None:
                 by_agent[agent].append(not_played(about(playable)))
             else:
-                document, folder = done
-                by_agent[agent] += results_from([document])
-                results[agent] = {**{key: document[key] for key in SUMMARY if key in document}, "folder": folder}
+                case, folder = done
+                by_agent[agent] += results_from([case])
+                results[agent] = {**{key: case[key] for key in SUMMARY if key in case}, "folder": folder}
         repeated = {"repetition": repetition} if options.repetitions > 1 else {}
         rows.append({**about(playable), **repeated, "results": results})
     return {

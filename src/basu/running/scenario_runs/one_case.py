@@ -20,7 +20,7 @@ from basu.managers.placed_scenario import call_scenario, place_scenario
 from basu.metrics.registry import user_metrics
 from basu.metrics.result import judge
 from basu.metrics.scoring import Scoring
-from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
+from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, plain, write_json
 from basu.output.report.scenarios.drawing.picture import PICTURE_FILE, case_picture
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
@@ -90,7 +90,7 @@ class PlayedCase(NamedTuple):
     """A case that is over and written."""
 
     result: Result
-    folder: Path
+    draft: Path  # its folder, not yet under its name
 
     @property
     def case(self) -> dict[str, Any]:
@@ -108,15 +108,15 @@ class _Attempt(NamedTuple):
     access: dict[str, Any] | None = None  # of the agent to the simulator
     traffic: Mapping[str, int] = NO_OTHERS
     log: str | None = None  # CARLA's log, as the simulator gave its path
+    ignored: str = ""  # a sentence about wishes of the agent that do not count
 
 
 def play_case(
-    session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path, repetition: int = 0
+    session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path, name: str, repetition: int = 0
 ) -> PlayedCase:
-    """Play a case and write its folder below ``output``; whatever goes wrong becomes its verdict."""
+    """Play a case and write its folder as a draft for ``name``; whatever goes wrong becomes its verdict."""
     started, began_s = datetime.now(timezone.utc), time.perf_counter()
     options = replace(session.options, seed=session.options.drive_seed + repetition, sweep=None)
-    name = plain(playable.case.name) + (f"-{repetition}" if options.repetitions > 1 else "")
     draft = make_draft(output, name)
     try:
         attempt = _attempt(session, options, loaded, playable, draft)
@@ -139,6 +139,7 @@ def play_case(
                 traffic=attempt.traffic,
                 log=attempt.log,
                 access=attempt.access,
+                ignored=attempt.ignored,
             ),
         }
         judged = _judged(attempt, history)
@@ -170,7 +171,7 @@ def play_case(
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    return PlayedCase(result, publish(draft, name))
+    return PlayedCase(result, draft)
 
 
 def _judged(attempt: _Attempt, history: History | None) -> Judged:
@@ -220,7 +221,9 @@ def _attempt(
     if driven.bug is not None:
         traceback.print_exception(driven.bug)
     playing = next(iter(one.episode.playing), None)
-    return _Attempt(driven, spec.config, playing, _streets(one), agents.access, one.episode.traffic, one.log)
+    return _Attempt(
+        driven, spec.config, playing, _streets(one), agents.access, one.episode.traffic, one.log, agents.ignored
+    )
 
 
 def _streets(one: AgentDrive | None) -> list[NDArray[np.float64]]:

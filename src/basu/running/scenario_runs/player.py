@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
@@ -11,6 +11,7 @@ from basu.episode import Towns
 from basu.jobs.job import After, Played, PlayerSpec
 from basu.outcome import Status
 from basu.output.report.documents import plain
+from basu.running.batch import WrittenDrive
 from basu.running.scenario_runs.chosen_cases import files_of
 from basu.running.scenario_runs.one_case import CaseSession, play_case
 from basu.scenarios.cases import open_library
@@ -36,14 +37,8 @@ class CaseJob(NamedTuple):
 
     agent: str  # as it was typed
     case: str  # its id
+    name: str  # of its folder, below that of the agent
     repetition: int = 0
-
-
-class CaseDone(NamedTuple):
-    """The row of a case in the matrix; its folder holds the rest."""
-
-    row: dict[str, Any]
-    folder: str  # below the run's
 
 
 def case_player(
@@ -91,10 +86,8 @@ def open_cases(
         def play(job: CaseJob) -> Played:
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
-            played = play_case(session, loaded, playable, output / plain(loaded.name), job.repetition)
-            access = played.result.meta.get("access")
-            row = played.case if access is None else {**played.case, "access": access}
-            done = CaseDone(row, str(played.folder.relative_to(output)))
+            played = play_case(session, loaded, playable, output / plain(loaded.name), job.name, job.repetition)
+            done = WrittenDrive(played.draft, played.result.document())
             status = played.result.outcome.status
             if status is Status.INTERRUPTED:
                 return Played(done, After.INTERRUPTED)

@@ -183,3 +183,62 @@ def test_the_keys_of_one_drive_alone_can_be_recorded(
     assert main(["scenario", "run", *words]) == 2
     assert "--record-keys records one drive, and these are 2" in capsys.readouterr().err
     assert not (tmp_path / "latest").exists()
+
+
+def test_a_run_that_was_broken_off_goes_on_and_drives_the_rest_alone(
+    simulator: RunningServer, files: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ("goes_well", "goes_well:ahead=30", "dozes", "--scenarios", files, "--stop-after", 2)
+    run(simulator, tmp_path, *words)
+    folder = (tmp_path / "latest").resolve()
+    whole = json.loads((folder / "matrix.json").read_text(encoding="utf-8"))
+    (folder / "matrix.json").unlink()  # as a kill leaves it: two drives, and half of the third
+    kept = folder / "basic" / "goes_well" / "result.json"
+    before = kept.stat().st_mtime_ns
+    (folder / "basic" / "dozes").rename(folder / "basic" / ".dozes.part")
+    host = ["--host", "127.0.0.1", "--port", str(simulator.port)]
+    main(["scenario", "run", "--resume", str(tmp_path / "latest"), *host])
+    again = json.loads((folder / "matrix.json").read_text(encoding="utf-8"))
+    assert [row["id"] for row in again["cases"]] == [row["id"] for row in whole["cases"]]
+    verdicts = [[row["results"]["basic"]["verdict"] for row in one["cases"]] for one in (again, whole)]
+    assert verdicts[0] == verdicts[1]
+    assert kept.stat().st_mtime_ns == before
+    assert sorted(path.name for path in (folder / "basic").iterdir()) == ["dozes", "goes_well", "goes_well_ahead_30"]
+    capsys.readouterr()
+    assert main(["scenario", "run", "--resume", str(folder), "--weather", "ClearNoon", *host]) == 2
+    assert "was begun differently: --weather was None and is 'ClearNoon'" in capsys.readouterr().err
+
+
+def test_a_drive_that_says_nothing_of_the_agent_is_set_aside_and_driven_again(
+    simulator: RunningServer, files: Path, tmp_path: Path
+) -> None:
+    words = ("indoors", "--scenarios", files)
+    assert run(simulator, tmp_path, *words) == 2
+    folder = (tmp_path / "latest").resolve()
+    main(["scenario", "run", "--resume", str(folder), "--host", "127.0.0.1", "--port", str(simulator.port)])
+    assert sorted(path.name for path in (folder / "basic").iterdir()) == ["indoors", "indoors-SetupFailed"]
+
+
+def test_a_bag_of_a_case_lies_in_its_folder(simulator: RunningServer, files: Path, tmp_path: Path) -> None:
+    pytest.importorskip("rosbags")
+    run(simulator, tmp_path, "goes_well", "--scenarios", files, "--rosbag", "--stop-after", 1)
+    assert (folder_of(tmp_path) / "rosbag" / "rosbag.mcap").stat().st_size > 10_000
+
+
+def test_sumo_drives_traffic_in_a_case(simulator: RunningServer, files: Path, tmp_path: Path) -> None:
+    pytest.importorskip("libsumo")
+    words = ("--sumo", "random", "--vehicles", 5, "--stop-after", 2)
+    run(simulator, tmp_path, "goes_well", "--scenarios", files, *words)
+    result, _ = documents(folder_of(tmp_path))
+    assert result["meta"]["traffic"]["vehicles"] >= 1, result["case"]["message"]
+    assert result["sumo"] is not None
+
+
+def test_a_window_shows_a_case(
+    simulator: RunningServer, files: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("pygame")
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    words = ("--hud", "map", "--hud-screenshot", tmp_path / "window.png", "--stop-after", 1)
+    run(simulator, tmp_path, "goes_well", "--scenarios", files, *words)
+    assert (tmp_path / "window.png").read_bytes().startswith(b"\x89PNG")
