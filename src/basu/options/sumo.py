@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from basu.errors import UserError
 from basu.options.conditions import ConditionOptions, Traffic
@@ -28,13 +29,16 @@ class Sumo(NamedTuple):
     beside: Path | None = None  # the agent's file, for relative names
     hour: float | None = None  # of the day, for a demand that is made; None: the hour that the route stands for
     scale: float | None = None  # of the traffic; None: as it is
-    is_sublane: bool = False  # vehicles beside each other in a lane
     has_output: bool = False  # SUMO's own outputs in the run's folder
 
 
 @dataclass(frozen=True, kw_only=True)
 class SumoOptions(ConditionOptions):
     """The conditions of a drive, with SUMO."""
+
+    GONE: ClassVar[Mapping[str, str]] = {
+        "sumo_sublane": 'write <lateral-resolution value="0.8"/> into the .sumocfg and name it with --sumo'
+    }
 
     sumo: Annotated[
         str | None,
@@ -96,9 +100,6 @@ class SumoOptions(ConditionOptions):
             default_text="the demand as it is",
         ),
     ] = None
-    sumo_sublane: Annotated[
-        bool, Option(help="SUMO's sub-lane model: vehicles pass each other within a lane", group=CONDITIONS)
-    ] = False
     sumo_output: Annotated[
         bool,
         Option(help="keep SUMO's own outputs in the run's folder: trip information, safety measures", group=CONDITIONS),
@@ -125,7 +126,6 @@ class SumoOptions(ConditionOptions):
             beside=beside,
             hour=self.sumo_hour,
             scale=self.sumo_scale,
-            is_sublane=self.sumo_sublane,
             has_output=self.sumo_output,
         )
 
@@ -154,7 +154,6 @@ class SumoOptions(ConditionOptions):
         said = {
             "--sumo-hour": self.sumo_hour is not None,
             "--sumo-scale": self.sumo_scale is not None,
-            "--sumo-sublane": self.sumo_sublane,
             "--sumo-output": self.sumo_output,
         }
         named = [flag for flag, given in said.items() if given]

@@ -9,12 +9,13 @@ from __future__ import annotations
 import contextlib
 import shutil
 import sys
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from tqdm import tqdm
 
 from basu.jobs.job import Job, Lost
 from basu.jobs.playing import play_jobs
+from basu.metrics.result import Result
 from basu.outcome import Fault
 from basu.output.report.documents import DRAFTS, RESULT_FILE, publish, read_result
 from basu.routing.route_file import OWN_ROUTE
@@ -24,17 +25,10 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from basu.jobs.job import PlayerSpec
+    from basu.running.drive import WrittenDrive
 
-COUNTED = frozenset({Fault.NONE.name.lower(), Fault.AGENT.name.lower()})
+COUNTED = frozenset({Fault.NONE, Fault.AGENT})
 """What ended otherwise says nothing of the agent, unless its record was unsafe before: that is a failure."""
-
-
-class WrittenDrive(NamedTuple):
-    """A drive that is over and written; its folder is a draft."""
-
-    draft: Path
-    document: dict[str, Any]  # its result
-    bug: Exception | str | None = None  # an error of our own: itself, or its traceback from another process
 
 
 class NotBegun(NamedTuple):
@@ -53,9 +47,9 @@ class PublishedDrive(NamedTuple):
     failure: NotBegun | None = None
 
 
-def counts(document: Mapping[str, Any]) -> bool:
+def counts(result: Result) -> bool:
     """Return whether a drive says something of the agent; the others are driven again when a batch goes on."""
-    return document["fault"] in COUNTED or document.get("passed") is False
+    return result.outcome.status.fault in COUNTED or result.success.passed is False
 
 
 class Batch:
@@ -76,7 +70,7 @@ class Batch:
                 if draft.is_dir():
                     shutil.rmtree(draft, ignore_errors=True)
 
-    def finished(self, but: Collection[int] = ()) -> Iterator[tuple[int, dict[str, Any]]]:
+    def finished(self, but: Collection[int] = ()) -> Iterator[tuple[int, Result]]:
         """Yield the number and the result of each drive with a finished folder, without the numbers in ``but``.
 
         Raises:
@@ -84,16 +78,16 @@ class Batch:
         """
         for number, name in self._names.items():
             if number not in but and (self.folder / name / RESULT_FILE).exists():
-                yield number, read_result(self.folder / name)
+                yield number, Result.from_document(read_result(self.folder / name))
 
-    def set_aside(self, number: int, document: Mapping[str, Any]) -> Path:
+    def set_aside(self, number: int, result: Result) -> Path:
         """Rename the folder of a finished drive that does not count, and return it under its new name.
 
         Raises:
             UserError: the disk does not let us.
         """
         folder = self.folder / self._names[number]
-        return publish(folder, f"{folder.name}-{document['status']}")
+        return publish(folder, f"{folder.name}-{result.outcome.status.value}")
 
     def play(
         self, player: PlayerSpec, jobs: Iterable[Job], workers: int, *, unit: str = ""
@@ -130,5 +124,5 @@ class Batch:
             UserError: the disk does not let us.
         """
         name = (self.folder / self._names[number]).name
-        is_own = bool(written.document["meta"].get("own_route")) and not name.endswith(OWN_ROUTE)
+        is_own = written.result.has_own_route and not name.endswith(OWN_ROUTE)
         return publish(written.draft, f"{name}{OWN_ROUTE}" if is_own else name)

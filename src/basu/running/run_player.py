@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import traceback
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.episode import Towns
@@ -12,7 +11,7 @@ from basu.errors import AgentError, SimulatorError, UserError
 from basu.jobs.job import After, Played, PlayerSpec
 from basu.metrics.registry import user_metrics
 from basu.outcome import Fault, Status
-from basu.running.batch import NotBegun, WrittenDrive
+from basu.running.batch import NotBegun
 from basu.running.one_run import Session, next_agents, run_counted, run_one
 from basu.running.preparation import prepare
 from basu.simulator import simulator_for
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
     from basu.managers.agents_manager import AgentsManager
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
-    from basu.running.one_run import Finished
+    from basu.running.drive import WrittenDrive
     from basu.running.preparation import Job as RunJob
     from basu.running.preparation import Plan
     from basu.simulator import Simulator
@@ -88,15 +87,13 @@ def open_runs(options: RunOptions, scoring: Scoring, here: OpenWorld | None) -> 
                 if here is not None:
                     raise
                 return _not_begun(error)
-            bug = done.bug if here is not None or done.bug is None else "".join(traceback.format_exception(done.bug))
-            ends = done.outcome.status in ENDING
-            written = WrittenDrive(done.draft, done.document, bug)
-            return Played(written, After.FRESH if ends else After.GO_ON)
+            ends = done.result.outcome.status in ENDING
+            return Played(done.to_send() if here is None else done, After.FRESH if ends else After.GO_ON)
 
         yield play
 
 
-def _driven(session: Session, agents: AgentsManager | None, job: RunJob, data: RunJobData) -> Finished:
+def _driven(session: Session, agents: AgentsManager | None, job: RunJob, data: RunJobData) -> WrittenDrive:
     """Drive one run; in a series, an agent that fails before its drive has had its run."""
     if session.options.series is not None:
         return run_counted(session, agents, job, output=data.output, name=data.name)

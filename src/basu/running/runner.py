@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 
 from basu.errors import UserError
 from basu.jobs.job import Job
-from basu.metrics.result import Result
 from basu.outcome import Status
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, read_run, run_name
@@ -94,7 +93,7 @@ def runs(
             if done.folder is not None:
                 point_latest(done.folder, options.output)
             yield done
-            ended = None if done.written is None else Status(done.written.document["status"])
+            ended = None if done.written is None else done.written.result.outcome.status
             if not is_parallel and ended in BREAKING_OFF:
                 return
 
@@ -134,7 +133,7 @@ def _shown(done: PublishedDrive, options: RunOptions) -> int:
         assert done.failure is not None, "a drive without a folder has a reason"
         print(f"basu: {done.failure.sentence}")
         return int(done.failure.fault.value)
-    result = Result.from_document(done.written.document)
+    result = done.written.result
     print(table(result))
     if options.record:
         recording = read_run(done.folder).config["recording"]

@@ -33,9 +33,10 @@ from basu.settings.option import fields_of, to_json
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
-    from basu.running.batch import WrittenDrive
+    from basu.running.drive import WrittenDrive
 from basu.running.batch import Batch, counts
 from basu.running.exit_code import exit_code
 from basu.running.preparation import Job, Plan
@@ -62,10 +63,11 @@ class Series(Batch):
         Raises:
             UserError: the disk does not let us.
         """
-        draft, document, name = written.draft, written.document, self.name(number)
-        if not counts(document):
-            folder = publish(draft, f"{name}-{document['status']}")
-            self._document["set_aside"].append({"folder": folder.name, "status": document["status"]})
+        draft, result, name = written.draft, written.result, self.name(number)
+        if not counts(result):
+            status = result.outcome.status.value
+            folder = publish(draft, f"{name}-{status}")
+            self._document["set_aside"].append({"folder": folder.name, "status": status})
         else:
             folder = publish(draft, name)
             if folder.name != name:
@@ -73,15 +75,15 @@ class Series(Batch):
                     f"{folder.with_name(name)} is there already: another command drives the series "
                     f"{self.folder.name} at the same time; this run is left in {folder.name} and not counted"
                 )
-            self._count(document, number)
+            self._count(result, number)
         self.write()
         return folder
 
     def take_in(self) -> None:
         """Count the runs that were finished and not yet listed, and throw drafts away."""
         self.clear()
-        for number, document in self.finished(but=self.done):
-            self._count(document, number)
+        for number, result in self.finished(but=self.done):
+            self._count(result, number)
 
     def write(self) -> None:
         """Write the list and the totals, at once or not at all.
@@ -102,9 +104,9 @@ class Series(Batch):
         rows = self._document["runs"]
         return max((exit_code(Status(each["status"]), each["scores"], required) for each in rows), default=0)
 
-    def _count(self, document: Mapping[str, Any], number: int) -> None:
+    def _count(self, result: Result, number: int) -> None:
         rows, repetition = self._document["runs"], self._jobs[number].repetition
-        rows.append(row(document, number=number, repetition=repetition, folder=self.name(number)))
+        rows.append(row(result.document(), number=number, repetition=repetition, folder=self.name(number)))
         rows.sort(key=lambda each: each["number"])
 
 

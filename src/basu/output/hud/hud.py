@@ -164,8 +164,9 @@ class Hud(BaseManager):
     def _hang_camera(self) -> None:
         """Have a camera, or the map where this simulator has none."""
         every_s = 0.0 if self._person.drives_first else WATCH_EVERY_S
+        width, height = self._options.hud_size
         try:
-            self._camera = ChaseCamera(self._run, self._options.hud_camera, every_s)
+            self._camera = ChaseCamera(self._run, (width // 2, height // 2), every_s)
         except SimulatorError as error:
             self._on_map = True
             self._notices.add(f"{error}; here is the map", time.perf_counter())

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.scenario_manager import Playing
+    from basu.metrics.result import Result as DriveResult
     from basu.metrics.scoring import Scoring
     from basu.records.history import History
     from basu.scenarios.playable import Playable
@@ -154,10 +155,11 @@ SUMMARY = (  # entries of a result
 )
 
 
-def row_of(document: Mapping[str, Any], folder: Path) -> tuple[dict[str, Any], str]:
+def row_of(result: DriveResult, folder: Path) -> tuple[dict[str, Any], str]:
     """Return the case of a drive's result with the agent's access, and its folder below that of the matrix."""
-    access = document["meta"].get("access")
-    return {**document["case"], **({} if access is None else {"access": access})}, folder.as_posix()
+    assert result.case is not None, "it is the drive of a case"
+    access = result.meta.get("access")
+    return {**result.case, **({} if access is None else {"access": access})}, folder.as_posix()
 
 
 def matrix_of(

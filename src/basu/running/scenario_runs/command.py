@@ -117,7 +117,7 @@ def play_matrix(
         player = case_player(options, scoring, folder, given)
         for done in batch.play(player, jobs, workers, unit="" if quiet else "case"):
             if done.written is not None and done.folder is not None:
-                rows[done.number] = row_of(done.written.document, done.folder.relative_to(folder))
+                rows[done.number] = row_of(done.written.result, done.folder.relative_to(folder))
             elif done.failure is not None:
                 rows[done.number] = (suite.lost(done.number, done.failure.sentence), "")
     except KeyboardInterrupt:
@@ -140,11 +140,11 @@ def _taken_in(batch: Batch) -> dict[int, tuple[dict[str, Any], str]]:
     """
     batch.clear()
     rows = {}
-    for number, document in list(batch.finished()):
-        if counts(document):
-            rows[number] = row_of(document, Path(batch.name(number)))
+    for number, result in list(batch.finished()):
+        if counts(result):
+            rows[number] = row_of(result, Path(batch.name(number)))
         else:
-            batch.set_aside(number, document)
+            batch.set_aside(number, result)
     return rows
 
 

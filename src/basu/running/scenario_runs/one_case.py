@@ -27,7 +27,7 @@ from basu.records.history.files import write_history
 from basu.routing import lane_graph, plan
 from basu.routing.route_file import RouteDescription
 from basu.running.agent_drive import AgentDrive
-from basu.running.drive import Driven
+from basu.running.drive import Driven, WrittenDrive
 from basu.running.preparation import SensorSet, agents_fault, new_agents, sensor_set
 from basu.running.run_folder import drive_facts, meta_of
 from basu.running.scenario_runs.case_documents import case_config, case_part, typed_name
@@ -48,7 +48,6 @@ if TYPE_CHECKING:
     from basu.episode import Towns
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
-    from basu.metrics.result import Result
     from basu.records.history import History
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.scenarios.playable import Playable
@@ -86,18 +85,6 @@ def check_town(case: Case, names: frozenset[str]) -> None:
         )
 
 
-class PlayedCase(NamedTuple):
-    """A case that is over and written."""
-
-    result: Result
-    draft: Path  # its folder, not yet under its name
-
-    @property
-    def case(self) -> dict[str, Any]:
-        """The case with its verdict, as ``result.json`` has it."""
-        return dict(self.result.case or {})
-
-
 class _Attempt(NamedTuple):
     """What came of a case, whatever that is."""
 
@@ -113,7 +100,7 @@ class _Attempt(NamedTuple):
 
 def play_case(
     session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path, name: str, repetition: int = 0
-) -> PlayedCase:
+) -> WrittenDrive:
     """Play a case and write its folder as a draft for ``name``; whatever goes wrong becomes its verdict."""
     started, began_s = datetime.now(timezone.utc), time.perf_counter()
     options = replace(session.options, seed=session.options.drive_seed + repetition, sweep=None)
@@ -171,7 +158,7 @@ def play_case(
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    return PlayedCase(result, draft)
+    return WrittenDrive(draft, result)
 
 
 def _judged(attempt: _Attempt, history: History | None) -> Judged:

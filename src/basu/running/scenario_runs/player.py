@@ -11,7 +11,6 @@ from basu.episode import Towns
 from basu.jobs.job import After, Played, PlayerSpec
 from basu.outcome import Status
 from basu.output.report.documents import plain
-from basu.running.batch import WrittenDrive
 from basu.running.scenario_runs.chosen_cases import files_of
 from basu.running.scenario_runs.one_case import CaseSession, play_case
 from basu.scenarios.cases import open_library
@@ -87,7 +86,7 @@ def open_cases(
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
             played = play_case(session, loaded, playable, output / plain(loaded.name), job.name, job.repetition)
-            done = WrittenDrive(played.draft, played.result.document())
+            done = played.to_send()
             status = played.result.outcome.status
             if status is Status.INTERRUPTED:
                 return Played(done, After.INTERRUPTED)
