@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import LoadedAgent
+from basu.conditions import SimulatorSpec
 from basu.episode import Towns
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
@@ -57,7 +58,7 @@ def open_simulator(host: str | None = None, port: int = 2000, *, timeout_s: floa
         UserError: no simulator answers at ``host``.
         SimulatorError: ours did not start.
     """
-    with simulator_for(RunOptions(host=host, port=port, timeout_s=timeout_s)) as simulator:
+    with simulator_for(SimulatorSpec(host=host, port=port, timeout_s=timeout_s)) as simulator:
         yield OpenSimulator(simulator)
 
 
@@ -166,7 +167,7 @@ def run(
         raise UserError(f"an instance drives one run, and these are {len(prepared.jobs)}; give the class itself")
     with contextlib.ExitStack() as stack:
         if simulator is None and (wanted.record or wanted.host is not None):
-            simulator = OpenSimulator(stack.enter_context(simulator_for(wanted)))
+            simulator = OpenSimulator(stack.enter_context(simulator_for(wanted.simulator)))
         opened = simulator or _shared.get()
         here = OpenWorld(prepared, opened.simulator, opened.towns, quiet=not progress)
         results = []

@@ -19,6 +19,7 @@ from basu.campaigns.columns import metric_values
 from basu.campaigns.cost import cost_of
 from basu.campaigns.plan import ROUTE
 from basu.campaigns.settings import AS_GIVEN
+from basu.conditions import SimulatorSpec
 from basu.episode import Towns
 from basu.episode.failures import outcome_of
 from basu.errors import AgentError, SimulatorError, UserError
@@ -93,7 +94,7 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
     }
     library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
     with (
-        simulator_for(RunOptions(open=settings.open)) as simulator,
+        simulator_for(SimulatorSpec(is_open=settings.open)) as simulator,
         tempfile.TemporaryDirectory(dir=settings.scratch, prefix="drives-", ignore_cleanup_errors=True) as scratch,
     ):
         driver = _Player(settings, agents, library, own, simulator, Path(scratch))

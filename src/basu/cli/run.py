@@ -18,7 +18,7 @@ def run(arguments: argparse.Namespace) -> int:
     check_extras(options)
     scoring = scoring_of(arguments, config.scoring)
     user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
-    with terminated_as_interrupted(), started_early(options):
+    with terminated_as_interrupted(), started_early(options.simulator, options.workers):
         from basu.running.runner import run as drive  # noqa: PLC0415 - half a second, in which the server starts
 
         return drive(options, scoring)

@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from basu.conditions import Sumo
     from basu.managers.base_manager import Frame, Run
     from basu.managers.routes_manager import RoutesManager
-    from basu.options.sumo import Sumo
 
 MISFIT_M = 4.0  # from the route to the middle of SUMO's lanes: a lane's width, which is the next lane's
 PLACES = 20  # of the route, that a network is tried on

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from basu.conditions import Traffic
     from basu.managers.base_manager import Frame, Run
-    from basu.options.conditions import Traffic
 
 
 REACH_M = 300.0

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Literal, get_args
+from typing import Annotated
 
+from basu.conditions import Track
 from basu.errors import UserError
 from basu.options.groups import AGENT
 from basu.settings.option import Option, Settings
-
-Track = Literal["world", "objects", "sensors"]
-"""What an agent learns of other actors; scores of different tracks are never compared."""
-WORLD, OBJECTS, SENSORS = "world", "objects", "sensors"
-TRACKS: tuple[str, ...] = get_args(Track)
 
 
 @dataclass(frozen=True, kw_only=True)

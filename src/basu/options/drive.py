@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from basu.conditions import SimulatorSpec
 from basu.options.agent import AgentOptions
 from basu.options.folders import RecordOptions
 from basu.options.groups import CONDITIONS
@@ -19,6 +20,19 @@ class DriveOptions(WindowOptions, RecordOptions, SimulatorOptions, SumoOptions, 
     """The options that runs and cases share; the fields stand in the order of the bases, the last one first."""
 
     repetitions: Annotated[int, Option(help="drives of each route or case", group=CONDITIONS, metavar="N", least=1)] = 1
+
+    @property
+    def simulator(self) -> SimulatorSpec:
+        """The simulator to drive in."""
+        return SimulatorSpec(
+            host=self.host,
+            port=self.port,
+            timeout_s=self.timeout_s,
+            maps=self.maps,
+            upload_map=self.upload_map,
+            recordings=self.output if self.record else None,
+            is_open=self.open,
+        )
 
     @property
     def is_ros(self) -> bool:

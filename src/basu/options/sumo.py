@@ -5,31 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal
 
+from basu.conditions import Sumo, Traffic
 from basu.errors import UserError
-from basu.options.conditions import ConditionOptions, Traffic
+from basu.options.conditions import ConditionOptions
 from basu.options.groups import CONDITIONS
 from basu.settings.option import Option
 
 SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM = "none", "demand", "random"
 RANDOM_VEHICLES = 50  # of --sumo random without --vehicles
-
-
-class Sumo(NamedTuple):
-    """What SUMO is to do in a run."""
-
-    file: Path | None = None  # a finished .sumocfg; None: the agent's folder, or one made of the town's map
-    is_random: bool = False  # random trips instead of the demand
-    vehicles: int = 0  # that random trips keep on the road
-    radius_m: float | None = None  # around the vehicle under test, within which vehicles are shown; None: all
-    lights: str = "carla"  # which side has the lights
-    port: int | None = None  # of a SUMO that runs
-    folder: str | None = None  # that the agent's config() names
-    beside: Path | None = None  # the agent's file, for relative names
-    hour: float | None = None  # of the day, for a demand that is made; None: the hour that the route stands for
-    scale: float | None = None  # of the traffic; None: as it is
-    has_output: bool = False  # SUMO's own outputs in the run's folder
 
 
 @dataclass(frozen=True, kw_only=True)

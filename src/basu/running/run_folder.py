@@ -7,9 +7,9 @@ import threading
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
+from basu.conditions import STEP_S
 from basu.files import places, write_bytes
 from basu.metrics.result import judge
-from basu.options.conditions import STEP_S
 from basu.options.run import RunOptions
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, RunRecord, write_json

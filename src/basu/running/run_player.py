@@ -69,7 +69,7 @@ def open_runs(options: RunOptions, scoring: Scoring, here: OpenWorld | None) -> 
     with contextlib.ExitStack() as resources:
         simulator = None if here is None else here.simulator
         if simulator is None:
-            simulator = resources.enter_context(simulator_for(options))
+            simulator = resources.enter_context(simulator_for(options.simulator))
         towns = (None if here is None else here.towns) or Towns(simulator)
         wanted = {job.description.town for job in plan.jobs}
         check_towns(towns.names(wanted), wanted)

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu.cli import parser
+from basu.cli import main, parser
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
@@ -177,3 +177,12 @@ def test_an_unknown_option_gets_a_suggestion(
 def test_a_value_that_an_option_cannot_have_is_named_with_its_flag(words: list[str], sentence: str) -> None:
     with pytest.raises(UserError, match=f"^{sentence}"):
         heard(RunOptions, words)
+
+
+@pytest.mark.parametrize("command", [["run", "basic"], ["scenario", "run", "all"]])
+def test_a_flag_of_an_earlier_version_is_refused_with_what_replaces_it(
+    command: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main([*command, "--hud-camera", "96x64"])
+    assert "--hud-camera is no option any more: the camera's picture has half" in capsys.readouterr().err

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import basu
-from basu.options.conditions import STEP_S
+from basu.conditions import STEP_S
 from basu.outcome import Outcome, Status
 from basu.running.scenario_runs.chosen_cases import design_of, files_of
 from basu.running.scenario_runs.options import CASES, ScenarioOptions

@@ -240,7 +240,7 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
     with (
-        simulator_for(options) as simulator,
+        simulator_for(options.simulator) as simulator,
         asking(f"loading {case.town}"),
         simulator.long_call(),
     ):

@@ -79,7 +79,7 @@ def open_cases(
     library = open_library(files_of(options))
     agents: Mapping[str, FoundAgent] = given or dict(zip(options.agents, agents_of(options), strict=True))
     ending = ENDING_IN_PROCESS if options.in_process or given else ENDING
-    with simulator_for(options) as simulator:
+    with simulator_for(options.simulator) as simulator:
         session = CaseSession(options, simulator, Towns(simulator), scoring)
 
         def play(job: CaseJob) -> Played:

@@ -10,6 +10,7 @@ from basu.cli import main
 from basu.options.drive import DriveOptions
 from basu.options.run import RunOptions
 from basu.output.report.scenarios.matrix_documents import read_case
+from basu.records.history.files import read_history
 from basu.results import ScenarioResults
 from basu.running.scenario_runs.options import ScenarioOptions
 from basu.settings.option import fields_of
@@ -242,3 +243,34 @@ def test_a_window_shows_a_case(
     words = ("--hud", "map", "--hud-screenshot", tmp_path / "window.png", "--stop-after", 1)
     run(simulator, tmp_path, "goes_well", "--scenarios", files, *words)
     assert (tmp_path / "window.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_class_places_the_other_actors_of_its_case(simulator: RunningServer, files: Path, tmp_path: Path) -> None:
+    classes = files.with_suffix(".py")
+    given = """
+
+class Given(Crosser):
+    \"\"\"The actors of the case's file stand where it says.\"\"\"
+
+    def actors(self):
+        given = [
+            ActorSpec(one.role, one.model, one.pose, on_ground=True, attributes=one.attributes, speed_mps=one.speed_mps)
+            for one in self.place.others
+        ]
+        return [*super().actors(), *given]
+"""
+    classes.write_text(classes.read_text(encoding="utf-8") + given, encoding="utf-8")
+    other = '<other_actor x="235" y="112" yaw="3" model="vehicle.audi.tt" rolename="neighbour" speed="2"/>'
+    case = files.read_text(encoding="utf-8").replace(
+        'name="goes_well" type="Crosser" town="Linden">', f'name="goes_well" type="Given" town="Linden">{other}'
+    )
+    files.write_text(case, encoding="utf-8")
+    run(simulator, tmp_path, "goes_well", "--scenarios", files, "--stop-after", 2)
+    result, _ = documents(folder_of(tmp_path))
+    actors = {actor["role"]: actor["type"] for actor in result["case"]["actors"]}
+    assert actors == {"walker": "walker.pedestrian.0001", "neighbour": "vehicle.audi.tt"}, result["case"]["message"]
+    history = read_history(folder_of(tmp_path))
+    number = next(actor["id"] for actor in result["case"]["actors"] if actor["role"] == "neighbour")
+    rows = history.others[history.others["id"] == number]
+    assert (rows["x_m"][0], rows["y_m"][0]) == (pytest.approx(235.0, abs=1.0), pytest.approx(112.0, abs=1.0))
+    assert rows["x_m"][-1] - rows["x_m"][0] > 1.0, rows[["tick", "x_m", "velocity_x_mps"]][:8]
