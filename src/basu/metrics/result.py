@@ -3,7 +3,7 @@
 `Result.document` is ``result.json``, and `Result.from_document` reads it back. Report, console, comparisons and tables
 read the object. It is computed from the record alone.
 
-``data/result.frame.json`` holds what is no metric: meta, scoring, scenarios, the case, evidence.
+`basu.metrics.result_parts` has the types of what is no metric: meta, scoring, scenarios, the case, evidence.
 ``scripts/result_schema.py`` writes ``data/result.schema.json``, and a test holds the two against each other.
 """
 
@@ -13,7 +13,7 @@ import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from basu.files import PACKAGE_FOLDER
 from basu.metrics.collisions import responsibilities
@@ -27,9 +27,10 @@ from basu.metrics.infraction import (
     counts,
     row_of,
 )
-from basu.metrics.json_schema import EVIDENCE, choice, flag, integer, listing, mapping, number, record, text
+from basu.metrics.json_schema import EVIDENCE, choice, flag, integer, listing, mapping, number, record, schema_of, text
 from basu.metrics.path_following import path_following
 from basu.metrics.registry import Drive, Metric, built_in
+from basu.metrics.result_parts import CasePart, EvidencePart, FaultName, MetaPart, ScenarioPart, ScoresPart, ScoringPart
 from basu.metrics.score import Scores, driving_score, in_order, infraction_score
 from basu.metrics.scoring import Scoring, scoring_to_json
 from basu.metrics.success import NOT_JUDGED, Success, success
@@ -264,20 +265,14 @@ def _own_to_json(own: OwnMetric) -> dict[str, Any]:
 
 
 SCHEMA_FILE = PACKAGE_FOLDER / "data" / "result.schema.json"
-FRAME_FILE = PACKAGE_FOLDER / "data" / "result.frame.json"
+ABOUT = (
+    "Lengths in m, speeds in m/s, times in s of simulated time, the CARLA frame (y south). What could not be measured "
+    "is null, never 0."
+)
 
 
 def result_schema() -> dict[str, Any]:
-    """The schema: the frame with a property for each of BASU's metrics."""
-    frame: dict[str, Any] = json.loads(FRAME_FILE.read_text(encoding="utf-8"))
-    around = frame.pop("properties")
-    definitions = frame.pop("$defs")
-    definitions["evidence"]["properties"]["responsibility"] = record(
-        about_="of a collision, by the rules of the road: docs/reference/fault.md",
-        at_fault=flag(),
-        kind=choice([kind.value for kind in CollisionKind]),
-        sentence=text(),
-    )
+    """Return the schema: the typed parts of a result, with a property for each of BASU's metrics."""
     own = record(
         about_="a user's metric",
         title=text(),
@@ -287,23 +282,37 @@ def result_schema() -> dict[str, Any]:
         penalties=mapping(number(low=0, high=1), about="factors by kind; none for a metric that is only reported"),
         events=listing(EVIDENCE),
     )
+    scores = schema_of(Annotated[ScoresPart | None, "of the thesis, section 5.3; null where nothing was driven"])
+    on_the_way = "the scenarios of the route, in its file's order; absent where it has none, or the options skip them"
     properties = {
         "schema_version": {"const": SCHEMA_VERSION},
         "status": choice([status.value for status in Status]),
-        **{name: around[name] for name in ("fault", "message")},
-        "passed": {"type": ["boolean", "null"], "description": "by the one rule of success; null says nothing of it"},
+        "fault": schema_of(FaultName),
+        "message": text(about="how the run ended, a sentence"),
+        "passed": flag(null=True, about="by the one rule of success; null says nothing of it"),
         "reasons": listing(text(), "why it did not pass, in sentences"),
-        **{name: around[name] for name in ("scores", "infractions")},
+        "scores": scores,
+        "infractions": listing(EVIDENCE, "what entered the score, in order of time"),
         **{metric.name: {**metric.schema, "title": metric.title} for metric in built_in()},
         "metrics": mapping(own, about="users' metrics by name"),
-        **{name: around[name] for name in ("scoring", "scenarios", "case", "meta")},
+        "scoring": schema_of(Annotated[ScoringPart, "what the scores were computed with"]),
+        "scenarios": listing({"$ref": "#/$defs/scenario"}, on_the_way),
+        "case": {"$ref": "#/$defs/case"},
+        "meta": schema_of(Annotated[MetaPart, "what was run"]),
     }
     return {
-        **{key: value for key, value in frame.items() if key != "additionalProperties"},
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "result.json: the judgement of one drive",
+        "description": ABOUT,
+        "type": "object",
         "required": [name for name in properties if name not in LATER],
         "additionalProperties": False,
         "properties": properties,
-        "$defs": definitions,
+        "$defs": {
+            "scenario": schema_of(ScenarioPart),
+            "evidence": schema_of(EvidencePart),
+            "case": schema_of(CasePart),
+        },
     }
 
 
