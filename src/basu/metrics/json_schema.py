@@ -133,12 +133,14 @@ def _mapping(_: Any, values: Any) -> Schema:  # noqa: ANN401 - annotations
     return {"type": "object", **({"additionalProperties": inner} if inner else {})}
 
 
-def _annotated(kind: Any, said: str | Value) -> Schema:  # noqa: ANN401 - an annotation
-    """Return the schema of an annotated type with its meaning and bounds."""
-    value = Value(said) if isinstance(said, str) else said
-    bounds = {"minimum": value.low, "maximum": value.high}
-    found = {**schema_of(kind), **{key: bound for key, bound in bounds.items() if bound is not None}}
-    return {**found, **_about(value.about)}
+def _annotated(kind: Any, *said: str | Value) -> Schema:  # noqa: ANN401 - an annotation
+    """Return the schema of an annotated type with its meaning and bounds; what is said last comes first."""
+    found = schema_of(kind)
+    for each in said:
+        value = Value(each) if isinstance(each, str) else each
+        bounds = {"minimum": value.low, "maximum": value.high}
+        found |= {key: bound for key, bound in bounds.items() if bound is not None} | _about(value.about)
+    return found
 
 
 def _union(*kinds: Any) -> Schema:  # noqa: ANN401 - annotations

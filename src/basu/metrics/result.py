@@ -3,19 +3,17 @@
 `Result.document` is ``result.json``, and `Result.from_document` reads it back. Report, console, comparisons and tables
 read the object. It is computed from the record alone.
 
-`basu.metrics.result_parts` has the types of what is no metric: meta, scoring, scenarios, the case, evidence.
-``scripts/result_schema.py`` writes ``data/result.schema.json``, and a test holds the two against each other.
+The module `basu.metrics.result_parts` has the types of what is no metric, such as meta, scoring and the case.
+The script ``scripts/result_schema.py`` writes ``data/result.schema.json``, and a test holds the two against each other.
 """
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Annotated, Any
 
-from basu.files import PACKAGE_FOLDER
 from basu.metrics.collisions import responsibilities
 from basu.metrics.infraction import (
     CollisionKind,
@@ -264,7 +262,6 @@ def _own_to_json(own: OwnMetric) -> dict[str, Any]:
     }
 
 
-SCHEMA_FILE = PACKAGE_FOLDER / "data" / "result.schema.json"
 ABOUT = (
     "Lengths in m, speeds in m/s, times in s of simulated time, the CARLA frame (y south). What could not be measured "
     "is null, never 0."
@@ -314,8 +311,3 @@ def result_schema() -> dict[str, Any]:
             "case": schema_of(CasePart),
         },
     }
-
-
-def schema_text() -> str:
-    """The schema as it stands in its file."""
-    return json.dumps(result_schema(), indent=2, ensure_ascii=False) + "\n"

@@ -20,6 +20,7 @@ from basu.errors import UserError
 from basu.files import write_bytes
 from basu.metrics.scoring import scoring_to_json
 from basu.outcome import Status
+from basu.output.report.document_parts import SERIES_SCHEMA_VERSION
 from basu.output.report.documents import (
     SERIES_SCHEMA,
     plain,
@@ -27,7 +28,7 @@ from basu.output.report.documents import (
     read_document,
     write_json,
 )
-from basu.output.report.series_document import SERIES_SCHEMA_VERSION, row, series_table, totals
+from basu.output.report.series_document import row, series_table, totals
 from basu.settings.option import fields_of, to_json
 
 if TYPE_CHECKING:

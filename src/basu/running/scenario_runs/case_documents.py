@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import basu
 from basu.conditions import STEP_S
 from basu.outcome import Outcome, Status
+from basu.output.report.document_parts import MATRIX_SCHEMA_VERSION
 from basu.running.scenario_runs.chosen_cases import design_of, files_of
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured
@@ -140,7 +141,6 @@ def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
     return next((each for each in options.agents if Path(f"{each.partition('.py')[0]}.py") == file), str(file))
 
 
-MATRIX_SCHEMA_VERSION = 2
 SUMMARY = (  # entries of a result
     "verdict",
     "fault",
