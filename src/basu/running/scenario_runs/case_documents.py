@@ -30,11 +30,11 @@ if TYPE_CHECKING:
 
     from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.scenario_manager import Playing
-    from basu.metrics.result import Result as DriveResult
+    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
     from basu.records.history import History
     from basu.scenarios.playable import Playable
-    from basu.scenarios.shares import Result
+    from basu.scenarios.shares import CountedCase
     from basu.scenarios.verdict import Judged
 
 
@@ -155,7 +155,7 @@ SUMMARY = (  # entries of a result
 )
 
 
-def row_of(result: DriveResult, folder: Path) -> tuple[dict[str, Any], str]:
+def row_of(result: Result, folder: Path) -> tuple[dict[str, Any], str]:
     """Return the case of a drive's result with the agent's access, and its folder below that of the matrix."""
     assert result.case is not None, "it is the drive of a case"
     access = result.meta.get("access")
@@ -176,7 +176,7 @@ def matrix_of(
     drives before agents.
     """
     rows: list[dict[str, Any]] = []
-    by_agent: dict[str, list[Result]] = {agent: [] for agent in agents}
+    by_agent: dict[str, list[CountedCase]] = {agent: [] for agent in agents}
     for nth, (playable, repetition) in enumerate(drives):
         results = {}
         for column, agent in enumerate(agents):
