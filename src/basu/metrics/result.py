@@ -208,7 +208,7 @@ def judge(
     )
     if history is None or len(history.frames) == 0:
         return empty
-    drive = Drive(history=history, scoring=scoring, outcome=outcome)
+    drive = Drive(history=history, scoring=scoring, outcome=outcome, hears_lane_invasions=case is None)
     found = {metric.name: metric.find(drive) for metric in (*built_in(), *own)}
     scored = [event for metric in (*built_in(), *own) if metric.penalties for event in found[metric.name]]
     extra = math.prod(

@@ -164,6 +164,7 @@ def test_a_case_is_scored_and_reported_again_from_its_folder(
     folder = folder_of(tmp_path)
     result, _ = documents(folder)
     assert result["scoring"]["penalties"]["collision_pedestrian"] == 0.1
+    assert result["reported"]["lane_invasions"] is None, "a case does not listen to them"
     capsys.readouterr()
     assert main(["score", str(folder), "--json"]) == 0
     again = json.loads(capsys.readouterr().out)
