@@ -44,7 +44,7 @@ class Drive:
     history: History
     scoring: Scoring
     outcome: Outcome
-    hears_lane_invasions: bool = True  # False in a case, whose record has none of these events
+    hears_lane_invasions: bool = True  # False in a case: its record has none of these events
 
 
 class JudgedRun(Protocol):
