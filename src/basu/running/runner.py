@@ -49,7 +49,7 @@ def run(options: RunOptions, scoring: Scoring) -> int:
         for done in runs(options, scoring, OpenWorld(prepared), jobs, series):
             if shown:
                 print(f"run {done.number + 1} of {len(prepared.jobs)}")
-            worst = max(worst, _shown(done, options))
+            worst = max(worst, show(done, options))
     finally:
         if series is not None:
             print(series.table())
@@ -123,7 +123,7 @@ def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | N
     return open_series(folder, given, prepared.jobs, prepared.loaded.name, resume=options.resume)
 
 
-def _shown(done: PublishedDrive, options: RunOptions) -> int:
+def show(done: PublishedDrive, options: RunOptions) -> int:
     """Show the result of a run and the place of its folder, and return its exit code.
 
     Raises:
