@@ -174,6 +174,7 @@ def test_a_case_is_scored_and_reported_again_from_its_folder(
     assert main(["report", str(folder)]) == 0
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert "The case" in page
+    assert "basu scenario run --config config.json" in page
     assert "goes_well" in page
     assert read_case(folder).result is not None
 

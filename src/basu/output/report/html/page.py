@@ -61,6 +61,7 @@ def report(run: RunRecord) -> bytes:
         "history": history is not None,
         "samples": "",
         "script": "",
+        "kind": run.config.get("kind", "run"),
         "command": shlex.join(str(word) for word in run.config.get("command", [])),
         "config": table(rows({key: each for key, each in run.config.items() if key != "command"})),
     }
