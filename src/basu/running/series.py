@@ -19,6 +19,7 @@ import basu
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.metrics.scoring import scoring_to_json
+from basu.options.run import RunOptions
 from basu.outcome import Status
 from basu.output.report.document_parts import SERIES_SCHEMA_VERSION
 from basu.output.report.documents import (
@@ -29,14 +30,13 @@ from basu.output.report.documents import (
     write_json,
 )
 from basu.output.report.series_document import row, series_table, totals
-from basu.settings.option import fields_of, to_json
+from basu.settings.option import fields_of, gone_from, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
     from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
-    from basu.options.run import RunOptions
     from basu.running.drive import WrittenDrive
 from basu.running.batch import Batch, counts
 from basu.running.exit_code import exit_code
@@ -216,6 +216,8 @@ def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) ->
     Raises:
         UserError: names what is different.
     """
+    gone = {f"--{name.replace('_', '-')}" for name in gone_from(RunOptions)}
+    before = {name: value for name, value in before.items() if value or name not in gone}
     changed = changes(before, json.loads(json.dumps(now)))  # as the file has it
     if changed:
         raise UserError(

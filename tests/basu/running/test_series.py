@@ -75,6 +75,14 @@ def test_a_series_goes_on_where_it_was_broken_off(tmp_path: Path) -> None:
     assert opened(tmp_path, resume=True).done == {0, 1}
 
 
+def test_a_series_with_an_unused_option_of_an_earlier_version_goes_on(tmp_path: Path) -> None:
+    run(opened(tmp_path, given={**GIVEN, "--sumo-sublane": False}), JOBS[0])
+    assert opened(tmp_path, resume=True).done == {0}
+    opened(tmp_path / "other", given={**GIVEN, "--sumo-sublane": True})
+    with pytest.raises(UserError, match="--sumo-sublane was True and is None"):
+        opened(tmp_path / "other", resume=True)
+
+
 def test_half_a_run_is_thrown_away(tmp_path: Path) -> None:
     series = opened(tmp_path)
     finished(series, JOBS[0])  # killed here

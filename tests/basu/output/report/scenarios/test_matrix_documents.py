@@ -12,7 +12,7 @@ import pytest
 from basu.errors import UserError
 from basu.metrics.result import judge
 from basu.outcome import Outcome, Status
-from basu.output.report.documents import RESULT_FILE, RESULT_SCHEMA, mistakes, read_schema, write_json
+from basu.output.report.documents import RESULT_FILE, RESULT_SCHEMA, mistakes, read_result, read_schema, write_json
 from basu.output.report.scenarios.matrix_documents import (
     MATRIX_FILE,
     MATRIX_SCHEMA,
@@ -88,6 +88,12 @@ def test_a_case_of_an_earlier_version_is_still_read(tmp_path: Path) -> None:
     write_json(tmp_path / RESULT_FILE, {**case_result(verdict="PERHAPS"), "schema_version": 2})
     with pytest.raises(UserError, match='verdict is "PERHAPS"; it must be one of SUCCESS'):
         read_case(tmp_path)
+
+
+def test_a_report_of_a_case_of_an_earlier_version_says_how_to_play_it_again(tmp_path: Path) -> None:
+    write_json(tmp_path / RESULT_FILE, {**case_result(), "schema_version": 2})
+    with pytest.raises(UserError, match=r"play it again with `basu scenario run --config .*config\.json`"):
+        read_result(tmp_path)
 
 
 def test_the_folder_of_a_run_is_refused_as_a_case(tmp_path: Path) -> None:
