@@ -56,7 +56,7 @@ def play(jobs: dict[str, list[str]], workers: str | None) -> dict[tuple[str, str
             with contextlib.redirect_stdout(io.StringIO()):
                 main([*words, *(["--workers", workers] if workers else [])])
             for path in Path(folder).glob(f"latest/{driver.replace(':', '-')}/*/result.json"):
-                result = json.loads(path.read_text("utf-8"))
+                result = json.loads(path.read_text("utf-8"))["case"]
                 found[result["id"], driver] = result
         print(f"played: {driver}, {len(cases)} cases", file=sys.stderr)
     return found

@@ -213,15 +213,16 @@ def cases(output: Path, files: dict[str, Path]) -> list[Row]:
             found = json.loads((path / "result.json").read_text(encoding="utf-8"))
             where = poses(path)
             same = where.shape == honest.shape and bool(np.array_equal(where, honest))
-            refused = ", ".join(f"{call} {count}" for call, count in found["access"]["refused"].items())
-            now = found["verdict"] + ("; as without it" if same else f": {found['message']}")
+            refused = ", ".join(f"{call} {count}" for call, count in found["meta"]["access"]["refused"].items())
+            case = found["case"]
+            now = case["verdict"] + ("; as without it" if same else f": {case['message']}")
             now += f"; refused: {refused}" if refused else ""
             now = f"{now}; {FAIR[name]}" if name in FAIR else now
             if name == "Honest":
                 if not same:
                     rows.append(row_of(f"Honest beside {group[0]} and others", "case", now, has_won=True))
                 continue
-            has_won = found["verdict"] == "SUCCESS" and not same and name not in FAIR
+            has_won = case["verdict"] == "SUCCESS" and not same and name not in FAIR
             rows.append(row_of(name, "case", now, has_won=has_won))
     return rows
 

@@ -22,7 +22,7 @@ from basu.campaigns.plan import CampaignPlan
 from basu.campaigns.planning import plan_of
 from basu.campaigns.player import open_player
 from basu.campaigns.settings import checked
-from basu.options.conditions import STEP_S
+from basu.conditions import STEP_S
 
 SCENARIO = Path(__file__).parents[1] / "examples" / "scenarios" / "bin_lorry"
 GROUP = "    group = Group.REAR_END\n"

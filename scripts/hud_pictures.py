@@ -28,7 +28,7 @@ COLOURS = 255
 """Of a picture's palette: a third of the bytes, and nobody sees it."""
 SESSION = ("--keys", "data/human_session.json")
 PICTURES = {
-    "hud.png": ("Watched", "--hud-camera", "960x540", "--vehicles", "40", "--walkers", "10", "--seed", "4"),
+    "hud.png": ("Watched", "--hud-size", "1920x1080", "--vehicles", "40", "--walkers", "10", "--seed", "4"),
     "hud-map.png": ("Seen", *SESSION),
     "hud-help.png": ("Helped", *SESSION),
     "hud-lidar.png": ("Scanned", "--vehicles", "40", "--walkers", "10", "--seed", "4"),

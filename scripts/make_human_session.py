@@ -28,7 +28,7 @@ from basu.agents.builtin.basic import BasicAgent, HumanAgent
 from basu.agents.manual.inputs import Held, Input, PedalsAndWheel, after, steer_after
 from basu.agents.manual.session import Session, Setting, write_session
 from basu.cli import main as basu
-from basu.options.conditions import STEP_S
+from basu.conditions import STEP_S
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

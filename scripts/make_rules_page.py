@@ -12,7 +12,7 @@ from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
-from basu import intervals, thresholds
+from basu import conditions, intervals, thresholds
 from basu.agents import calls
 from basu.campaigns.settings import Campaign
 from basu.managers import scenario_manager
@@ -110,7 +110,7 @@ def page() -> str:
         {module.__name__.rpartition(".")[2]: module for module in MODULES},
         scoring=Scoring(),
         confidence=Campaign.model_fields["confidence"].default,
-        tracks=code(list(agent.TRACKS), " or "),
+        tracks=code(list(conditions.TRACKS), " or "),
         counted=", ".join(one.value for one in Verdict if one.counts),
         agent_ends=code([status.value for status in BROKEN], " or "),
         comparable=code([status.value for status in Status if status in COMPARABLE], " or "),

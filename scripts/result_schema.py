@@ -1,7 +1,10 @@
-"""Writes the schema of result.json from the registry of metrics: `python scripts/result_schema.py`."""
+"""Write the schemas of result.json, series.json and matrix.json from their types: `python scripts/result_schema.py`."""
 
-from basu.metrics.result import SCHEMA_FILE, schema_text
+from basu.files import PACKAGE_FOLDER
+from basu.output.report.document_parts import SCHEMAS, schema_text
 
 if __name__ == "__main__":
-    SCHEMA_FILE.write_text(schema_text(), encoding="utf-8")
-    print(f"wrote {SCHEMA_FILE}")
+    for name in SCHEMAS:
+        path = PACKAGE_FOLDER / "data" / name
+        path.write_text(schema_text(name), encoding="utf-8")
+        print(f"wrote {path}")

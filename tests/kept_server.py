@@ -11,12 +11,12 @@ import carla
 import pytest
 
 from basu import simulator
-from basu.options.run import RunOptions
+from basu.conditions import SimulatorSpec
 from basu.simulator import OwnServer
 from shared_client import Connect, SharedClient
 from tracing import untraced
 
-Start = Callable[[RunOptions], OwnServer]
+Start = Callable[[SimulatorSpec], OwnServer]
 TIMEOUT_S = 20.0
 
 
@@ -30,13 +30,13 @@ class KeptServer:
         self._clients: SharedClient | None = None  # of the server's port
         self.elsewhere: Connect = simulator.connect  # what connects to other servers
 
-    def own_server(self, options: RunOptions) -> "OwnServer | Lent":
+    def own_server(self, spec: SimulatorSpec) -> "OwnServer | Lent":
         """Return a server for one command, as ``basu.simulator.own_server`` does."""
-        if options.record or options.maps:
-            return self._start(options)
+        if spec.recordings is not None or spec.maps:
+            return self._start(spec)
         if self._server is None or self._server.ended():
             with untraced():
-                self._server = self._start(options)
+                self._server = self._start(spec)
                 self._server.await_ready()
             self._clients = SharedClient(self._server.port, self.elsewhere)
         else:

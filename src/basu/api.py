@@ -9,20 +9,23 @@ from __future__ import annotations
 import atexit
 import contextlib
 import inspect
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.autonomous_agent import AutonomousAgent
 from basu.agents.loader import LoadedAgent
+from basu.conditions import SimulatorSpec
 from basu.episode import Towns
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
 from basu.outcome import Status
+from basu.output.report.console import table
 from basu.results import RunResult, ScenarioResults, load
-from basu.running.one_run import Session
 from basu.running.preparation import prepare
+from basu.running.run_player import OpenWorld
 from basu.running.runner import runs
 from basu.running.scenario_runs.command import play_matrix
 from basu.running.scenario_runs.options import ScenarioOptions
@@ -55,7 +58,7 @@ def open_simulator(host: str | None = None, port: int = 2000, *, timeout_s: floa
         UserError: no simulator answers at ``host``.
         SimulatorError: ours did not start.
     """
-    with simulator_for(RunOptions(host=host, port=port, timeout_s=timeout_s)) as simulator:
+    with simulator_for(SimulatorSpec(host=host, port=port, timeout_s=timeout_s)) as simulator:
         yield OpenSimulator(simulator)
 
 
@@ -164,16 +167,21 @@ def run(
         raise UserError(f"an instance drives one run, and these are {len(prepared.jobs)}; give the class itself")
     with contextlib.ExitStack() as stack:
         if simulator is None and (wanted.record or wanted.host is not None):
-            simulator = OpenSimulator(stack.enter_context(simulator_for(wanted)))
+            simulator = OpenSimulator(stack.enter_context(simulator_for(wanted.simulator)))
         opened = simulator or _shared.get()
-        session = Session(wanted, scoring, prepared, opened.simulator, opened.towns, quiet=not progress)
+        here = OpenWorld(prepared, opened.simulator, opened.towns, quiet=not progress)
         results = []
-        for done, folder in runs(session, list(prepared.jobs)):
-            if done.outcome.status is Status.SIMULATOR_FAILED and simulator is None:
+        for done in runs(wanted, scoring, here, prepared.jobs):
+            assert done.written is not None, "a drive in this process that cannot begin raises its error"
+            assert done.folder is not None, "likewise"
+            result = RunResult(done.folder)
+            if progress:
+                sys.stdout.write(f"{table(result.result)}\n")
+            if result.outcome.status is Status.SIMULATOR_FAILED and simulator is None:
                 _shared.close()
-            if done.bug is not None:
-                raise done.bug
-            results.append(RunResult(folder))
+            if isinstance(done.written.bug, Exception):
+                raise done.written.bug
+            results.append(result)
     return results[0] if len(prepared.jobs) == 1 else results
 
 

@@ -29,14 +29,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.autonomous_agent import AgentConfig
+from basu.conditions import STEP_S, SimulatorSpec, Traffic
 from basu.episode import Episode, EpisodeSpec, Towns, case_spec
 from basu.episode.world import weather_called
 from basu.errors import UserError
 from basu.files import find
 from basu.managers.scenario_results import results_of
 from basu.metrics.success import success, success_of_verdict
-from basu.options.conditions import STEP_S, Traffic
-from basu.options.run import RunOptions
 from basu.outcome import Status
 from basu.routing.route_file import read_routes
 from basu.scenarios.cases import by_id
@@ -109,7 +108,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
             raise UserError(f"there is no render mode '{render_mode}'; read the record, or watch with a CARLA client")
         self.render_mode = None
         self._reward = Reward() if reward is None else reward
-        options = RunOptions(host=host, port=port, timeout_s=timeout_s)
+        wanted = SimulatorSpec(host=host, port=port, timeout_s=timeout_s)
         if case is not None:
             self._spec = case_spec(by_id(case), vehicle=vehicle, timeout_s=timeout_s)
         else:
@@ -119,7 +118,7 @@ class ShuttleEnv(gymnasium.Env[dict[str, "NDArray[np.float32]"], "NDArray[np.flo
         self.action_space = action_space()
         self.observation_space: gymnasium.spaces.Space[Any] = observation_space()
         self._resources = contextlib.ExitStack()
-        simulator: Simulator = self._resources.enter_context(simulator_for(options))
+        simulator: Simulator = self._resources.enter_context(simulator_for(wanted))
         self.episode = Episode(simulator, self._spec, towns=Towns(simulator))
         self._resources.callback(self.episode.close)
         weakref.finalize(self, self._resources.close)  # also where close() is forgotten

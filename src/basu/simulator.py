@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
     from typing import IO
 
-    from basu.options.run import RunOptions
+    from basu.conditions import SimulatorSpec
 
 GATE = '{"gate"'  # begins an answer of the gate
 READY = re.compile(r"ready, rpc port (\d+)")
@@ -78,45 +78,45 @@ def _longer_timeout(client: carla.Client, usual_s: float) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def simulator_for(options: RunOptions) -> Iterator[Simulator]:
+def simulator_for(spec: SimulatorSpec) -> Iterator[Simulator]:
     """The simulator at --host, or one of our own that is ended in every case.
 
     Raises:
         UserError: no server answers at --host.
         SimulatorError: our own did not start.
     """
-    if options.host is not None:
-        print(f"basu: connecting to the simulator at {options.host}:{options.port}", file=sys.stderr, flush=True)
-        client = connect(options.host, options.port, options.timeout_s)
-        address = (options.host, options.port)
-        town = None if options.upload_map is None else upload(client, options.upload_map, options.timeout_s)
-        relay = Relay([*linden_command(), "gate", "--host", options.host, "--port", str(options.port)])
+    if spec.host is not None:
+        print(f"basu: connecting to the simulator at {spec.host}:{spec.port}", file=sys.stderr, flush=True)
+        client = connect(spec.host, spec.port, spec.timeout_s)
+        address = (spec.host, spec.port)
+        town = None if spec.upload_map is None else upload(client, spec.upload_map, spec.timeout_s)
+        relay = Relay([*linden_command(), "gate", "--host", spec.host, "--port", str(spec.port)])
         try:
             yield Simulator(
                 client,
                 address,
                 own=False,
-                why_gone=lambda: _silence(client, options),
+                why_gone=lambda: _silence(client, spec),
                 ended=lambda: False,
-                timeout_s=options.timeout_s,
-                gate=None if options.open else Gate(relay),
+                timeout_s=spec.timeout_s,
+                gate=None if spec.is_open else Gate(relay),
                 uploaded=town,
             )
         finally:
             relay.end()
         return
-    server = _early.pop() if _early else own_server(options)
+    server = _early.pop() if _early else own_server(spec)
     try:
         server.await_ready()
-        client = connect("127.0.0.1", server.port, options.timeout_s)
+        client = connect("127.0.0.1", server.port, spec.timeout_s)
         yield Simulator(
             client,
             ("127.0.0.1", server.port),
             own=True,
             why_gone=server.gone,
             ended=server.ended,
-            timeout_s=options.timeout_s,
-            gate=None if options.open else Gate(server),
+            timeout_s=spec.timeout_s,
+            gate=None if spec.is_open else Gate(server),
         )
     finally:
         server.end()
@@ -126,10 +126,10 @@ _early: list[OwnServer] = []  # at most one: a server that started ahead of its 
 
 
 @contextlib.contextmanager
-def started_early(options: RunOptions) -> Iterator[None]:
+def started_early(spec: SimulatorSpec, workers: int = 1) -> Iterator[None]:
     """Start our own server, if the run needs one, while this process still imports; ``simulator_for`` takes it over."""
-    if options.host is None and options.workers == 1:
-        _early.append(own_server(options))
+    if spec.host is None and workers == 1:
+        _early.append(own_server(spec))
     try:
         yield
     finally:
@@ -137,17 +137,17 @@ def started_early(options: RunOptions) -> Iterator[None]:
             _early.pop().end()
 
 
-def own_server(options: RunOptions) -> OwnServer:
+def own_server(spec: SimulatorSpec) -> OwnServer:
     """Start a server of our own, which need not be ready yet."""
-    return OwnServer(options.output if options.record else None, options.maps, gates=not options.open, wait=False)
+    return OwnServer(spec.recordings, spec.maps, gates=not spec.is_open, wait=False)
 
 
-def _silence(client: carla.Client, options: RunOptions) -> str | None:
+def _silence(client: carla.Client, spec: SimulatorSpec) -> str | None:
     """Check that a simulator of another owner still answers."""
     try:
         client.get_server_version()
     except RuntimeError:
-        return f"the simulator at {options.host}:{options.port} does not answer any more"
+        return f"the simulator at {spec.host}:{spec.port} does not answer any more"
     return None
 
 

@@ -32,7 +32,7 @@ def _no_stand_ins() -> Iterator[None]:
 def _no_server_starts_early() -> Iterator[None]:
     """Have a command start its server when it drives: one that is refused, or has another server, starts none."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(simulator_module, "started_early", lambda _: nullcontext())
+        patch.setattr(simulator_module, "started_early", lambda *_: nullcontext())
         yield
 
 

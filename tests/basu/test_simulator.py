@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import pytest
 
 from basu import simulator
+from basu.conditions import SimulatorSpec
 from basu.errors import SimulatorError, UserError
-from basu.options.run import RunOptions
 from basu.simulator import OwnServer, connect, started_early
 
 
@@ -66,10 +66,10 @@ def test_a_server_that_started_early_ends_where_no_run_takes_it_over(monkeypatch
     ended: list[bool] = []
     server = SimpleNamespace(end=lambda: ended.append(True))
     monkeypatch.setattr(simulator, "own_server", lambda _: server)
-    with started_early(RunOptions()):
+    with started_early(SimulatorSpec()):
         assert simulator._early == [server]
     assert (simulator._early, ended) == ([], [True])
-    with started_early(RunOptions(host="localhost")):
+    with started_early(SimulatorSpec(host="localhost")):
         assert simulator._early == []
 
 

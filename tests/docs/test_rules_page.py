@@ -5,8 +5,8 @@ from itertools import groupby
 
 import pytest
 
+from basu.conditions import TRACKS
 from basu.metrics.infraction import Infraction
-from basu.options.agent import TRACKS
 from basu.outcome import Status
 from basu.scenarios.verdict import Verdict
 from docs.pages import ROOT

@@ -83,9 +83,8 @@ def crossing(*, brakes: bool = True, seconds: float = 12.0) -> History:
 
 
 def case_result(**changes: Any) -> dict[str, Any]:
-    """The result of one case; ``changes`` replace its entries."""
+    """The case of a result; ``changes`` replace its entries."""
     document: dict[str, Any] = {
-        "schema_version": 2,
         "id": "pedestrian_crossing_1",
         "scenario": "PedestrianCrossing",
         "title": "Somebody walks across the street.",

@@ -13,8 +13,8 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any
 
 from basu.agents.sight import Sight
+from basu.conditions import TRACKS, WORLD
 from basu.errors import UserError
-from basu.options.agent import TRACKS, WORLD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

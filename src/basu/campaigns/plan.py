@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.campaigns.search.part import SearchPart, SearchPlace, StrandKey
 from basu.campaigns.settings import Campaign, OtherTraffic, Seeds
 from basu.campaigns.shuffle import Shuffle
+from basu.conditions import WORLD
 from basu.jobs.job import versions
 from basu.metrics.scoring import Scoring, scoring_to_json
-from basu.options.agent import WORLD
 from basu.output.report.tracks import track_of
 from basu.scenarios.parameters import Number
 

@@ -19,16 +19,15 @@ from basu.campaigns.columns import metric_values
 from basu.campaigns.cost import cost_of
 from basu.campaigns.plan import ROUTE
 from basu.campaigns.settings import AS_GIVEN
+from basu.conditions import SimulatorSpec
 from basu.episode import Towns
-from basu.episode.failures import STATUS_OF
+from basu.episode.failures import outcome_of
 from basu.errors import AgentError, SimulatorError, UserError
 from basu.jobs.job import After, Played, PlayerSpec, versions
 from basu.metrics.registry import user_metrics
-from basu.metrics.result import judge
-from basu.metrics.success import not_exercised, success, success_of_verdict
-from basu.options.conditions import STEP_S
+from basu.metrics.success import not_exercised, success
 from basu.options.run import RunOptions
-from basu.outcome import Outcome, Status
+from basu.outcome import Status
 from basu.running.one_run import Session, run_one
 from basu.running.preparation import agents_fault, new_agents, prepare
 from basu.running.scenario_runs.one_case import CaseSession, play_case
@@ -42,7 +41,9 @@ if TYPE_CHECKING:
     from basu.agents.process.remote_agent import FoundAgent
     from basu.jobs.job import Play
     from basu.metrics.registry import Metric
+    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
+    from basu.running.drive import WrittenDrive
     from basu.running.preparation import Plan
     from basu.scenarios.cases import Library
     from basu.simulator import Simulator
@@ -74,14 +75,6 @@ class DriveDone(NamedTuple):
     records: bytes | None  # its folder as a tar file, where it is worth keeping
 
 
-class _Driven(NamedTuple):
-    """A drive before its costs are known."""
-
-    outcome: Outcome
-    row: dict[str, Any]
-    folder: Path | None
-
-
 def drive_player(settings: PlayerSettings) -> PlayerSpec:
     """The player as a value that any process can open."""
     return PlayerSpec(f"{__name__}:open_player", (settings,))
@@ -101,7 +94,7 @@ def open_player(settings: PlayerSettings) -> Iterator[Play]:
     }
     library, own = open_library(settings.scenario_files), user_metrics(settings.metric_files)
     with (
-        simulator_for(RunOptions(open=settings.open)) as simulator,
+        simulator_for(SimulatorSpec(is_open=settings.open)) as simulator,
         tempfile.TemporaryDirectory(dir=settings.scratch, prefix="drives-", ignore_cleanup_errors=True) as scratch,
     ):
         driver = _Player(settings, agents, library, own, simulator, Path(scratch))
@@ -127,15 +120,22 @@ class _Player:
     def play(self, job: dict[str, Any]) -> Played:
         """Drive one job; whatever goes wrong becomes its row."""
         began_s, before = time.perf_counter(), cost_of()
-        driven = self._route(job) if job["kind"] == ROUTE else self._case(job)
-        status, row = driven.outcome.status, driven.row
-        row |= {
-            "status": status.value,
-            "fault": row.get("fault", status.fault.name.lower()),
-            "message": row.get("message", driven.outcome.message),
+        folder = None
+        try:
+            done = self._route(job) if job["kind"] == ROUTE else self._case(job)
+        except (UserError, AgentError, SimulatorError) as error:
+            outcome = outcome_of(error, self._simulator.why_gone)
+            found: dict[str, Any] = {**_verdict(success(outcome, None, ()).passed, 1.0), "simulated_s": 0.0}
+        else:
+            outcome, folder, found = done.result.outcome, done.draft, row_of(done.result, self._own)
+        row = {
+            "status": outcome.status.value,
+            "fault": outcome.status.fault.name.lower(),
+            "message": outcome.message,
+            **found,
             **{f"version_{name}": text for name, text in versions().items()},
         }
-        records = self._records(job, row, driven.folder)
+        records = self._records(job, row, folder)
         after = cost_of()
         row |= {
             "wall_s": round(time.perf_counter() - began_s, 3),
@@ -144,7 +144,7 @@ class _Player:
             "host": platform.node(),
             "worker": os.getpid(),
         }
-        return Played(DriveDone(row, records), _after(status, row["success"]))
+        return Played(DriveDone(row, records), _after(outcome.status, row["success"]))
 
     def _records(self, job: dict[str, Any], row: dict[str, Any], folder: Path | None) -> bytes | None:
         """The folder as a tar file where it is a failure's, one of the sample, or worse than the driver has seen."""
@@ -156,10 +156,11 @@ class _Player:
         shutil.rmtree(folder)
         return packed
 
-    def _route(self, job: dict[str, Any]) -> _Driven:
+    def _route(self, job: dict[str, Any]) -> WrittenDrive:
         """Drive a route.
 
-        Every failure before the drive is an outcome as well.
+        Raises:
+            UserError, AgentError, SimulatorError: it cannot begin, which is an outcome as well.
         """
         settings, others = self._settings, job["density_per_km"]
         options = RunOptions(
@@ -181,24 +182,12 @@ class _Player:
             agent_memory_gb=settings.agent_memory_gb,
             agent_writes=settings.agent_writes,
         )
-        try:
-            plan = self._plan(options, job)
-            with agents_fault(plan.loaded):
-                agents = new_agents(plan.loaded, options, job["seed"], has_conditions=False)
-            session = Session(options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False)
-            run = plan.jobs[0]._replace(seed=job["seed"])
-            done = run_one(session, agents, run, output=self._scratch, name=job["id"])
-        except (UserError, AgentError, SimulatorError) as error:
-            return self._not_begun(error)
-        result = done.result
-        row = {
-            **_verdict(result.success.passed, 1.0 if result.scores is None else 1.0 - result.scores.driving),
-            **metric_values(result, self._own),
-            "message": "; ".join(result.success.reasons) or done.outcome.message,
-            "not_exercised": not_exercised(result.scenarios),
-            "simulated_s": float(result.meta["simulated_s"]),
-        }
-        return _Driven(done.outcome, row, done.draft)
+        plan = self._plan(options, job)
+        with agents_fault(plan.loaded):
+            agents = new_agents(plan.loaded, options, job["seed"], options.routes, has_conditions=False)
+        session = Session(options, settings.scoring, plan, self._simulator, self._towns, quiet=True, pictures=False)
+        run = plan.jobs[0]._replace(seed=job["seed"])
+        return run_one(session, agents, run, output=self._scratch, name=job["id"])
 
     def _plan(self, options: RunOptions, job: dict[str, Any]) -> Plan:
         """The plan of an agent on a route; made once."""
@@ -207,7 +196,7 @@ class _Player:
             self._plans[key] = prepare(options, self._agents[job["agent"]], has_conditions=False)
         return self._plans[key]
 
-    def _case(self, job: dict[str, Any]) -> _Driven:
+    def _case(self, job: dict[str, Any]) -> WrittenDrive:
         """Play a case."""
         settings = self._settings
         options = ScenarioOptions(
@@ -216,42 +205,39 @@ class _Player:
             track=job["track"],
             files=settings.scenario_files,
             seed=job["seed"],
+            weather=None if job["weather"] == AS_GIVEN else job["weather"],
             vehicle=settings.vehicle,
             open=settings.open,
             step_limit_s=settings.step_limit_s,
             agent_memory_gb=settings.agent_memory_gb,
             agent_writes=settings.agent_writes,
+            metric_files=settings.metric_files,
         )
-        weather = None if job["weather"] == AS_GIVEN else job["weather"]
-        session = CaseSession(options, self._simulator, self._towns, pictures=False, weather=weather)
+        session = CaseSession(options, self._simulator, self._towns, settings.scoring, pictures=False)
         (playable,) = self._library.of_id(job["identity"])
-        done = play_case(session, self._agents[job["agent"]], playable, self._scratch)
-        document = done.document
-        found = success_of_verdict(document["verdict"], document["message"])
-        result = judge(done.outcome, done.history, settings.scoring, own=self._own)
-        ticks = 0 if done.history is None else len(done.history.frames)
-        row = {
-            **_verdict(found.passed, _narrowness(document["margins"])),
-            **metric_values(result, self._own),
-            "fault": document["fault"],
-            "message": document["message"],
-            "not_exercised": not_exercised([document]),
-            **{f"margin_{name}": value for name, value in document["margins"].items()},
-            "simulated_s": round(ticks * STEP_S, 3),
-        }
-        return _Driven(done.outcome, row, done.folder)
+        return play_case(session, self._agents[job["agent"]], playable, self._scratch, job["id"])
 
-    def _not_begun(self, error: UserError | AgentError | SimulatorError) -> _Driven:
-        """The outcome of a drive that could not begin."""
-        gone = self._simulator.why_gone() if not isinstance(error, UserError) else None
-        if isinstance(error, UserError):
-            outcome = Outcome(Status.SETUP_FAILED, str(error))
-        elif isinstance(error, SimulatorError) or gone is not None:
-            outcome = Outcome(Status.SIMULATOR_FAILED, gone or str(error))
-        else:
-            outcome = Outcome(STATUS_OF[type(error)], str(error))
-        found = success(outcome, None, ())
-        return _Driven(outcome, {**_verdict(found.passed, 1.0), "simulated_s": 0.0}, None)
+
+def row_of(result: Result, own: Sequence[Metric]) -> dict[str, Any]:
+    """Return the columns of a table's row that follow from the result of a drive; ``own`` are users' metrics."""
+    case, scores, said = result.case, result.scores, result.success
+    if case is None:
+        row = {
+            **_verdict(said.passed, 1.0 if scores is None else 1.0 - scores.driving),
+            **metric_values(result, own),
+            "message": "; ".join(said.reasons) or result.outcome.message,
+            "not_exercised": not_exercised(result.scenarios),
+        }
+        return {**row, "simulated_s": float(result.meta["simulated_s"])}
+    row = {
+        **_verdict(said.passed, _narrowness(case["margins"])),
+        **metric_values(result, own),
+        "fault": case["fault"],
+        "message": case["message"],
+        "not_exercised": not_exercised([case]),
+        **{f"margin_{name}": value for name, value in case["margins"].items()},
+    }
+    return {**row, "simulated_s": round(result.meta["simulated_s"], 3)}
 
 
 def _after(status: Status, success: bool | None) -> After:  # noqa: FBT001 - a value, not a switch

@@ -268,7 +268,7 @@ def _picture(at: Path, kind: str) -> dict[str, Element | str | None]:
 def _case_picture(at: Path) -> Element | None:
     """A case from above; None where nothing was driven."""
     case = read_case(at)
-    return None if case.history is None else case_drawing(case.result, case.history, case.streets)
+    return None if case.history is None else case_drawing(case.case, case.history, case.streets)
 
 
 def _route_picture(at: Path) -> Element | None:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from basu.conditions import Track
 from basu.errors import UserError
-from basu.options.agent import Track
 from basu.settings.option import suggestion
 
 if sys.version_info >= (3, 11):

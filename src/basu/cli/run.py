@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 
 from basu.cli.termination import terminated_as_interrupted
-from basu.cli.typed_options import config_of, options_of, scoring_of
-from basu.extras import CYCLONEDDS, RERUN, ROSBAGS, require
+from basu.cli.typed_options import check_extras, config_of, options_of, scoring_of
 from basu.metrics.registry import user_metrics
 from basu.options.run import RunOptions
 from basu.simulator import started_early
@@ -16,28 +15,10 @@ def run(arguments: argparse.Namespace) -> int:
     """Drive an agent along its route, faster than real time, and write a scored run folder."""
     config = config_of(arguments, "run", RunOptions)
     options = options_of(RunOptions, arguments, config.options)
-    _check_extras(options)
+    check_extras(options)
     scoring = scoring_of(arguments, config.scoring)
     user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
-    with terminated_as_interrupted(), started_early(options):
+    with terminated_as_interrupted(), started_early(options.simulator, options.workers):
         from basu.running.runner import run as drive  # noqa: PLC0415 - half a second, in which the server starts
 
         return drive(options, scoring)
-
-
-def _check_extras(options: RunOptions) -> None:
-    """Check that what the options need is installed, and that a roscore answers where one is needed.
-
-    Raises:
-        UserError: something is missing.
-    """
-    if options.viewer:
-        require(RERUN)
-    if options.ros2:
-        require(CYCLONEDDS)
-    if options.rosbag is not None or options.ros2 or options.ros1:
-        require(ROSBAGS)
-    if options.ros1:
-        from basu.ros.ros1 import require_roscore  # noqa: PLC0415 - rosbags, an extra
-
-        require_roscore()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from basu.cli.driving import add_config
+from basu.cli.driving import add_config, add_scoring
 from basu.cli.later import later
 from basu.outcome import EXIT_CODES
 from basu.running.scenario_runs.options import ScenarioOptions
@@ -56,7 +56,14 @@ def _add_run(run: argparse.ArgumentParser) -> None:
     run.description = "Play cases with agents: a verdict, a picture and a folder for each, and the matrix of all."
     run.epilog = EXIT_CODES
     add_config(run)
+    run.add_argument(
+        "--resume",
+        type=Path,
+        metavar="FOLDER",
+        help="continue a run that was broken off, such as scenario-runs/latest, with its own options",
+    )
     add_options(run, ScenarioOptions)
+    add_scoring(run)
     run.set_defaults(command=later("basu.cli.scenario_run:run"))
 
 

@@ -39,8 +39,16 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"basu: warning: {missing}", file=sys.stderr)
     scoring = scoring_of(arguments, scoring_of_run(folder / CONFIG_FILE))
     outcome = Outcome(Status(kept["status"]), kept["message"]) if kept else Outcome(Status.COMPLETED, "scored again")
-    meta, scenarios = (kept.get("meta"), kept.get("scenarios", ())) if kept else (None, ())
-    result = judge(outcome, history, scoring, meta, own=user_metrics(arguments.metrics), scenarios=scenarios)
+    kept_as = kept or {}
+    result = judge(
+        outcome,
+        history,
+        scoring,
+        kept_as.get("meta"),
+        own=user_metrics(arguments.metrics),
+        scenarios=kept_as.get("scenarios", ()),
+        case=kept_as.get("case"),
+    )
     document = result.document()
     if kept is not None and kept["scoring"] == scoring_to_json(scoring) and kept["scores"] != document["scores"]:
         print(
@@ -62,8 +70,8 @@ def _kept(path: Path) -> dict[str, Any] | None:
     document = read_json(path, "the result", "drive the run again, or remove the file to score its record alone")
     if isinstance(document, dict) and "verdict" in document:
         raise UserError(
-            f"{path.parent} is the folder of a played scenario case; its verdict comes from its place in the town as "
-            f"well: play it again with `basu scenario run --config {path.with_name('config.json')}`"
+            f"{path.parent} is a case that an earlier version of basu played, without a score; play it again with "
+            f"`basu scenario run --config {path.with_name('config.json')}`"
         )
     known = {status.value for status in Status}
     if not isinstance(document, dict) or document.get("status") not in known or "scores" not in document:

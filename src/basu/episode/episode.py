@@ -214,7 +214,7 @@ class Episode:
         routes = RoutesManager(self._spec.stop_after_s)
         metrics = MetricsManager(self._driver, routes, self._spec.scoring, lane_invasions=self._spec.lane_invasions)
         ground.scenarios.join(routes, metrics)
-        sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic)
+        sensors, traffic = self._new_sensors(), TrafficManager(self._spec.traffic, self._reserved_m(run, ground))
         sumo = None if self._spec.sumo is None else SumoManager(self._spec.sumo, linden_command(), routes)
         observers = tuple(self._new_observers(Live(self._driver, sensors, routes, metrics)))
         self._managers = _Managers(routes, metrics, traffic, sumo, sensors, observers)
@@ -224,6 +224,17 @@ class Episode:
             self._set_up.append(manager)
             manager.setup(run)
         return self._observe(None)
+
+    def _reserved_m(self, run: Run, ground: Ground) -> list[tuple[float, float]]:
+        """Return the places that traffic leaves free: a case's actors come after it, and all of them must come.
+
+        Raises:
+            ScenarioError: the case has no place on its route.
+        """
+        if not self._spec.is_case or self._spec.traffic.is_empty:
+            return []
+        ground.scenarios.lay(run.route, run.carla_map)
+        return ground.scenarios.reserved_m()
 
     # -- the drive
 

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 import carla
 
 from basu.agents.autonomous_agent import AgentConfig
+from basu.conditions import NO_TRAFFIC, STEP_S, Sumo, Traffic
 from basu.metrics.scoring import Scoring
-from basu.options.conditions import NO_TRAFFIC, STEP_S, Traffic
-from basu.options.sumo import Sumo
 from basu.routing.route_file import RouteDescription, RoutePoint
 from basu.routing.weather import changed
 from basu.scenarios.paths.lanes import followed, waypoint_at

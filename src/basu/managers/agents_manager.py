@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
     from basu.agents.sensor_streams import SpawnedSensor
+    from basu.conditions import Track
     from basu.managers.base_manager import Frame, Run
-    from basu.options.agent import Track
     from basu.routing.route_file import RoutePoint
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import RemoteAgent
 from basu.agents.sight import Sight
-from basu.options.agent import OBJECTS, SENSORS, WORLD
+from basu.conditions import OBJECTS, SENSORS, WORLD
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import math
 import traceback
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
+import carla
 import numpy as np
 
 from basu.errors import BasuError, ScenarioError, SimulatorError
@@ -23,12 +25,11 @@ if TYPE_CHECKING:
     from typing import TypeVar
 
     T = TypeVar("T")
-    import carla
-
     from basu.routing import Route
     from basu.scenarios.playable import Playable
     from basu.scenarios.scenario import Composed, Scenario
     from basu.scenarios.stage import ActorSpec, Pose
+    from basu.scenarios.xml_elements import GivenActor
 
 
 def call_scenario(name: str, call: Callable[[], T]) -> T:
@@ -82,7 +83,10 @@ def place_scenario(planned: Playable, route: Route, carla_map: carla.Map, *, own
     """
     case = planned.case
     place = Place(
-        route=route, trigger_s_m=_trigger_s_m(planned, route, own=own), carla_map=carla_map, others=case.others
+        route=route,
+        trigger_s_m=_trigger_s_m(planned, route, own=own),
+        carla_map=carla_map,
+        others=tuple(_on_the_ground(other, carla_map) for other in case.others),
     )
     way = route
     if not own:
@@ -95,6 +99,17 @@ def place_scenario(planned: Playable, route: Route, carla_map: carla.Map, *, own
         way = until(route, place.trigger_s_m + needs_m)
     scenario = call_scenario(case.name, partial(planned.scenario, place, planned.values))
     return PlacedScenario(planned, scenario, call_scenario(case.name, partial(compose, scenario)), way)
+
+
+def _on_the_ground(other: GivenActor, carla_map: carla.Map) -> GivenActor:
+    """Return an ``<other_actor>`` at the height of the road next to it, where its file gives none."""
+    if other.pose.z_m:
+        return other
+    at = carla.Location(other.pose.x_m, other.pose.y_m, 0.0)
+    road = carla_map.get_waypoint(at, project_to_road=True, lane_type=carla.LaneType.Any)
+    if road is None:
+        return other
+    return replace(other, pose=other.pose._replace(z_m=float(road.transform.location.z)))
 
 
 def _trigger_s_m(planned: Playable, route: Route, *, own: bool) -> float:

@@ -140,6 +140,18 @@ class ScenarioManager(BaseManager):
         if len(self._placed) < len(self._planned):
             self._placed = [place_scenario(planned, route, carla_map, own=self._own) for planned in self._planned]
 
+    def reserved_m(self) -> list[tuple[float, float]]:
+        """Return the places (x, y) that the casts of the laid scenarios will take.
+
+        Raises:
+            ScenarioError: a scenario's own code raised.
+        """
+        return [
+            (spec.pose.x_m, spec.pose.y_m)
+            for placed in self._placed
+            for spec in call_scenario(placed.planned.case.name, placed.scenario.actors)
+        ]
+
     def try_out(self, client: carla.Client, world: carla.World) -> None:
         """Bring every cast, and take it away at once: what has no place in this world is known before the run begins.
 

@@ -21,13 +21,12 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from basu.conditions import Sumo
     from basu.managers.base_manager import Frame, Run
     from basu.managers.routes_manager import RoutesManager
-    from basu.options.sumo import Sumo
 
 MISFIT_M = 4.0  # from the route to the middle of SUMO's lanes: a lane's width, which is the next lane's
 PLACES = 20  # of the route, that a network is tried on
-SUBLANE_M = "0.8"  # of SUMO's documentation, "Simulation/SublaneModel": several of them make a lane
 S_PER_HOUR = 3600.0
 
 
@@ -72,8 +71,6 @@ class SumoManager(BaseManager):
         config = self._config(run)
         self._outputs = Outputs(run.folder if self._sumo.has_output else None, f"{MIRROR}{run.vehicle.id}")
         more = [*self._outputs.options]
-        if self._sumo.is_sublane:
-            more += ["--lateral-resolution", SUBLANE_M]
         if self._sumo.scale is not None and self._sumo.file is not None:
             more += ["--scale", f"{self._sumo.scale:g}"]
         return in_process(config, step_s=run.step_s, seed=run.seed, more=more)

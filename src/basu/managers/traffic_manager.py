@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import random
 import socket
 from typing import TYPE_CHECKING
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from basu.conditions import Traffic
     from basu.managers.base_manager import Frame, Run
-    from basu.options.conditions import Traffic
 
 
 REACH_M = 300.0
@@ -28,6 +29,9 @@ REACH_M = 300.0
 
 CLEAR_M = 30.0
 """No traffic begins nearer to the vehicle under test: a stop from 25 mph with time to see it coming."""
+
+RESERVED_M = 12.0
+"""No traffic begins nearer to a place that is reserved for an actor of a scenario: the length of a bus."""
 
 COARSE_M = 10.0  # between the points of the route that distances are taken from; nothing next to REACH_M
 
@@ -64,8 +68,10 @@ PARTING_TICKS = 2  # for the client to forget destroyed actors
 class TrafficManager(BaseManager):
     """Puts others on the road before the run and takes them away after it. ``count`` says how many there are."""
 
-    def __init__(self, traffic: Traffic) -> None:
+    def __init__(self, traffic: Traffic, reserved_m: Sequence[tuple[float, float]] = ()) -> None:
+        """Describe the traffic; ``reserved_m`` are places (x, y) of actors that come later, which stay free."""
         self._traffic = traffic
+        self._reserved_m = reserved_m
         self._manager: carla.TrafficManager | None = None
         self._leaders: list[carla.Actor] = []
         self._ids: list[int] = []
@@ -140,7 +146,7 @@ class TrafficManager(BaseManager):
         if count == 0:
             return []
         points = self._run.carla_map.get_spawn_points()
-        near = [points[index] for index in suitable(_places_m(points), self._route_m, self._ego_m)]
+        near = self._free([points[index] for index in suitable(_places_m(points), self._route_m, self._ego_m)])
         dice.shuffle(near)
         models = [model for model in self._models("vehicle.*") if _is_car(model)]
         spawned: list[int] = []
@@ -182,7 +188,16 @@ class TrafficManager(BaseManager):
                 "run without --walkers"
             )
         poses = [carla.Transform(place + carla.Location(z=DROP_M)) for place in drawn]
-        return [poses[index] for index in suitable(_places_m(poses), self._route_m, self._ego_m)[:count]]
+        return self._free([poses[index] for index in suitable(_places_m(poses), self._route_m, self._ego_m)])[:count]
+
+    def _free(self, poses: list[carla.Transform]) -> list[carla.Transform]:
+        """Return the poses that are not reserved for other actors."""
+        places_m = [(pose.location.x, pose.location.y) for pose in poses]
+        return [
+            pose
+            for pose, place_m in zip(poses, places_m, strict=True)
+            if all(math.dist(place_m, reserved_m) >= RESERVED_M for reserved_m in self._reserved_m)
+        ]
 
     def _synchronous_manager(self) -> carla.TrafficManager:
         """Return a new Traffic Manager in synchronous mode. One tick must follow before vehicles are registered.

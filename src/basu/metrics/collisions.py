@@ -6,6 +6,7 @@ The thesis counts every collision (section 5.2.1). The responsibility is reporte
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from basu.metrics.fault import responsibility
@@ -14,7 +15,10 @@ from basu.metrics.json_schema import integer, record
 from basu.metrics.registry import Column, Drive, Metric, register
 
 if TYPE_CHECKING:
-    from basu.metrics.registry import JudgedRun
+    from collections.abc import Callable
+
+    from basu.metrics.registry import JudgedRun, Watcher
+    from basu.metrics.scoring import Scoring
     from basu.records.history import Collision, History
 
 
@@ -83,6 +87,31 @@ def responsibilities(history: History) -> tuple[tuple[Evidence, Responsibility],
     )
 
 
+LATE_S = 1.0  # a message that comes later than this after its frame is judged at the end only
+
+
+class CollisionsSoFar:
+    """The contacts until now; ``pending`` holds those of the last second, which a late message may precede."""
+
+    def __init__(self) -> None:
+        self.settled: list[Evidence] = []
+        self.pending: list[Evidence] = []
+        self._latest: dict[Party, int] = {}
+        self._first = 0  # messages before this tick are settled
+
+    def look(self, window: Callable[[int], History]) -> None:
+        """Take in what is new."""
+        since = max(0, self._first - 1)  # the frame before a contact tells its speed
+        history = window(since)
+        settled = max(self._first, since + len(history.frames) - round(LATE_S / history.facts.step_s))
+        fresh = [event for event in history.collisions if event.tick + since >= self._first]
+        old = replace(history, collisions=tuple(event for event in fresh if event.tick + since < settled))
+        new = replace(history, collisions=tuple(event for event in fresh if event.tick + since >= settled))
+        self.settled += [replace(event, tick=event.tick + since) for event in contacts(old, self._latest)]
+        self.pending = [replace(event, tick=event.tick + since) for event in contacts(new, dict(self._latest))]
+        self._first = settled
+
+
 @register
 class Collisions(Metric):
     """How often the vehicle touched something, and how often it was at fault."""
@@ -105,6 +134,10 @@ class Collisions(Metric):
         """The two numbers."""
         found = [blame.at_fault for _, blame in responsibilities(drive.history)]
         return {"number": len(found), "at_fault": sum(found)}
+
+    def watch(self, scoring: Scoring) -> Watcher:  # noqa: ARG002 - no rule of scoring changes them
+        """Return what finds the events while a drive lasts."""
+        return CollisionsSoFar()
 
     def find(self, drive: Drive) -> tuple[Evidence, ...]:
         """Each contact."""

@@ -12,81 +12,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from basu.metrics.collisions import Party, contacts
 from basu.metrics.infraction import Evidence, counts
 from basu.metrics.path_following import compared
-from basu.metrics.red_lights import TAIL_BEHIND_M, red_lights
+from basu.metrics.registry import built_in
 from basu.metrics.score import Scores, driving_score, in_order, infraction_score
 from basu.metrics.scoring import Scoring
-from basu.metrics.speeding import Episode, Excess, limits_mps
-from basu.metrics.stop_signs import ZONE_BEFORE_M, stop_signs
 from basu.metrics.stretches import SPACING_M, chords, path_m, total_m
 from basu.metrics.validity import Follower, moments
-from basu.records.history.model import NO_LIGHT
-from basu.routing import ControlKind
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
     from basu.records.history import History
-
-
-LATE_S = 1.0  # a message that comes later than this after its frame is judged at the end only
-
-
-class CollisionsSoFar:
-    """The contacts until now; ``pending`` holds those of the last second, which a late message may precede."""
-
-    def __init__(self) -> None:
-        self.settled: list[Evidence] = []
-        self.pending: list[Evidence] = []
-        self._latest: dict[Party, int] = {}
-        self._first = 0  # messages before this tick are settled
-
-    def look(self, window: Callable[[int], History]) -> None:
-        """Take in what is new."""
-        since = max(0, self._first - 1)  # the frame before a contact tells its speed
-        history = window(since)
-        settled = max(self._first, since + len(history.frames) - round(LATE_S / history.facts.step_s))
-        fresh = [event for event in history.collisions if event.tick + since >= self._first]
-        old = replace(history, collisions=tuple(event for event in fresh if event.tick + since < settled))
-        new = replace(history, collisions=tuple(event for event in fresh if event.tick + since >= settled))
-        self.settled += [replace(event, tick=event.tick + since) for event in contacts(old, self._latest)]
-        self.pending = [replace(event, tick=event.tick + since) for event in contacts(new, dict(self._latest))]
-        self._first = settled
-
-
-class SpeedingSoFar:
-    """The infractions until now; ``pending`` holds those of the episode that goes on."""
-
-    def __init__(self, tolerance_mps: float) -> None:
-        self.settled: list[Evidence] = []
-        self.pending: list[Evidence] = []
-        self._tolerance_mps = tolerance_mps
-        self._seen = 0  # frames looked at
-        self._episode: Episode | None = None
-
-    def look(self, window: Callable[[int], History]) -> None:
-        """Take in the frames that are new."""
-        history = window(self._seen)
-        episode = self._episode = self._episode or Episode(self._tolerance_mps, history.facts.step_s)
-        speeds, limits = history.speed_mps().tolist(), limits_mps(history).tolist()
-        for tick, (speed_mps, limit_mps) in enumerate(zip(speeds, limits, strict=True), self._seen):
-            self.settled += _evidence(window, episode.step(tick, speed_mps, limit_mps))
-        self._seen += len(speeds)
-        self.pending = _evidence(window, episode.counted())
-
-
-def _evidence(window: Callable[[int], History], pieces: Sequence[Excess]) -> list[Evidence]:
-    """The evidence for pieces of an episode."""
-    return [replace(piece.evidence(window(piece.first), 0), tick=piece.first) for piece in pieces]
+    from basu.routing import ControlKind
 
 
 @dataclass(slots=True)
-class _Watched:
-    """One metric: from where it still looks, and what it found before."""
+class ControlsWatcher:
+    """A metric of the route's signs or lights: from where it still looks, and what it found before."""
 
     metric: Callable[[History], tuple[Evidence, ...]]
     quiet: Callable[[History], NDArray[np.bool_]]  # (T,) frames before which all is settled
@@ -115,12 +60,8 @@ class SoFar:
 
     def __init__(self, scoring: Scoring) -> None:
         self._scoring = scoring
-        self._watched = (
-            CollisionsSoFar(),
-            _Watched(red_lights, _no_light),
-            _Watched(stop_signs, _no_sign),
-            SpeedingSoFar(scoring.speeding_tolerance_mps),
-        )
+        watched = [metric.watch(scoring) for metric in built_in() if metric.penalties]
+        self._watched = [each for each in watched if each is not None]
         self._path_first, self._path_m = 0, 0.0
         self._follower: Follower | None = None
         self._followed = 0  # frames that the follower has seen
@@ -165,18 +106,7 @@ def _with_controls_beyond(history: History, passed_m: float) -> History:
     return replace(history, facts=replace(history.facts, route=replace(route, controls=beyond)))
 
 
-def _no_sign(history: History) -> NDArray[np.bool_]:
-    """No stop sign's approach zone has the vehicle in it."""
-    return _away_from(history, ControlKind.STOP_SIGN, ZONE_BEFORE_M, 0.0)
-
-
-def _no_light(history: History) -> NDArray[np.bool_]:
-    """No light's line lies under the vehicle, and no zone of a light has it in it."""
-    in_no_zone: NDArray[np.bool_] = history.frames["traffic_light_state"] == NO_LIGHT
-    return _away_from(history, ControlKind.TRAFFIC_LIGHT, 0.0, TAIL_BEHIND_M) & in_no_zone
-
-
-def _away_from(history: History, kind: ControlKind, before_m: float, behind_m: float) -> NDArray[np.bool_]:
+def away_from(history: History, kind: ControlKind, before_m: float, behind_m: float) -> NDArray[np.bool_]:
     """(T,) no line of ``kind`` between ``before_m`` ahead of the front and ``behind_m`` behind the rear."""
     vehicle, s_m = history.facts.vehicle, history.frames["route_s_m"]
     away = np.ones(len(s_m), dtype=np.bool_)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from basu.metrics.incremental import ControlsWatcher, away_from
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
 from basu.metrics.json_schema import flag, listing, number, record, text
 from basu.metrics.registry import Column, Drive, Metric, register
@@ -29,7 +30,8 @@ from basu.thresholds import AT_REST_MPS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.metrics.registry import JudgedRun
+    from basu.metrics.registry import JudgedRun, Watcher
+    from basu.metrics.scoring import Scoring
     from basu.records.history import History
     from basu.routing import Control
 
@@ -140,6 +142,12 @@ def _state(value: int) -> str:
     return "not known" if value == NO_LIGHT else STATES[int(value)]
 
 
+def _no_light(history: History) -> NDArray[np.bool_]:
+    """No light's line lies under the vehicle, and no zone of a light has it in it."""
+    in_no_zone: NDArray[np.bool_] = history.frames["traffic_light_state"] == NO_LIGHT
+    return away_from(history, ControlKind.TRAFFIC_LIGHT, 0.0, TAIL_BEHIND_M) & in_no_zone
+
+
 @register
 class RedLights(Metric):
     """What each traffic light on the route showed."""
@@ -177,6 +185,10 @@ class RedLights(Metric):
             }
             for passed in lights_passed(drive.history)
         ]
+
+    def watch(self, scoring: Scoring) -> Watcher:  # noqa: ARG002 - no rule of scoring changes them
+        """Return what finds the events while a drive lasts."""
+        return ControlsWatcher(red_lights, _no_light)
 
     def find(self, drive: Drive) -> tuple[Evidence, ...]:
         """Each light that was run, on the route or beside it."""

@@ -23,7 +23,7 @@ from basu.files import module_of
 from basu.metrics.json_schema import Schema, number
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
     from pathlib import Path
 
     from basu.metrics.infraction import Evidence
@@ -44,6 +44,7 @@ class Drive:
     history: History
     scoring: Scoring
     outcome: Outcome
+    hears_lane_invasions: bool = True  # False in a case: its record has none of these events
 
 
 class JudgedRun(Protocol):
@@ -63,6 +64,16 @@ class Column(NamedTuple):
 
     head: str
     text: str
+
+
+class Watcher(Protocol):
+    """What finds the events of a scored metric while a drive lasts."""
+
+    settled: list[Evidence]  # whatever follows
+    pending: list[Evidence]  # found, and not yet settled
+
+    def look(self, window: Callable[[int], History]) -> None:
+        """Take in what is new; ``window`` gives the record from a tick on, its ticks counted from there."""
 
 
 class Metric(ABC):
@@ -94,6 +105,10 @@ class Metric(ABC):
     def find(self, drive: Drive) -> tuple[Evidence, ...]:  # noqa: ARG002 - a metric need not have events
         """The events behind the value; those of a scored metric are infractions."""
         return ()
+
+    def watch(self, scoring: Scoring) -> Watcher | None:  # noqa: ARG002 - a metric need not be watched
+        """Return what finds the events while a drive lasts; without it they are found at the end of the drive."""
+        return None
 
     def events(self, value: Any) -> Sequence[Mapping[str, Any]]:  # noqa: ANN401 - as above
         """The rows in the value that a report shows with place, time and a sentence."""

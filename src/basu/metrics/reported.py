@@ -45,7 +45,12 @@ class Reported(Metric):
         driven_m=number("m", low=0),
         planned_m=number("m", low=0),
         route_completion=number(low=0, high=1),
-        lane_invasions=record(total=integer(low=0), by_marking=mapping(integer(low=0))),
+        lane_invasions=record(
+            null_=True,
+            about_="null in a case, which does not listen to them",
+            total=integer(low=0),
+            by_marking=mapping(integer(low=0)),
+        ),
         largest_lateral_m=number("m", low=0),
         top_speed_mps=number("m/s", low=0),
     )
@@ -57,7 +62,9 @@ class Reported(Metric):
             "driven_m": path.driven_m,
             "planned_m": path.planned_m,
             "route_completion": min(1.0, path.valid_m / path.planned_m),
-            "lane_invasions": {"total": invasions.total, "by_marking": dict(invasions.by_marking)},
+            "lane_invasions": {"total": invasions.total, "by_marking": dict(invasions.by_marking)}
+            if drive.hears_lane_invasions
+            else None,
             "largest_lateral_m": float(np.abs(frames["lateral_m"]).max()),
             "top_speed_mps": float(drive.history.speed_mps().max()),
         }
@@ -65,9 +72,10 @@ class Reported(Metric):
     def lines(self, result: JudgedRun) -> list[str]:
         """Lane invasions and the way."""
         found = result.metrics[self.name]
-        invasions = f"{found['lane_invasions']['total']} (reported, not scored)"
+        lanes = found["lane_invasions"]
         way = f"{found['driven_m'] / 1000.0:.3f} km of {found['planned_m'] / 1000.0:.3f} km"
-        return [f"{'lane invasions':<18}{invasions:>8}", f"{'driven':<18}{way:>8}"]
+        invasions = [] if lanes is None else [f"{'lane invasions':<18}{lanes['total']} (reported, not scored)"]
+        return [*invasions, f"{'driven':<18}{way:>8}"]
 
 
 @register

@@ -1,21 +1,19 @@
-"""The result of a run as one object, which `judge` makes, and the JSON Schema of ``result.json``.
+"""The result of a drive, on a route or in a case, which `judge` makes, and the JSON Schema of ``result.json``.
 
 `Result.document` is ``result.json``, and `Result.from_document` reads it back. Report, console, comparisons and tables
 read the object. It is computed from the record alone.
 
-``data/result.frame.json`` holds what is no metric: meta, scoring, scenarios, evidence. ``scripts/result_schema.py``
-writes ``data/result.schema.json``, and a test holds the two against each other.
+The module `basu.metrics.result_parts` has the types of what is no metric, such as meta, scoring and the case.
+The script ``scripts/result_schema.py`` writes ``data/result.schema.json``, and a test holds the two against each other.
 """
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from basu.files import PACKAGE_FOLDER
 from basu.metrics.collisions import responsibilities
 from basu.metrics.infraction import (
     CollisionKind,
@@ -27,9 +25,10 @@ from basu.metrics.infraction import (
     counts,
     row_of,
 )
-from basu.metrics.json_schema import EVIDENCE, choice, flag, integer, listing, mapping, number, record, text
+from basu.metrics.json_schema import EVIDENCE, choice, flag, integer, listing, mapping, number, record, schema_of, text
 from basu.metrics.path_following import path_following
 from basu.metrics.registry import Drive, Metric, built_in
+from basu.metrics.result_parts import CasePart, EvidencePart, FaultName, MetaPart, ScenarioPart, ScoresPart, ScoringPart
 from basu.metrics.score import Scores, driving_score, in_order, infraction_score
 from basu.metrics.scoring import Scoring, scoring_to_json
 from basu.metrics.success import NOT_JUDGED, Success, success
@@ -40,7 +39,9 @@ if TYPE_CHECKING:
 
 
 SCHEMA_VERSION = 3
-LATER = frozenset({"scenarios", "passed", "reasons"})  # absent where there is nothing, or from an earlier version
+LATER = frozenset(
+    {"scenarios", "case", "passed", "reasons"}
+)  # absent where there is nothing, or from an earlier version
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +58,7 @@ class OwnMetric:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Result:
-    """The judgement of one run.
+    """The judgement of one drive.
 
     Attributes:
         scores: of the thesis; None where nothing was driven.
@@ -67,6 +68,7 @@ class Result:
         scoring: the rules as plain values, as ``result.json`` has them.
         meta: what was run.
         scenarios: those on the way of the route.
+        case: the drive's own case with its verdict, as plain values; None for a drive on a route.
         success: passed or not, by the one rule; a document that an earlier version wrote is not judged.
         history: the record; None where nothing was driven, and in a result read from its document.
     """
@@ -79,6 +81,7 @@ class Result:
     scoring: Mapping[str, Any]
     meta: Mapping[str, Any]
     scenarios: tuple[Mapping[str, Any], ...] = ()
+    case: Mapping[str, Any] | None = None
     success: Success = NOT_JUDGED
     history: History | None = field(default=None, compare=False, repr=False)
 
@@ -135,7 +138,11 @@ class Result:
             "scoring": dict(self.scoring),
             "meta": dict(self.meta),
         }
-        return {**document, "scenarios": [dict(row) for row in self.scenarios]} if self.scenarios else document
+        if self.scenarios:
+            document["scenarios"] = [dict(row) for row in self.scenarios]
+        if self.case is not None:
+            document["case"] = dict(self.case)
+        return document
 
     @classmethod
     def from_document(cls, document: Mapping[str, Any]) -> Result:
@@ -153,6 +160,7 @@ class Result:
             scoring=document["scoring"],
             meta=document["meta"],
             scenarios=tuple(document.get("scenarios", ())),
+            case=document.get("case"),
             success=Success(document.get("passed"), tuple(document.get("reasons", ()))),
         )
 
@@ -177,8 +185,12 @@ def judge(
     *,
     own: Sequence[Metric] = (),
     scenarios: Sequence[Mapping[str, Any]] = (),
+    case: Mapping[str, Any] | None = None,
 ) -> Result:
-    """Judge a run from its record; ``history`` is None where nothing was driven, ``own`` are users' metrics."""
+    """Judge a drive from its record; ``history`` is None where nothing was driven, ``own`` are users' metrics.
+
+    The verdict of a ``case`` decides whether its drive passed; on a route the record decides.
+    """
     scoring = scoring or Scoring()
     rules = scoring_to_json(scoring)
     rules["penalties"] |= {kind: factor for metric in own for kind, factor in metric.penalties.items()}
@@ -190,12 +202,13 @@ def judge(
         scoring=rules,
         meta=meta or {},
         scenarios=tuple(scenarios),
+        case=case,
         own={metric.name: _own(metric, metric.nothing, ()) for metric in own},
-        success=success(outcome, None, (), scenarios),
+        success=success(outcome, None, (), scenarios, case),
     )
     if history is None or len(history.frames) == 0:
         return empty
-    drive = Drive(history=history, scoring=scoring, outcome=outcome)
+    drive = Drive(history=history, scoring=scoring, outcome=outcome, hears_lane_invasions=case is None)
     found = {metric.name: metric.find(drive) for metric in (*built_in(), *own)}
     scored = [event for metric in (*built_in(), *own) if metric.penalties for event in found[metric.name]]
     extra = math.prod(
@@ -210,7 +223,7 @@ def judge(
         infractions=tuple(replace(each, responsibility=blame.get(each)) for each in in_order(scored)),
         metrics={metric.name: metric.compute(drive) for metric in built_in()},
         own={metric.name: _own(metric, metric.compute(drive), found[metric.name]) for metric in own},
-        success=success(outcome, history, scored, scenarios),
+        success=success(outcome, history, scored, scenarios, case),
         history=history,
     )
 
@@ -249,21 +262,14 @@ def _own_to_json(own: OwnMetric) -> dict[str, Any]:
     }
 
 
-SCHEMA_FILE = PACKAGE_FOLDER / "data" / "result.schema.json"
-FRAME_FILE = PACKAGE_FOLDER / "data" / "result.frame.json"
+ABOUT = (
+    "Lengths in m, speeds in m/s, times in s of simulated time, the CARLA frame (y south). What could not be measured "
+    "is null, never 0."
+)
 
 
 def result_schema() -> dict[str, Any]:
-    """The schema: the frame with a property for each of BASU's metrics."""
-    frame: dict[str, Any] = json.loads(FRAME_FILE.read_text(encoding="utf-8"))
-    around = frame.pop("properties")
-    definitions = frame.pop("$defs")
-    definitions["evidence"]["properties"]["responsibility"] = record(
-        about_="of a collision, by the rules of the road: docs/reference/fault.md",
-        at_fault=flag(),
-        kind=choice([kind.value for kind in CollisionKind]),
-        sentence=text(),
-    )
+    """Return the schema: the typed parts of a result, with a property for each of BASU's metrics."""
     own = record(
         about_="a user's metric",
         title=text(),
@@ -273,26 +279,35 @@ def result_schema() -> dict[str, Any]:
         penalties=mapping(number(low=0, high=1), about="factors by kind; none for a metric that is only reported"),
         events=listing(EVIDENCE),
     )
+    scores = schema_of(Annotated[ScoresPart | None, "of the thesis, section 5.3; null where nothing was driven"])
+    on_the_way = "the scenarios of the route, in its file's order; absent where it has none, or the options skip them"
     properties = {
         "schema_version": {"const": SCHEMA_VERSION},
         "status": choice([status.value for status in Status]),
-        **{name: around[name] for name in ("fault", "message")},
-        "passed": {"type": ["boolean", "null"], "description": "by the one rule of success; null says nothing of it"},
+        "fault": schema_of(FaultName),
+        "message": text(about="how the run ended, a sentence"),
+        "passed": flag(null=True, about="by the one rule of success; null says nothing of it"),
         "reasons": listing(text(), "why it did not pass, in sentences"),
-        **{name: around[name] for name in ("scores", "infractions")},
+        "scores": scores,
+        "infractions": listing(EVIDENCE, "what entered the score, in order of time"),
         **{metric.name: {**metric.schema, "title": metric.title} for metric in built_in()},
         "metrics": mapping(own, about="users' metrics by name"),
-        **{name: around[name] for name in ("scoring", "scenarios", "meta")},
+        "scoring": schema_of(Annotated[ScoringPart, "what the scores were computed with"]),
+        "scenarios": listing({"$ref": "#/$defs/scenario"}, on_the_way),
+        "case": {"$ref": "#/$defs/case"},
+        "meta": schema_of(Annotated[MetaPart, "what was run"]),
     }
     return {
-        **{key: value for key, value in frame.items() if key != "additionalProperties"},
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "result.json: the judgement of one drive",
+        "description": ABOUT,
+        "type": "object",
         "required": [name for name in properties if name not in LATER],
         "additionalProperties": False,
         "properties": properties,
-        "$defs": definitions,
+        "$defs": {
+            "scenario": schema_of(ScenarioPart),
+            "evidence": schema_of(EvidencePart),
+            "case": schema_of(CasePart),
+        },
     }
-
-
-def schema_text() -> str:
-    """The schema as it stands in its file."""
-    return json.dumps(result_schema(), indent=2, ensure_ascii=False) + "\n"

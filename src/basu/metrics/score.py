@@ -6,13 +6,11 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from basu.metrics.collisions import collisions
 from basu.metrics.infraction import Evidence, Infraction, counts
 from basu.metrics.path_following import path_following
-from basu.metrics.red_lights import red_lights
-from basu.metrics.scoring import TOLERANCE_MPS, Scoring
-from basu.metrics.speeding import speeding
-from basu.metrics.stop_signs import stop_signs
+from basu.metrics.registry import Drive, built_in
+from basu.metrics.scoring import Scoring
+from basu.outcome import Outcome, Status
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -29,11 +27,9 @@ class Scores(NamedTuple):
 
 
 def infractions(history: History, scoring: Scoring | None = None) -> tuple[Evidence, ...]:
-    """Every infraction of a run, in the order in which they happened."""
-    tolerance_mps = TOLERANCE_MPS if scoring is None else scoring.speeding_tolerance_mps
-    return in_order(
-        (*collisions(history), *red_lights(history), *stop_signs(history), *speeding(history, tolerance_mps))
-    )
+    """Return every infraction of a drive by BASU's metrics, in the order in which they happened."""
+    drive = Drive(history=history, scoring=scoring or Scoring(), outcome=Outcome(Status.COMPLETED, ""))
+    return in_order(event for metric in built_in() if metric.penalties for event in metric.find(drive))
 
 
 def in_order(found: Iterable[Evidence]) -> tuple[Evidence, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -14,9 +14,12 @@ from basu.metrics.scoring import TOLERANCE_MPS
 from basu.metrics.validity import in_planned_lane
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from numpy.typing import NDArray
 
-    from basu.metrics.registry import JudgedRun
+    from basu.metrics.registry import JudgedRun, Watcher
+    from basu.metrics.scoring import Scoring
     from basu.records.history import History
 
 LEAST_S = 0.5  # an excess shorter than this is a sign just passed, not a way of driving
@@ -111,6 +114,32 @@ def limits_mps(history: History) -> NDArray[np.float64]:
     return np.where(~in_planned_lane(history) | np.isnan(planned), elsewhere, planned)
 
 
+class SpeedingSoFar:
+    """The infractions until now; ``pending`` holds those of the episode that goes on."""
+
+    def __init__(self, tolerance_mps: float) -> None:
+        self.settled: list[Evidence] = []
+        self.pending: list[Evidence] = []
+        self._tolerance_mps = tolerance_mps
+        self._seen = 0  # frames looked at
+        self._episode: Episode | None = None
+
+    def look(self, window: Callable[[int], History]) -> None:
+        """Take in the frames that are new."""
+        history = window(self._seen)
+        episode = self._episode = self._episode or Episode(self._tolerance_mps, history.facts.step_s)
+        speeds, limits = history.speed_mps().tolist(), limits_mps(history).tolist()
+        for tick, (speed_mps, limit_mps) in enumerate(zip(speeds, limits, strict=True), self._seen):
+            self.settled += _evidence(window, episode.step(tick, speed_mps, limit_mps))
+        self._seen += len(speeds)
+        self.pending = _evidence(window, episode.counted())
+
+
+def _evidence(window: Callable[[int], History], pieces: Sequence[Excess]) -> list[Evidence]:
+    """The evidence for pieces of an episode."""
+    return [replace(piece.evidence(window(piece.first), 0), tick=piece.first) for piece in pieces]
+
+
 @register
 class Speeding(Metric):
     """How long and by how much the vehicle was too fast."""
@@ -134,6 +163,10 @@ class Speeding(Metric):
             "seconds": float(np.count_nonzero(beyond) * drive.history.facts.step_s),
             "largest_excess_mps": float(excess_mps[beyond].max(initial=0.0)),
         }
+
+    def watch(self, scoring: Scoring) -> Watcher:
+        """Return what finds the events while a drive lasts."""
+        return SpeedingSoFar(scoring.speeding_tolerance_mps)
 
     def find(self, drive: Drive) -> tuple[Evidence, ...]:
         """Each infraction, in the order of time."""

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from basu.metrics.incremental import ControlsWatcher, away_from
 from basu.metrics.infraction import DEFAULT_PENALTIES, Evidence, Infraction, evidence
 from basu.metrics.json_schema import flag, listing, number, record, text
 from basu.metrics.registry import Column, Drive, Metric, register
@@ -24,7 +25,8 @@ from basu.thresholds import AT_REST_MPS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from basu.metrics.registry import JudgedRun
+    from basu.metrics.registry import JudgedRun, Watcher
+    from basu.metrics.scoring import Scoring
     from basu.records.history import History
     from basu.routing import Control
 
@@ -100,6 +102,11 @@ def _crossing(centre_s_m: NDArray[np.float64], line_s_m: float) -> int | None:
     return int(beyond[0])
 
 
+def _no_sign(history: History) -> NDArray[np.bool_]:
+    """No stop sign's approach zone has the vehicle in it."""
+    return away_from(history, ControlKind.STOP_SIGN, ZONE_BEFORE_M, 0.0)
+
+
 @register
 class StopSigns(Metric):
     """What the vehicle did at each stop sign."""
@@ -135,6 +142,10 @@ class StopSigns(Metric):
             }
             for passed in signs_passed(drive.history)
         ]
+
+    def watch(self, scoring: Scoring) -> Watcher:  # noqa: ARG002 - no rule of scoring changes them
+        """Return what finds the events while a drive lasts."""
+        return ControlsWatcher(stop_signs, _no_sign)
 
     def find(self, drive: Drive) -> tuple[Evidence, ...]:
         """Each sign that was run."""

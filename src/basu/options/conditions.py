@@ -1,35 +1,12 @@
-"""Options of the conditions of a drive, and its time step: seed, weather, vehicle and the simulator's own traffic."""
+"""Options of the conditions of a drive: seed, weather, vehicle and the simulator's own traffic."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, NamedTuple
+from typing import Annotated
 
 from basu.options.groups import CONDITIONS
 from basu.settings.option import Option, Settings
-
-STEP_S = 0.05  # simulated time from tick to tick: 20 Hz
-
-Vehicle = Annotated[
-    str | None,
-    Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the agent says"),
-]
-
-
-class Traffic(NamedTuple):
-    """How many others are to be on the road; vehicles by number or, where a density is given, by that."""
-
-    vehicles: int = 0
-    walkers: int = 0
-    density_per_km: float | None = None  # vehicles on a km of driving lane near the route
-
-    @property
-    def is_empty(self) -> bool:
-        """Whether the vehicle under test is to be alone."""
-        return self == NO_TRAFFIC
-
-
-NO_TRAFFIC = Traffic()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +30,10 @@ class ConditionOptions(Settings):
             default_text="as the route or the agent says",
         ),
     ] = None
-    vehicle: Vehicle = None
+    vehicle: Annotated[
+        str | None,
+        Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the agent says"),
+    ] = None
     vehicles: Annotated[
         int,
         Option(

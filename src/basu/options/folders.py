@@ -13,12 +13,10 @@ from basu.settings.option import Option, Settings, suggestion
 
 SCORES = ("driving", "infraction", "path_following")  # of the thesis, equations 5.1 to 5.5
 
-Output = Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)]
-
 
 @dataclass(frozen=True, kw_only=True)
-class FolderOptions(Settings):
-    """The output of a run."""
+class RecordOptions(Settings):
+    """The metrics, records and folders of a drive."""
 
     metric_files: Annotated[
         tuple[Path, ...],
@@ -58,7 +56,15 @@ class FolderOptions(Settings):
             repeats=False,
         ),
     ] = False
-    output: Output = Path("runs")
+    output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
+        Path("runs")
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SeriesOptions(Settings):
+    """The series of runs, and the scores that a run needs."""
+
     require: Annotated[
         Mapping[str, float],
         Option(

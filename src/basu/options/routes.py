@@ -12,7 +12,7 @@ from basu.settings.option import Option, Settings
 
 @dataclass(frozen=True, kw_only=True)
 class RouteOptions(Settings):
-    """The routes to drive, and how often."""
+    """The routes to drive."""
 
     routes: Annotated[
         str | None,
@@ -46,4 +46,3 @@ class RouteOptions(Settings):
             is_file=True,
         ),
     ] = ()
-    repetitions: Annotated[int, Option(help="runs of each route", group=ROUTES, metavar="N", least=1)] = 1

@@ -3,17 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
 from basu.options.agent import AgentOptions
-from basu.options.folders import FolderOptions
+from basu.options.drive import DriveOptions
+from basu.options.folders import SeriesOptions
+from basu.options.groups import AGENT
 from basu.options.routes import RouteOptions
-from basu.options.simulator import SimulatorOptions
-from basu.options.sumo import SumoOptions
-from basu.options.window import WindowOptions
+from basu.settings.option import Option, Settings
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunOptions(WindowOptions, FolderOptions, SimulatorOptions, SumoOptions, RouteOptions, AgentOptions):
+class ChosenAgent(Settings):
+    """The one agent of ``basu run``."""
+
+    agent: Annotated[
+        str,
+        Option(
+            help="a name (`basu list`), FILE.py, or FILE.py:Class",
+            group=AGENT,
+            positional=True,
+            flag="--agent",
+            metavar="AGENT",
+            is_file=True,
+        ),
+    ] = "basic"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions(SeriesOptions, DriveOptions, RouteOptions, AgentOptions, ChosenAgent):
     """The options of ``basu run`` without the scoring, which is a model of its own.
 
     Python collects the fields of a dataclass from the last base to the first: the help page begins with the agent.

@@ -10,34 +10,36 @@ from basu.errors import UserError
 from basu.options.groups import SIMULATOR
 from basu.settings.option import Option, Settings
 
-Host = Annotated[
-    str | None,
-    Option(
-        help="a running simulator", group=SIMULATOR, metavar="HOST", default_text="start one and end it", repeats=False
-    ),
-]
-Port = Annotated[int, Option(help="port of --host", group=SIMULATOR, metavar="N", least=1, most=65_535, repeats=False)]
-Timeout = Annotated[
-    float,
-    Option(
-        help="time to wait for the simulator's answer",
-        group=SIMULATOR,
-        flag="--timeout",
-        metavar="S",
-        unit="s",
-        above=0.0,
-        repeats=False,
-    ),
-]
-
 
 @dataclass(frozen=True, kw_only=True)
 class SimulatorOptions(Settings):
     """The simulators of a command."""
 
-    host: Host = None
-    port: Port = 2000
-    timeout_s: Timeout = 20.0
+    host: Annotated[
+        str | None,
+        Option(
+            help="a running simulator",
+            group=SIMULATOR,
+            metavar="HOST",
+            default_text="start one and end it",
+            repeats=False,
+        ),
+    ] = None
+    port: Annotated[
+        int, Option(help="port of --host", group=SIMULATOR, metavar="N", least=1, most=65_535, repeats=False)
+    ] = 2000
+    timeout_s: Annotated[
+        float,
+        Option(
+            help="time to wait for the simulator's answer",
+            group=SIMULATOR,
+            flag="--timeout",
+            metavar="S",
+            unit="s",
+            above=0.0,
+            repeats=False,
+        ),
+    ] = 20.0
     workers: Annotated[
         int,
         Option(

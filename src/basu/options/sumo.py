@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, ClassVar, Literal
 
+from basu.conditions import Sumo, Traffic
 from basu.errors import UserError
-from basu.options.conditions import ConditionOptions, Traffic
+from basu.options.conditions import ConditionOptions
 from basu.options.groups import CONDITIONS
 from basu.settings.option import Option
 
@@ -15,26 +17,13 @@ SUMO_OFF, SUMO_DEMAND, SUMO_RANDOM = "none", "demand", "random"
 RANDOM_VEHICLES = 50  # of --sumo random without --vehicles
 
 
-class Sumo(NamedTuple):
-    """What SUMO is to do in a run."""
-
-    file: Path | None = None  # a finished .sumocfg; None: the agent's folder, or one made of the town's map
-    is_random: bool = False  # random trips instead of the demand
-    vehicles: int = 0  # that random trips keep on the road
-    radius_m: float | None = None  # around the vehicle under test, within which vehicles are shown; None: all
-    lights: str = "carla"  # which side has the lights
-    port: int | None = None  # of a SUMO that runs
-    folder: str | None = None  # that the agent's config() names
-    beside: Path | None = None  # the agent's file, for relative names
-    hour: float | None = None  # of the day, for a demand that is made; None: the hour that the route stands for
-    scale: float | None = None  # of the traffic; None: as it is
-    is_sublane: bool = False  # vehicles beside each other in a lane
-    has_output: bool = False  # SUMO's own outputs in the run's folder
-
-
 @dataclass(frozen=True, kw_only=True)
 class SumoOptions(ConditionOptions):
     """The conditions of a drive, with SUMO."""
+
+    GONE: ClassVar[Mapping[str, str]] = {
+        "sumo_sublane": 'write <lateral-resolution value="0.8"/> into the .sumocfg and name it with --sumo'
+    }
 
     sumo: Annotated[
         str | None,
@@ -96,9 +85,6 @@ class SumoOptions(ConditionOptions):
             default_text="the demand as it is",
         ),
     ] = None
-    sumo_sublane: Annotated[
-        bool, Option(help="SUMO's sub-lane model: vehicles pass each other within a lane", group=CONDITIONS)
-    ] = False
     sumo_output: Annotated[
         bool,
         Option(help="keep SUMO's own outputs in the run's folder: trip information, safety measures", group=CONDITIONS),
@@ -125,7 +111,6 @@ class SumoOptions(ConditionOptions):
             beside=beside,
             hour=self.sumo_hour,
             scale=self.sumo_scale,
-            is_sublane=self.sumo_sublane,
             has_output=self.sumo_output,
         )
 
@@ -154,7 +139,6 @@ class SumoOptions(ConditionOptions):
         said = {
             "--sumo-hour": self.sumo_hour is not None,
             "--sumo-scale": self.sumo_scale is not None,
-            "--sumo-sublane": self.sumo_sublane,
             "--sumo-output": self.sumo_output,
         }
         named = [flag for flag, given in said.items() if given]

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from basu.errors import UserError
 from basu.options.groups import WINDOW
 from basu.settings.option import Option, Settings
 
 WINDOWS = (640, 480), (7680, 4320)  # pixels; the panel and the help page need the smallest
-PICTURES = (64, 48), (3840, 2160)  # of the HUD's camera
 
 
 @dataclass(frozen=True, kw_only=True)
 class WindowOptions(Settings):
     """What is shown of a drive, and keys."""
+
+    GONE: ClassVar[Mapping[str, str]] = {
+        "hud_camera": "the camera's picture has half the width and height of the window, which --hud-size sets"
+    }
 
     viewer: Annotated[
         bool,
@@ -36,17 +40,6 @@ class WindowOptions(Settings):
         tuple[int, int],
         Option(help="size of the window", group=WINDOW, metavar="WxH", unit="pixels", style="size", repeats=False),
     ] = (960, 540)
-    hud_camera: Annotated[
-        tuple[int, int],
-        Option(
-            help="size of the pictures of the HUD's camera, which take most of the time",
-            group=WINDOW,
-            metavar="WxH",
-            unit="pixels",
-            style="size",
-            repeats=False,
-        ),
-    ] = (480, 270)
     hud_screenshot: Annotated[
         Path | None,
         Option(help="PNG of the window, written at the end and by F12", group=WINDOW, metavar="FILE", repeats=False),
@@ -76,7 +69,6 @@ class WindowOptions(Settings):
         if self.hud_screenshot is not None and self.hud is None:
             raise UserError("--hud-screenshot takes a picture of the window; add --hud")
         _check_size("--hud-size", self.hud_size, WINDOWS)
-        _check_size("--hud-camera", self.hud_camera, PICTURES)
         super().check()
 
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from basu.errors import UserError
 from basu.files import read_json
 from basu.outcome import Status
-from basu.output.report.documents import RESULT_FILE
-from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
+from basu.output.report.scenarios.matrix_documents import MATRIX_FILE, read_case
 from basu.output.report.scenarios.matrix_text import matrix_text
 from basu.output.report.scenarios.sweep.success_map import sweep_map
 from basu.records.history.files import HISTORY_FILE, read_history
 from basu.results.picture import Picture
+from basu.results.run_result import RunResult
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,10 +45,17 @@ class CaseResult:
 
     @property
     def document(self) -> dict[str, Any]:
-        """``result.json`` of the case: its criteria, phases and actors."""
-        found = read_json(self.folder / RESULT_FILE, "the case's", "play the case again")
-        assert isinstance(found, dict), "we have written it"
-        return found
+        """The case in ``result.json``: its criteria, phases and actors."""
+        return dict(read_case(self.folder).case)
+
+    @cached_property
+    def run(self) -> RunResult:
+        """The drive as a run: its scores, infractions and metrics, users' metrics among them, and its pictures.
+
+        Raises:
+            UserError: an earlier version played the case, or it left no folder.
+        """
+        return RunResult(self.folder)
 
     @cached_property
     def history(self) -> History:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from basu.managers import Live
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.base_manager import BaseManager
-    from basu.options.run import RunOptions
+    from basu.options.drive import DriveOptions
     from basu.running.drive import Driven
     from basu.running.preparation import SensorSet
     from basu.simulator import Simulator
@@ -37,8 +37,9 @@ class AgentDrive:
         spec: EpisodeSpec,
         agents: AgentsManager,
         sensors: SensorSet,
-        options: RunOptions,
+        options: DriveOptions,
         *,
+        agent: str,
         name: str,
         by_agent: bool,
         quiet: bool,
@@ -52,15 +53,15 @@ class AgentDrive:
             agents: a manager with a newly created agent.
             sensors: the sensors that the agent declares.
             options: what is recorded and shown.
+            agent: the agent's name.
             name: file name of the recorder log on a simulator at ``--host``.
             by_agent: True if a sensor that cannot be served is the agent's failure.
             quiet: True to print no progress and no messages.
         """
         self._simulator, self._agents, self._options, self._quiet = simulator, agents, options, quiet
-        self._log_name = name
+        self._agent, self._log_name = agent, name
         self._recording: RecordingManager | None = None
-        ros = options.ros2 or options.ros1 or options.rosbag is not None
-        is_watched = options.hud is not None or options.viewer or ros or agents.person is not None
+        is_watched = options.shows_sensors or agents.person is not None
         self.episode = Episode(
             simulator,
             spec,
@@ -101,18 +102,18 @@ class AgentDrive:
             here = str((self.episode.run.folder / LOG_FILE).resolve())
             self._recording = RecordingManager(here if self._simulator.own else f"{self._log_name}.log")
             found.append(self._recording)
-        return [*found, *_onlookers(self._options, live, quiet=self._quiet)]
+        return [*found, *_onlookers(self._options, live, self._agent, quiet=self._quiet)]
 
 
-def _onlookers(options: RunOptions, live: Live, *, quiet: bool) -> list[BaseManager]:
+def _onlookers(options: DriveOptions, live: Live, agent: str, *, quiet: bool) -> list[BaseManager]:
     """The managers that show the run: the window with its keys, Rerun's viewer, and ROS."""
     say = (lambda _: None) if quiet else print
-    found: list[BaseManager] = [*onlookers_for(options, live)]
+    found: list[BaseManager] = [*onlookers_for(options, live, agent)]
     if options.viewer:
         from basu.output.viewer.viewer_manager import ViewerManager  # noqa: PLC0415 - Rerun, an extra
 
         found.append(ViewerManager(live, print))
-    if options.ros2 or options.ros1 or options.rosbag is not None:
+    if options.is_ros:
         from basu.output.ros.run_managers import ros_managers  # noqa: PLC0415 - rosbags, an extra
 
         found += ros_managers(options, live, say)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 
     import carla
 
+    from basu.conditions import Sumo
     from basu.options.run import RunOptions
-    from basu.options.sumo import Sumo
 
 HOST = "127.0.0.1"
 PLACES = 20  # spawn points of the map that a network is tried on

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import time
+import traceback
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from basu.episode import Episode
     from basu.errors import AgentError
     from basu.managers.agents_manager import AgentsManager
+    from basu.metrics.result import Result
     from basu.outcome import Outcome
     from basu.records.history import History
 
@@ -22,6 +27,19 @@ class Driven(NamedTuple):
     first_frame: int | None  # the server's number of it
     bug: Exception | None  # an error of our own, to be raised again once all is written
     agent_error: AgentError | None  # what the agent failed with; its cause has the traceback
+
+
+class WrittenDrive(NamedTuple):
+    """A drive on a route or in a case that is over and written; its folder has no name yet."""
+
+    draft: Path
+    result: Result
+    bug: Exception | str | None = None  # an error of our own: itself, or its traceback from another process
+
+    def to_send(self) -> WrittenDrive:
+        """Return what another process may have of it: no record, which lies in the folder, and no exception."""
+        bug = "".join(traceback.format_exception(self.bug)) if isinstance(self.bug, Exception) else self.bug
+        return WrittenDrive(self.draft, replace(self.result, history=None), bug)
 
 
 def drive(episode: Episode, agents: AgentsManager) -> Driven:

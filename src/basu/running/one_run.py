@@ -6,7 +6,7 @@ import shutil
 import sys
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from basu.episode import EpisodeSpec
 from basu.episode.failures import outcome_of
@@ -16,7 +16,7 @@ from basu.managers.scenario_results import results_of
 from basu.metrics.registry import user_metrics
 from basu.output.report.documents import make_draft
 from basu.running.agent_drive import AgentDrive
-from basu.running.drive import Driven
+from basu.running.drive import Driven, WrittenDrive
 from basu.running.preparation import agents_fault, new_agents, sumo_folder
 from basu.running.run_folder import import_pictures, run_config, write_run_folder
 
@@ -26,10 +26,8 @@ if TYPE_CHECKING:
     from basu.episode import Episode, Towns
     from basu.episode.episode import Ground
     from basu.managers.agents_manager import AgentsManager
-    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
-    from basu.outcome import Outcome
     from basu.routing.route_file import RoutePoint
     from basu.running.preparation import Job, Plan
     from basu.simulator import Simulator
@@ -44,25 +42,11 @@ class Session:
     plan: Plan
     simulator: Simulator
     towns: Towns
-    quiet: bool = False  # no progress bar and no table
+    quiet: bool = False  # no progress bar
     pictures: bool = True  # whether each run gets its picture and its report
 
 
-class Finished(NamedTuple):
-    """A run that is over and written."""
-
-    outcome: Outcome
-    draft: Path  # its folder, not yet under its name
-    result: Result
-    bug: Exception | None  # an error of our own, to be raised once all is in its place
-
-    @property
-    def document(self) -> dict[str, Any]:
-        """``result.json``."""
-        return self.result.document()
-
-
-def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str) -> Finished:
+def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, name: str) -> WrittenDrive:
     """Make one run and write its folder as a draft for ``name`` in ``output``.
 
     Raises:
@@ -79,6 +63,7 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
         agents,
         session.plan.sensors,
         session.options,
+        agent=session.plan.loaded.name,
         name=name,
         by_agent=session.plan.loaded.file is not None,
         quiet=session.quiet,
@@ -118,12 +103,11 @@ def run_one(session: Session, agents: AgentsManager, job: Job, *, output: Path, 
             config,
             met,
             own,
-            quiet=session.quiet,
             pictures=session.pictures,
         )
     except UserError as error:
         raise UserError(f"{error}; {_rest_of(draft)}") from error
-    return Finished(driven.outcome, draft, result, driven.bug)
+    return WrittenDrive(draft, result, driven.bug)
 
 
 def _laid(episode: Episode, *, is_planned_by_agent: bool) -> Ground:
@@ -147,12 +131,12 @@ def next_agents(session: Session, job: Job) -> AgentsManager:
     Raises:
         UserError, AgentError: the agent cannot be made.
     """
-    agents = new_agents(session.plan.loaded, session.options, job.seed)
+    agents = new_agents(session.plan.loaded, session.options, job.seed, session.options.routes)
     agents.config = session.plan.agents.config
     return agents
 
 
-def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, output: Path, name: str) -> Finished:
+def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, output: Path, name: str) -> WrittenDrive:
     """Make one run of a series as `run_one` does; an agent that fails before its drive has had its run.
 
     Raises:
@@ -181,8 +165,8 @@ def run_counted(session: Session, agents: AgentsManager | None, job: Job, *, out
         access=plan.agents.access,
     )
     draft = make_draft(output, name)
-    result = write_run_folder(draft, driven, session.scoring, None, config, quiet=session.quiet, pictures=False)
-    return Finished(outcome, draft, result, None)
+    result = write_run_folder(draft, driven, session.scoring, None, config, pictures=False)
+    return WrittenDrive(draft, result)
 
 
 def _rest_of(draft: Path) -> str:

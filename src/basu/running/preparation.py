@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.agents.sensor_file import SensorSpec
+    from basu.options.drive import DriveOptions
     from basu.options.run import RunOptions
     from basu.scenarios.playable import Playable
 
@@ -96,7 +97,7 @@ def prepare(options: RunOptions, given: FoundAgent | None = None, *, has_conditi
         closed_ports=closed_ports(options.host, options.port, is_open=options.open),
     )
     with contextlib.nullcontext() if has_conditions else agents_fault(loaded):
-        agents = new_agents(loaded, options, options.seed, has_conditions=has_conditions)
+        agents = new_agents(loaded, options, options.seed, options.routes, has_conditions=has_conditions)
         sensors = sensor_set(agents, loaded)
     config = agents.config
     weather_called(config.weather)
@@ -148,10 +149,13 @@ def _scenarios(description: RouteDescription, options: RunOptions) -> tuple[Play
     return scenarios_on(description, options.scenario_files) if options.with_scenarios else ()
 
 
-def new_agents(loaded: FoundAgent, options: RunOptions, seed: int, *, has_conditions: bool = True) -> AgentsManager:
+def new_agents(
+    loaded: FoundAgent, options: DriveOptions, seed: int, routes: str | None = None, *, has_conditions: bool = True
+) -> AgentsManager:
     """Return a fresh agent, with everything random in Python begun anew.
 
-    Without ``has_conditions`` its wishes for route, vehicle, weather and traffic are ignored.
+    ``routes`` is the route file of the command line. Without ``has_conditions`` the wishes of the agent for route,
+    vehicle, weather and traffic are ignored.
     """
     random.seed(seed)
     np.random.seed(seed)  # noqa: NPY002 - for agents that use numpy's old generator; ours use neither
@@ -159,7 +163,7 @@ def new_agents(loaded: FoundAgent, options: RunOptions, seed: int, *, has_condit
     agents = AgentsManager(
         loaded,
         step_limit_s=options.step_limit_s,
-        routes=options.routes,
+        routes=routes,
         person=person,
         seed=seed,
         track=options.track,

@@ -7,9 +7,9 @@ import threading
 from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
+from basu.conditions import STEP_S
 from basu.files import places, write_bytes
 from basu.metrics.result import judge
-from basu.options.conditions import STEP_S
 from basu.options.run import RunOptions
 from basu.output.report.console import table
 from basu.output.report.documents import CONFIG_FILE, PICTURE_FILE, RESULT_FILE, TEXT_FILE, RunRecord, write_json
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from basu.metrics.registry import Metric
     from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
+    from basu.options.drive import DriveOptions
     from basu.routing.lane_graph import LaneGraph
     from basu.routing.route_file import RouteDescription
     from basu.running.drive import Driven
@@ -59,13 +60,64 @@ def run_config(
     ``ignored`` is a sentence about wishes of the agent that the benchmark ignored.
     """
     again = options_again(options, description, seed)
+    facts = drive_facts(
+        options,
+        loaded,
+        options.agent,
+        wishes,
+        description,
+        weather=weather_name(options, wishes, description),
+        own_simulator=own_simulator,
+        started=started,
+        seed=seed,
+        traffic=traffic,
+        log=log,
+        access=access,
+        ignored=ignored,
+    )
+    document = config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description))
+    return {**document, **facts}
+
+
+def drive_facts(
+    options: DriveOptions,
+    loaded: FoundAgent,
+    typed: str,
+    wishes: AgentConfig,
+    description: RouteDescription,
+    *,
+    weather: str,
+    own_simulator: bool,
+    started: datetime,
+    seed: int,
+    traffic: Mapping[str, int],
+    log: str | None,
+    access: Mapping[str, Any] | None,
+    ignored: str = "",
+) -> dict[str, Any]:
+    """Return the facts of a drive that stand in ``config.json``; ``result.json`` has most of them as its ``meta``.
+
+    Args:
+        options: what was asked for.
+        loaded: the agent.
+        typed: the agent as the user named it.
+        wishes: of the agent, as far as they count.
+        description: the route.
+        weather: its name.
+        own_simulator: whether no other program uses the simulator.
+        started: when the drive was prepared.
+        seed: of this one drive.
+        traffic: the numbers of vehicles and walkers.
+        log: CARLA's log, as the simulator gave its path; None where none was written.
+        access: of the agent to the simulator; None where nothing was driven.
+        ignored: a sentence about wishes that do not count.
+    """
     return {
-        **config_document(RUN, again, scoring, command(again, scoring), _files(again, loaded, wishes, description)),
         "started": started.isoformat(timespec="seconds"),
         "agent": {
             "name": loaded.name,
             "class": loaded.class_name,
-            "file": options.agent,
+            "file": typed,
             "confinement": loaded.confinement,
         },
         "agent_config": asdict(wishes),
@@ -73,11 +125,11 @@ def run_config(
         "own_route": description.is_own,
         "town": description.town,
         "seed": seed,
-        "weather": weather_name(options, wishes, description),
+        "weather": weather,
         "traffic": {**traffic, "density_per_km": options.traffic.density_per_km},
         "recording": _recording(options, log, own_simulator=own_simulator),
         "step_s": STEP_S,
-        "access": dict(access),
+        **({} if access is None else {"access": dict(access)}),
         "own_simulator": own_simulator,
         "notes": [*_notes(options, loaded), *([ignored] if ignored else [])],
     }
@@ -127,7 +179,7 @@ def _files(
             yield found
 
 
-def _notes(options: RunOptions, loaded: FoundAgent) -> list[str]:
+def _notes(options: DriveOptions, loaded: FoundAgent) -> list[str]:
     """Return what keeps a run from being repeated, in sentences."""
     if loaded.file is not None and not loaded.file.is_file():
         return [f"{loaded.name} is a class of a notebook or program; a run is repeatable with the agent in a file"]
@@ -142,7 +194,7 @@ def weather_name(options: RunOptions, wishes: AgentConfig, description: RouteDes
     return ROUTE_WEATHER if options.weather is None and description.weather else wishes.weather
 
 
-def _recording(options: RunOptions, log: str | None, *, own_simulator: bool) -> dict[str, str] | None:
+def _recording(options: DriveOptions, log: str | None, *, own_simulator: bool) -> dict[str, str] | None:
     """Return the place of CARLA's log: the run's folder, or the disk of a simulator that is not ours."""
     if log is None:
         return None
@@ -160,39 +212,17 @@ def write_run_folder(
     scenarios: Sequence[dict[str, Any]] = (),
     own: Sequence[Metric] = (),
     *,
-    quiet: bool = False,
     pictures: bool = True,
 ) -> Result:
-    """Write the folder of a run, print its table unless ``quiet``, and return its result.
+    """Write the folder of a run and return its result.
 
     ``scenarios`` are those on the route, ``own`` are users' metrics. Without ``pictures`` the folder gets neither
     picture nor report; `basu report` makes them from the folder later. ``lanes`` may be None where nothing was driven.
     """
     history = driven.history
-    ticks = 0 if history is None else len(history.frames)
-    meta = {
-        "simulated_s": ticks * STEP_S,
-        "wall_s": round(driven.wall_s, 3),
-        "ticks": ticks,
-        "step_s": STEP_S,
-        "first_server_frame": driven.first_frame,
-        "started": config["started"],
-        "seed": config["seed"],
-        "agent": config["agent"],
-        "vehicle": config["agent_config"]["vehicle"],
-        "weather": config["weather"],
-        "traffic": config["traffic"],
-        "route": config["route"],
-        "own_route": config["own_route"],
-        "town": config["town"],
-        "versions": config["versions"],
-        "access": config["access"],
-    }
-    result = judge(driven.outcome, history, scoring, meta, scenarios=scenarios, own=own)
+    result = judge(driven.outcome, history, scoring, meta_of(driven, config), scenarios=scenarios, own=own)
     document = result.document()
     text = table(result)
-    if not quiet:
-        print(text)
     write_json(folder / CONFIG_FILE, config)
     write_json(folder / RESULT_FILE, document)
     write_bytes(folder / TEXT_FILE, f"{_heading(config)}\n\n{text}\n".encode())
@@ -210,9 +240,30 @@ def write_run_folder(
 
         run = RunRecord(name=folder.name, config=config, result=result, history=history, streets=streets)
         write_report(folder, run)
-    if config["recording"] is not None and not quiet:
-        print(f"recording         {config['recording']['file']} ({config['recording']['where']})")
     return result
+
+
+def meta_of(driven: Driven, config: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what was driven, as the ``meta`` of a result; ``config`` is ``config.json`` of the drive."""
+    ticks = 0 if driven.history is None else len(driven.history.frames)
+    return {
+        "simulated_s": ticks * STEP_S,
+        "wall_s": round(driven.wall_s, 3),
+        "ticks": ticks,
+        "step_s": STEP_S,
+        "first_server_frame": driven.first_frame,
+        "started": config["started"],
+        "seed": config["seed"],
+        "agent": config["agent"],
+        "vehicle": config["agent_config"]["vehicle"],
+        "weather": config["weather"],
+        "traffic": config["traffic"],
+        "route": config["route"],
+        "own_route": config["own_route"],
+        "town": config["town"],
+        "versions": config["versions"],
+        **({"access": config["access"]} if "access" in config else {}),
+    }
 
 
 def import_pictures() -> None:

@@ -1,32 +1,31 @@
-"""``basu run``: an agent, a simulator, one or more routes; each run driven, scored and left in a folder."""
+"""``basu run``: an agent on one or more routes, each run driven, scored and left in a folder."""
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 from datetime import datetime, timezone
 from typing import TYPE_CHECKING
 
-from basu.episode import Towns
-from basu.episode.world import check_towns
 from basu.errors import UserError
+from basu.jobs.job import Job
 from basu.outcome import Status
-from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, publish, run_name
-from basu.routing.route_file import OWN_ROUTE
+from basu.output.report.console import table
+from basu.output.report.documents import CONFIG_FILE, LATEST, plain, point_latest, read_run, run_name
+from basu.running.batch import Batch
 from basu.running.exit_code import exit_code
-from basu.running.one_run import Session, next_agents, run_counted, run_one
-from basu.running.parallel_runs import check_parallel, run_in_parallel
 from basu.running.preparation import prepare
+from basu.running.run_player import OpenWorld, RunJobData, run_player
 from basu.running.series import conditions, open_series
-from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from pathlib import Path
 
     from basu.metrics.scoring import Scoring
     from basu.options.run import RunOptions
-    from basu.running.one_run import Finished
-    from basu.running.preparation import Job, Plan
+    from basu.running.batch import PublishedDrive
+    from basu.running.preparation import Job as RunJob
+    from basu.running.preparation import Plan
     from basu.running.series import Series
 
 BREAKING_OFF = frozenset({Status.INTERRUPTED, Status.SIMULATOR_FAILED})  # no further run would fare better
@@ -45,15 +44,67 @@ def run(options: RunOptions, scoring: Scoring) -> int:
     series = _series(options, scoring, prepared)
     jobs = [job for job in prepared.jobs if series is None or job.number not in series.done]
     worst = 0 if series is None else series.worst(options.require)
+    shown = series is not None or (options.workers > 1 and len(jobs) > 1)
     try:
-        if jobs:
-            play = run_in_parallel if options.workers > 1 and len(jobs) > 1 else _run_all
-            worst = max(worst, play(options, scoring, prepared, series, jobs))
+        for done in runs(options, scoring, OpenWorld(prepared), jobs, series):
+            if shown:
+                print(f"run {done.number + 1} of {len(prepared.jobs)}")
+            worst = max(worst, show(done, options))
     finally:
         if series is not None:
             print(series.table())
             print(f"series folder     {series.folder}")
     return worst
+
+
+def check_parallel(options: RunOptions) -> None:
+    """Check that runs may be driven at the same time.
+
+    Raises:
+        UserError: they share a simulator, a window, keys or topics.
+    """
+    if options.host is not None:
+        raise UserError("--workers starts a simulator for each worker; leave out --host, or --workers")
+    if options.needs_one_simulator:
+        raise UserError(
+            "--workers drives several runs at once, which no window, keys or topics follow; leave out --workers"
+        )
+
+
+def runs(
+    options: RunOptions, scoring: Scoring, here: OpenWorld, jobs: Sequence[RunJob], series: Series | None = None
+) -> Iterator[PublishedDrive]:
+    """Drive runs, one after the other in this process or by workers, and publish the folder of each.
+
+    In this process the runs end with one that is interrupted or loses the simulator.
+
+    Raises:
+        UserError, AgentError: a run cannot begin.
+        SimulatorError: the simulator failed before a run began.
+    """
+    if not jobs:
+        return
+    is_parallel = options.workers > 1 and len(jobs) > 1
+    batch = Batch(options.output, _names(here.plan, jobs, is_parallel=is_parallel)) if series is None else series
+    player = run_player(options, scoring, None if is_parallel else here)
+    to_play = [Job(job.number, RunJobData(job.number, batch.folder, batch.name(job.number))) for job in jobs]
+    with contextlib.closing(batch.play(player, to_play, options.workers)) as answers:
+        for done in answers:
+            if done.folder is not None:
+                point_latest(done.folder, options.output)
+            yield done
+            ended = None if done.written is None else done.written.result.outcome.status
+            if not is_parallel and ended in BREAKING_OFF:
+                return
+
+
+def _names(plan: Plan, jobs: Sequence[RunJob], *, is_parallel: bool) -> dict[int, str]:
+    """Return the names of the folders of runs by themselves; those at the same time tell their repetition."""
+    now = datetime.now(timezone.utc).astimezone()
+    return {
+        job.number: run_name(now, plan.loaded.name, f"{job.label}-{job.repetition}" if is_parallel else job.label)
+        for job in jobs
+    }
 
 
 def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | None:
@@ -72,47 +123,26 @@ def _series(options: RunOptions, scoring: Scoring, prepared: Plan) -> Series | N
     return open_series(folder, given, prepared.jobs, prepared.loaded.name, resume=options.resume)
 
 
-def _run_all(options: RunOptions, scoring: Scoring, prepared: Plan, series: Series | None, jobs: list[Job]) -> int:
-    """Run one job after the other in one simulator; the exit code of the worst."""
-    worst = 0
-    with simulator_for(options) as simulator:
-        session = Session(options, scoring, prepared, simulator, Towns(simulator))
-        for done, folder in runs(session, jobs, series):
-            print(f"result folder     {folder}")
-            print(f"to repeat         basu run --config {shlex.quote(str(folder / CONFIG_FILE))}")
-            if done.bug is not None:
-                raise done.bug
-            scores = None if done.result.scores is None else done.result.scores._asdict()
-            worst = max(worst, exit_code(done.outcome.status, scores, options.require))
-    return worst
-
-
-def runs(session: Session, jobs: Sequence[Job], series: Series | None = None) -> Iterator[tuple[Finished, Path]]:
-    """Run one job after the other; each run with its folder, until a run is interrupted or loses the simulator.
+def show(done: PublishedDrive, options: RunOptions) -> int:
+    """Show the result of a run and the place of its folder, and return its exit code.
 
     Raises:
-        UserError, AgentError: a run cannot begin.
-        SimulatorError: the simulator failed before a run began.
+        Exception: an error of our own in this process, once all is in its place.
     """
-    options, prepared = session.options, session.plan
-    wanted = {job.description.town for job in jobs}
-    check_towns(session.towns.names(wanted), wanted)
-    for nth, job in enumerate(jobs):
-        agents = prepared.agents if nth == 0 and job.seed == options.seed else None
-        if series is not None:
-            print(f"run {job.number + 1} of {len(prepared.jobs)}")
-            done = run_counted(session, agents, job, output=series.folder, name=series.name(job))
-            folder = series.publish(done.draft, job, done.document)
-        else:
-            name = run_name(datetime.now(timezone.utc).astimezone(), prepared.loaded.name, job.label)
-            done = run_one(session, agents or next_agents(session, job), job, output=options.output, name=name)
-            folder = publish(done.draft, _final(name, done))
-        point_latest(folder, options.output)
-        yield done, folder
-        if done.outcome.status in BREAKING_OFF:
-            return
-
-
-def _final(name: str, done: Finished) -> str:
-    """Return the name of a run's folder: that of a route that the agent has planned says that it is its own."""
-    return f"{name}{OWN_ROUTE}" if done.result.has_own_route and not name.endswith(OWN_ROUTE) else name
+    if done.written is None or done.folder is None:
+        assert done.failure is not None, "a drive without a folder has a reason"
+        print(f"basu: {done.failure.sentence}")
+        return int(done.failure.fault.value)
+    result = done.written.result
+    print(table(result))
+    if options.record:
+        recording = read_run(done.folder).config["recording"]
+        print(f"recording         {recording['file']} ({recording['where']})")
+    print(f"result folder     {done.folder}")
+    print(f"to repeat         basu run --config {shlex.quote(f'{done.folder}/{CONFIG_FILE}')}")
+    if isinstance(done.written.bug, Exception):
+        raise done.written.bug
+    if done.written.bug is not None:
+        print(done.written.bug)
+    scores = None if result.scores is None else result.scores._asdict()
+    return exit_code(result.outcome.status, scores, options.require)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import shutil
 from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
@@ -20,78 +19,72 @@ import basu
 from basu.errors import UserError
 from basu.files import write_bytes
 from basu.metrics.scoring import scoring_to_json
-from basu.outcome import Fault, Status
+from basu.options.run import RunOptions
+from basu.outcome import Status
+from basu.output.report.document_parts import SERIES_SCHEMA_VERSION
 from basu.output.report.documents import (
-    DRAFTS,
-    RESULT_FILE,
     SERIES_SCHEMA,
     plain,
     publish,
     read_document,
-    read_result,
     write_json,
 )
-from basu.output.report.series_document import SERIES_SCHEMA_VERSION, row, series_table, totals
-from basu.settings.option import fields_of, to_json
+from basu.output.report.series_document import row, series_table, totals
+from basu.settings.option import fields_of, gone_from, to_json
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from basu.metrics.result import Result
     from basu.metrics.scoring import Scoring
-    from basu.options.run import RunOptions
+    from basu.running.drive import WrittenDrive
+from basu.running.batch import Batch, counts
 from basu.running.exit_code import exit_code
 from basu.running.preparation import Job, Plan
 
 SERIES_FILE, SERIES_TEXT = "series.json", "series.txt"
-COUNTED = frozenset({Fault.NONE.name.lower(), Fault.AGENT.name.lower()})
-"""What ended otherwise says nothing of the agent, unless its record was unsafe before: that is a failure."""
 
 
-class Series:
-    """The series in a folder. ``open_series`` makes one."""
+class Series(Batch):
+    """The series in a folder, with its list and totals. ``open_series`` makes one."""
 
-    def __init__(self, folder: Path, document: dict[str, Any], names: Mapping[int, str]) -> None:
-        """Take up a series; ``names`` are the folders of its runs by number."""
-        self.folder, self._document, self._names = folder, document, names
+    def __init__(self, folder: Path, document: dict[str, Any], jobs: Mapping[int, Job], agent: str) -> None:
+        """Take up a series of ``jobs``, by number."""
+        super().__init__(folder, {number: _name(job, agent) for number, job in jobs.items()})
+        self._document, self._jobs = document, jobs
 
     @property
     def done(self) -> frozenset[int]:
         """The numbers of the runs that count."""
         return frozenset(each["number"] for each in self._document["runs"])
 
-    def name(self, job: Job) -> str:
-        """What the folder of a run is called."""
-        return self._names[job.number]
-
-    def publish(self, draft: Path, job: Job, document: Mapping[str, Any]) -> Path:
-        """Put a finished run in its place and count it; the folder.
+    def publish(self, written: WrittenDrive, number: int) -> Path:
+        """Put a finished run in its place and count it, or set it aside; return the folder.
 
         Raises:
             UserError: the disk does not let us.
         """
-        if document["fault"] not in COUNTED and document.get("passed") is not False:
-            folder = publish(draft, f"{self.name(job)}-{document['status']}")
-            self._document["set_aside"].append({"folder": folder.name, "status": document["status"]})
+        draft, result, name = written.draft, written.result, self.name(number)
+        if not counts(result):
+            status = result.outcome.status.value
+            folder = publish(draft, f"{name}-{status}")
+            self._document["set_aside"].append({"folder": folder.name, "status": status})
         else:
-            folder = publish(draft, self.name(job))
-            if folder.name != self.name(job):
+            folder = publish(draft, name)
+            if folder.name != name:
                 raise UserError(
-                    f"{folder.with_name(self.name(job))} is there already: another command drives the series "
+                    f"{folder.with_name(name)} is there already: another command drives the series "
                     f"{self.folder.name} at the same time; this run is left in {folder.name} and not counted"
                 )
-            self._count(document, job.number, job.repetition)
+            self._count(result, number)
         self.write()
         return folder
 
-    def take_in(self, jobs: tuple[Job, ...]) -> None:
+    def take_in(self) -> None:
         """Count the runs that were finished and not yet listed, and throw drafts away."""
-        for draft in self.folder.glob(DRAFTS):
-            if draft.is_dir():
-                shutil.rmtree(draft)
-        for job in jobs:
-            folder = self.folder / self.name(job)
-            if job.number not in self.done and (folder / RESULT_FILE).exists():
-                self._count(read_result(folder), job.number, job.repetition)
+        self.clear()
+        for number, result in self.finished(but=self.done):
+            self._count(result, number)
 
     def write(self) -> None:
         """Write the list and the totals, at once or not at all.
@@ -112,9 +105,9 @@ class Series:
         rows = self._document["runs"]
         return max((exit_code(Status(each["status"]), each["scores"], required) for each in rows), default=0)
 
-    def _count(self, document: Mapping[str, Any], number: int, repetition: int) -> None:
-        rows = self._document["runs"]
-        rows.append(row(document, number=number, repetition=repetition, folder=self._names[number]))
+    def _count(self, result: Result, number: int) -> None:
+        rows, repetition = self._document["runs"], self._jobs[number].repetition
+        rows.append(row(result.document(), number=number, repetition=repetition, folder=self.name(number)))
         rows.sort(key=lambda each: each["number"])
 
 
@@ -166,7 +159,7 @@ def open_series(folder: Path, given: Mapping[str, Any], jobs: tuple[Job, ...], a
         UserError: there is a series already, or none to go on with, or one that was begun differently.
     """
     path = folder / SERIES_FILE
-    names = {job.number: _name(job, agent) for job in jobs}
+    by_number = {job.number: job for job in jobs}
     if not resume:
         if path.exists():
             done = _read(path)["totals"]
@@ -181,7 +174,7 @@ def open_series(folder: Path, given: Mapping[str, Any], jobs: tuple[Job, ...], a
             "runs": [],
             "set_aside": [],
         }
-        series = Series(folder, document, names)
+        series = Series(folder, document, by_number, agent)
         try:
             folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -192,8 +185,8 @@ def open_series(folder: Path, given: Mapping[str, Any], jobs: tuple[Job, ...], a
         raise UserError(f"there is no series in {folder} to go on with; run without --resume to begin it")
     document = _read(path)
     _compare(document["options"], given, folder)
-    series = Series(folder, document, names)
-    series.take_in(jobs)
+    series = Series(folder, document, by_number, agent)
+    series.take_in()
     series.write()
     return series
 
@@ -223,6 +216,8 @@ def _compare(before: Mapping[str, Any], now: Mapping[str, Any], folder: Path) ->
     Raises:
         UserError: names what is different.
     """
+    gone = {f"--{name.replace('_', '-')}" for name in gone_from(RunOptions)}
+    before = {name: value for name, value in before.items() if value or name not in gone}
     changed = changes(before, json.loads(json.dumps(now)))  # as the file has it
     if changed:
         raise UserError(

@@ -9,15 +9,19 @@ from datetime import datetime, timezone
 from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.manual.session import read_session
+from basu.episode import Towns
 from basu.errors import SimulatorError, UserError
 from basu.files import find
 from basu.metrics.infraction import Infraction
 from basu.metrics.score import driving_score
 from basu.outcome import Fault, Status
 from basu.output.report.comparison_page import compare
-from basu.output.report.documents import LATEST, read_run
-from basu.running.runner import run
+from basu.output.report.documents import read_run
+from basu.running.preparation import prepare
+from basu.running.run_player import OpenWorld
+from basu.running.runner import runs, show
 from basu.running.table_5_1 import PRINTED, ROUNDING, SCORING, in_page, measured, text
+from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,6 +29,7 @@ if TYPE_CHECKING:
 
     from basu.options.run import RunOptions
     from basu.running.table_5_1 import Measured, Printed
+    from basu.simulator import Simulator
 
 
 SMALL = 0.0005  # of a score that is printed with three digits
@@ -154,10 +159,12 @@ def thesis(options: RunOptions) -> int:
         raise UserError(f"{folder} could not be made: {error.strerror}; name another place with --output") from error
     ours: dict[str, Measured] = {}
     folders = []
-    for number, case in enumerate(CASES, start=1):
-        print(f"\n{number} of {len(CASES)}: {case.row} ({case.agent})")
-        folders.append(_drive(case, replace(options, output=folder)))
-        ours[case.row] = _row(folders[-1])
+    with simulator_for(options.simulator) as simulator:
+        towns = Towns(simulator)
+        for number, case in enumerate(CASES, start=1):
+            print(f"\n{number} of {len(CASES)}: {case.row} ({case.agent})")
+            folders.append(_drive(case, replace(options, output=folder), simulator, towns))
+            ours[case.row] = _row(folders[-1])
     by = read_session(find(KEYS, "session of keys")).by
     explained = differences(PRINTED, ours, by)
     written = compare(folders, folder, in_page(PRINTED, ours, explained))
@@ -168,11 +175,14 @@ def thesis(options: RunOptions) -> int:
     return 0
 
 
-def _drive(case: Case, options: RunOptions) -> Path:
-    """Drive one of them; the folder it left."""
+def _drive(case: Case, options: RunOptions, simulator: Simulator, towns: Towns) -> Path:
+    """Drive one of the four runs in the simulator of all, and return its folder."""
     wanted = replace(options, agent=case.agent, keys=case.keys, routes=ROUTE, vehicle=VEHICLE, weather=WEATHER)
-    run(wanted, SCORING)
-    return (options.output / LATEST).resolve()
+    plan = prepare(wanted)
+    (done,) = runs(wanted, SCORING, OpenWorld(plan, simulator, towns), plan.jobs)
+    show(done, wanted)
+    assert done.folder is not None, "a drive in this process that cannot begin raises its error"
+    return done.folder
 
 
 def _row(folder: Path) -> Measured:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from basu.scenarios.nhtsa import BURDENS, PRINTED_TOTAL, Group
-from basu.scenarios.shares import Result
+from basu.scenarios.shares import CountedCase
 from basu.scenarios.verdict import Verdict
 
 if TYPE_CHECKING:
@@ -31,10 +31,10 @@ ASSUMPTIONS = (
 )
 
 
-def results_from(documents: Iterable[Mapping[str, Any]]) -> list[Result]:
+def results_from(documents: Iterable[Mapping[str, Any]]) -> list[CountedCase]:
     """Results out of the documents of cases (their ``result.json``)."""
     return [
-        Result(
+        CountedCase(
             case=document["id"],
             scenario=document["scenario"],
             group=Group(document["group"]),
@@ -49,9 +49,9 @@ def results_from(documents: Iterable[Mapping[str, Any]]) -> list[Result]:
     ]
 
 
-def not_played(about: Mapping[str, Any]) -> Result:
+def not_played(about: Mapping[str, Any]) -> CountedCase:
     """The result of a case of the suite that was not played, by the facts of the case."""
-    return Result(
+    return CountedCase(
         case=about["id"],
         scenario=about["scenario"],
         group=Group(about["group"]),

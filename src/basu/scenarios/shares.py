@@ -32,7 +32,7 @@ CONTROL_DRIVERS = {
 MARGINS = ("distance_m", "ttc_s", "pet_s")
 
 
-class Result(NamedTuple):
+class CountedCase(NamedTuple):
     """What one agent made of one case."""
 
     case: str  # its id
@@ -87,13 +87,13 @@ class CrashShares(NamedTuple):
     not_exercised: int
     collisions: int
     at_fault: int
-    left_out: tuple[Result, ...]  # for faults of others, and not played
+    left_out: tuple[CountedCase, ...]  # for faults of others, and not played
     cases: int  # of the suite
     judged: int  # of them, passed or failed
     narrowest: tuple[Narrowest, ...]  # by scenario, in the order in which they come
 
 
-def crash_shares(results: Sequence[Result]) -> CrashShares:
+def crash_shares(results: Sequence[CountedCase]) -> CrashShares:
     """Weigh the results of one agent."""
     counted = [result for result in results if result.verdict.counts]
     absent = [result for result in results if result.verdict is Verdict.NOT_EXERCISED]
@@ -124,12 +124,12 @@ def crash_shares(results: Sequence[Result]) -> CrashShares:
     )
 
 
-def _strata(group: Group, results: Sequence[Result], *, whole_group: bool = False) -> list[Stratum]:
+def _strata(group: Group, results: Sequence[CountedCase], *, whole_group: bool = False) -> list[Stratum]:
     """The scenarios of a group with their weights.
 
     Weights sum to 1; with ``whole_group``, to the part of the group's crashes covered by the played scenarios.
     """
-    by_scenario: dict[str, list[Result]] = defaultdict(list)
+    by_scenario: dict[str, list[CountedCase]] = defaultdict(list)
     for result in results:
         if result.group is group:
             by_scenario[result.scenario].append(result)
@@ -160,8 +160,8 @@ def _group_share(
     group: Group,
     exercised: Sequence[Stratum],
     shown: Sequence[Stratum],
-    counted: Sequence[Result],
-    absent: Sequence[Result],
+    counted: Sequence[CountedCase],
+    absent: Sequence[CountedCase],
 ) -> GroupShare:
     """The share of one group."""
     return GroupShare(
@@ -185,16 +185,16 @@ def _weighed(strata: Mapping[Group, Sequence[Stratum]], groups: Sequence[Group],
     )
 
 
-def _narrowest(counted: Sequence[Result]) -> tuple[Narrowest, ...]:
+def _narrowest(counted: Sequence[CountedCase]) -> tuple[Narrowest, ...]:
     """The least margins of the cases that were passed."""
-    by_scenario: dict[str, list[Result]] = defaultdict(list)
+    by_scenario: dict[str, list[CountedCase]] = defaultdict(list)
     for result in counted:
         if result.verdict is Verdict.SUCCESS:
             by_scenario[result.scenario].append(result)
     return tuple(_narrowest_of(scenario, passed) for scenario, passed in by_scenario.items())
 
 
-def _narrowest_of(scenario: str, passed: Sequence[Result]) -> Narrowest:
+def _narrowest_of(scenario: str, passed: Sequence[CountedCase]) -> Narrowest:
     """Of one scenario."""
     least: dict[str, float | None] = {}
     cases: dict[str, str | None] = {}

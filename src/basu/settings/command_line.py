@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from basu.errors import UserError
 from basu.settings.forms import choices, form_of
-from basu.settings.option import Field, Settings, bounds, fields_of, suggestion
+from basu.settings.option import Field, Settings, bounds, fields_of, gone_from, suggestion
 
 TYPED = "typed__"  # begins the names of options in the namespace
 UNKNOWN = re.compile(r"unrecognized arguments: (.*)")
@@ -22,6 +22,7 @@ class Parser(argparse.ArgumentParser):
     def __init__(self, *args: Any, **kwargs: Any) -> None:  # noqa: ANN401 - as argparse has them
         """Make the parser; see argparse."""
         super().__init__(*args, **{"allow_abbrev": False, **kwargs})
+        self.gone: dict[str, str] = {}  # flags of earlier versions, and what replaces each
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:  # noqa: ANN401 - as argparse has it
         """Parse; an option that does not exist is an error here, where the command's options are known."""
@@ -29,6 +30,8 @@ class Parser(argparse.ArgumentParser):
         unknown = [word for word in rest if word.startswith("-")]
         if unknown:
             name = unknown[0].partition("=")[0]
+            if name in self.gone:
+                self.error(f"{name} is no option any more: {self.gone[name]}")
             flags = [flag for action in self._actions for flag in action.option_strings if flag.startswith("--")]
             hint = suggestion(name, flags, or_all=False)
             self.error(f"there is no option {name}" + (f"; {hint}" if hint else ""))
@@ -53,6 +56,8 @@ class Parser(argparse.ArgumentParser):
 def add_options(parser: argparse.ArgumentParser, model: type[Settings], only: Iterable[str] | None = None) -> None:
     """Add a model's options to a parser, in their groups; ``only`` names the fields that are wanted."""
     wanted = None if only is None else set(only)
+    if isinstance(parser, Parser) and wanted is None:
+        parser.gone |= {f"--{name.replace('_', '-')}": sentence for name, sentence in gone_from(model).items()}
     groups: dict[str, argparse._ArgumentGroup] = {}
     for field in fields_of(model):
         if wanted is None or field.name in wanted:

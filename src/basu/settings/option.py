@@ -67,6 +67,7 @@ class Settings:
     """Base of settings models: every instance, however it was made, keeps the bounds of its options."""
 
     __slots__ = ()
+    GONE: ClassVar[Mapping[str, str]] = {}  # options of earlier versions by field name, and what replaces each
     __pydantic_config__: ClassVar[Mapping[str, object]] = {"extra": "forbid", "allow_inf_nan": False}
 
     def __post_init__(self) -> None:
@@ -103,6 +104,11 @@ class Layer(NamedTuple):
             return f"{flag} {key}".strip()
         key = ".".join(each for each in (self.section, path) if each)
         return f"{self.source}: {key}" if self.source else key
+
+
+def gone_from(model: type) -> dict[str, str]:
+    """Return the options that earlier versions of a model had, with the sentence about what replaces each."""
+    return {name: sentence for base in model.__mro__ for name, sentence in vars(base).get("GONE", {}).items()}
 
 
 _FIELDS: dict[type, tuple[Field, ...]] = {}

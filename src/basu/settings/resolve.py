@@ -14,7 +14,7 @@ from typing import Any, TypeVar, get_args
 from pydantic import TypeAdapter, ValidationError
 
 from basu.errors import UserError
-from basu.settings.option import Field, Layer, OptionError, Settings, fields_of, suggestion, to_json
+from basu.settings.option import Field, Layer, OptionError, Settings, fields_of, gone_from, suggestion, to_json
 
 Model = TypeVar("Model", bound=Settings)
 
@@ -87,6 +87,9 @@ def _known(model: type[Settings], layer: Layer) -> dict[str, Any]:
     values = {name: _plain(layer.name(model, str(name)), value) for name, value in layer.values.items()}
     values = model.completed(values, layer.source)
     names = [field.name for field in fields_of(model)]
+    for name, sentence in gone_from(model).items():
+        if name in values and values.pop(name):  # an earlier version wrote False where it was not wanted
+            raise UserError(f"{layer.name(model, name)} is no option any more: {sentence}")
     for name in values:
         if name not in names:
             raise UserError(f"{layer.name(model, str(name))} means nothing; {suggestion(str(name), names)}")

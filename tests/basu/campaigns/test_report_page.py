@@ -50,7 +50,7 @@ def page_file(
         at = folder_of(folder, each)
         write_history(at, crossing(brakes=False))
         write_streets(at, STREETS)
-        write_json(at / RESULT_FILE, failed())
+        write_json(at / RESULT_FILE, {**failed(), "schema_version": 2})
     told = folder_of(folder, kept[1]) / "drive.json"
     document = read_json(told, "the document")
     write_json(told, {**document, "row": {**document["row"], "message": LONG}})

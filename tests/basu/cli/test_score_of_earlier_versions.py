@@ -59,7 +59,7 @@ def test_a_scenario_cases_folder_and_that_of_all_cases_say_how_to_repeat_them(
     folder = shutil.copytree(EARLIER, tmp_path / "case")
     (folder / "result.json").write_text('{"id": "roundabout_1", "status": "Completed", "verdict": "SUCCESS"}')
     assert main(["score", str(folder)]) == 2
-    assert "is the folder of a played scenario case" in (said := capsys.readouterr().err)
+    assert "is a case that an earlier version of basu played, without a score" in (said := capsys.readouterr().err)
     assert f"basu scenario run --config {folder / 'config.json'}" in said
     (tmp_path / "matrix.json").write_text("{}")
     assert main(["score", str(tmp_path)]) == 2

@@ -24,7 +24,7 @@ from basu.errors import AgentCrashedError
 from basu.managers.base_manager import WorldChanges
 from basu.managers.conduct import Conduct, is_same_control
 from basu.records.history.files import read_history
-from basu.running import runner
+from basu.running import run_player
 from basu.running.scenario_runs import player
 from basu.simulator import OwnServer, Simulator, connect, linden_command
 from cheating_agent import cheating_agent
@@ -104,7 +104,7 @@ def result_of(folder: Path) -> dict[str, Any]:
 def test_nothing_that_an_agent_tries_changes_its_drive(
     ours: Ours, route_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(runner, "simulator_for", ours)
+    monkeypatch.setattr(run_player, "simulator_for", ours)
     options = ["--routes", str(route_file), "--output", str(tmp_path / "runs"), "--stop-after", "3"]
     main(["run", str(cheating_agent(tmp_path, "honest", when="> 999", deed="pass")), *options])
     honest, alone = result_of(tmp_path / "runs"), read_history(tmp_path / "runs" / "latest")
@@ -131,9 +131,9 @@ def test_nothing_that_an_agent_tries_changes_others(
         for path in (tmp_path / "runs" / "latest").glob("*/*/result.json")
     }
     (honest, alone), (result, history) = found["honest"], found["cheat"]
-    assert result["verdict"] == honest["verdict"]
+    assert result["case"]["verdict"] == honest["case"]["verdict"]
     assert history.frames.tolist() == alone.frames.tolist()
-    assert set(result["access"]["refused"]) == set(AMONG_OTHERS)
+    assert set(result["meta"]["access"]["refused"]) == set(AMONG_OTHERS)
 
 
 @pytest.mark.usefixtures("one_server")

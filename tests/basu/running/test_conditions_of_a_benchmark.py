@@ -14,6 +14,7 @@ from basu.agents.loader import LoadedAgent
 from basu.agents.process.remote_agent import AgentInProcess, find_agent
 from basu.campaigns.player import PlayerSettings, _after, _Player
 from basu.cli import main
+from basu.conditions import SimulatorSpec
 from basu.episode import Towns
 from basu.errors import AgentCrashedError
 from basu.jobs.job import After
@@ -50,7 +51,7 @@ def chooser(folder: Path, config: str = "{}", points: str = "None") -> Path:
 
 @pytest.fixture
 def at_server(simulator: RunningServer) -> Iterator[Simulator]:
-    with simulator_for(RunOptions(host="127.0.0.1", port=simulator.port)) as found:
+    with simulator_for(SimulatorSpec(host="127.0.0.1", port=simulator.port)) as found:
         yield found
 
 

@@ -8,7 +8,7 @@ import pytest
 from basu.cli import main
 from basu.errors import UserError
 from basu.options.run import RunOptions
-from basu.running.parallel_runs import check_parallel
+from basu.running.runner import check_parallel
 
 VOLATILE = {"wall_s", "started", "first_server_frame"}  # of the meta: times, and the age of the server
 

@@ -17,6 +17,7 @@ from basu.options.run import RunOptions
 from basu.outcome import Status
 from basu.output.report.documents import make_draft, publish
 from basu.routing.route_file import RouteDescription
+from basu.running.batch import WrittenDrive
 from basu.running.preparation import Job
 from basu.running.series import RESOLVED, Series, conditions, open_series
 from basu.settings.option import fields_of
@@ -37,14 +38,14 @@ def finished(
     series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False
 ) -> tuple[Path, dict[str, Any]]:
     """A run that is written and not yet in its place."""
-    draft, document = make_draft(series.folder, series.name(job)), a_result(status, safe=safe)
+    draft, document = make_draft(series.folder, series.name(job.number)), a_result(status, safe=safe)
     (draft / "result.json").write_text(json.dumps(document))
     return draft, document
 
 
 def run(series: Series, job: Job, status: Status = Status.COMPLETED, *, safe: bool = False) -> Path:
     draft, document = finished(series, job, status, safe=safe)
-    return series.publish(draft, job, document)
+    return series.publish(WrittenDrive(draft, document), job.number)
 
 
 def listed(folder: Path) -> dict[str, Any]:
@@ -74,6 +75,14 @@ def test_a_series_goes_on_where_it_was_broken_off(tmp_path: Path) -> None:
     assert opened(tmp_path, resume=True).done == {0, 1}
 
 
+def test_a_series_with_an_unused_option_of_an_earlier_version_goes_on(tmp_path: Path) -> None:
+    run(opened(tmp_path, given={**GIVEN, "--sumo-sublane": False}), JOBS[0])
+    assert opened(tmp_path, resume=True).done == {0}
+    opened(tmp_path / "other", given={**GIVEN, "--sumo-sublane": True})
+    with pytest.raises(UserError, match="--sumo-sublane was True and is None"):
+        opened(tmp_path / "other", resume=True)
+
+
 def test_half_a_run_is_thrown_away(tmp_path: Path) -> None:
     series = opened(tmp_path)
     finished(series, JOBS[0])  # killed here
@@ -85,7 +94,7 @@ def test_half_a_run_is_thrown_away(tmp_path: Path) -> None:
 def test_a_finished_run_that_is_not_yet_listed_is_taken_in_once(tmp_path: Path) -> None:
     series = opened(tmp_path)
     draft, _ = finished(series, JOBS[2])
-    publish(draft, series.name(JOBS[2]))  # killed here
+    publish(draft, series.name(JOBS[2].number))  # killed here
     for _ in range(2):
         assert opened(tmp_path, resume=True).done == {2}
     assert listed(tmp_path)["totals"]["done"] == 1
@@ -102,7 +111,7 @@ def test_a_full_disk_loses_no_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", full)
         with pytest.raises(UserError, match=r"series\.json .* could not be written: No space left on device"):
-            series.publish(draft, JOBS[1], document)
+            series.publish(WrittenDrive(draft, document), JOBS[1].number)
     assert listed(tmp_path)["totals"]["done"] == 1  # the old list, whole
     assert opened(tmp_path, resume=True).done == {0, 1}
 

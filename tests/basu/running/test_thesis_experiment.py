@@ -1,55 +1,61 @@
 """Claims about driving the experiment: in a live simulator as far as it is short, and what ends it."""
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from basu.cli import main
 from basu.options.run import RunOptions
 from basu.outcome import Outcome, Status
-from basu.output.report.documents import RunRecord, point_latest
+from basu.output.report.documents import RunRecord
 from basu.running import thesis_experiment
+from basu.running.thesis_experiment import Case
 from fakes.run_records import crashing, record, written
 from servers import RunningServer
 
 
-def leaving(made: Callable[[str], RunRecord]) -> Callable[[RunOptions, object], int]:
-    """A run that takes no time and writes the given results."""
+@pytest.fixture(name="leaving")
+def leaving_(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[str], RunRecord]], None]:
+    """Replace the drives by ones that take no time, need no simulator and leave the given results."""
 
-    def run(options: RunOptions, _scoring: object) -> int:
-        folder = written(options.output / options.agent, made(options.agent))
-        point_latest(folder, options.output)
-        return 0
+    def leaving(made: Callable[[str], RunRecord]) -> None:
+        def drive(case: Case, options: RunOptions, *_: object) -> Path:
+            return written(options.output / case.agent, made(case.agent))
 
-    return run
+        monkeypatch.setattr(thesis_experiment, "_drive", drive)
+        monkeypatch.setattr(thesis_experiment, "simulator_for", lambda _: nullcontext(SimpleNamespace()))
+
+    return leaving
 
 
 def test_all_four_are_driven_and_stand_beside_the_thesis(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, leaving: Callable[[Callable[[str], RunRecord]], None], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(thesis_experiment, "run", leaving(lambda agent: record(crashing(), agent=agent)))
+    leaving(lambda agent: record(crashing(), agent=agent))
     assert main(["experiment", "thesis", "--output", str(tmp_path)]) == 0
     told = capsys.readouterr().out
     assert "0.13 does not follow from one collision and one speeding" in told
     assert "wall time" in told
     (folder,) = tmp_path.glob("experiment-thesis-*")
     assert {path.name for path in folder.iterdir()} == {
-        "basic", "deviating", "forward", "human", "latest", "compare.html", "compare.png",
+        "basic", "deviating", "forward", "human", "compare.html", "compare.png",
     }  # fmt: skip
     assert "Beside table 5.1" in (folder / "compare.html").read_text()
 
 
 @pytest.mark.parametrize(("status", "code"), [("SetupFailed", 2), ("SimulatorFailed", 3), ("Interrupted", 130)])
 def test_a_drive_that_is_none_ends_it_with_its_own_exit_code(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, status: str, code: int
+    tmp_path: Path, leaving: Callable[[Callable[[str], RunRecord]], None], status: str, code: int
 ) -> None:
     def failed(agent: str) -> RunRecord:
         run = record(None, agent=agent)
         return replace(run, result=replace(run.result, outcome=Outcome(Status(status), "so it ended")))
 
-    monkeypatch.setattr(thesis_experiment, "run", leaving(failed))
+    leaving(failed)
     assert main(["experiment", "thesis", "--output", str(tmp_path)]) == code
 
 

@@ -7,23 +7,23 @@ from numpy.typing import NDArray
 from basu.intervals import Stratum, weighted
 from basu.scenarios.cases import cases_of
 from basu.scenarios.nhtsa import Group
-from basu.scenarios.shares import Result, crash_shares
+from basu.scenarios.shares import CountedCase, crash_shares
 from basu.scenarios.verdict import Verdict
 
 DRAWS = 200
 
 
 @pytest.fixture(scope="module")
-def cases() -> list[Result]:
+def cases() -> list[CountedCase]:
     """All cases of the library, as passed ones."""
     playables = cases_of(("all",), ())
     return [
-        Result(each.case.name, each.case.type, Group(each.scenario.group), Verdict.SUCCESS, "", {})
+        CountedCase(each.case.name, each.case.type, Group(each.scenario.group), Verdict.SUCCESS, "", {})
         for each in playables
     ]
 
 
-def covered(cases: list[Result], rates: NDArray[np.float64], seed: int) -> float:
+def covered(cases: list[CountedCase], rates: NDArray[np.float64], seed: int) -> float:
     """The share of draws in which the interval of the crash-cost share holds what the rates (N,) of the cases make."""
     dice, hits = np.random.default_rng(seed), 0
     truth = expected(cases, rates)
@@ -39,7 +39,7 @@ def covered(cases: list[Result], rates: NDArray[np.float64], seed: int) -> float
     return hits / DRAWS
 
 
-def expected(cases: list[Result], rates: NDArray[np.float64]) -> float:
+def expected(cases: list[CountedCase], rates: NDArray[np.float64]) -> float:
     """The crash-cost share that the rates (N,) of the cases make: it is linear in them."""
     none = [case._replace(verdict=Verdict.FAILURE) for case in cases]
     if np.ptp(rates) == 0.0:
@@ -56,13 +56,13 @@ def expected(cases: list[Result], rates: NDArray[np.float64]) -> float:
 
 
 @pytest.mark.parametrize("rate", [0.5, 0.8, 0.9, 0.95])
-def test_intervals_cover_where_every_case_has_the_same_rate(cases: list[Result], rate: float) -> None:
+def test_intervals_cover_where_every_case_has_the_same_rate(cases: list[CountedCase], rate: float) -> None:
     assert len(cases) > 150
     assert covered(cases, np.full(len(cases), rate), seed=1) >= 0.94
 
 
 @pytest.mark.parametrize("rate", [0.5, 0.8, 0.9, 0.95])
-def test_intervals_cover_where_scenarios_have_rates_of_their_own(cases: list[Result], rate: float) -> None:
+def test_intervals_cover_where_scenarios_have_rates_of_their_own(cases: list[CountedCase], rate: float) -> None:
     dice = np.random.default_rng(7)
     own = {name: dice.beta(4.0 * rate, 4.0 * (1.0 - rate)) for name in dict.fromkeys(case.scenario for case in cases)}
     assert covered(cases, np.array([own[case.scenario] for case in cases]), seed=2) >= 0.94

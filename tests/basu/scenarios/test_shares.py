@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from basu.scenarios.nhtsa import BURDENS, Group
 from basu.scenarios.share_documents import ASSUMPTIONS, results_from, sentence, shares_to_json
-from basu.scenarios.shares import Result, crash_shares
+from basu.scenarios.shares import CountedCase, crash_shares
 from basu.scenarios.verdict import Verdict
 
 OK, LOST, BROKE, SPOILT = Verdict.SUCCESS, Verdict.FAILURE, Verdict.AGENT_FAULT, Verdict.SIMULATOR_FAULT
@@ -16,10 +16,10 @@ ABSENT = Verdict.NOT_EXERCISED
 VERDICTS = st.sampled_from([OK, LOST, BROKE, ABSENT, SPOILT, Verdict.SETUP_FAULT])
 
 
-def result(group: Group, scenario: str, number: int, verdict: Verdict, distance_m: float | None = None) -> Result:
+def result(group: Group, scenario: str, number: int, verdict: Verdict, distance_m: float | None = None) -> CountedCase:
     """A case with a name of its own."""
     margins = {"distance_m": distance_m, "ttc_s": None, "pet_s": None}
-    return Result(f"{scenario}_{number}", scenario, group, verdict, "so it was", margins)
+    return CountedCase(f"{scenario}_{number}", scenario, group, verdict, "so it was", margins)
 
 
 def test_the_share_of_two_groups_is_weighed_by_their_burden() -> None:

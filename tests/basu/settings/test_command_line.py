@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from basu.cli import parser
+from basu.cli import main, parser
 from basu.errors import UserError
 from basu.metrics.scoring import Scoring
 from basu.options.run import RunOptions
@@ -29,7 +29,6 @@ ANY = st.text(st.characters(exclude_categories=("C",)), min_size=1, max_size=12)
 NAMES = st.text(st.characters(exclude_categories=("C",), exclude_characters=",=-"), min_size=1, max_size=12)
 SPECIAL: dict[str, st.SearchStrategy[Any]] = {
     "hud_size": st.tuples(st.integers(640, 7680), st.integers(480, 4320)).map(list),
-    "hud_camera": st.tuples(st.integers(64, 3840), st.integers(48, 2160)).map(list),
     "maps": st.lists(st.sampled_from([str(folder) for folder in Path(__file__).parents[:3]]), max_size=2),
     "sumo": st.sampled_from((None, SUMO_DEMAND, SUMO_RANDOM, SUMO_OFF)),  # a file would have to be there
 }
@@ -68,7 +67,7 @@ def refused_by_sumo(given: dict[str, Any]) -> tuple[str, ...]:
     demand = ("sumo_hour", "sumo_scale")
     density = ("traffic_density",) if given.get("sumo") == SUMO_RANDOM else ()
     if given.get("sumo_port") is not None:  # that SUMO has its own options
-        return (*demand, *density, "sumo_sublane", "sumo_output")
+        return (*demand, *density, "sumo_output")
     return (*demand, *density) if density else ()
 
 
@@ -178,3 +177,12 @@ def test_an_unknown_option_gets_a_suggestion(
 def test_a_value_that_an_option_cannot_have_is_named_with_its_flag(words: list[str], sentence: str) -> None:
     with pytest.raises(UserError, match=f"^{sentence}"):
         heard(RunOptions, words)
+
+
+@pytest.mark.parametrize("command", [["run", "basic"], ["scenario", "run", "all"]])
+def test_a_flag_of_an_earlier_version_is_refused_with_what_replaces_it(
+    command: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        main([*command, "--hud-camera", "96x64"])
+    assert "--hud-camera is no option any more: the camera's picture has half" in capsys.readouterr().err

@@ -1,5 +1,6 @@
 """Claims about config.json as a file: what is read back, what is refused and how, and what is warned of."""
 
+import dataclasses
 import json
 from pathlib import Path
 from typing import Any
@@ -31,7 +32,7 @@ def test_a_config_holds_every_option_and_gives_back_what_repeats_the_run(tmp_pat
     path = written(tmp_path, options)
     document = json.loads(path.read_text())
     names = {*document["options"], *document["session"]}
-    assert names == set(RunOptions.__dataclass_fields__)
+    assert names == {field.name for field in dataclasses.fields(RunOptions)}
     config = read_config(path, RUN, RunOptions)
     assert resolve(RunOptions, [config.options]) == RunOptions(seed=4, walkers=3, step_limit_s=2.0)
     assert resolve(Scoring, [config.scoring]) == Scoring()

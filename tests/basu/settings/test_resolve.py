@@ -81,3 +81,9 @@ def test_a_flag_can_be_undone() -> None:
 def test_bounds_hold_for_models_that_are_made_directly() -> None:
     with pytest.raises(UserError, match="walkers is -2; it must be 0 or more"):
         RunOptions(walkers=-2)
+
+
+def test_an_option_of_an_earlier_version_is_forgotten_unless_it_changed_the_run() -> None:
+    assert resolve(RunOptions, [Layer({"sumo_sublane": False}, "old.json", "options")]) == RunOptions()
+    with pytest.raises(UserError, match=r"old.json: options.sumo_sublane is no option any more: write <lateral-res"):
+        resolve(RunOptions, [Layer({"sumo_sublane": True}, "old.json", "options")])

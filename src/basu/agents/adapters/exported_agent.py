@@ -15,9 +15,9 @@ from basu.agents.adapters.sensor_sets import theirs
 from basu.agents.autonomous_agent import parse_config
 from basu.agents.loader import load_agent
 from basu.agents.sensor_file import SensorSpec, parse_sensors, read_sensors
+from basu.conditions import STEP_S
 from basu.errors import UserError
 from basu.files import find, read_json
-from basu.options.conditions import STEP_S
 from basu.routing import plan
 from basu.routing.route_file import RouteDescription, RoutePoint
 

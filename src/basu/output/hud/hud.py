@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from basu.agents.manual.inputs import Person
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
-    from basu.options.run import RunOptions
+    from basu.options.drive import DriveOptions
     from basu.output.hud.readings import Setting
 
 DRAW_EVERY_S = 0.05  # wall time, where the run is faster than that
@@ -43,7 +43,7 @@ PICTURE = Path("hud.png")
 class Hud(BaseManager):
     """The window. Ticked after all others."""
 
-    def __init__(self, live: Live, person: Person, options: RunOptions, agent: str) -> None:
+    def __init__(self, live: Live, person: Person, options: DriveOptions, agent: str) -> None:
         self._live, self._person, self._options, self._agent = live, person, options, agent
         self._camera: ChaseCamera | None = None
         self._canvas: Canvas | None = None
@@ -164,8 +164,9 @@ class Hud(BaseManager):
     def _hang_camera(self) -> None:
         """Have a camera, or the map where this simulator has none."""
         every_s = 0.0 if self._person.drives_first else WATCH_EVERY_S
+        width, height = self._options.hud_size
         try:
-            self._camera = ChaseCamera(self._run, self._options.hud_camera, every_s)
+            self._camera = ChaseCamera(self._run, (width // 2, height // 2), every_s)
         except SimulatorError as error:
             self._on_map = True
             self._notices.add(f"{error}; here is the map", time.perf_counter())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from basu.agents.manual.devices import Devices, check_display
@@ -20,10 +19,10 @@ if TYPE_CHECKING:
     from basu.agents.manual.inputs import InputSource
     from basu.managers import Live
     from basu.managers.base_manager import Frame, Run
-    from basu.options.run import RunOptions
+    from basu.options.drive import DriveOptions
 
 
-def person_for(options: RunOptions, *, by_hand: bool) -> Person | None:
+def person_for(options: DriveOptions, *, by_hand: bool) -> Person | None:
     """Return the person at this run's window or recorded keys; None where an agent drives unwatched.
 
     ``by_hand`` says whether the person drives at first.
@@ -55,8 +54,8 @@ def person_for(options: RunOptions, *, by_hand: bool) -> Person | None:
     )
 
 
-def onlookers_for(options: RunOptions, live: Live) -> list[BaseManager]:
-    """Return the managers of the window and of the recorded keys."""
+def onlookers_for(options: DriveOptions, live: Live, agent: str) -> list[BaseManager]:
+    """Return the managers of the window, which names the agent, and of the recorded keys."""
     person = live.agents.person
     if person is None:
         return []
@@ -64,12 +63,11 @@ def onlookers_for(options: RunOptions, live: Live) -> list[BaseManager]:
     if options.keys is not None or options.record_keys is not None:
         found.append(KeysManager(person.source, options.record_keys))
     if _has_window(options, by_hand=person.drives_first):
-        agent = PurePath(options.agent.partition(".py")[0]).name
         found.append(Hud(live, person, options, agent))
     return found
 
 
-def _has_window(options: RunOptions, *, by_hand: bool) -> bool:
+def _has_window(options: DriveOptions, *, by_hand: bool) -> bool:
     """Whether there is one: a person at devices needs it."""
     return options.hud is not None or (by_hand and options.keys is None)
 

@@ -137,6 +137,11 @@ def read_document(path: Path, schema_name: str) -> dict[str, Any]:
     """
     document = read_json(path, "the document", "name a folder that `basu run` has left, or drive the run again")
     schema = read_schema(schema_name)
+    if isinstance(document, dict) and "verdict" in document and schema_name == RESULT_SCHEMA:
+        raise UserError(
+            f"{path} is of a case that an earlier version of basu played, without a score; play it again with `basu "
+            f"scenario run --config {path.with_name(CONFIG_FILE)}`"
+        )
     version, expected = _version(document), schema["properties"]["schema_version"]["const"]
     if version != expected:
         raise UserError(f"{path} has the schema version {version!r}, and this version of basu reads {expected}")

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
 
-SERIES_SCHEMA_VERSION = 1
 SCORES = ("driving", "infraction", "path_following")
 COMPARED = ("driving", "route_completion", "infraction_penalty")  # of each version of the leaderboard
 PASSED = {"passed": True, "failed": False, "not judged": None}  # by the one rule of success

@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
     from basu.managers import Live
     from basu.managers.base_manager import BaseManager
-    from basu.options.run import RunOptions
+    from basu.options.drive import DriveOptions
 
 
-def ros_managers(options: RunOptions, live: Live, say: Callable[[str], None]) -> list[BaseManager]:
+def ros_managers(options: DriveOptions, live: Live, say: Callable[[str], None]) -> list[BaseManager]:
     """Return the managers of ``--ros2``, ``--ros1`` and ``--rosbag``."""
     managers: list[BaseManager] = []
     if options.ros2:

@@ -89,7 +89,9 @@ def read_criteria(path: Path) -> dict[str, Any]:
 
 
 def criteria_of(result: Path) -> dict[str, Any]:
-    """The judgement of a run of ours in the form of ScenarioRunner's criteria: a test a kind of infraction.
+    """Return the judgement of a drive of ours in the form of ScenarioRunner's criteria.
+
+    There is a test for each kind of infraction, and for each criterion of a case.
 
     Raises:
         UserError: it is no result of a run.
@@ -98,9 +100,10 @@ def criteria_of(result: Path) -> dict[str, Any]:
         document = loads(result.read_text(encoding="utf-8"))
         kinds = [row["kind"] for row in document["infractions"]]
         judged = sorted({*document["scoring"]["penalties"], *kinds})
+        criteria = document.get("case", {}).get("judgements", [])
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(f"{result} is not the result of a run: {error!r}") from error
-    return {
+    infractions = {
         kind: {
             "test_status": "FAILURE" if kinds.count(kind) else "SUCCESS",
             "actual_value": kinds.count(kind),
@@ -109,6 +112,16 @@ def criteria_of(result: Path) -> dict[str, Any]:
         }
         for kind in judged
     }
+    of_case = {
+        said["criterion"]: {
+            "test_status": {True: "SUCCESS", False: "FAILURE", None: "NOT_JUDGED"}[said["passed"]],
+            "actual_value": said["measured"],
+            "success_value": said["limit"],
+            "expected_value_success": said["limit"],
+        }
+        for said in criteria
+    }
+    return {**infractions, **of_case}
 
 
 def _why_no_log(config: Path) -> str:

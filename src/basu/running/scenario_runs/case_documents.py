@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import basu
-from basu.options.conditions import STEP_S
+from basu.conditions import STEP_S
 from basu.outcome import Outcome, Status
+from basu.output.report.document_parts import MATRIX_SCHEMA_VERSION
 from basu.running.scenario_runs.chosen_cases import design_of, files_of
 from basu.running.scenario_runs.options import CASES, ScenarioOptions
 from basu.scenarios.characteristics import measured
@@ -29,16 +30,15 @@ if TYPE_CHECKING:
 
     from basu.agents.process.remote_agent import FoundAgent
     from basu.managers.scenario_manager import Playing
+    from basu.metrics.result import Result
+    from basu.metrics.scoring import Scoring
     from basu.records.history import History
     from basu.scenarios.playable import Playable
-    from basu.scenarios.shares import Result
+    from basu.scenarios.shares import CountedCase
     from basu.scenarios.verdict import Judged
 
 
-SCHEMA_VERSION = 2
-
-
-def document_of(
+def case_part(
     playable: Playable,
     loaded: FoundAgent,
     playing: Playing | None,
@@ -47,17 +47,17 @@ def document_of(
     *,
     history: History | None,
     wall_s: float,
-    access: Mapping[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """The document; ``playing``, ``history`` and ``access`` are None where nothing was driven."""
+    """Return the part of a result that says what became of the case; nothing was driven without ``playing``.
+
+    ``options.seed`` is the seed of this one drive.
+    """
     case, scenario = playable.case, playable.scenario
     return {
-        "schema_version": SCHEMA_VERSION,
         **about(playable),
         "agent": loaded.name,
-        "confinement": loaded.confinement,
         "vehicle": options.vehicle or case.ego.model,
-        "seed": options.drive_seed,
+        "seed": options.seed,
         "town": case.town,
         "verdict": judged.verdict.value,
         "fault": judged.fault.name.lower(),
@@ -78,7 +78,6 @@ def document_of(
         "simulated_s": 0.0 if history is None else round(len(history.frames) * STEP_S, 3),
         "wall_s": round(wall_s, 3),
         "timeout_s": scenario.timeout_s,
-        **({} if access is None else {"access": dict(access)}),
     }
 
 
@@ -89,9 +88,9 @@ def _measured(playing: Playing, history: History) -> dict[str, Any] | None:
 
 
 def lost(playable: Playable, loaded: FoundAgent, sentence: str, options: ScenarioOptions) -> dict[str, Any]:
-    """The document of a case after the death of its process: nothing is known of it."""
+    """Return the part of a case after the death of its process: nothing is known of it."""
     judged = judge((), None, Outcome(Status.BENCHMARK_FAILED, sentence), triggered=False)
-    return document_of(playable, loaded, None, judged, options, history=None, wall_s=0.0)
+    return case_part(playable, loaded, None, judged, options, history=None, wall_s=0.0)
 
 
 def about(playable: Playable) -> dict[str, Any]:
@@ -111,23 +110,27 @@ def command_of(options: ScenarioOptions) -> list[str]:
 
 
 def options_again(playable: Playable, options: ScenarioOptions, agent: str) -> ScenarioOptions:
-    """Return the options that play one case of a run alone; its id holds sample and parameters."""
+    """Return the options that play one case of a run alone; its id holds sample and parameters.
+
+    ``options.seed`` is the seed of this one drive.
+    """
     chosen = {field.name: field.default for field in fields_of(ScenarioOptions) if field.option.group == CASES}
-    found = {"what": (playable.case.name,), "files": files_of(options), "agents": (agent,), "seed": options.drive_seed}
+    found = {"what": (playable.case.name,), "files": files_of(options), "agents": (agent,), "repetitions": 1}
     return replace(options, **{**chosen, **found})
 
 
-def case_config(playable: Playable, options: ScenarioOptions, loaded: FoundAgent) -> dict[str, Any]:
+def case_config(playable: Playable, options: ScenarioOptions, scoring: Scoring, loaded: FoundAgent) -> dict[str, Any]:
     """Return ``config.json`` of a case, which plays it alone again."""
-    return run_config(options_again(playable, options, typed_name(options, loaded)), [loaded])
+    return run_config(options_again(playable, options, typed_name(options, loaded)), scoring, [loaded])
 
 
-def run_config(options: ScenarioOptions, agents: Sequence[FoundAgent]) -> dict[str, Any]:
+def run_config(options: ScenarioOptions, scoring: Scoring, agents: Sequence[FoundAgent]) -> dict[str, Any]:
     """Return ``config.json`` of a run of scenarios."""
     pairs = [(file, file.with_suffix(".xml" if file.suffix == ".py" else ".py")) for file in files_of(options)]
     files = [*(agent.file for agent in agents if agent.file is not None), *(file for pair in pairs for file in pair)]
+    files += [*options.metric_files, *([Path(options.keys)] if options.keys else [])]
     there = [file for file in files if file.is_file()]
-    return config_document(SCENARIO_RUN, options, None, command_of(options), there)
+    return config_document(SCENARIO_RUN, options, scoring, [*command_of(options), *words_of(scoring)], there)
 
 
 def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
@@ -138,7 +141,6 @@ def typed_name(options: ScenarioOptions, loaded: FoundAgent) -> str:
     return next((each for each in options.agents if Path(f"{each.partition('.py')[0]}.py") == file), str(file))
 
 
-MATRIX_SCHEMA_VERSION = 2
 SUMMARY = (  # entries of a result
     "verdict",
     "fault",
@@ -153,28 +155,40 @@ SUMMARY = (  # entries of a result
 )
 
 
+def row_of(result: Result, folder: Path) -> tuple[dict[str, Any], str]:
+    """Return the case of a drive's result with the agent's access, and its folder below that of the matrix."""
+    assert result.case is not None, "it is the drive of a case"
+    access = result.meta.get("access")
+    return {**result.case, **({} if access is None else {"access": access})}, folder.as_posix()
+
+
 def matrix_of(
     options: ScenarioOptions,
     agents: Sequence[str],
-    playables: Sequence[Playable],
-    documents: Mapping[int, tuple[dict[str, Any], str]],
+    drives: Sequence[tuple[Playable, int]],
+    found: Mapping[int, tuple[dict[str, Any], str]],
     began: datetime,
     wall_s: float,
 ) -> dict[str, Any]:
-    """The document; ``documents`` are results and folders by number of the job, cases before agents."""
+    """Return the document.
+
+    ``drives`` are cases with the number of their repetition. ``found`` has rows and folders by number of the job,
+    drives before agents.
+    """
     rows: list[dict[str, Any]] = []
-    by_agent: dict[str, list[Result]] = {agent: [] for agent in agents}
-    for nth, playable in enumerate(playables):
+    by_agent: dict[str, list[CountedCase]] = {agent: [] for agent in agents}
+    for nth, (playable, repetition) in enumerate(drives):
         results = {}
         for column, agent in enumerate(agents):
-            done = documents.get(nth * len(agents) + column)
+            done = found.get(nth * len(agents) + column)
             if done is None:
                 by_agent[agent].append(not_played(about(playable)))
             else:
-                document, folder = done
-                by_agent[agent] += results_from([document])
-                results[agent] = {**{key: document[key] for key in SUMMARY if key in document}, "folder": folder}
-        rows.append({**about(playable), "results": results})
+                case, folder = done
+                by_agent[agent] += results_from([case])
+                results[agent] = {**{key: case[key] for key in SUMMARY if key in case}, "folder": folder}
+        repeated = {"repetition": repetition} if options.repetitions > 1 else {}
+        rows.append({**about(playable), **repeated, "results": results})
     return {
         "schema_version": MATRIX_SCHEMA_VERSION,
         "started": began.astimezone().isoformat(timespec="seconds"),

@@ -3,38 +3,36 @@
 from __future__ import annotations
 
 import shlex
-import shutil
 import sys
 import time
 from datetime import datetime, timezone
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
-
-from tqdm import tqdm
 
 from basu.errors import UserError
 from basu.files import write_bytes
-from basu.jobs.job import Job, Lost
-from basu.jobs.playing import play_jobs
+from basu.jobs.job import Job
 from basu.managers.agents_manager import ignored_wishes
+from basu.metrics.registry import user_metrics
+from basu.metrics.scoring import Scoring
 from basu.outcome import Fault
-from basu.output.report.documents import CONFIG_FILE, DRAFTS, make_draft, plain, point_latest, publish, write_json
+from basu.output.report.documents import CONFIG_FILE, make_draft, plain, point_latest, publish, write_json
 from basu.output.report.scenarios.junit import junit_xml
 from basu.output.report.scenarios.matrix_documents import MATRIX_FILE
 from basu.output.report.scenarios.matrix_text import matrix_text
 from basu.output.report.scenarios.page.matrix_page import PAGE_FILE, write_matrix_page
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import sweep_map
-from basu.running.scenario_runs.case_documents import lost, matrix_of, run_config
-from basu.running.scenario_runs.chosen_cases import chosen
-from basu.running.scenario_runs.player import CaseJob, agents_of, case_player
+from basu.running.batch import Batch, counts
+from basu.running.scenario_runs.case_documents import matrix_of, row_of, run_config
+from basu.running.scenario_runs.player import agents_of, case_player
+from basu.running.scenario_runs.suite import Suite
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
-    from pathlib import Path
+    from collections.abc import Iterator, Mapping
 
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
-    from basu.jobs.job import Done
     from basu.running.scenario_runs.options import ScenarioOptions
 
 TEXT_FILE, JUNIT_FILE = "matrix.txt", "junit.xml"
@@ -49,14 +47,16 @@ class MatrixRun(NamedTuple):
     code: int  # the exit code of the worst verdict
 
 
-def run_scenarios(options: ScenarioOptions) -> int:
+def run_scenarios(options: ScenarioOptions, scoring: Scoring, resumed: Path | None = None) -> int:
     """Play all requested cases and show the matrix; the exit code is that of the worst verdict.
+
+    ``resumed`` is the folder of a run that goes on.
 
     Raises:
         UserError: nothing can be played like this.
         SimulatorError: there is no simulator to play in.
     """
-    played = play_matrix(options)
+    played = play_matrix(options, scoring=scoring, resumed=resumed)
     if played.matrix is not None:
         _show(played.folder, played.matrix)
         print(f"repeat  basu scenario run --config {shlex.quote(str(played.folder / CONFIG_FILE))}")
@@ -79,47 +79,73 @@ def _show(folder: Path, matrix: dict[str, Any]) -> None:
 
 
 def play_matrix(
-    options: ScenarioOptions, given: Mapping[str, LoadedAgent] | None = None, *, quiet: bool = False
+    options: ScenarioOptions,
+    given: Mapping[str, LoadedAgent] | None = None,
+    *,
+    scoring: Scoring | None = None,
+    resumed: Path | None = None,
+    quiet: bool = False,
 ) -> MatrixRun:
-    """Play every case with every agent and write the folder; ``given`` are agents' classes that are loaded, by name.
+    """Play every case with every agent and write the folder.
+
+    ``given`` are agents' classes that are loaded, by name. ``resumed`` is the folder of a run that goes on.
 
     Raises:
         UserError: nothing can be played like this.
         SimulatorError: there is no simulator to play in.
     """
+    scoring = scoring or Scoring()
     began, began_s = datetime.now(timezone.utc), time.perf_counter()
-    playables = chosen(options)
-    agents = _loaded(options) if given is None else list(given.values())
-    names = [agent.name for agent in agents]
-    for sentence in filter(None, map(ignored_wishes, agents)):
+    suite = Suite(options, _loaded(options) if given is None else list(given.values()))
+    for sentence in filter(None, map(ignored_wishes, suite.agents)):
         print(f"basu: warning: {sentence}", file=sys.stderr)
-    folder = _folder(options, began)
-    write_json(folder / CONFIG_FILE, run_config(options, agents))
-    jobs = [
-        Job(number, CaseJob(agent, playable.case.name))
-        for number, (playable, agent) in enumerate((each, agent) for each in playables for agent in options.agents)
-    ]
-    documents: dict[int, tuple[dict[str, Any], str]] = {}
+    user_metrics(options.metric_files)  # a file that holds no metric is refused before the drive
+    if options.record_keys is not None and len(suite.drives) > 1:
+        raise UserError(
+            f"--record-keys records one drive, and these are {len(suite.drives)}; name one case and one agent"
+        )
+    folder = _folder(options, began) if resumed is None else resumed
+    batch = Batch(folder, suite.names)
+    if resumed is None:
+        write_json(folder / CONFIG_FILE, run_config(options, scoring, suite.agents))
+    rows = _taken_in(batch)
+    jobs = [Job(number, suite.job(number)) for number in range(len(suite.drives)) if number not in rows]
+    # Classes that are given stay in this process: no other one has them.
+    workers = 1 if options.needs_one_simulator or given is not None else options.workers
     interrupted, matrix = False, None
     try:
-        for answer in _played(options, folder, jobs, given, quiet=quiet):
-            if isinstance(answer, Lost):
-                playable, agent = playables[answer.number // len(agents)], agents[answer.number % len(agents)]
-                documents[answer.number] = (lost(playable, agent, answer.sentence, options), "")
-            else:
-                documents[answer.number] = (answer.value.document, answer.value.folder)
+        player = case_player(options, scoring, folder, given)
+        for done in batch.play(player, jobs, workers, unit="" if quiet else "case"):
+            if done.written is not None and done.folder is not None:
+                rows[done.number] = row_of(done.written.result, done.folder.relative_to(folder))
+            elif done.failure is not None:
+                rows[done.number] = (suite.lost(done.number, done.failure.sentence), "")
     except KeyboardInterrupt:
         interrupted = True
     finally:
-        for draft in folder.glob(f"*/{DRAFTS}"):
-            shutil.rmtree(draft, ignore_errors=True)
-        if documents:
-            wall_s = time.perf_counter() - began_s
-            matrix = matrix_of(options, names, playables, documents, began, wall_s)
+        batch.clear()
+        if rows:
+            matrix = matrix_of(options, suite.agent_names, suite.rows, rows, began, time.perf_counter() - began_s)
             write_json(folder / MATRIX_FILE, matrix)
             _write_reports(folder, matrix, options.junit)
-    code = Fault.USER.value if interrupted else worst(document for document, _ in documents.values())
+    code = Fault.USER.value if interrupted else worst(row for row, _ in rows.values())
     return MatrixRun(folder, matrix, code)
+
+
+def _taken_in(batch: Batch) -> dict[int, tuple[dict[str, Any], str]]:
+    """Return the rows of drives that an earlier command has finished; drives that do not count are set aside.
+
+    Raises:
+        UserError: a result is not what it should be, or the disk does not let us.
+    """
+    batch.clear()
+    rows = {}
+    for number, result in list(batch.finished()):
+        if counts(result):
+            rows[number] = row_of(result, Path(batch.name(number)))
+        else:
+            batch.set_aside(number, result)
+    return rows
 
 
 def _write_reports(folder: Path, matrix: dict[str, Any], junit: Path | None) -> None:
@@ -172,19 +198,3 @@ def _folder(options: ScenarioOptions, began: datetime) -> Path:
     folder = publish(make_draft(options.output, name), name)
     point_latest(folder, options.output)
     return folder
-
-
-def _played(
-    options: ScenarioOptions,
-    folder: Path,
-    jobs: Sequence[Job],
-    given: Mapping[str, LoadedAgent] | None,
-    *,
-    quiet: bool,
-) -> Iterator[Done | Lost]:
-    """What came of each job, as they end. Classes that are given stay in this process: no other one has them."""
-    workers = options.workers if options.host is None and given is None else 1
-    with tqdm(total=len(jobs), unit="case", disable=quiet or None, file=sys.stderr) as bar:
-        for answer in play_jobs(case_player(options, folder, given), jobs, workers):
-            bar.update()
-            yield answer

@@ -5,7 +5,8 @@ from __future__ import annotations
 import shutil
 import time
 import traceback
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from datetime import datetime, timezone
 from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,37 +17,47 @@ from basu.episode.world import asking, towns_of, weather_called, world_with
 from basu.errors import AgentError, ScenarioError, SimulatorError, UserError
 from basu.files import write_bytes
 from basu.managers.placed_scenario import call_scenario, place_scenario
-from basu.outcome import Outcome, Status
-from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, plain, publish, write_json
+from basu.metrics.registry import user_metrics
+from basu.metrics.result import judge
+from basu.metrics.scoring import Scoring
+from basu.output.report.documents import CONFIG_FILE, RESULT_FILE, make_draft, plain, write_json
 from basu.output.report.scenarios.drawing.picture import PICTURE_FILE, case_picture
 from basu.output.report.streets import around, write_streets
 from basu.records.history.files import write_history
 from basu.routing import lane_graph, plan
+from basu.routing.route_file import RouteDescription
 from basu.running.agent_drive import AgentDrive
+from basu.running.drive import Driven, WrittenDrive
 from basu.running.preparation import SensorSet, agents_fault, new_agents, sensor_set
-from basu.running.scenario_runs.case_documents import case_config, document_of
+from basu.running.run_folder import drive_facts, meta_of
+from basu.running.scenario_runs.case_documents import case_config, case_part, typed_name
 from basu.scenarios.cases import cases_of
 from basu.scenarios.tree_picture import draw
-from basu.scenarios.verdict import judge
+from basu.scenarios.verdict import judge as verdict_of
 from basu.simulator import simulator_for
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
     import numpy as np
     from numpy.typing import NDArray
 
+    from basu.agents.autonomous_agent import AgentConfig
     from basu.agents.process.remote_agent import FoundAgent
     from basu.episode import Towns
     from basu.managers.agents_manager import AgentsManager
     from basu.managers.scenario_manager import Playing
     from basu.records.history import History
-    from basu.running.drive import Driven
     from basu.running.scenario_runs.options import ScenarioOptions
     from basu.scenarios.playable import Playable
     from basu.scenarios.verdict import Judged
     from basu.scenarios.xml_elements import Case
     from basu.simulator import Simulator
+
+
+NO_OTHERS = {"vehicles": 0, "walkers": 0}
+OF_CASE = "of the case"  # the weather of a drive without --weather
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +67,8 @@ class CaseSession:
     options: ScenarioOptions
     simulator: Simulator
     towns: Towns
+    scoring: Scoring = field(default_factory=Scoring)
     pictures: bool = True  # whether each case gets its picture
-    weather: str | None = None  # one of CARLA's presets in place of the case's own
 
 
 def check_town(case: Case, names: frozenset[str]) -> None:
@@ -74,35 +85,52 @@ def check_town(case: Case, names: frozenset[str]) -> None:
         )
 
 
-class PlayedCase(NamedTuple):
-    """A case that is over and written."""
-
-    document: dict[str, Any]
-    folder: Path
-    outcome: Outcome
-    history: History | None  # None where nothing was driven
-
-
 class _Attempt(NamedTuple):
     """What came of a case, whatever that is."""
 
-    driven: Driven | None
-    playing: Playing | None
-    outcome: Outcome
-    streets_m: list[NDArray[np.float64]]
+    driven: Driven
+    config: AgentConfig
+    playing: Playing | None = None
+    streets_m: Sequence[NDArray[np.float64]] = ()
     access: dict[str, Any] | None = None  # of the agent to the simulator
+    traffic: Mapping[str, int] = NO_OTHERS
+    log: str | None = None  # CARLA's log, as the simulator gave its path
+    ignored: str = ""  # a sentence about wishes of the agent that do not count
 
 
-def play_case(session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path) -> PlayedCase:
-    """Play a case and write its folder below ``output``; whatever goes wrong becomes its verdict."""
-    began_s = time.perf_counter()
-    case, options = playable.case, session.options
-    draft = make_draft(output, plain(case.name))
+def play_case(
+    session: CaseSession, loaded: FoundAgent, playable: Playable, output: Path, name: str, repetition: int = 0
+) -> WrittenDrive:
+    """Play a case and write its folder as a draft for ``name``; whatever goes wrong becomes its verdict."""
+    started, began_s = datetime.now(timezone.utc), time.perf_counter()
+    options = replace(session.options, seed=session.options.drive_seed + repetition, sweep=None)
+    draft = make_draft(output, name)
     try:
-        attempt = _attempt(session, loaded, playable, draft)
-        history = None if attempt.driven is None else attempt.driven.history
+        attempt = _attempt(session, options, loaded, playable, draft)
+        driven = attempt.driven
+        history = driven.history
+        config = {
+            **case_config(playable, options, session.scoring, loaded),
+            **drive_facts(
+                options,
+                loaded,
+                typed_name(options, loaded),
+                attempt.config,
+                RouteDescription(
+                    id=playable.case.name, town=playable.case.town, points=(), stops=(), source=playable.case.source
+                ),
+                weather=options.weather or OF_CASE,
+                own_simulator=session.simulator.own,
+                started=started,
+                seed=options.seed,
+                traffic=attempt.traffic,
+                log=attempt.log,
+                access=attempt.access,
+                ignored=attempt.ignored,
+            ),
+        }
         judged = _judged(attempt, history)
-        document = document_of(
+        case = case_part(
             playable,
             loaded,
             attempt.playing,
@@ -110,60 +138,79 @@ def play_case(session: CaseSession, loaded: FoundAgent, playable: Playable, outp
             options,
             history=history,
             wall_s=time.perf_counter() - began_s,
-            access=attempt.access,
         )
-        write_json(draft / RESULT_FILE, document)
-        write_json(draft / CONFIG_FILE, case_config(playable, options, loaded))
+        result = judge(
+            judged.outcome,
+            history,
+            session.scoring,
+            meta_of(driven, config),
+            own=user_metrics(options.metric_files),
+            case=case,
+        )
+        write_json(draft / RESULT_FILE, result.document())
+        write_json(draft / CONFIG_FILE, config)
         if history is not None:
             write_history(draft, history)
             streets = around(attempt.streets_m, history)
             write_streets(draft, streets)
             if session.pictures:
-                write_bytes(draft / PICTURE_FILE, case_picture(document, history, streets).encode())
+                write_bytes(draft / PICTURE_FILE, case_picture(case, history, streets).encode())
     except BaseException:
         shutil.rmtree(draft, ignore_errors=True)
         raise
-    return PlayedCase(document, publish(draft, plain(case.name)), attempt.outcome, history)
+    return WrittenDrive(draft, result)
 
 
 def _judged(attempt: _Attempt, history: History | None) -> Judged:
-    """The verdict."""
+    """Return the verdict."""
+    outcome = attempt.driven.outcome
     if attempt.playing is None or history is None:
-        return judge((), None, attempt.outcome, triggered=False)
-    return attempt.playing.judged(history, attempt.outcome)
+        return verdict_of((), None, outcome, triggered=False)
+    return attempt.playing.judged(history, outcome)
 
 
-def _attempt(session: CaseSession, loaded: FoundAgent, playable: Playable, folder: Path) -> _Attempt:
-    """Drive it, or find out why that is not possible."""
-    options, one = session.options, None
+def _attempt(
+    session: CaseSession, options: ScenarioOptions, loaded: FoundAgent, playable: Playable, folder: Path
+) -> _Attempt:
+    """Drive the case, or find out why that is not possible."""
+    one = None
+    spec = case_spec(playable, vehicle=options.vehicle, timeout_s=options.timeout_s)
     try:
         agents, sensors = _agents(loaded, options)
         check_town(playable.case, session.towns.names([playable.case.town]))
-        spec = case_spec(playable, vehicle=options.vehicle, timeout_s=options.timeout_s)
-        if session.weather is not None:
-            spec = replace(spec, weather=weather_called(session.weather))
         agents.config = replace(agents.config, vehicle=spec.config.vehicle)
+        spec = replace(
+            spec,
+            config=agents.config,
+            weather=spec.weather if options.weather is None else weather_called(options.weather),
+            traffic=options.traffic,
+            sumo=options.sumo_of(None, None),
+            scoring=session.scoring,
+            stop_after_s=options.stop_after_s,
+        )
         one = AgentDrive(
             session.simulator,
             session.towns,
-            replace(spec, config=agents.config),
+            spec,
             agents,
             sensors,
-            options.run_options(loaded.name),
+            options,
+            agent=loaded.name,
             name=f"{plain(loaded.name)}-{plain(playable.case.name)}",
             by_agent=loaded.file is not None,
             quiet=True,
         )
-        driven = one.play(options.drive_seed, folder)
-    except UserError as error:
-        return _Attempt(None, None, Outcome(Status.SETUP_FAILED, str(error)), _streets(one))
-    except AgentError as error:
-        return _Attempt(None, None, outcome_of(error, session.simulator.why_gone), _streets(one))
-    except SimulatorError as error:
-        return _Attempt(None, None, Outcome(Status.SIMULATOR_FAILED, str(error)), _streets(one))
+        driven = one.play(options.seed, folder)
+    except (UserError, AgentError, SimulatorError) as error:
+        outcome = outcome_of(error, session.simulator.why_gone)
+        agent_error = error if isinstance(error, AgentError) else None
+        return _Attempt(Driven(outcome, None, 0.0, None, None, agent_error), spec.config, streets_m=_streets(one))
     if driven.bug is not None:
         traceback.print_exception(driven.bug)
-    return _Attempt(driven, next(iter(one.episode.playing), None), driven.outcome, _streets(one), agents.access)
+    playing = next(iter(one.episode.playing), None)
+    return _Attempt(
+        driven, spec.config, playing, _streets(one), agents.access, one.episode.traffic, one.log, agents.ignored
+    )
 
 
 def _streets(one: AgentDrive | None) -> list[NDArray[np.float64]]:
@@ -172,14 +219,15 @@ def _streets(one: AgentDrive | None) -> list[NDArray[np.float64]]:
 
 
 def _agents(loaded: FoundAgent, options: ScenarioOptions) -> tuple[AgentsManager, SensorSet]:
-    """A new agent and its sensors; built-in agents read none, and theirs serve observers, which a case has not.
+    """Return a new agent and its sensors; built-in agents read none, and have them only where they are shown.
 
     Raises:
         AgentError: the agent failed, or asks for what is no sensor set: it was loaded, so that is its own failure.
     """
     with agents_fault(loaded):
-        agents = new_agents(loaded, options.run_options(loaded.name), options.drive_seed, has_conditions=False)
-        return agents, SensorSet((), loaded.name) if loaded.file is None else sensor_set(agents, loaded)
+        agents = new_agents(loaded, options, options.seed, has_conditions=False)
+        is_blind = loaded.file is None and not options.shows_sensors
+        return agents, SensorSet((), loaded.name) if is_blind else sensor_set(agents, loaded)
 
 
 def drawn(options: ScenarioOptions, form: str) -> str:
@@ -192,7 +240,7 @@ def drawn(options: ScenarioOptions, form: str) -> str:
     playable = cases_of(options.what, options.files)[0]
     case = playable.case
     with (
-        simulator_for(options.run_options("basic")) as simulator,
+        simulator_for(options.simulator) as simulator,
         asking(f"loading {case.town}"),
         simulator.long_call(),
     ):

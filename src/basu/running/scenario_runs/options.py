@@ -8,21 +8,9 @@ from pathlib import Path
 from typing import Annotated
 
 from basu.errors import UserError
-from basu.options.agent import (
-    AgentMemory,
-    AgentWrites,
-    Debug,
-    InProcess,
-    Open,
-    StepLimit,
-    TrackWish,
-    check_agent_process,
-)
-from basu.options.folders import Output
+from basu.options.drive import DriveOptions
 from basu.options.groups import AGENT, CONDITIONS, FOLDERS, SIMULATOR
-from basu.options.run import RunOptions
-from basu.options.simulator import Host, Port, Timeout
-from basu.settings.option import Option, Settings, fields_of
+from basu.settings.option import Option, Settings
 
 CASES = "cases"
 
@@ -32,9 +20,9 @@ def processors() -> int:
     return len(os.sched_getaffinity(0))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ScenarioOptions(Settings):
-    """The options of one ``basu scenario run``."""
+@dataclass(frozen=True, kw_only=True)
+class CaseOptions(Settings):
+    """The cases to play, their samples and their agents."""
 
     what: Annotated[
         tuple[str, ...],
@@ -98,32 +86,33 @@ class ScenarioOptions(Settings):
             is_file=True,
         ),
     ] = ("basic",)
-    step_limit_s: StepLimit = 10.0
-    in_process: InProcess = False
-    agent_memory_gb: AgentMemory = None
-    agent_writes: AgentWrites = ()
-    track: TrackWish = None
-    open: Open = False
-    debug: Debug = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class ScenarioOptions(DriveOptions, CaseOptions):
+    """The options of one ``basu scenario run``: those of every drive, with the defaults of cases."""
+
     seed: Annotated[
         int,
         Option(
-            help="seed of the samples; without --sweep, of everything random in the drives",
+            help="seed of the samples; without --sweep, of everything random in the drives, and each further "
+            "repetition has the next",
             group=CONDITIONS,
             metavar="N",
         ),
     ] = 0
+    weather: Annotated[
+        str | None,
+        Option(help="one of CARLA's presets", group=CONDITIONS, metavar="NAME", default_text="as the case says"),
+    ] = None
     vehicle: Annotated[
         str | None,
         Option(help="blueprint to drive", group=CONDITIONS, metavar="BLUEPRINT", default_text="as the case says"),
     ] = None
-    host: Host = None
-    port: Port = 2000
-    timeout_s: Timeout = 20.0
     workers: Annotated[
         int,
         Option(
-            help="simulators that run at the same time",
+            help="simulators that run at the same time; a window, keys, ROS topics and --host need one alone",
             group=SIMULATOR,
             metavar="N",
             least=1,
@@ -131,7 +120,9 @@ class ScenarioOptions(Settings):
             repeats=False,
         ),
     ] = field(default_factory=processors)
-    output: Output = Path("scenario-runs")
+    output: Annotated[Path, Option(help="parent of the run folders", group=FOLDERS, metavar="DIR", repeats=False)] = (
+        Path("scenario-runs")
+    )
     junit: Annotated[
         Path | None, Option(help="write the JUnit XML there as well", group=FOLDERS, metavar="FILE", repeats=False)
     ] = None
@@ -145,15 +136,9 @@ class ScenarioOptions(Settings):
         for name in ("what", "agents"):
             if not getattr(self, name):
                 raise UserError(f"{name} is empty; it must name at least one")
-        check_agent_process(in_process=self.in_process, memory_gb=self.agent_memory_gb, writes=self.agent_writes)
+        super().check()
 
     @property
     def drive_seed(self) -> int:
         """The seed of what is random in the drives: 0 for samples; their ids hold no other."""
         return 0 if self.sweep is not None else self.seed
-
-    def run_options(self, agent: str) -> RunOptions:
-        """The options of a run with one of the agents."""
-        own = {field.name for field in fields_of(type(self))}
-        shared = {field.name: getattr(self, field.name) for field in fields_of(RunOptions) if field.name in own}
-        return RunOptions(**{**shared, "agent": agent, "seed": self.drive_seed})

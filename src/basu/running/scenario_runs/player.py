@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from basu.agents.process.gate import closed_ports
 from basu.agents.process.remote_agent import find_agent
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from basu.agents.loader import LoadedAgent
     from basu.agents.process.remote_agent import FoundAgent
     from basu.jobs.job import Play
+    from basu.metrics.scoring import Scoring
     from basu.running.scenario_runs.options import ScenarioOptions
 
 ENDING = frozenset({Status.SIMULATOR_FAILED, Status.BENCHMARK_FAILED})
@@ -35,18 +36,15 @@ class CaseJob(NamedTuple):
 
     agent: str  # as it was typed
     case: str  # its id
+    name: str  # of its folder, below that of the agent
+    repetition: int = 0
 
 
-class CaseDone(NamedTuple):
-    """What came of a case: its folder holds the rest."""
-
-    document: dict[str, Any]
-    folder: str  # below the run's
-
-
-def case_player(options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None = None) -> PlayerSpec:
+def case_player(
+    options: ScenarioOptions, scoring: Scoring, output: Path, given: Mapping[str, LoadedAgent] | None = None
+) -> PlayerSpec:
     """The player that writes its cases' folders below ``output``; ``given`` are loaded classes, by name."""
-    return PlayerSpec(f"{__name__}:open_cases", (options, output, given))
+    return PlayerSpec(f"{__name__}:open_cases", (options, scoring, output, given))
 
 
 def agents_of(options: ScenarioOptions) -> list[FoundAgent]:
@@ -69,7 +67,9 @@ def agents_of(options: ScenarioOptions) -> list[FoundAgent]:
 
 
 @contextlib.contextmanager
-def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, LoadedAgent] | None) -> Iterator[Play]:
+def open_cases(
+    options: ScenarioOptions, scoring: Scoring, output: Path, given: Mapping[str, LoadedAgent] | None
+) -> Iterator[Play]:
     """Start a simulator, and play cases in it.
 
     Raises:
@@ -79,15 +79,15 @@ def open_cases(options: ScenarioOptions, output: Path, given: Mapping[str, Loade
     library = open_library(files_of(options))
     agents: Mapping[str, FoundAgent] = given or dict(zip(options.agents, agents_of(options), strict=True))
     ending = ENDING_IN_PROCESS if options.in_process or given else ENDING
-    with simulator_for(options.run_options(options.agents[0])) as simulator:
-        session = CaseSession(options, simulator, Towns(simulator))
+    with simulator_for(options.simulator) as simulator:
+        session = CaseSession(options, simulator, Towns(simulator), scoring)
 
         def play(job: CaseJob) -> Played:
             (playable,) = library.of_id(job.case)
             loaded = agents[job.agent]
-            played = play_case(session, loaded, playable, output / plain(loaded.name))
-            done = CaseDone(played.document, str(played.folder.relative_to(output)))
-            status = played.outcome.status
+            played = play_case(session, loaded, playable, output / plain(loaded.name), job.name, job.repetition)
+            done = played.to_send()
+            status = played.result.outcome.status
             if status is Status.INTERRUPTED:
                 return Played(done, After.INTERRUPTED)
             return Played(done, After.FRESH if status in ending else After.GO_ON)

@@ -60,7 +60,8 @@ def _document(folder: Path) -> dict[str, Any]:
         document: dict[str, Any] = loads((folder / RESULT_FILE).read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise UserError(f"{folder} holds no result that can be read: {error}") from error
-    return document
+    case: dict[str, Any] = document.get("case", document)  # an earlier version wrote the case alone
+    return case
 
 
 def part_of(history: History, first: int, end: int, until_s_m: float | None = None) -> History:

@@ -91,7 +91,7 @@ def test_a_run_is_the_same_with_and_without_the_window(run: Runner, tmp_path: Pa
     path = tmp_path / "meeter.py"
     path.write_text(MEETER)
     _, _, without = run(path)
-    _, result, with_camera = run(path, "--hud", "--hud-camera", "96x64", "--hud-screenshot", str(tmp_path / "hud.png"))
+    _, result, with_camera = run(path, "--hud", "--hud-screenshot", str(tmp_path / "hud.png"))
     assert result["infractions"], "there is something to be told"
     assert with_camera.frames.tobytes() == without.frames.tobytes()
     for name in ("tick", "x_m", "y_m", "z_m", "yaw_rad", "velocity_x_mps", "velocity_y_mps"):

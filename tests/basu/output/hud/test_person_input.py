@@ -94,7 +94,6 @@ def test_a_simulator_without_cameras_says_so() -> None:
         (["--hud", "basic"], "an agent is named before --hud, as in `basu run basic --hud`"),
         (["basic", "--hud", "--hud-size", "big"], "--hud-size big: write WIDTHxHEIGHT"),
         (["basic", "--hud", "--hud-size", "10x10"], "--hud-size 10x10: it may be from 640x480 to 7680x4320"),
-        (["basic", "--hud", "--hud-camera", "9x9"], "--hud-camera 9x9: it may be from 64x48"),
         (["basic", "--hud-screenshot", "a.png"], "takes a picture of the window; add --hud"),
         (["human"], "no window can be opened here"),
     ],

@@ -87,7 +87,7 @@ def results(
             output = tmp_path_factory.mktemp(driver)
             main(["scenario", "run", *cases, "--agent", driver, "--output", str(output), *options])
             for path in (output / "latest").glob(f"{driver.replace(':', '-')}/*/result.json"):
-                result = json.loads(path.read_text(encoding="utf-8"))
+                result = json.loads(path.read_text(encoding="utf-8"))["case"]
                 found[result["id"], driver] = result
     return found
 

@@ -11,7 +11,7 @@ import pytest
 
 from basu.cli import main
 from basu.jobs.playing import play_jobs
-from basu.running.scenario_runs import command
+from basu.running import batch
 from cheating_agent import BENCHMARK
 from servers import RunningServer
 
@@ -68,9 +68,9 @@ class Senses(Bad):
 
 
 def played(output: Path) -> dict[str, dict[str, Any]]:
-    """The results of the newest run by case, of one agent."""
+    """The cases of the newest run's results by id, of one agent."""
     found = [json.loads(path.read_text(encoding="utf-8")) for path in (output / "latest").glob("*/*/result.json")]
-    return {result["id"]: result for result in found}
+    return {result["case"]["id"]: result["case"] for result in found}
 
 
 def matrix(output: Path) -> dict[str, Any]:
@@ -148,9 +148,15 @@ def test_the_same_case_again_is_the_same_byte_by_byte(simulator: RunningServer, 
     for name in ("one", "two"):
         assert run(simulator, tmp_path / name, "goes_well", "--scenarios", files, "--in-process") == 0
         folder = tmp_path / name / "latest" / "basic" / "goes_well"
-        result = json.loads((folder / "result.json").read_text(encoding="utf-8")) | {"wall_s": 0.0}
+        result = timeless(json.loads((folder / "result.json").read_text(encoding="utf-8")))
         left.append((result, *((folder / file).read_bytes() for file in ("history.parquet", "picture.svg"))))
     assert left[0] == left[1]
+
+
+def timeless(result: dict[str, Any]) -> dict[str, Any]:
+    """A result without what differs from drive to drive: wall times and the server's frame numbers."""
+    meta = result["meta"] | {"wall_s": 0.0, "started": "", "first_server_frame": 0}
+    return result | {"case": result["case"] | {"wall_s": 0.0}, "meta": meta}
 
 
 def drives(output: Path) -> dict[str, tuple[bytes, dict[str, Any], dict[str, Any]]]:
@@ -160,10 +166,12 @@ def drives(output: Path) -> dict[str, tuple[bytes, dict[str, Any], dict[str, Any
     """
     found = {}
     for path in (output / "latest").glob("*/*/result.json"):
-        result = json.loads(path.read_text(encoding="utf-8"))
-        result |= {"wall_s": 0.0, "access": None, "confinement": None}
-        config = json.loads(path.with_name("config.json").read_text(encoding="utf-8")) | {"session": None}
-        found[result["id"]] = (path.with_name("history.parquet").read_bytes(), result, config)
+        result = timeless(json.loads(path.read_text(encoding="utf-8")))
+        agent = result["meta"]["agent"] | {"confinement": None}
+        result["meta"] |= {"access": None, "agent": agent}
+        config = json.loads(path.with_name("config.json").read_text(encoding="utf-8"))
+        config |= {"session": None, "started": "", "access": None, "agent": agent}
+        found[result["case"]["id"]] = (path.with_name("history.parquet").read_bytes(), result, config)
     return found
 
 
@@ -177,18 +185,19 @@ def test_config_and_command_repeat_a_sweep_and_each_of_its_cases(
     run(simulator, tmp_path / "one", *words, "--step-limit", 2, "--vehicle", "vehicle.tesla.model3")
     wanted = drives(tmp_path / "one")
     assert len(wanted) == 2
-    assert all("drew 0." in result["message"] for _, result, _ in wanted.values()), "chance is a part of it"
+    assert all("drew 0." in result["case"]["message"] for _, result, _ in wanted.values()), "chance is a part of it"
     run(simulator, tmp_path / "two", "--config", tmp_path / "one" / "latest")
     assert drives(tmp_path / "two") == wanted
     name, alone = sorted(wanted.items())[1]
     assert name.startswith("goes_well:sweep-2-7-")
-    assert alone[1]["command"] == alone[2]["command"]
-    run(simulator, tmp_path / "three", *alone[1]["command"][3:])
+    again = alone[1]["case"]["command"]
+    assert again == alone[2]["command"]
+    run(simulator, tmp_path / "three", *again[3:])
     assert drives(tmp_path / "three") == {name: alone}
     config = next(
         path
         for path in (tmp_path / "one" / "latest").glob("*/*/config.json")
-        if json.loads(path.read_text())["command"] == alone[1]["command"]
+        if json.loads(path.read_text())["command"] == again
     )
     run(simulator, tmp_path / "four", "--config", config)
     assert drives(tmp_path / "four") == {name: alone}
@@ -213,7 +222,7 @@ def test_a_process_that_dies_costs_its_own_case_only(
     files: Path, tmp_path: Path, kills: Callable[[str, str], str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """It is not tried again here: tests/basu/jobs/test_pool.py has the tries."""
-    monkeypatch.setattr(command, "play_jobs", partial(play_jobs, attempts=1))
+    monkeypatch.setattr(batch, "play_jobs", partial(play_jobs, attempts=1))
     bad = tmp_path / "bad.py"
     deed = kills(BENCHMARK, "signal.SIGKILL")
     bad.write_text(AGENTS.replace("pass  # ends the worker", deed), encoding="utf-8")

@@ -61,6 +61,7 @@ def report(run: RunRecord) -> bytes:
         "history": history is not None,
         "samples": "",
         "script": "",
+        "kind": run.config.get("kind", "run"),
         "command": shlex.join(str(word) for word in run.config.get("command", [])),
         "config": table(rows({key: each for key, each in run.config.items() if key != "command"})),
     }
@@ -75,7 +76,7 @@ def report(run: RunRecord) -> bytes:
         "last_s": float(history.frames["t_s"][-1]),
         "samples_number": SAMPLES,
         "timeline": timeline(history, felt, document, found),
-        "scenarios": on_the_way(document, run.config.get("command", []), history, run.streets),
+        "scenarios": on_the_way(result, run.config.get("command", []), history, run.streets),
         "charts": charts(history, felt, found),
         "evidence": evidence(history, felt, found),
         "reported": table(rows(document["reported"])) if document["reported"] else None,
@@ -83,7 +84,7 @@ def report(run: RunRecord) -> bytes:
         "samples": _samples(history, felt),
         "script": script,
     }
-    style = card_style() if document.get("scenarios") else ""
+    style = card_style() if result.scenarios or result.case is not None else ""
     return page(title, render("templates/report.j2", **values), script, style)
 
 

@@ -12,7 +12,7 @@ import re
 from typing import TYPE_CHECKING, Any
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from basu.output.report.scenarios.tally import LOOKS, tracks
+from basu.output.report.scenarios.tally import LOOKS, name_of, tracks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,7 +69,10 @@ def _test(case: dict[str, Any], result: dict[str, Any], agent: str) -> Element:
     """One case of one agent."""
     parents = ".".join(_token(part).replace(".", "_").replace(" ", "_") for part in (agent, case["group"]))
     test = Element(
-        "testcase", name=_token(case["id"]), classname=f"{parents}.{case['scenario']}", time=f"{result['wall_s']:.3f}"
+        "testcase",
+        name=_token(name_of(case)),
+        classname=f"{parents}.{case['scenario']}",
+        time=f"{result['wall_s']:.3f}",
     )
     verdict = result["verdict"]
     if verdict == "SUCCESS":

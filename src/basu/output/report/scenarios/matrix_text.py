@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from basu.output.report.scenarios.shares import shares_text
 from basu.output.report.scenarios.sweep.boundary import boundary
-from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally, tracks
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, name_of, tally, tracks
 from basu.output.report.tracks import apart, grouped, titled
 
 if TYPE_CHECKING:
@@ -163,7 +163,7 @@ def _endings(matrix: dict[str, Any], *, colour: bool) -> str:
     lines = []
     for agent in matrix["agents"]:
         found = [
-            (case["id"], case["results"][agent])
+            (name_of(case), case["results"][agent])
             for case in matrix["cases"]
             if agent in case["results"] and case["results"][agent]["verdict"] != "SUCCESS"
         ]

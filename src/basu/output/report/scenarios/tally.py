@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from basu.output.report.tracks import tracks_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
 
 class Look(NamedTuple):
@@ -73,6 +73,11 @@ class Block(NamedTuple):
     def cases(self) -> list[dict[str, Any]]:
         """All cases of the group."""
         return [case for row in self.rows for case in row.cases]
+
+
+def name_of(case: Mapping[str, Any]) -> str:
+    """Return the name of a matrix's row: the case's id, with the number of the drive where it was repeated."""
+    return f"{case['id']} #{case['repetition'] + 1}" if "repetition" in case else str(case["id"])
 
 
 def blocks(matrix: dict[str, Any]) -> list[Block]:

@@ -10,9 +10,10 @@ import jsonschema
 import pytest
 
 from basu.errors import UserError
-from basu.output.report.documents import RESULT_FILE, mistakes, read_schema, write_json
+from basu.metrics.result import judge
+from basu.outcome import Outcome, Status
+from basu.output.report.documents import RESULT_FILE, RESULT_SCHEMA, mistakes, read_result, read_schema, write_json
 from basu.output.report.scenarios.matrix_documents import (
-    CASE_SCHEMA,
     MATRIX_FILE,
     MATRIX_SCHEMA,
     read_case,
@@ -20,11 +21,19 @@ from basu.output.report.scenarios.matrix_documents import (
 )
 from basu.output.report.streets import write_streets
 from basu.records.history.files import write_history
+from fakes.results import META, a_result
 from fakes.scenario_documents import STREETS, case_result, crossing, failed, grid, matrix, sweep
 
+
+def whole(case: dict[str, Any]) -> dict[str, Any]:
+    """The result of the drive of a case."""
+    outcome = Outcome(Status(case["status"]), case["message"])
+    return judge(outcome, crossing(), meta=META, case=case).document()
+
+
 DOCUMENTS = [
-    (case_result(), CASE_SCHEMA),
-    (failed(tree=None, actors=[], things=[]), CASE_SCHEMA),
+    (whole(case_result()), RESULT_SCHEMA),
+    (whole(failed(tree=None, actors=[], things=[])), RESULT_SCHEMA),
     (matrix(["basic"], instances=1), MATRIX_SCHEMA),
     (sweep(10), MATRIX_SCHEMA),
     (grid(2), MATRIX_SCHEMA),
@@ -59,18 +68,42 @@ def test_each_mistake_gets_a_sentence(document: dict[str, Any], name: str) -> No
 
 
 def test_a_case_comes_back_from_its_folder(tmp_path: Path) -> None:
-    write_json(tmp_path / RESULT_FILE, case_result())
+    write_json(tmp_path / RESULT_FILE, whole(case_result()))
     write_history(tmp_path, crossing())
     write_streets(tmp_path, STREETS)
     record = read_case(tmp_path)
-    assert record.result == case_result()
+    assert record.case == case_result()
+    assert record.result is not None
+    assert record.result.success.passed is True
+    assert record.result.scores is not None
     assert record.history is not None
     assert len(record.history.frames) == 240
     assert record.streets == STREETS
 
 
+def test_a_case_of_an_earlier_version_is_still_read(tmp_path: Path) -> None:
+    write_json(tmp_path / RESULT_FILE, {**case_result(), "schema_version": 2})
+    record = read_case(tmp_path)
+    assert (record.case["verdict"], record.result) == ("SUCCESS", None)
+    write_json(tmp_path / RESULT_FILE, {**case_result(verdict="PERHAPS"), "schema_version": 2})
+    with pytest.raises(UserError, match='verdict is "PERHAPS"; it must be one of SUCCESS'):
+        read_case(tmp_path)
+
+
+def test_a_report_of_a_case_of_an_earlier_version_says_how_to_play_it_again(tmp_path: Path) -> None:
+    write_json(tmp_path / RESULT_FILE, {**case_result(), "schema_version": 2})
+    with pytest.raises(UserError, match=r"play it again with `basu scenario run --config .*config\.json`"):
+        read_result(tmp_path)
+
+
+def test_the_folder_of_a_run_is_refused_as_a_case(tmp_path: Path) -> None:
+    write_json(tmp_path / RESULT_FILE, a_result())
+    with pytest.raises(UserError, match="is a run's folder and no case's; `basu report"):
+        read_case(tmp_path)
+
+
 def test_a_case_in_which_nothing_was_driven_has_no_record(tmp_path: Path) -> None:
-    write_json(tmp_path / RESULT_FILE, case_result(verdict="SETUP_FAULT", tree=None))
+    write_json(tmp_path / RESULT_FILE, whole(case_result(verdict="SETUP_FAULT", tree=None)))
     assert read_case(tmp_path).history is None
 
 
@@ -94,6 +127,6 @@ def test_documents_made_before_the_policy_are_refused_with_what_to_do(tmp_path: 
         UserError, match="before scenarios were judged on safe, completed and exercised; play its cases"
     ):
         read_matrix(tmp_path)
-    write_json(tmp_path / RESULT_FILE, case_result(schema_version=1))
+    write_json(tmp_path / RESULT_FILE, {**case_result(), "schema_version": 1})
     with pytest.raises(UserError, match="play its cases again"):
         read_case(tmp_path)

@@ -10,6 +10,8 @@ import numpy as np
 from basu.metrics.boxes import other_boxes, own_boxes
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from basu.records.history import Collision, History
@@ -48,7 +50,7 @@ class Contact(NamedTuple):
     at_m: Point
 
 
-def span_of(result: dict[str, Any], history: History) -> Span:
+def span_of(result: Mapping[str, Any], history: History) -> Span:
     """The case's part of a record: all of it where the case was the whole run, else from its trigger to its end."""
     t_s = history.frames["t_s"]
     phases_s = result["phases_s"]
@@ -57,12 +59,12 @@ def span_of(result: dict[str, Any], history: History) -> Span:
     return Span(min(first, len(t_s) - 1), max(0, min(last, len(t_s) - 1)))
 
 
-def roles_of(result: dict[str, Any]) -> dict[int, str]:
+def roles_of(result: Mapping[str, Any]) -> dict[int, str]:
     """Ids and roles of the scenario's actors."""
     return {int(actor["id"]): str(actor["role"]) for actor in result["actors"]}
 
 
-def encounter_of(result: dict[str, Any], history: History, span: Span) -> Encounter | None:
+def encounter_of(result: Mapping[str, Any], history: History, span: Span) -> Encounter | None:
     """The moment that the criteria judged; where none did, the nearest of the record. None without any actor.
 
     A deciding criterion comes before a reported one: it concerns the scenario's own actors.
@@ -84,7 +86,7 @@ def encounter_of(result: dict[str, Any], history: History, span: Span) -> Encoun
     return _searched(result, history, span)
 
 
-def contacts_of(result: dict[str, Any], history: History, span: Span) -> list[Contact]:
+def contacts_of(result: Mapping[str, Any], history: History, span: Span) -> list[Contact]:
     """The first touch of each party within the case."""
     seen: dict[int, Collision] = {}
     for collision in history.collisions:
@@ -103,7 +105,7 @@ def boxes_at(history: History, tick: int) -> list[tuple[int, Box]]:
     return list(zip(rows["id"].tolist(), other_boxes(history.facts, rows), strict=True))
 
 
-def thing_boxes(result: dict[str, Any], t_s: float | None = None) -> list[tuple[str, Box]]:
+def thing_boxes(result: Mapping[str, Any], t_s: float | None = None) -> list[tuple[str, Box]]:
     """What the scenario brought that is no actor of the record: wherever it stood, or where it stood at a time."""
     keys = ("x_m", "y_m", "yaw_rad", "half_length_m", "half_width_m")
     return [
@@ -113,14 +115,14 @@ def thing_boxes(result: dict[str, Any], t_s: float | None = None) -> list[tuple[
     ]
 
 
-def _beside(result: dict[str, Any], history: History, tick: int) -> list[tuple[str, Box]]:
+def _beside(result: Mapping[str, Any], history: History, tick: int) -> list[tuple[str, Box]]:
     """All actors and things near in a tick, by name."""
     roles, types = roles_of(result), history.facts.actor_types
     actors = [(roles.get(key, types.get(key, "an unknown type")), box) for key, box in boxes_at(history, tick)]
     return [*actors, *thing_boxes(result, float(history.frames["t_s"][tick]))]
 
 
-def _searched(result: dict[str, Any], history: History, span: Span) -> Encounter | None:
+def _searched(result: Mapping[str, Any], history: History, span: Span) -> Encounter | None:
     """The least distance of the record to the scenario's actors, or to any actor where it has none.
 
     Pairs are looked at in the order of a lower bound, centres less both radii, until no other can be nearer.
@@ -199,7 +201,7 @@ def _touch(history: History, collision: Collision) -> Point:
 class CaseData(NamedTuple):
     """The data of a case that its picture shows."""
 
-    result: dict[str, Any]
+    result: Mapping[str, Any]
     history: History
     span: Span
     roles: dict[int, str]
@@ -220,7 +222,7 @@ class CaseData(NamedTuple):
         return box
 
 
-def story_of(result: dict[str, Any], history: History) -> CaseData:
+def story_of(result: Mapping[str, Any], history: History) -> CaseData:
     """Find in a record what its picture is about."""
     span = span_of(result, history)
     return CaseData(

@@ -15,7 +15,7 @@ from basu.output.report.scenarios.tally import LOOKS
 from basu.output.report.templates import e, extended, number
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from xml.etree.ElementTree import Element
 
     from basu.output.report.scenarios.drawing.encounter import CaseData
@@ -34,7 +34,7 @@ def picture_style() -> str:
     return STYLE_FILE.read_text(encoding="utf-8")
 
 
-def case_picture(result: dict[str, Any], history: History, streets: Sequence[Line]) -> str:
+def case_picture(result: Mapping[str, Any], history: History, streets: Sequence[Line]) -> str:
     """A file of its own: SVG with a headline and its style in it."""
     picture = case_drawing(result, history, streets, head_px=HEAD_PX)
     picture.set("xmlns", "http://www.w3.org/2000/svg")
@@ -46,7 +46,7 @@ def case_picture(result: dict[str, Any], history: History, streets: Sequence[Lin
     return tostring(picture, encoding="unicode") + "\n"
 
 
-def case_drawing(result: dict[str, Any], history: History, streets: Sequence[Line], head_px: float = 0.0) -> Element:
+def case_drawing(result: Mapping[str, Any], history: History, streets: Sequence[Line], head_px: float = 0.0) -> Element:
     """The picture as a part of a page that has ``picture_style()``; ``head_px`` are left free above it."""
     story = story_of(result, history)
     canvas = canvas_for(what_matters(story))

@@ -6,16 +6,18 @@ import re
 import shlex
 from typing import TYPE_CHECKING, Any
 
+from basu.output.report.console import written
 from basu.output.report.plots.chart import share, times
 from basu.output.report.scenarios.drawing.picture import case_drawing
-from basu.output.report.scenarios.tally import LOOKS
+from basu.output.report.scenarios.tally import LOOKS, counted
 from basu.output.report.templates import DASH, percent, render
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from markupsafe import Markup
 
+    from basu.metrics.result import Result
     from basu.output.report.streets import Line
     from basu.records.history import History
 
@@ -42,26 +44,31 @@ LEAST_SHARE = 0.09  # of the line; the name of a shorter phase would not fit in 
 
 
 def card(
-    result: dict[str, Any],
+    case: Mapping[str, Any],
     history: History | None,
     streets: Sequence[Line],
     *,
+    name: str | None = None,
+    result: Result | None = None,
     picture: bool = True,
 ) -> Markup:
-    """The card, open; its place in a page is ``anchor_of``."""
+    """Return the card, open; its place in a page is the ``anchor_of`` of ``name``, else of the case's id.
+
+    ``result`` is that of the drive, where the case had one to itself: scores, users' metrics and conditions.
+    """
     is_pictured = picture and history is not None and len(history.frames) > 0
     return render(
         "templates/case_card.j2",
-        result=result,
-        look=LOOKS[result["verdict"]],
-        anchor=anchor_of(result["id"], result["agent"]),
-        answers=list(_answers(result.get("assessment") or {})),  # a run made before them has none
-        collisions=result.get("collisions") or [],
-        picture=case_drawing(result, history, streets) if is_pictured and history is not None else None,
-        phases=phase_line(result),
-        judgements=list(_judgements(result["judgements"])),
-        command=shlex.join(str(word) for word in result["command"]),
-        terms=_conditions(result),
+        result=case,
+        look=LOOKS[case["verdict"]],
+        anchor=anchor_of(name or case["id"], case["agent"]),
+        answers=list(_answers(case.get("assessment") or {})),  # a run made before them has none
+        collisions=case.get("collisions") or [],
+        picture=case_drawing(case, history, streets) if is_pictured and history is not None else None,
+        phases=phase_line(case),
+        judgements=list(_judgements(case["judgements"])),
+        command=shlex.join(str(word) for word in case["command"]),
+        terms=[*_conditions(case), *_of_drive(result)],
         kinds=KINDS,
         signs=SIGNS,
     )
@@ -100,7 +107,23 @@ def _judgements(found: Iterable[dict[str, Any]]) -> Iterable[tuple[dict[str, Any
         yield judgement, sign, style if judgement["deciding"] else "reported"
 
 
-def _conditions(result: dict[str, Any]) -> list[tuple[str, str]]:
+def _of_drive(result: Result | None) -> list[tuple[str, str]]:
+    """The conditions of the drive beside the case, its score, and users' metrics, as names and texts."""
+    if result is None:
+        return []
+    meta = result.meta
+    others = [
+        counted(meta["traffic"][f"{kind}s"], kind) for kind in ("vehicle", "walker") if meta["traffic"][f"{kind}s"]
+    ]
+    return [
+        ("weather", meta["weather"]),
+        *([("traffic", ", ".join(others))] if others else []),
+        *([("driving score", f"{result.scores.driving:.3f}")] if result.scores is not None else []),
+        *((own.title, written(own.value, own.unit, own.digits)) for own in result.own.values()),
+    ]
+
+
+def _conditions(result: Mapping[str, Any]) -> list[tuple[str, str]]:
     """The conditions of the case, as names and texts."""
     return [
         ("town", result["town"]),
@@ -122,7 +145,7 @@ def _speeds(measured: dict[str, Any] | None) -> list[tuple[str, str]]:
     return [("posted", posted), ("ego's speed at the conflict", f"{measured['travel_mps']:.1f} m/s")]
 
 
-def phase_line(result: dict[str, Any]) -> dict[str, Any] | None:
+def phase_line(result: Mapping[str, Any]) -> dict[str, Any] | None:
     """The phases on a line of time with the failed criteria's moments and the axis; None where no phase began."""
     begun_s: dict[str, float] = result["phases_s"]
     if not begun_s:
@@ -148,7 +171,7 @@ def phase_line(result: dict[str, Any]) -> dict[str, Any] | None:
     return {"parts": parts, "moments": _moments(result, begin_s, end_s), "axis": times(begin_s, end_s)}
 
 
-def _moments(result: dict[str, Any], begin_s: float, end_s: float) -> list[dict[str, str]]:
+def _moments(result: Mapping[str, Any], begin_s: float, end_s: float) -> list[dict[str, str]]:
     """When the criteria that failed decided."""
     return [
         {

@@ -17,7 +17,7 @@ from basu.output.report.scenarios.shares import shares_view
 from basu.output.report.scenarios.sweep.boundary import boundary_of, sentences
 from basu.output.report.scenarios.sweep.study import studies
 from basu.output.report.scenarios.sweep.success_map import drawing
-from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, tally, tracks
+from basu.output.report.scenarios.tally import LOOKS, blocks, counted, judged_share, name_of, tally, tracks
 from basu.output.report.templates import DASH, render
 from basu.output.report.tracks import apart, grouped, titled
 
@@ -68,7 +68,7 @@ def write_matrix_page(folder: Path, matrix: dict[str, Any]) -> None:
 def matrix_page(matrix: dict[str, Any], record: Callable[[Cell], CaseRecord | str]) -> bytes:
     """The page; ``record`` finds what a case left, or says why there is nothing."""
     cells = chosen(matrix)
-    carded = {anchor_of(cell.case["id"], cell.agent) for cell in cells}
+    carded = {anchor_of(name_of(cell.case), cell.agent) for cell in cells}
     cards = _cards(cells, record)
     known = tracks(matrix)
     groups = grouped(matrix["agents"], known)
@@ -120,13 +120,20 @@ def _cards(cells: list[Cell], record: Callable[[Cell], CaseRecord | str]) -> dic
         cell = cells[number]
         found = record(cell)
         if isinstance(found, str):
-            made[number] = bare_card(cell.case["id"], cell.agent, cell.case["results"][cell.agent], found)
+            made[number] = bare_card(name_of(cell.case), cell.agent, cell.case["results"][cell.agent], found)
         else:
-            made[number] = card(found.result, found.history, found.streets, picture=size < MOST_BYTES)
+            made[number] = card(
+                found.case,
+                found.history,
+                found.streets,
+                name=name_of(cell.case),
+                result=found.result,
+                picture=size < MOST_BYTES,
+            )
         size += len(made[number])
     cards: dict[str, list[Markup]] = {}
     for number, cell in enumerate(cells):
-        cards.setdefault(cell.case["id"], []).append(made[number])
+        cards.setdefault(name_of(cell.case), []).append(made[number])
     return cards
 
 
@@ -194,13 +201,13 @@ def _cases(block: Block, cards: dict[str, list[Markup]]) -> dict[str, Any]:
     """A group with its scenarios: the cases that have cards."""
     rows = []
     for row in block.rows:
-        shown = [case for case in row.cases if case["id"] in cards]
+        shown = [case for case in row.cases if name_of(case) in cards]
         headers = _headers(row.cases)
         rows.append(
             {
                 "scenario": row.scenario,
                 "title": row.title,
-                "cases": [_case(case, headers[case["id"]], cards[case["id"]]) for case in shown],
+                "cases": [_case(case, headers[name_of(case)], cards[name_of(case)]) for case in shown],
                 "left": len(row.cases) - len(shown),
             }
         )
@@ -230,8 +237,8 @@ def _total(cases: Sequence[dict[str, Any]], agent: str) -> dict[str, Any]:
 def _sign(case: dict[str, Any], agent: str, carded: Collection[str]) -> dict[str, Any]:
     """One case, with the anchor of its card where there is one."""
     result = case["results"][agent]
-    look, anchor = LOOKS[result["verdict"]], anchor_of(case["id"], agent)
-    sentence = f"{case['id']}, {agent}: {look.word}. {result['message']}"
+    look, anchor = LOOKS[result["verdict"]], anchor_of(name_of(case), agent)
+    sentence = f"{name_of(case)}, {agent}: {look.word}. {result['message']}"
     return {"look": look, "sentence": sentence, "anchor": anchor if anchor in carded else ""}
 
 
@@ -245,7 +252,7 @@ def _headers(cases: Sequence[dict[str, Any]]) -> dict[str, str]:
         values = [{each["name"]: _value(each) for each in case["parameters"]} for case in there]
         for case, own in zip(there, values, strict=True):
             varied = {name for name, text in own.items() if any(other.get(name) != text for other in values)}
-            headers[case["id"]] = ", ".join(f"{name} {own[name]}" for name in own if name in varied) or place
+            headers[name_of(case)] = ", ".join(f"{name} {own[name]}" for name in own if name in varied) or place
     return headers
 
 
@@ -258,7 +265,13 @@ def _value(parameter: dict[str, Any]) -> str:
 def _case(case: dict[str, Any], header: str, cards: list[Markup]) -> dict[str, Any]:
     """A case with the cards of all agents."""
     verdicts = [(LOOKS[result["verdict"]], agent) for agent, result in case["results"].items()]
-    return {**{key: case[key] for key in ("id", "parameters")}, "header": header, "verdicts": verdicts, "cards": cards}
+    return {
+        "id": name_of(case),
+        "parameters": case["parameters"],
+        "header": header,
+        "verdicts": verdicts,
+        "cards": cards,
+    }
 
 
 def _filters(matrix: dict[str, Any]) -> dict[str, dict[str, str]]:

@@ -13,10 +13,11 @@ from basu.output.report.scenarios.tally import LOOKS, Look
 from basu.output.report.templates import render
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from markupsafe import Markup
 
+    from basu.metrics.result import Result
     from basu.output.report.streets import Line
     from basu.records.history import History
 
@@ -30,16 +31,20 @@ def card_style() -> str:
     return "\n".join([(HERE / "scenarios.css").read_text(encoding="utf-8"), picture_style(), map_style()])
 
 
-def on_the_way(
-    document: dict[str, Any], command: Sequence[str], history: History, streets: Sequence[Line]
-) -> Markup | None:
-    """The section of a run's report; None where there were none. ``document`` is the run's result."""
-    met = document.get("scenarios")
-    if not met:
+def on_the_way(result: Result, command: Sequence[str], history: History, streets: Sequence[Line]) -> Markup | None:
+    """Return the section of a drive's report on its own case, or on the scenarios of its route; None without any."""
+    case = result.case
+    told: list[tuple[dict[str, Any], Look | None, Markup | None]]
+    if case is not None:
+        told = [(dict(case), LOOKS[case["verdict"]], card(case, history, streets, result=result))]
+    else:
+        told = [_one(dict(scenario), result.meta, command, history, streets) for scenario in result.scenarios]
+    if not told:
         return None
     return render(
         "templates/route_scenarios.j2",
-        scenarios=[_one(scenario, document["meta"], command, history, streets) for scenario in met],
+        title="Scenarios on the way" if case is None else "The case",
+        scenarios=told,
         kinds=KINDS,
         signs=SIGNS,
     )
@@ -47,7 +52,7 @@ def on_the_way(
 
 def _one(
     scenario: dict[str, Any],
-    meta: dict[str, Any],
+    meta: Mapping[str, Any],
     command: Sequence[str],
     history: History,
     streets: Sequence[Line],

@@ -21,7 +21,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
         verdict = cell.case["results"][cell.agent]["verdict"]
         document = case_result if verdict == "SUCCESS" else failed
         result = document(id=cell.case["id"], agent=cell.agent, verdict=verdict)
-        return CaseRecord(result=result, history=good if verdict == "SUCCESS" else bad, streets=STREETS)
+        return CaseRecord(case=result, result=None, history=good if verdict == "SUCCESS" else bad, streets=STREETS)
 
     matrix_ = matrix()
     matrix_["cases"][0]["results"]["basic"] = told("AGENT_FAULT", "x", "basic", 1.0)

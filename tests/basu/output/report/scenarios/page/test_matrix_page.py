@@ -25,7 +25,7 @@ def left(cell: Cell) -> CaseRecord | str:
         return "It left no folder."
     document = case_result if verdict == "SUCCESS" else failed
     result = document(id=cell.case["id"], agent=cell.agent, scenario=cell.case["scenario"])
-    return CaseRecord(result=result, history=GOOD if verdict == "SUCCESS" else BAD, streets=STREETS)
+    return CaseRecord(case=result, result=None, history=GOOD if verdict == "SUCCESS" else BAD, streets=STREETS)
 
 
 def text_of(document: dict[str, Any]) -> str:
@@ -115,7 +115,7 @@ def test_it_is_written_from_the_folders_of_the_cases(tmp_path: Path) -> None:
     )
     folder = tmp_path / "basic" / "dooring_1"
     folder.mkdir(parents=True)
-    write_json(folder / RESULT_FILE, case_result(id="dooring_1"))
+    write_json(folder / RESULT_FILE, {**case_result(id="dooring_1"), "schema_version": 2})
     write_history(folder, GOOD)
     write_streets(folder, STREETS)
     write_matrix_page(tmp_path, document)
