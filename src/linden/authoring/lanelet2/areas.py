@@ -15,7 +15,6 @@ _KERB_REACH_M = 5.0
 """Between the outermost lane of a leg and the kerb round its corner: a parking lane, and the kerb's own set-back."""
 _WHOLE = 0.991
 """The share of a lanelet that has to lie inside; the validator wants 0.99."""
-_SLICES = 256  # of a lanelet, so that its share is exact to 0.001
 _NEAR_M = 0.01
 """So little out of an area is less than the validator's hundredth of any lane."""
 _TOUCH_M = 1e-3
@@ -129,7 +128,7 @@ def _holds(ring: F64, outline: F64) -> bool:
     strays = [_gaps_m(places, other).min(axis=1) for places, other in ((outside, ring), (notches, outline))]
     if all((gap_m < _NEAR_M).all() for gap_m in strays):
         return True
-    return overlap_share(outline, ring, _SLICES) >= _WHOLE
+    return overlap_share(outline, ring) >= _WHOLE
 
 
 def _touches(ring: F64) -> bool:
