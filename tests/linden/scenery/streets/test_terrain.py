@@ -6,7 +6,7 @@ from linden.scenery.streets.terrain import _delaunay
 
 
 def test_no_corner_lies_inside_a_triangle_s_circle_and_the_triangles_fill_the_hull() -> None:
-    points = np.random.default_rng(7).uniform(-500.0, 500.0, (400, 2)) + (20_000.0, -9_000.0)
+    points = np.random.default_rng(7).uniform(-500.0, 500.0, (400, 2)) + np.array([20_000.0, -9_000.0])
     triangles = _delaunay(points)
     a, b, c = (points[triangles[:, k]] for k in range(3))
     (bx, by), (cx, cy) = (b - a).T, (c - a).T
