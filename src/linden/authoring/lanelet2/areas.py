@@ -1,11 +1,11 @@
 """Intersection areas: a ring of nodes around each junction, along the ends of its legs and the kerbs between them."""
 
 import math
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from shapely import Polygon, contains_xy, convex_hull, get_coordinates, make_valid, multipoints, orient_polygons
 
 from linden.authoring.lanelet2.model import Bounds, LaneletMap
 from linden.authoring.lanelet2.overlap import overlap_share
@@ -152,30 +152,13 @@ def _area(ring: F64) -> float:
 
 
 def _hull(target: LaneletMap, nodes: list[int]) -> tuple[int, ...]:
-    """Return the convex hull of nodes, counter-clockwise (Andrew, 1979)."""
-    ranked = sorted(dict.fromkeys(nodes), key=lambda node: target.nodes[node][:2])
-
-    def half(chain: list[int]) -> list[int]:
-        kept: list[int] = []
-        for node in chain:
-            while len(kept) > 1 and _turn(target, kept[-2], kept[-1], node) <= 0.0:
-                kept.pop()
-            kept.append(node)
-        return kept[:-1]
-
-    return tuple(half(ranked) + half(ranked[::-1]))
-
-
-def _turn(target: LaneletMap, one: int, two: int, three: int) -> float:
-    (ax, ay), (bx, by), (cx, cy) = (target.nodes[node][:2] for node in (one, two, three))
-    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
+    """Return the convex hull of nodes, counter-clockwise."""
+    node_at = {target.nodes[node][:2]: node for node in nodes}
+    hull = orient_polygons(convex_hull(multipoints(list(node_at))))
+    return tuple(node_at[x, y] for x, y in get_coordinates(hull)[:-1].tolist())
 
 
 def inside(ring: F64, points: F64) -> NDArray[np.bool_]:
-    """Return which points (N, 2) lie inside a ring (M, 2), by counting crossings of a ray to the east."""
-    odd = np.zeros(len(points), dtype=np.bool_)
-    for (x0, y0), (x1, y1) in pairwise([*ring.tolist(), ring[0].tolist()]):
-        spans = (y0 > points[:, 1]) != (y1 > points[:, 1])
-        if spans.any():
-            odd ^= spans & (points[:, 0] < x0 + (points[:, 1] - y0) * (x1 - x0) / (y1 - y0 or 1e-18))
-    return odd
+    """Return which points (N, 2) lie inside a ring (M, 2)."""
+    within: NDArray[np.bool_] = contains_xy(make_valid(Polygon(ring)), points)
+    return within

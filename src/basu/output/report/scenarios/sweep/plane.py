@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from contourpy import FillType, LineType, contour_generator
@@ -118,7 +118,7 @@ def region(share: NDArray[np.float64], level: float) -> tuple[str, str]:
     """Return paths of where a grid (R, C) over the plot is above a level: its area, and its edge within the plot."""
     rows, columns = share.shape
     x, y = np.linspace(LEFT_PX, LEFT_PX + WIDTH_PX, columns), np.linspace(TOP_PX, TOP_PX + HEIGHT_PX, rows)
-    contours = contour_generator(x, y, share, fill_type=FillType.OuterOffset, line_type=LineType.Separate)
+    contours: Any = contour_generator(x, y, share, fill_type=FillType.OuterOffset, line_type=LineType.Separate)
     points, offsets = contours.filled(level, np.inf)
     rings = [ring for each, ends in zip(points, offsets, strict=True) for ring in np.split(each, ends[1:-1])]
     area = "".join(f"M{_line(ring)}z" for ring in rings)
